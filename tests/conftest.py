@@ -30,7 +30,7 @@ from herijk.warehouse.build.graph import CONSISTENCY, LINES, STUDIES
 from herijk.warehouse.store.store import Store
 
 # The same examples every time, whatever the machine's speed.
-settings.register_profile("repeatable", deadline=None, derandomize=True)
+settings.register_profile("repeatable", deadline=None, derandomize=True, max_examples=50)
 settings.load_profile("repeatable")
 
 os.environ["LC_ALL"] = "C.UTF-8"
@@ -85,13 +85,18 @@ def directly() -> Iterator[None]:
     def unrecorded(setup: Setup, other: object, work: Callable[[Any], None]) -> None:
         work(_Directly(setup))
 
+    no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
+    with no_site, in_one_process(), mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
+        yield
+
+
+def in_one_process() -> AbstractContextManager[object]:
+    """Inside, a thread helps a rebuild: a process takes seconds to import what it needs."""
+
     def thread() -> Executor:
         return ThreadPoolExecutor(1)
 
-    no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
-    alone = mock.patch.object(herijk.assets.rebuild, "helper", thread)
-    with no_site, alone, mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
-        yield
+    return mock.patch.object(herijk.assets.rebuild, "helper", thread)
 
 
 @dataclass(frozen=True)

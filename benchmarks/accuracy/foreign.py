@@ -34,10 +34,16 @@ Factor = np.ndarray | float
 
 
 def reading(
-    world: Measured, force: Factor = 1.0, log: Factor = 1.0, wind: Factor = 1.0
+    world: Measured,
+    force: Factor = 1.0,
+    log: Factor = 1.0,
+    wind: Factor = 1.0,
+    gps: Factor = 1.0,
 ) -> Measured:
     """The same world with readings times a factor per run."""
-    readings = [np.broadcast_to(x, world.blocks.runs.height)[:, None] for x in (force, log, wind)]
+    *readings, gps_factor = (
+        np.broadcast_to(x, world.blocks.runs.height)[:, None] for x in (force, log, wind, gps)
+    )
     sums = {}
     for name, values in world.blocks.sums.items():
         source, _, quantity = name.partition("_")
@@ -47,6 +53,7 @@ def reading(
             air = 2 if name in AIR_SUMS else int(name in ("wind_v", "wind_x", "wind_y"))
             powers = (int(name == "force"), 0, air)
         sums[name] = values * np.prod([x**n for x, n in zip(readings, powers, strict=True)], axis=0)
+    sums["gps"] = sums["gps"] * gps_factor
     return replace(world, blocks=replace(world.blocks, sums=sums))
 
 

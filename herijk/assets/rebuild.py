@@ -18,7 +18,6 @@ from herijk.assets.side_by_side import Join, Read, Reading, Task, helper, shared
 from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
-from herijk.pipeline.recompute.recompute import estimates
 from herijk.warehouse.build.graph import DATABASE, STEPS
 from herijk.warehouse.build.step import Step
 from herijk.warehouse.intake import seasons as intake
@@ -207,7 +206,8 @@ class _Rebuild:
         """
         if not step.per_method:
             return [self.methods]
-        return [[method] for method in sorted(self.methods, key=estimates, reverse=True)]
+        longest_first = sorted(self.methods, key=lambda method: method.estimates_logs, reverse=True)
+        return [[method] for method in longest_first]
 
     def _build(self, work: "Work", stage: Sequence[Step]) -> None:
         """Makes the tables of steps where they are stale, per method where they are made so."""

@@ -25,7 +25,13 @@ LEAST_FREE: Final = 2 * 2**30
 
 @dataclass(frozen=True)
 class Finding:
-    """What was looked at, whether it is in order, and what was found or what to do."""
+    """How one thing is.
+
+    Attributes:
+        what: what was looked at.
+        sound: whether it is in order.
+        found: what was found, or what to do.
+    """
 
     what: str
     sound: bool
@@ -63,7 +69,7 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     from herijk.warehouse.store.lock import only_writer
     from herijk.warehouse.store.store import Store
 
-    yield Finding("Herijk", sound=True, found=version("herijk"))
+    yield Finding("Herijk", True, version("herijk"))
     yield Finding("Python", sys.version_info >= (3, 11), sys.version.split()[0])
     yield _space(data)
     yield _tried("settings", lambda: tell("applies {}", ", ".join(read_settings(data).applied)))
@@ -74,9 +80,7 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
         yield _tried("lock", lambda: _taken(only_writer(data)))
         yield _tried("tables", lambda: _tows(rebuild_report(Store(data))))
     else:
-        yield Finding(
-            "data folder", sound=True, found=tell("{} is not there yet; a rebuild makes it", data)
-        )
+        yield Finding("data folder", True, tell("{} is not there yet; a rebuild makes it", data))
     if archive is not None:
         there = archive.is_dir()
         yield Finding("archive", there, str(archive) if there else tell("{} is no folder", archive))
@@ -92,9 +96,9 @@ def _space(data: Path) -> Finding:
 
 def _tried(what: str, look: Callable[[], str]) -> Finding:
     try:
-        return Finding(what, sound=True, found=look())
+        return Finding(what, True, look())
     except (HerijkError, OSError) as error:
-        return Finding(what, sound=False, found=spoken(error, LANGUAGE.get()))
+        return Finding(what, False, spoken(error, LANGUAGE.get()))
 
 
 def _title(known: "KnownMethods", name: str) -> str:

@@ -1,17 +1,12 @@
 """The commands that make documents for paper: certificates, and a proposal to vote on."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from herijk.cli.arguments import AsJson, AsOf, DataFolder, show_files
 from herijk.words import LANGUAGE, tell
-
-if TYPE_CHECKING:
-    from herijk.warehouse.store.store import Store
-
-Target = Annotated[Path | None, typer.Option("--out", metavar="FILE", help="File to write, a PDF.")]
 
 
 def add_to(app: typer.Typer) -> None:
@@ -48,7 +43,7 @@ def certificate(
         as_page = out is not None and out.suffix == ".html"
         made = certificates(views, chosen, fsn_no, LANGUAGE.get(), as_page)
     name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
-    _write(made, out or _documents(store) / f"{name}.pdf", as_json)
+    _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
 
 
 def pages(
@@ -76,7 +71,7 @@ def proposal(
     against: Annotated[
         str, typer.Option(metavar="EDITION", help="Edition that counts now, or a draft.")
     ] = "concept-as-published",
-    out: Target = None,
+    out: Annotated[Path | None, typer.Option(metavar="FILE", help="File to write, a PDF.")] = None,
     as_json: AsJson = False,
 ) -> None:
     """What a board sends its members before they vote: what changes, for whom, how uncertain."""
@@ -89,11 +84,7 @@ def proposal(
     with Views(store) as views:
         made = make_proposal(views, methods, against, LANGUAGE.get(), known_methods(data))
     name = "-".join(("proposal", *methods))
-    _write(made, out or _documents(store) / f"{name}.pdf", as_json)
-
-
-def _documents(store: "Store") -> Path:
-    return store.root / "documents"
+    _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
 
 
 def _write(content: bytes, path: Path, as_json: bool) -> None:

@@ -3,7 +3,7 @@
 from collections import Counter
 from typing import TYPE_CHECKING, Final
 
-from herijk.cli.text import SIMULATED, decimals, table
+from herijk.cli.text import boat, decimals, page, table
 from herijk.warehouse.queries.due import WORTH
 from herijk.words import tell
 from herijk.words.catalogue import code
@@ -24,8 +24,12 @@ URGENCIES: Final = {
 def due(report: "DueReport") -> str:
     """Who is due, at what speed, and which boats to tow again."""
     counts = Counter(line["urgency"] for line in report.lines)
-    parts = [tell(SIMULATED)] if report.simulated else []
-    parts.append(
+    by_urgency = [
+        f"{tell(title)}\n{_lines([line for line in report.lines if line['urgency'] == urgency])}"
+        for urgency, title in URGENCIES.items()
+        if counts[urgency]
+    ]
+    parts = [
         tell(
             "Due list as of {}{}; curves of method {}. {} boats and crews: {} expired, "
             "{} expire this year, {} without a curve.",
@@ -33,26 +37,18 @@ def due(report: "DueReport") -> str:
             "" if report.asked else LAST_DAY,
             report.method,
             len(report.lines),
-            counts["expired"],
-            counts["this_year"],
-            counts["without_curve"],
-        )
-    )
-    parts += [
-        f"{tell(title)}\n{_lines([line for line in report.lines if line['urgency'] == urgency])}"
-        for urgency, title in URGENCIES.items()
-        if counts[urgency]
-    ]
-    parts.append(
+            *(counts[urgency] for urgency in ("expired", "this_year", "without_curve")),
+        ),
+        *by_urgency,
         tell(
             "The speed takes 70-90 W per rower (men) or 40-55 W (women) on the known "
             "curve. A boat that was altered\nsince may be towed at another one. * "
             "lies outside 85-115 % of the last declared speed, where its curve does "
             "not hold."
-        )
-    )
-    parts.append(_choice(report.retow_choice))
-    return "\n\n".join(parts)
+        ),
+        _choice(report.retow_choice),
+    ]
+    return page(parts, report.simulated)
 
 
 def _lines(lines: list["Row"]) -> str:
@@ -66,16 +62,12 @@ def _lines(lines: list["Row"]) -> str:
 def _line(line: "Row") -> tuple[object, ...]:
     tow_at = decimals(line["tow_speed_m_s"], 2) + ("*" if line["beyond_curve"] else "")
     return (
-        _day(line["valid_until"]),
-        line["fsn_no"],
-        line["name"] or "-",
-        f"{line['rowers']}{line['crew_class']}",
-        _day(line["tow_date"]),
+        line["valid_until"],
+        *boat(line),
+        line["tow_date"],
         decimals(line["declared_speed_m_s"], 2),
-        "-" if line["power_w"] is None else f"{line['power_w']:.0f}",
-        decimals(line["raced_speed_m_s"], 2),
-        decimals(line["lowest_speed_m_s"], 2),
-        decimals(line["highest_speed_m_s"], 2),
+        decimals(line["power_w"], 0),
+        *(decimals(line[f"{which}_speed_m_s"], 2) for which in ("raced", "lowest", "highest")),
         tow_at,
         code(line["speed_reason"]),
     )
@@ -90,11 +82,9 @@ def _choice(choice: list["Row"]) -> str:
     rows = [
         (
             c["position"],
-            c["fsn_no"],
-            c["name"] or "-",
-            f"{c['rowers']}{c['crew_class']}",
+            *boat(c),
             c["seasons"],
-            _day(c["valid_until"]),
+            c["valid_until"],
             decimals(c["tow_speed_m_s"], 2),
             tell("{:.3f} %", 100 * c["factor_sd_after_ratio"]),
         )
@@ -114,7 +104,3 @@ def _choice(choice: list["Row"]) -> str:
         tell(worth),
         table(head, rows),
     )
-
-
-def _day(value: object) -> str:
-    return "-" if value is None else str(value)

@@ -6,28 +6,18 @@ in `cli.editions_text` and `cli.due_text`.
 
 import datetime as dt
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
 from herijk.cli.arguments import AsJson, AsOf, DataFolder, as_json_text, read_day, show
 from herijk.cli.methods import known_methods
-from herijk.words import say
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds these commands to the command line."""
     for command in (register, publish, diff, verify, lineage, due):
         app.command()(command)
-
-
-def _one_of(known: tuple[str, ...], value: str, option: str) -> str:
-    if value not in known:
-        raise typer.BadParameter(say("{} is one of {}, not {!r}", option, ", ".join(known), value))
-    return value
-
-
-EditionName = Annotated[str, typer.Argument(metavar="EDITION", help="Name of an edition.")]
 
 
 def register(
@@ -105,22 +95,20 @@ def diff(
     new: Annotated[str, typer.Argument(metavar="EDITION", help="The new edition.")],
     data: DataFolder = Path("data"),
     fatigue: Annotated[
-        str,
+        Literal["none", "known", "extend"],
         typer.Option(help="Fatigue correction of races: none, known (2 to 3 h only) or extend."),
     ] = "extend",
     as_json: AsJson = False,
 ) -> None:
     """Two editions side by side: who gains, who loses, why, and what it does to races."""
     from herijk.cli import editions_text as text
-    from herijk.pipeline.register.replay import FATIGUES, RaceRules
+    from herijk.pipeline.register.replay import RaceRules
     from herijk.warehouse.editions import compare
     from herijk.warehouse.store.store import Store
 
-    rules = RaceRules(
-        fatigue=_one_of(FATIGUES, fatigue, "--fatigue"),  # type: ignore[arg-type]
-    )
     store = Store(data)
-    report = compare.report_with_races(store, compare.diff(store, old, new), rules)
+    comparison = compare.diff(store, old, new)
+    report = compare.report_with_races(store, comparison, RaceRules(fatigue=fatigue))
     show(report, text.diff, as_json)
 
 
@@ -137,7 +125,7 @@ def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
 
 
 def lineage(
-    edition: EditionName,
+    edition: Annotated[str, typer.Argument(metavar="EDITION", help="Name of an edition.")],
     boat: Annotated[str, typer.Argument(metavar="BOAT", help="By number or name.")],
     data: DataFolder = Path("data"),
     as_json: AsJson = False,

@@ -3,7 +3,7 @@
 from collections import Counter
 from typing import TYPE_CHECKING, Final
 
-from herijk.cli.text import SIMULATED, decimals, table
+from herijk.cli.text import SIMULATED, boat, decimals, page, table
 from herijk.tables.row import Row
 from herijk.warehouse.editions.words import LANGUAGES, Language
 from herijk.words import LANGUAGE, in_per_cent, tell
@@ -52,10 +52,9 @@ def register(report: "RegisterReport") -> str:
         *("boat", "name", "crew", "empty thwart", "status", "valid until", "tow", "v m/s"),
         *("A kg/m", "B m/s", "Cw kg/m", "from", "to", "length m", "beam m", "bow m", "kg"),
     )
-    parts = [tell(SIMULATED)] if report.simulated else []
     counts = Counter(line["status"] for line in report.lines)
     statuses = ", ".join(f"{n} {_words().statuses.get(s, s)}" for s, n in counts.items())
-    parts += [
+    parts = [
         tell("Register {}, validity judged on {}: {}.", report.edition, report.as_of, statuses),
         table(head, [_register_line(line) for line in report.lines]),
         tell(
@@ -64,21 +63,21 @@ def register(report: "RegisterReport") -> str:
             "of v."
         ),
     ]
-    return "\n\n".join(parts)
+    return page(parts, report.simulated)
 
 
 def _register_line(line: Row) -> tuple[object, ...]:
+    shown = (
+        *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
+        *("waterline_length_m", "beam_m", "bow_height_m"),
+    )
     return (
-        line["fsn_no"],
-        line["name"] or "-",
-        f"{line['rowers']}{line['crew_class']}",
+        *boat(line),
         line["empty_thwart"] or "-",
         _words().statuses.get(line["status"], line["status"]),
         line["valid_until"],
         line["tow_id"],
-        *(decimals(line[name], 2) for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
-        *(decimals(line[name], 2) for name in ("cw_lo_kg_m", "cw_hi_kg_m", "waterline_length_m")),
-        *(decimals(line[name], 2) for name in ("beam_m", "bow_height_m")),
+        *(decimals(line[name], 2) for name in shown),
         decimals(line["weight_kg"], 0),
     )
 
@@ -127,10 +126,9 @@ def published(report: "Published") -> str:
 
 def diff(report: "DiffReport") -> str:
     """Two editions side by side."""
-    parts = [tell(SIMULATED)] if report.simulated else []
     counts = ", ".join(f"{n} {_words().changes.get(c, c)}" for c, n in report.changes.items())
-    parts.append(f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.")
-    parts.append(
+    parts = [
+        f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.",
         tell(
             "Gain (more power for the same race): {}\nLose: {}\nLarger than the intervals "
             "of both: {}; interval not known for {}.",
@@ -138,8 +136,8 @@ def diff(report: "DiffReport") -> str:
             _group(report.loss),
             report.exceeds_interval,
             report.interval_unknown,
-        )
-    )
+        ),
+    ]
     parts += [
         tell(
             "The interval of {} is the spread of the runs alone: the log's error is not in it.",
@@ -158,16 +156,12 @@ def diff(report: "DiffReport") -> str:
         ]
         head = ("cause", "lines", "median", "lowest", "highest")
         parts.append(tell("Causes, with their factor on Cw:\n") + table(head, rows))
-    parts.append(
-        tell(
-            "Every line: A and Cw in kg/m, B in m/s, W per rower at the old declared "
-            "speed, seconds that the new register gives in\na two-hour race, rank at "
-            "equal power among all boats of the class:\n"
-        )
-        + _lines(report.rows)
+    every_line = tell(
+        "Every line: A and Cw in kg/m, B in m/s, W per rower at the old declared "
+        "speed, seconds that the new register gives in\na two-hour race, rank at "
+        "equal power among all boats of the class:\n"
     )
-    parts.append(_races(report))
-    return "\n\n".join(parts)
+    return page([*parts, every_line + _lines(report.rows), _races(report)], report.simulated)
 
 
 def _group(group: "Group") -> str:
@@ -197,9 +191,7 @@ def _line(row: Row) -> tuple[object, ...]:
     ]
     causes = "; ".join(f"{_cause(c)} {_per_cent(c['factor'])}" for c in row["causes"])
     return (
-        row["fsn_no"],
-        row["name"] or "-",
-        f"{row['rowers']}{row['crew_class']}",
+        *boat(row),
         _words().changes[row["change"]]
         if row["change"] != "removed"
         else tell(
@@ -344,20 +336,16 @@ def _verdict(findings: list["Finding"]) -> str:
 def lineage(report: "Lineage") -> str:
     """From a line to files, runs and seconds."""
     about = report.about
-    parts = [tell(SIMULATED)] if about["simulated"] else []
-    parts.append(
-        tell(
-            "Edition {}, valid from {}, method {} ({}), code {}. Decision: {}",
-            about["edition"],
-            about["valid_from"],
-            about["method"] or "as printed",
-            (about["method_hash"] or "-")[:12],
-            about["code_version"],
-            about["decision"],
-        )
+    head = tell(
+        "Edition {}, valid from {}, method {} ({}), code {}. Decision: {}",
+        about["edition"],
+        about["valid_from"],
+        about["method"] or "as printed",
+        (about["method_hash"] or "-")[:12],
+        about["code_version"],
+        about["decision"],
     )
-    parts += [_line_history(line) for line in report.lines]
-    return "\n\n".join(parts)
+    return page([head, *map(_line_history, report.lines)], about["simulated"])
 
 
 def _line_history(line: "LineLineage") -> str:

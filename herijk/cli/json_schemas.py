@@ -1,21 +1,105 @@
 """What `--json` of each command prints, as JSON Schema: `herijk schema COMMAND`.
 
-A field that is a column of a table has its type, unit and meaning from the declaration of that
-table. Fields may be added to a result; none is renamed or dropped without a line in the changelog.
+The form of a result is that of its dataclass: types from its fields, meanings from its docstring.
+Rows have no class, so their columns are named here; the type, unit and meaning of a column come
+from the declaration of its table. Fields may be added to a result; none is renamed or dropped
+without a line in the changelog.
 """
 
+import collections.abc
+import datetime as dt
+import inspect
+import re
 from collections.abc import Mapping
+from dataclasses import fields
 from functools import cache
-from typing import Any, Final
+from operator import attrgetter
+from types import NoneType
+from typing import Any, Final, Literal, get_args, get_origin, get_type_hints
 
 import polars as pl
+from pydantic import BaseModel
 
+from herijk.assets.report import Done, Report
+from herijk.cli.doctor import Findings
+from herijk.cli.methods import MethodReport
+from herijk.pipeline.method.variant import Difference
 from herijk.pipeline.register.register import LINE as NAMES_LINE
 from herijk.tables.declare import dy
+from herijk.tables.row import Row
 from herijk.tables.schemas import TABLES
+from herijk.warehouse.archive.check import CheckReport
+from herijk.warehouse.archive.proposals import Proposal
+from herijk.warehouse.editions.compare import DiffReport
+from herijk.warehouse.editions.lineage import Lineage
+from herijk.warehouse.editions.publish import Published
+from herijk.warehouse.editions.verify import Verification
+from herijk.warehouse.queries.audit import BoatAudit
+from herijk.warehouse.queries.audit_types import TypesAudit
+from herijk.warehouse.queries.due import DueReport
+from herijk.warehouse.queries.rebase import RebaseReport
+from herijk.warehouse.queries.register import RegisterReport
+from herijk.warehouse.queries.reports import LogErrorReport, RebuildReport
+from herijk.warehouse.store.editions import About
 
 Schema = dict[str, Any]
+Fields = Mapping[str, Any]
+"""Schemas by name; of a field that has a class of its own, the columns of the rows in it."""
+
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
+KINDS: Final = {str: "string", dt.date: "string", bool: "boolean", int: "integer", float: "number"}
+LISTS: Final = (list, tuple, collections.abc.Sequence)
+OBJECTS: Final = (dict, collections.abc.Mapping)
+
+
+def of(report: type[Any], **rows: Fields) -> Schema:
+    """The schema of a dataclass or a pydantic model.
+
+    Args:
+        report: the class.
+        rows: the columns of its fields that are rows, by the name of the field.
+    """
+    documented = [inspect.cleandoc(one.__doc__ or "") for one in reversed(report.__mro__)]
+    meanings = {name: text for doc in documented for name, text in _attributes(doc)}
+    hints = get_type_hints(report)
+    names = (
+        report.model_fields
+        if issubclass(report, BaseModel)
+        else map(attrgetter("name"), fields(report))
+    )
+    return record(
+        documented[-1].partition("\n")[0],
+        {
+            name: _of_hint(hints[name], rows.get(name, {}))
+            | ({"description": meanings[name]} if name in meanings else {})
+            for name in names
+        },
+    )
+
+
+def _attributes(documented: str) -> list[tuple[str, str]]:
+    """Name and meaning of each field in the section `Attributes` of a docstring."""
+    section = documented.partition("Attributes:\n")[2].partition("\n\n")[0]
+    entries = re.findall(r"^    (\w[\w, ]*): (.*(?:\n {8}.*)*)", section, re.MULTILINE)
+    return [(name, " ".join(text.split())) for names, text in entries for name in names.split(", ")]
+
+
+def _of_hint(hint: Any, columns: Fields) -> Schema:
+    """The schema of an annotation; rows in it have these columns."""
+    origin, inner = get_origin(hint), get_args(hint)
+    if NoneType in inner:
+        (known,) = set(inner) - {NoneType}
+        schema = _of_hint(known, columns)
+        return schema | {"type": [schema["type"], "null"]}
+    if hint == Row:
+        return {"type": "object", "properties": columns}
+    if origin in LISTS:
+        return {"type": "array", "items": _of_hint(inner[0], columns)}
+    if origin in OBJECTS:
+        return {"type": "object", "additionalProperties": _of_hint(inner[1], columns)}
+    if origin is Literal or hint in KINDS:
+        return {"type": KINDS.get(hint, "string")}
+    return {} if hint is object else of(hint, **columns)
 
 
 def _field(kind: str, meaning: str, maybe: bool = False) -> Schema:
@@ -47,26 +131,21 @@ def texts(meaning: str) -> Schema:
     return {"type": "array", "items": {"type": "string"}, "description": meaning}
 
 
-def record(meaning: str, fields: Mapping[str, Schema], maybe: bool = False) -> Schema:
+def record(meaning: str, fields: Fields) -> Schema:
     """An object with these fields."""
-    return _field("object", meaning, maybe) | {"properties": dict(fields)}
+    return _field("object", meaning) | {"properties": dict(fields)}
 
 
-def rows(meaning: str, fields: Mapping[str, Schema]) -> Schema:
+def rows(meaning: str, fields: Fields) -> Schema:
     """A list of objects with these fields."""
     items = {"type": "object", "properties": dict(fields)}
     return {"type": "array", "items": items, "description": meaning}
 
 
-def by_name(meaning: str, value: Schema) -> Schema:
-    """An object whose keys are names: of methods, steps or statuses."""
-    return {"type": "object", "additionalProperties": value, "description": meaning}
-
-
 def columns(table: str, *names: str) -> dict[str, Schema]:
     """Columns of a table, all of them where none is named; joined in, each may be empty."""
-    found = TABLES[table].columns()
-    return {name: _of_column(found[name]) for name in names or found}
+    declared = TABLES[table].columns()
+    return {name: _of_column(declared[name]) for name in names or declared}
 
 
 def _of_column(column: dy.Column) -> Schema:
@@ -81,71 +160,37 @@ def _of_column(column: dy.Column) -> Schema:
     return number(meaning, maybe=True) if column.dtype.is_float() else text(meaning, maybe=True)
 
 
-SIMULATED: Final = {"simulated": flag("the archive was made by a simulator")}
 NAME: Final = columns("boats", "name")
+TYPED: Final = columns("boats", "name", "boat_type")
 LINE: Final = columns("register", *NAMES_LINE)
 FACTOR: Final = number("what it does to Cw: new / old", maybe=True)
-PART: Final = {
-    "cause": text("why the line changed"),
-    "step": text("step of the method, where a method is the cause", maybe=True),
-    "factor": FACTOR,
-}
-
-
-def _written(what: str) -> Schema:
-    return record(what, {"files": texts("files written")})
+COUNTED: Final = {"number": whole("how often")}
 
 
 def _rebuild() -> Schema:
-    change = {
-        "median_ratio": number("median of Cw / Cw of the method compared with", maybe=True),
-        "lowest_ratio": number("the lowest", maybe=True),
-        "highest_ratio": number("the highest", maybe=True),
-    }
-    fault = columns(
-        *("quarantine", "path", "tow_id", "line", "message", "message_nl", "reason_code")
+    report = of(
+        RebuildReport,
+        seasons={"season": whole("year"), "tows": whole("tows")},
+        set_aside=columns("quarantine", "lost", "reason_code") | COUNTED,
+        first_faults=columns(
+            *("quarantine", "path", "tow_id", "line", "message", "message_nl", "reason_code")
+        )
+        | COUNTED,
+        curves=columns("curves", "method", "status") | COUNTED,
+        by_season=columns(
+            *("season_changes", "method", "season", "tows"),
+            *("median_ratio", "lowest_ratio", "highest_ratio"),
+        )
+        | {"compared_with": text("draft of the method compared with")},
+        biggest_changes=LINE
+        | NAME
+        | columns(
+            *("register_changes", "from_edition", "to_edition", "change", "cw_ratio"),
+            "time_ratio",
+        ),
     )
-    return record(
-        "What a rebuild did and what the tables hold.",
-        {
-            **SIMULATED,
-            "database": text("the file with all tables"),
-            "site": text("first page of the site"),
-            "report": text("page about what changed"),
-            "seasons": rows("seasons with tows", {"season": whole("year"), "tows": whole("tows")}),
-            "set_aside": rows(
-                "what was set aside, by reason",
-                columns("quarantine", "lost", "reason_code") | {"number": whole("how often")},
-            ),
-            "first_faults": rows("the first of each cause", fault | {"number": whole("how often")}),
-            "curves": rows(
-                "curves by method and status",
-                columns("curves", "method", "status") | {"number": whole("curves")},
-            ),
-            "by_season": rows(
-                "change of Cw at the declared speed",
-                columns("season_changes", "method", "season", "tows")
-                | change
-                | {"compared_with": text("draft of the method compared with")},
-            ),
-            "biggest_changes": rows(
-                "lines that change most",
-                columns("register_changes", "from_edition", "to_edition", "change")
-                | LINE
-                | NAME
-                | {"cw_ratio": FACTOR, "time_ratio": number("new / old time of a race", True)},
-            ),
-            "done": record(
-                "the work",
-                {
-                    "seasons": {"type": "array", "items": {"type": "integer"}},
-                    "methods": texts("methods applied again"),
-                    "database": flag("the database was made again"),
-                },
-            ),
-            "since": record("the report, as report/latest.json has it", {}),
-        },
-    )
+    report["properties"] |= {"done": of(Done), "since": of(Report)}
+    return report
 
 
 def _log_error() -> Schema:
@@ -155,45 +200,24 @@ def _log_error() -> Schema:
         *("factor_no_boats", "agreement"),
     )
     factor = columns("log_factors", "season", "factor", "lo", "hi", "source")
-    return record(
-        "The speed log of every season: true speed = log speed x factor.",
-        {
-            **SIMULATED,
-            "method": text("method"),
-            "factors": rows("a season each", factor | links | {"cause": text("step is of", True)}),
-            "parts": rows(
-                "each log, and each part of a season in which one was replaced",
-                factor | columns("season_links", "part", "log", "n_tows", "n_links"),
-            ),
-            "diagnosis": rows("what may be wrong", columns("season_diagnosis")),
-        },
+    return of(
+        LogErrorReport,
+        factors=factor | links | {"cause": text("step is of", maybe=True)},
+        parts=factor | columns("season_links", "part", "log", "n_tows", "n_links"),
+        diagnosis=columns("season_diagnosis"),
     )
 
 
 def _rebase() -> Schema:
-    factors: Schema = {"additionalProperties": FACTOR}
-    by_season = rows(
-        "per season: median factor on Cw of each step, by the step's name, and of all",
-        {"season": whole("year"), "tows": whole("tows"), "total": FACTOR},
+    report = of(
+        RebaseReport,
+        by_season={"season": whole("year"), "tows": whole("tows"), "total": FACTOR},
+        changes={"change": text("kind"), "count": whole("lines")},
+        boats=columns("register_changes") | NAME | {"tow_id": text("its tow", maybe=True)},
     )
-    by_season["items"] |= factors
-    boats = rows(
-        "lines most affected, with the factor of each step, by its name",
-        columns("register_changes") | NAME | {"tow_id": text("its tow", maybe=True)},
-    )
-    boats["items"] |= factors
-    return record(
-        "All of history under a method, against another.",
-        {
-            **SIMULATED,
-            "method": text("method"),
-            "method_hash": text("its content hash"),
-            "against": text("method it is compared with"),
-            "by_season": by_season,
-            "changes": rows("lines by kind", {"change": text("kind"), "count": whole("lines")}),
-            "boats": boats,
-        },
-    )
+    for name in ("by_season", "boats"):  # and of each step, by its name
+        report["properties"][name]["items"]["additionalProperties"] = FACTOR
+    return report
 
 
 def _fit() -> Schema:
@@ -217,292 +241,138 @@ def _fit() -> Schema:
     )
 
 
-def _about_edition() -> dict[str, Schema]:
-    own = columns(
-        "editions",
-        *("edition", "kind", "method", "method_hash", "valid_from", "published_on", "decision"),
-        *("previous", "code_version", "seal"),
-    )
-    return {
-        **own,
-        **SIMULATED,
-        "inputs_digest": text("hash of all tows that went in"),
-        "carried_from": text("printed edition of which lines were taken over", maybe=True),
-        "number": whole("place in the chain of editions", maybe=True),
-        "after_seal": text("seal of the edition before", maybe=True),
-    }
+ABOUT: Final = columns(
+    "editions",
+    *("edition", "kind", "method", "method_hash", "valid_from", "published_on", "decision"),
+    *("previous", "code_version", "seal"),
+)
+"""What the table of editions says of the fields of an edition."""
 
 
 def _publish() -> Schema:
     to_look_at = LINE | columns("register", "status", "tow_id") | {"flags": texts("its flags")}
-    return record(
-        "The edition that was published.",
-        {
-            **_about_edition(),
-            "tables": by_name("digest of each table", {"type": "object"}),
-            "files": by_name("SHA-256 of each file", {"type": "string"}),
-            "folder": text("where it lies"),
-            "statuses": by_name("lines by status", {"type": "integer"}),
-            "to_look_at": rows("lines with flags, or without numbers", to_look_at),
-        },
-    )
+    report = of(Published, to_look_at=to_look_at)
+    about = report["properties"].pop("about")["properties"]
+    report["properties"] |= about | ABOUT
+    return report
+
+
+def _changed_line() -> Fields:
+    """A line of two editions: how it changed and why, and what it is in either."""
+    in_either = {
+        **columns("register", "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s"),
+        **columns("register", "tow_id", "status"),
+        **columns("curves", "power_w"),
+        "rank": whole("rank by speed at equal power, in its class", maybe=True),
+    }
+    cause = {
+        "cause": text("why the line changed"),
+        "step": text("step of the method, where a method is the cause", maybe=True),
+        "factor": FACTOR,
+    }
+    return {
+        **columns("register_changes"),
+        **NAME,
+        **{f"{side}_{name}": own for side in ("old", "new") for name, own in in_either.items()},
+        "gain_in_two_hours_s": number("what it gains in a race of two hours [s]", maybe=True),
+        "exceeds_interval": flag("it moved by more than both intervals", maybe=True),
+        "causes": rows("what moved it", cause),
+    }
 
 
 def _diff() -> Schema:
-    line = columns("register_changes") | {"causes": rows("what moved it", PART)}
-    line["causes"]["items"]["additionalProperties"] = True
-    lines = rows("lines", line)
-    lines["items"]["additionalProperties"] = True
-    group = record(
-        "lines that gain or lose power for the same race",
-        {
-            "lines": whole("lines"),
-            "of_class": by_name("by class", {"type": "integer"}),
-            "median_power_ratio": number("median of new / old power", maybe=True),
-            "median_seconds": number("median gain in two hours [s]", maybe=True),
-            "most": lines,
-        },
-    )
-    cause = {
-        "cause": PART["cause"],
-        "step": PART["step"],
-        "lines": whole("lines it moved"),
-        "median_factor": FACTOR,
-        "lowest_factor": FACTOR,
-        "highest_factor": FACTOR,
-    }
-    return record(
-        "Two editions side by side.",
-        {
-            **SIMULATED,
-            "from_edition": text("the old edition"),
-            "to_edition": text("the new edition"),
-            "lines": whole("lines in either"),
-            "changes": by_name("lines by kind of change", {"type": "integer"}),
-            "gain": group,
-            "loss": group,
-            "exceeds_interval": whole("lines that moved by more than their intervals"),
-            "interval_unknown": whole("lines whose interval is not known"),
-            "runs_alone": texts("editions whose intervals are the spread of the runs alone"),
-            "causes": rows("per cause and step", cause),
-            "largest": lines,
-            "rows": lines,
-            "race_rules": record(
-                "how races are worked out",
-                {
-                    "fatigue": text("correction for fatigue"),
-                    "speed_decimals": whole("decimals of the speed; null for all", maybe=True),
-                },
-            ),
-            "races": _or_none(rows("races under both; null without results", _race())),
-            "winners": _or_none(rows("who wins under both", _winner())),
-        },
-    )
-
-
-def _or_none(schema: Schema) -> Schema:
-    return schema | {"type": [schema["type"], "null"]}
-
-
-def _race() -> dict[str, Schema]:
-    return columns(
-        "race_changes",
-        *("race", "race_date", "fsn_no", "rowers", "crew_class", "empty_thwart", "rowing_time_s"),
-        *("old_power_w", "new_power_w", "old_remark", "new_remark"),
-        *("old_rank", "new_rank", "podium_changed"),
-    )
-
-
-def _winner() -> dict[str, Schema]:
-    return {
-        **columns("race_changes", "race", "race_date", "crew_class"),
-        "old_winner": text("boat that wins under the old edition", maybe=True),
-        "new_winner": text("boat that wins under the new edition", maybe=True),
-        "winner_changed": flag("they differ"),
-        "change_probability": number(
-            "probability that another boat wins than under the old edition", True
+    line = _changed_line()
+    return of(
+        DiffReport,
+        gain={"most": line},
+        loss={"most": line},
+        largest=line,
+        rows=line,
+        races=columns(
+            *("race_changes", "race", "race_date", "fsn_no", "rowers", "crew_class"),
+            *("empty_thwart", "rowing_time_s", "old_power_w", "new_power_w", "old_remark"),
+            *("new_remark", "old_rank", "new_rank", "podium_changed"),
         ),
-    }
-
-
-def _verify() -> Schema:
-    finding = {
-        "edition": text("edition"),
-        "kind": text("altered, missing, swapped, differs, unchecked or notice"),
-        "where": text("file, tow or line"),
-        "message": text("what is seen, what it was, what to do"),
-        "wrong": flag("a promise is broken"),
-    }
-    edition = {
-        "edition": text("edition"),
-        "kind": text("recomputed, or as_printed"),
-        "lines": whole("its lines", maybe=True),
-        "made_again": whole("of which made again", maybe=True),
-        "equal": whole("of which came out equal", maybe=True),
-    }
-    return record(
-        "Whether editions and archive are what they were.",
-        {
-            "editions": rows("editions checked", edition),
-            "head": text("seal of the last edition published", maybe=True),
-            "findings": rows("what was found", finding),
-            "wrong": flag("any finding breaks a promise"),
+        winners={
+            **columns("race_changes", "race", "race_date", "crew_class"),
+            "old_winner": text("boat that wins under the old edition", maybe=True),
+            "new_winner": text("boat that wins under the new edition", maybe=True),
+            "winner_changed": flag("they differ"),
+            "change_probability": number(
+                "probability that another boat wins than under the old edition", maybe=True
+            ),
         },
     )
 
 
 def _lineage() -> Schema:
     inputs = {"inputs_sha256": text("hash of all that its numbers were made from", maybe=True)}
-    tow = record("the tow", columns("tows") | columns("boats", "boat_type") | inputs, maybe=True)
-    curve = record("its curve", columns("curves"), maybe=True)
-    boat = columns("boats", "ht_no", "name", "boat_type")
     origin = {
         "basis": text("where the numbers come from"),
         "verification_code": text("verification code", maybe=True),
     }
-    line = {
-        "line": record("the line", columns("register") | boat | inputs | origin),
-        "printed": by_name("the line as printed, by header", {"type": "string"}),
-        "code": text("verification code", maybe=True),
-        "tow": tow,
-        "files": rows("its files", {"path": text("file"), "sha256": text("content hash")}),
-        "runs": rows("its runs", columns("run_points")),
-        "curve": curve,
-    }
-    return record(
-        "What the lines of a boat were made from.",
-        {
-            "about": record("the edition", _about_edition()),
-            "folder": text("where it lies"),
-            "lines": rows("lines of the boat", line),
-        },
-    )
-
-
-def _register() -> Schema:
-    own = NAME | columns("boats", "boat_type")
-    return record(
-        "The lines of an edition, and whether they are valid on a day.",
-        {
-            **SIMULATED,
-            "edition": text("name of the edition or draft"),
-            "as_of": text("day on which validity is judged"),
-            "lines": rows("a boat and crew each", columns("register") | own),
+    return of(
+        Lineage,
+        about=of(About)["properties"] | ABOUT,
+        lines={
+            "line": columns("register") | TYPED | columns("boats", "ht_no") | inputs | origin,
+            "tow": columns("tows") | columns("boats", "boat_type") | inputs,
+            "files": {"path": text("file"), "sha256": text("content hash")},
+            "runs": columns("run_points"),
+            "curve": columns("curves"),
         },
     )
 
 
 def _due() -> Schema:
-    own = NAME | columns("boats", "boat_type")
-    choice = columns("due_list", "valid_until", "tow_speed_m_s")
-    return record(
-        "Who has to tow when, and at what speed.",
-        {
-            **SIMULATED,
-            "method": text("method"),
-            "as_of": text("day of the list"),
-            "asked": flag("whether that day was asked for"),
-            "lines": rows(
-                "a boat and crew each",
-                columns("due_list")
-                | own
-                | {"urgency": text("expired, this_year, later or without_curve")},
-            ),
-            "retow_choice": rows(
-                "boats whose next tow narrows the season factors most",
-                columns("retow_choice") | NAME | choice,
-            ),
-        },
+    return of(
+        DueReport,
+        lines=columns("due_list")
+        | TYPED
+        | {"urgency": text("expired, this_year, later or without_curve")},
+        retow_choice=columns("retow_choice")
+        | NAME
+        | columns("due_list", "valid_until", "tow_speed_m_s"),
     )
 
 
 def _methods() -> Schema:
-    method = {
-        "method": text("name"),
-        "title": text("title"),
-        "content_hash": text("SHA-256 of what it says"),
-        "ships": flag("it ships with Herijk"),
-    }
-    return record("The methods.", {"methods": rows("a method each", method)})
-
-
-def _one_method() -> Schema:
-    return record(
-        "A method.",
-        {
-            "method": text("name"),
-            "title": text("title"),
-            "content_hash": text("SHA-256 of what it says"),
-            "extends": text("method it extends", maybe=True),
-            "words": text("what it says, in words"),
-        },
-    )
+    method = of(MethodReport)["properties"]
+    shown = {name: method[name] for name in ("method", "title", "content_hash")}
+    listed = rows("a method each", shown | {"ships": flag("it ships with Herijk")})
+    return record("The methods.", {"methods": listed})
 
 
 def _methods_diff() -> Schema:
-    option = {
-        "step": text("step"),
-        "option": text("option"),
-        "first": whole("first season"),
-        "last": whole("last season"),
-        "before": {"type": "array", "description": "values it replaces"},
-        "after": {"description": "value"},
-    }
     return record(
         "What differs between two methods.",
         {
             "from": text("one method"),
             "to": text("the other"),
-            "options": rows("options that differ", option),
+            "options": rows("options that differ", of(Difference)["properties"]),
             "effect": _rebase(),
         },
     )
 
 
 def _check() -> Schema:
-    proposal = {
-        "section": text("section of archief.toml"),
-        "key": text("key in it"),
-        "value": text("value"),
-        "season": whole("season of a profile, else 0"),
-        "is_active": flag("it is no guess"),
-        "line": text("the line to put into the file"),
-    }
-    place = {"path": text("file"), "line": whole("line", True), "tow_id": text("tow", True)}
-    cause = {
-        "reason_code": text("code of the cause"),
-        "number": whole("places"),
-        "sentence": text("what is wrong"),
-        "cells": texts("cells that have it"),
-        "places": rows("the first places", place),
-        "proposals": rows("what would settle it", proposal),
-    }
-    return record(
-        "The faults of an archive by cause.",
-        {
-            "archive": text("the archive"),
-            "tows": whole("tows that can be read"),
-            "causes": rows("causes", cause),
-            "profile": text("archief.toml with the proposals", maybe=True),
-        },
-    )
-
-
-def _doctor() -> Schema:
-    finding = {"what": text("what"), "sound": flag("in order"), "found": text("what was found")}
-    return record("Whether all is in order.", {"findings": rows("findings", finding)})
+    line = {"line": text("the line to put into the file")}
+    return of(CheckReport, causes={"proposals": of(Proposal)["properties"] | line})
 
 
 def _audit() -> Schema:
-    curve = columns("curves") | columns("methods", "interval")
-    curve["run_points"] = rows("its runs", columns("run_points"))
-    curve["budget"] = rows(
-        "what makes it uncertain",
-        columns("uncertainty_budget", "component", "shared", "u_ratio", "dof"),
-    )
-    tow = columns("tows")
-    tow["curves"] = rows("a method each", curve)
-    tow["steps"] = rows("what each step did", columns("correction_steps"))
+    budget = columns("uncertainty_budget", "component", "shared", "u_ratio", "dof")
+    curve = {
+        **columns("curves"),
+        **columns("methods", "interval"),
+        "run_points": rows("its runs", columns("run_points")),
+        "budget": rows("what makes it uncertain", budget),
+    }
+    tow = {
+        **columns("tows"),
+        "curves": rows("a method each", curve),
+        "steps": rows("what each step did", columns("correction_steps")),
+    }
     tables = {
         "in_type": "type_outliers",
         "pooled": "pooled_curves",
@@ -513,29 +383,16 @@ def _audit() -> Schema:
         "set_aside": "quarantine",
         "options": "option_effects",
     }
-    of_boat = {
-        "boat": record("the boat", columns("boats")),
-        "tows": rows("its tows", tow),
-        "type_size": record("how many boats and tows its type has", {}),
-        **{key: rows(f"its rows of {name}", columns(name)) for key, name in tables.items()},
-    }
-    of_types = {
-        "types": rows("the types, with their statistics under each method", {}),
-        "differences": by_name("what differs between two types, by method", texts("quantities")),
-        "fleet": by_name("what holds for all types, by method", {"type": "object"}),
-    }
+    of_tables = {name: columns(table) for name, table in tables.items()}
+    of_boat = of(BoatAudit, boat=columns("boats"), tows=tow, **of_tables)["properties"]
     return record(
         "Where a boat's numbers come from; or, of types, whether their boats are equal.",
-        {
-            **SIMULATED,
-            "about": text("boat, or types"),
-            "methods": texts("methods shown"),
-            "statistics_over": text("the tows that statistics of types are over"),
-            **of_boat,
-            **of_types,
-            "plots": texts("pictures written"),
-        },
+        of_boat | of(TypesAudit)["properties"] | {"plots": texts("pictures written")},
     )
+
+
+def _written(what: str) -> Schema:
+    return record(what, {"files": texts("files written")})
 
 
 @cache
@@ -547,25 +404,25 @@ def schemas() -> dict[str, Schema]:
         "certificate": _written("The certificates."),
         "check": _check(),
         "diff": _diff(),
-        "doctor": _doctor(),
+        "doctor": of(Findings),
         "due": _due(),
         "fit": _fit(),
         "init": _written("The new archive."),
         "lineage": _lineage(),
         "log-error": _log_error(),
         "methods": _methods(),
-        "methods check": _one_method(),
+        "methods check": of(MethodReport),
         "methods diff": _methods_diff(),
         "methods new": _written("The new method file."),
-        "methods show": _one_method(),
+        "methods show": of(MethodReport),
         "proposal": _written("The proposal."),
         "publish": _publish(),
         "rebase": _rebase(),
         "rebuild": _rebuild(),
-        "register": _register(),
+        "register": of(RegisterReport, lines=columns("register") | TYPED),
         "simulate": record("The simulated archive.", simulated),
         "slides": _written("The slides."),
-        "verify": _verify(),
+        "verify": of(Verification),
     }
 
 

@@ -31,7 +31,14 @@ Named = Annotated[
 
 @dataclass(frozen=True)
 class MethodReport:
-    """A method, with what it says in words."""
+    """A method in words.
+
+    Attributes:
+        method, title: what it is called.
+        content_hash: SHA-256 of what it says.
+        extends: the method it extends.
+        words: what it says, step by step.
+    """
 
     method: str
     title: str

@@ -119,20 +119,24 @@ USAGE: Final = (
     "Got unexpected extra argument(s) ({})",
     "Option {} requires an argument.",
     "Invalid value for {}: {}",
+    "Invalid value: {}",
+    "{} is not one of {}.",
 )
 """What the library that reads arguments says of them; braces stand for what is in its place."""
 
 
 def _usage_in_words(error: ClickException) -> str:
     """What is wrong with the arguments."""
-    said = error.format_message()
-    for text in USAGE:
-        match = re.fullmatch(re.escape(text).replace(r"\{\}", "(.*?)"), said, re.DOTALL)
-        if match:
-            own = {str(error.message): spoken(error.message, LANGUAGE.get())}
-            parts = (part.replace("env var", tell("env var")) for part in match.groups())
-            return tell(text, *(own.get(part, part) for part in parts))
-    return said
+    own: dict[str, str] = {str(error.message): spoken(error.message, LANGUAGE.get())}
+
+    def in_words(said: str) -> str:
+        for text in USAGE:
+            match = re.fullmatch(re.escape(text).replace(r"\{\}", "(.*?)"), said, re.DOTALL)
+            if match:
+                return tell(text, *map(in_words, match.groups()))
+        return own.get(said, said.replace("env var", tell("env var")))
+
+    return in_words(error.format_message().replace("Value error, ", ""))
 
 
 def _show_usage(error: ClickException) -> None:

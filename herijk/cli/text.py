@@ -23,20 +23,24 @@ _NUMBER: Final = re.compile(r"[-+]?[0-9]+([.,][0-9]+)?( %| N)?\*?|-?")
 """A cell that stands to the right."""
 
 
+def page(parts: Iterable[str], simulated: bool) -> str:
+    """Paragraphs; the first says so where the archive is simulated."""
+    return "\n\n".join([*([tell(SIMULATED)] if simulated else []), *parts])
+
+
 def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Columns lined up, their heads and what they say in words; numbers to the right."""
-    head = [tell(title) for title in head]
-    held = [list(row) for row in rows]
-    cells = [[_cell(value) for value in row] for row in held]
-    widths = [max(len(line[i]) for line in [list(head), *cells]) for i in range(len(head))]
-    right = [all(_NUMBER.fullmatch(line[i]) for line in cells) for i in range(len(head))]
-    lines = [
-        "  ".join(
-            c.rjust(w) if r else c.ljust(w) for c, w, r in zip(line, widths, right, strict=True)
-        )
-        for line in [list(head), *cells]
-    ]
-    return "\n".join(f"  {line.rstrip()}" for line in lines)
+    cells = [[_cell(value) for value in row] for row in rows]
+    columns = zip([tell(title) for title in head], *cells, strict=True)
+    lines = zip(*map(_lined_up, columns), strict=True)
+    return "\n".join(f"  {'  '.join(line).rstrip()}" for line in lines)
+
+
+def _lined_up(column: Sequence[str]) -> list[str]:
+    """A heading and the cells below it, all of one width."""
+    width = max(map(len, column))
+    to_the_right = all(map(_NUMBER.fullmatch, column[1:]))
+    return [cell.rjust(width) if to_the_right else cell.ljust(width) for cell in column]
 
 
 def _cell(value: object) -> str:
@@ -52,37 +56,37 @@ def decimals(value: float | None, digits: int) -> str:
     return "-" if value is None else number(value, f".{digits}f")
 
 
+def boat(row: Row) -> tuple[str, str, str]:
+    """A boat's number, its name, and its crew."""
+    return row["fsn_no"], row["name"] or "-", f"{row['rowers']}{row['crew_class']}"
+
+
+def _in_two_hours(row: Row) -> str:
+    """What a line of the register gives in a race of two hours."""
+    return f"{7200 * (row['time_ratio'] - 1):+.0f} s"
+
+
 def _per_cent(ratio: float | None) -> str:
     return "-" if ratio is None else number(100 * (ratio - 1), "+z.1f") + " %"
 
 
 def rebuild(report: "RebuildReport", done: "Done", headlines: list[str]) -> str:
     """The closing summary of a rebuild."""
-    parts = [tell(SIMULATED)] if report.simulated else []
-    parts.append(_work_done(done))
-    parts.append(tell("Since the last report:\n") + _indented(headlines))
-    parts.append(
-        tell("Tows accepted: ")
-        + ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
-    )
-    if report.set_aside:
-        rows = [
-            (code("lost_" + r["lost"]), r["reason_code"], r["number"]) for r in report.set_aside
-        ]
-        parts.append(tell("Set aside:\n") + table(("lost", "reason", "number"), rows))
-        parts.append(_faults(report.first_faults, sum(number for *_, number in rows)))
-    else:
-        parts.append(tell("Set aside: nothing."))
-    rows = [(r["method"], code(r["status"]), r["number"]) for r in report.curves]
-    parts.append(tell("Curves:\n") + table(("method", "status", "number"), rows))
+    tows = ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
+    curves = [(r["method"], code(r["status"]), r["number"]) for r in report.curves]
+    parts = [
+        _work_done(done),
+        tell("Since the last report:\n") + "\n".join(f"  {line}" for line in headlines),
+        tell("Tows accepted: ") + tows,
+        *_set_aside(report),
+        tell("Curves:\n") + table(("method", "status", "number"), curves),
+    ]
     if report.by_season:
         parts.append(_by_season(report.by_season))
     if report.biggest_changes:
         parts.append(_biggest(report.biggest_changes))
-    parts.append(
-        tell("Tables: {}\nSite: {}\nReport: {}", report.database, report.site, report.report)
-    )
-    return "\n\n".join(parts)
+    places = tell("Tables: {}\nSite: {}\nReport: {}", report.database, report.site, report.report)
+    return page([*parts, places], report.simulated)
 
 
 def _work_done(done: "Done") -> str:
@@ -93,8 +97,13 @@ def _work_done(done: "Done") -> str:
     return tell("Seasons read: {}. Methods applied: {}.", seasons, methods)
 
 
-def _indented(lines: Iterable[str]) -> str:
-    return "\n".join(f"  {line}" for line in lines)
+def _set_aside(report: "RebuildReport") -> list[str]:
+    """How much was set aside, and the first fault of each cause."""
+    if not report.set_aside:
+        return [tell("Set aside: nothing.")]
+    rows = [(code("lost_" + r["lost"]), r["reason_code"], r["number"]) for r in report.set_aside]
+    counted = tell("Set aside:\n") + table(("lost", "reason", "number"), rows)
+    return [counted, _faults(report.first_faults, sum(number for *_, number in rows))]
 
 
 def _faults(first: list[Row], number: int) -> str:
@@ -115,35 +124,17 @@ def _place(fault: Row) -> str:
 
 
 def _by_season(rows: list[Row]) -> str:
+    ends = ("median", "lowest", "highest")
     lines = [
-        (
-            r["method"],
-            r["season"],
-            r["tows"],
-            _per_cent(r["median_ratio"]),
-            _per_cent(r["lowest_ratio"]),
-            _per_cent(r["highest_ratio"]),
-        )
+        (r["method"], r["season"], r["tows"], *(_per_cent(r[f"{end}_ratio"]) for end in ends))
         for r in rows
     ]
-    head = ("method", "season", "tows", "median", "lowest", "highest")
-    return tell(
-        "Change of Cw at the declared speed against {}:\n", rows[0]["compared_with"]
-    ) + table(head, lines)
+    title = tell("Change of Cw at the declared speed against {}:\n", rows[0]["compared_with"])
+    return title + table(("method", "season", "tows", *ends), lines)
 
 
 def _biggest(rows: list[Row]) -> str:
-    lines = [
-        (
-            r["to_edition"],
-            r["fsn_no"],
-            r["name"] or "-",
-            f"{r['rowers']}{r['crew_class']}",
-            _per_cent(r["cw_ratio"]),
-            f"{7200 * (r['time_ratio'] - 1):+.0f} s",
-        )
-        for r in rows
-    ]
+    lines = [(r["to_edition"], *boat(r), _per_cent(r["cw_ratio"]), _in_two_hours(r)) for r in rows]
     head = ("register", "boat", "name", "crew", "Cw", "in 2 h at equal power")
     return tell("Biggest changes against {}:\n", rows[0]["from_edition"]) + table(head, lines)
 
@@ -160,42 +151,10 @@ PLOT_RANGE = (0.94, 1.08)
 
 def log_error(report: "LogErrorReport") -> str:
     """The season table with a small plot of each factor and its interval."""
-    parts = [tell(SIMULATED)] if report.simulated else []
-    parts.append(tell("True speed = log speed x factor, under {} (95 % intervals):", report.method))
-    head = (
-        "season",
-        "factor",
-        "from",
-        "to",
-        "source",
-        "tows",
-        "links",
-        "without boats",
-        "sd apart",
-        "step is of",
-    )
-    rows = [
-        (
-            r["season"],
-            decimals(r["factor"], 4),
-            decimals(r["lo"], 4),
-            decimals(r["hi"], 4),
-            code(r["source"]),
-            r["n_tows"],
-            r["n_links"],
-            decimals(r["factor_no_boats"], 4),
-            "-" if r["agreement"] is None else tell("{:+.1f}", r["agreement"]),
-            code(r["cause"]),
-        )
-        for r in report.factors
-    ]
-    parts.append(table(head, rows))
-    low, high = PLOT_RANGE
-    place = _place_on_line(1.0)
-    scale = f"{number(low, '.2f'):<{place}}{'1':<{PLOT_WIDTH - place - 4}}{number(high, '.2f')}"
-    plots = [f"  {r['season']}  {_plot(r)}" for r in report.factors]
-    parts.append("\n".join([f"  {'':4}  {scale}", *plots]))
-    parts.append(
+    parts = [
+        tell("True speed = log speed x factor, under {} (95 % intervals):", report.method),
+        _factors(report.factors),
+        _plots(report.factors),
         tell(
             "links: boats also towed in other seasons; without boats: a second "
             "estimate that does not\nknow which boat is which; sd apart: how far the "
@@ -204,18 +163,49 @@ def log_error(report: "LogErrorReport") -> str:
             "curves tells; prescribed: nothing ties the season to one with dGPS, "
             "so\nits factor is not determined and the method's prescribed one is "
             "used."
-        )
-    )
+        ),
+    ]
     lacking = _seasons_between([r["season"] for r in report.factors])
     if lacking:
         parts.append(tell("No sound tow in {}: nothing is known of the log there.", lacking))
     if report.parts:
         parts += [
             tell("Each log, and each part of a season in which one was replaced:"),
-            _parts(report),
+            _parts(report.parts),
         ]
     parts += [tell("What may be wrong with the instruments of a season:"), _diagnosis(report)]
-    return "\n\n".join(parts)
+    return page(parts, report.simulated)
+
+
+def _factors(factors: list[Row]) -> str:
+    head = (
+        *("season", "factor", "from", "to", "source", "tows", "links", "without boats"),
+        *("sd apart", "step is of"),
+    )
+    rows = [
+        (
+            r["season"],
+            *_factor(r),
+            decimals(r["factor_no_boats"], 4),
+            "-" if r["agreement"] is None else tell("{:+.1f}", r["agreement"]),
+            code(r["cause"]),
+        )
+        for r in factors
+    ]
+    return table(head, rows)
+
+
+def _factor(row: Row) -> tuple[object, ...]:
+    """A factor with its interval, where it is from, and on how many tows and links it rests."""
+    ends = (decimals(row[name], 4) for name in ("factor", "lo", "hi"))
+    return (*ends, code(row["source"]), row["n_tows"], row["n_links"])
+
+
+def _plots(factors: list[Row]) -> str:
+    low, high = PLOT_RANGE
+    place = _place_on_line(1.0)
+    scale = f"{number(low, '.2f'):<{place}}{'1':<{PLOT_WIDTH - place - 4}}{number(high, '.2f')}"
+    return "\n".join([f"  {'':4}  {scale}", *(f"  {r['season']}  {_plot(r)}" for r in factors)])
 
 
 def _seasons_between(seasons: list[int]) -> str:
@@ -266,21 +256,9 @@ def _size(value: float, unit: str) -> str:
     return number(value, "+z.1f") + " N" if unit == "N" else number(100 * value, "+z.1f") + " %"
 
 
-def _parts(report: "LogErrorReport") -> str:
+def _parts(parts: list[Row]) -> str:
     head = ("season", "log", "part", "factor", "from", "to", "source", "tows", "links")
-    rows = [
-        (
-            r["season"],
-            r["log"],
-            r["part"] + 1,
-            *(decimals(r[name], 4) for name in ("factor", "lo", "hi")),
-            code(r["source"]),
-            r["n_tows"],
-            r["n_links"],
-        )
-        for r in report.parts
-    ]
-    return table(head, rows)
+    return table(head, [(r["season"], r["log"], r["part"] + 1, *_factor(r)) for r in parts])
 
 
 def _plot(row: Row) -> str:
@@ -302,35 +280,31 @@ def _place_on_line(factor: float) -> int:
 
 def rebase(report: "RebaseReport") -> str:
     """What a method changes: the ladder per season, and the boats most affected."""
-    parts = [tell(SIMULATED)] if report.simulated else []
-    parts.append(tell("{} against {}; nothing was stored.", report.method, report.against))
     counts = ", ".join(f"{row['count']} {code(row['change'])}" for row in report.changes)
-    parts.append(tell("Register lines: {}.", counts))
     seasons = report.by_season
     steps = [key for key in seasons[0] if key not in ("season", "tows", "total")]
-    head = ("season", "tows", *map(code, steps), "total")
+    season_head = ("season", "tows", *map(code, steps), "total")
     lines = [
         (row["season"], row["tows"], *(_per_cent(row[step]) for step in (*steps, "total")))
         for row in seasons
     ]
-    parts.append(
-        tell(
-            "Change of Cw at the declared speed by each step, median of the season's "
-            "tows; a tow's\nown steps multiply to its total, medians need not:\n"
-        )
-        + table(head, lines)
-    )
     boats = [
         (
-            row["fsn_no"],
-            row["name"] or "-",
-            f"{row['rowers']}{row['crew_class']}",
-            *(_per_cent(row[step]) for step in steps),
-            _per_cent(row["cw_ratio"]),
-            f"{7200 * (row['time_ratio'] - 1):+.0f} s",
+            *boat(row),
+            *(_per_cent(row[step]) for step in (*steps, "cw_ratio")),
+            _in_two_hours(row),
         )
         for row in report.boats
     ]
-    head = ("boat", "name", "crew", *map(code, steps), "Cw", "in 2 h")
-    parts.append(tell("Register lines most affected:\n") + table(head, boats))
-    return "\n\n".join(parts)
+    boat_head = ("boat", "name", "crew", *map(code, steps), "Cw", "in 2 h")
+    by_step = tell(
+        "Change of Cw at the declared speed by each step, median of the season's "
+        "tows; a tow's\nown steps multiply to its total, medians need not:\n"
+    )
+    parts = [
+        tell("{} against {}; nothing was stored.", report.method, report.against),
+        tell("Register lines: {}.", counts),
+        by_step + table(season_head, lines),
+        tell("Register lines most affected:\n") + table(boat_head, boats),
+    ]
+    return page(parts, report.simulated)

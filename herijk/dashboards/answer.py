@@ -1,6 +1,6 @@
 """The owner's answer in sentences: what changes for a boat, why, how certainly, what follows.
 
-The numbers come from `warehouse.queries.answers`, the texts from `dashboards.words.answers`.
+The numbers come from `warehouse.queries.answers`, the texts from `words.answers`.
 """
 
 import json
@@ -212,7 +212,7 @@ def _fault(fault: Row, speech: Speech) -> str:
     """What may be wrong with one instrument."""
     chance = fault["p_fault"]
     return speech.say(f"answer_{fault['verdict'].replace(' ', '_')}").format(
-        instrument=speech.say(f"instrument.{fault['instrument']}"),
+        instrument=speech.say(f"code.{fault['instrument']}"),
         season=fault["season"],
         chance="" if chance is None else speech.number(100 * chance, 0),
         size=_size(fault["estimate"], fault["unit"], speech),

@@ -33,7 +33,7 @@ def changes(lines: pl.DataFrame) -> Headline:
 
     def sentence(speech: Speech) -> str:
         text = _from_to(lines, speech) + speech.say("head_changes").format(
-            changed=changed.height, lines=lines.height, beyond=beyond or speech.say("none_of_them")
+            changed=changed.height, lines=lines.height, beyond=beyond or speech.say("code.none")
         )
         if causes:
             cause = speech.say(f"code.{causes.most_common(1)[0][0]}")

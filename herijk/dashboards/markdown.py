@@ -27,8 +27,8 @@ def to_html(text: str, links: Mapping[str, str]) -> Markup:
         if token.type in ("heading_open", "heading_close"):
             token.tag = f"h{int(token.tag[1:]) + 1}"
         _lead(token.children or (), links)
-    found = _READER.renderer.render(tokens, _READER.options, {})
-    scrolled = found.replace("<table>", f"{_SCROLLED}<table>").replace("</table>", "</table></div>")
+    html = _READER.renderer.render(tokens, _READER.options, {})
+    scrolled = html.replace("<table>", f"{_SCROLLED}<table>").replace("</table>", "</table></div>")
     return Markup(scrolled)  # noqa: S704 - escaped
 
 

@@ -1,6 +1,6 @@
 """The report of a rebuild in words: headlines, and a mail. Its page is in `report_page`.
 
-What changed is found out in `warehouse.queries.change_report`; texts are in `dashboards.words`.
+What changed is found out in `warehouse.queries.change_report`; texts are in `words`.
 """
 
 import re

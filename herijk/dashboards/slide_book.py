@@ -112,15 +112,15 @@ class Book:
     def types(self, wanted: Sequence[str]) -> list[str]:
         """The types asked for, or those of the presentation."""
         known = by_tows(self.compared)
-        found = []
+        chosen = []
         for name in wanted:
             like = [t for t in known if t.casefold().startswith(name.casefold())]
             if not like:
                 raise MissingKnowledgeError(
                     "there is no type {!r}; the types are {}", name, ", ".join(sorted(known))
                 )
-            found.append(like[0])
-        return found or pair_of_types(self.compared)
+            chosen.append(like[0])
+        return chosen or pair_of_types(self.compared)
 
     def ends(self, tows: str = ALL) -> tuple[str, str]:
         """The methods before and after all corrections."""
@@ -214,15 +214,15 @@ class Book:
 
     def b_and_hull_speed(self, tows: str) -> str:
         """Whether B is hull speed."""
-        after, found = self.ends()[1], self._hull_speed(tows)
-        key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[found["b_is_hull_speed"]]
+        after, of_all = self.ends()[1], self._hull_speed(tows)
+        key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[of_all["b_is_hull_speed"]]
         return self.say(f"slide.{key}").format(
             after=self.method(after),
-            ratio=self._digits(found["b_ratio"]),
-            lo=self._digits(found["b_ratio_lo"]),
-            hi=self._digits(found["b_ratio_hi"]),
-            boats=self._number(found["n_boats"], "boat"),
-            share=_share(found["b_share_within_5pct"]),
+            ratio=self._digits(of_all["b_ratio"]),
+            lo=self._digits(of_all["b_ratio_lo"]),
+            hi=self._digits(of_all["b_ratio_hi"]),
+            boats=self._number(of_all["n_boats"], "boat"),
+            share=_share(of_all["b_share_within_5pct"]),
         )
 
     def _hull_speed(self, tows: str) -> Row:
@@ -246,9 +246,9 @@ class Book:
 
     def part_of_hull_speed(self, tows: str) -> str:
         """At what part of hull speed boats are towed."""
-        found = self._hull_speed(tows)
+        of_all = self._hull_speed(tows)
         return self.say("slide.towed").format(
-            ratio=_share(found["tow_ratio"]), share=_share(found["tow_share_60_70"])
+            ratio=_share(of_all["tow_ratio"]), share=_share(of_all["tow_share_60_70"])
         )
 
     def raced_beyond(self) -> Iterator[Slide]:

@@ -7,7 +7,7 @@ from typing import Final, TypeAlias
 from markupsafe import Markup, escape
 
 from herijk.words import DECIMALS
-from herijk.words.catalogue import speaker
+from herijk.words.catalogue import speaker, unbroken
 
 MINUS: Final = "\u2212"
 
@@ -25,7 +25,7 @@ class Speech:
 
     def unbroken(self, key: str) -> str:
         """A heading without the places where it may be broken."""
-        return self.say(key).replace("\u00ad", "").replace("\u200b", "")
+        return unbroken(self.say(key))
 
     def number(self, value: float, digits: int, sign: str = "") -> str:
         """A number with so many decimals; `sign` is "+" where a plus is to be shown."""

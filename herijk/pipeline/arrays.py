@@ -1,4 +1,4 @@
-"""Arrays as the pipeline shares them: their types, and many by name. No arithmetic here."""
+"""Types of arrays, and arrays by name that are made on demand. No arithmetic here."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TypeAlias
@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 FloatArray: TypeAlias = NDArray[np.float64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 IntArray: TypeAlias = NDArray[np.int64]
+StrArray: TypeAlias = NDArray[np.str_]
 
 
 class OnDemand(Mapping[str, FloatArray]):
     """Arrays by name, each made when it is first asked for and then kept.
 
     Args:
-        names: of all that can be asked for.
-        make: makes one; where it holds on to what holds this, neither is freed at once.
+        names: of all arrays that can be asked for.
+        make: makes one. If it refers to what refers to this, neither is freed at once.
     """
 
     def __init__(self, names: Collection[str], make: Callable[[str], FloatArray]) -> None:

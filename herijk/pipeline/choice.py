@@ -1,8 +1,8 @@
 """Choosing the best of several that may be equal but for rounding.
 
-Processors sum in other orders, so that equals differ in their last digits by chance. A choice must
-not rest on that: of numbers that are equal to `SAME_SHARE` the first counts, and the caller says by
-its order which that is.
+Processors sum in different orders, so equal numbers differ in their last digits by chance. A choice
+must not rest on that: of numbers that are equal to `SAME_SHARE` the first counts. The caller
+decides by the order which that is.
 """
 
 from typing import Final
@@ -16,7 +16,7 @@ SAME_SHARE: Final = 1e-9
 
 
 def first_largest(values: FloatArray) -> IntArray:
-    """Place along axis 0 of the first of the largest values."""
+    """Index along axis 0 of the first of the largest values."""
     top = values.max(axis=0)
     enough = np.where(top > 0.0, top * (1.0 - SAME_SHARE), top * (1.0 + SAME_SHARE))
     return np.asarray((values >= enough).argmax(axis=0))

@@ -5,24 +5,21 @@ says about Cw and B, and the closed-form re-base of a curve. Does not belong her
 is made, which runs count, hull speed, and whether a curve is acceptable.
 
 A and B are what the register prints, but they are nearly collinear (correlation 0.98). Inside, a
-curve is held as A and s = 1/B^2. s <= 0 is an ordinary flat or falling curve: it has no B. For
+curve is stored as A and s = 1/B^2. s <= 0 is an ordinary flat or falling curve: it has no B. For
 errors a curve is described by C0 = Cw(v0) and q = r / (1 - r) with r = s v0^2, which are nearly
 independent: Cw(v) = C0 / (1 - q ((v/v0)^2 - 1)).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Final, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.quantiles import t_quantile
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
 
 VALID_RATIO: Final = (0.85, 1.15)
 """Speeds at which a curve counts, as ratios of its declared speed (Cw-kromme, R. Pot 2015)."""
@@ -38,7 +35,7 @@ MIN_SPREAD: Final = 1e-6
 """Relative spread of v^2 below which the speeds count as one speed and determine no bend."""
 
 WIDEST_LOG_INTERVAL: Final = 100.0
-"""A half width of a factor e^100 says nothing any more; its cut keeps the bounds finite."""
+"""Half widths are cut at a factor e^100, which says nothing any more, to keep bounds finite."""
 
 BISECTIONS: Final = 55
 """Halvings of the search interval for a bound of B: to the last bit of a float64."""
@@ -50,8 +47,8 @@ class Points:
 
     Attributes:
         speed_m_s: (n_fits, n_points) speed through water, positive where used.
-        cw_kg_m: (n_fits, n_points) resistance coefficient, positive where used.
-        used: (n_fits, n_points) whether the point counts; the others may hold anything.
+        cw_kg_m: resistance coefficient, likewise.
+        used: whether the point counts; the others may hold anything.
 
     Raises:
         BrokenPromiseError: shapes differ, or a used point is not finite and positive.
@@ -81,7 +78,7 @@ class Points:
 
     @classmethod
     def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:
-        """Points from anything array-like; one curve may be one row; all are used if unsaid."""
+        """Points from anything array-like; one curve may be one row; by default all are used."""
         speed = np.atleast_2d(np.asarray(speed_m_s, dtype=np.float64))
         cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))
         mask = np.ones(speed.shape, bool) if used is None else np.atleast_2d(np.asarray(used, bool))
@@ -89,7 +86,7 @@ class Points:
 
     @classmethod
     def stack(cls, parts: Sequence[Self]) -> Self:
-        """The points of several batches one under another, all with as many points a curve."""
+        """The points of several batches, all with the same number of points per curve."""
         return cls(
             np.concatenate([part.speed_m_s for part in parts]),
             np.concatenate([part.cw_kg_m for part in parts]),
@@ -122,7 +119,7 @@ class Curves:
 
     @property
     def b_determined(self) -> BoolArray:
-        """Whether the curve has a finite B at all; how well, says `b_interval`."""
+        """Whether the curve has a finite B; `b_interval` says how well it is known."""
         return self.converged & (self.s_s2_m2 > 0)
 
     @property
@@ -158,9 +155,8 @@ class Covariance:
 
     Attributes:
         reference_speed_m_s: v0, the speed that C0 and q belong to.
-        c0_variance_kg2_m2: variance of C0; infinite where it is not known.
-        q_variance: variance of q; infinite where it is not known.
-        c0_q_covariance_kg_m: covariance; 0 where it is not known.
+        c0_variance_kg2_m2, q_variance: infinite where they are not known.
+        c0_q_covariance_kg_m: 0 where it is not known.
     """
 
     reference_speed_m_s: FloatArray
@@ -188,7 +184,7 @@ def cw(a_kg_m: ArrayLike, s_s2_m2: ArrayLike, speed_m_s: ArrayLike) -> FloatArra
 
 
 def s_of_b(b_m_s: ArrayLike) -> FloatArray:
-    """S = 1/B^2 [s2/m2] of a B [m/s]; 0 for an infinite B."""
+    """Gives s = 1/B^2 [s2/m2] of a B [m/s]; 0 for an infinite B."""
     b = np.asarray(b_m_s, dtype=np.float64)
     return 1.0 / (b * b)
 
@@ -232,13 +228,7 @@ def fit(points: Points) -> Curves:
     Variable projection (Golub & Pereyra 1973): for a given bend the height is linear, so only the
     bend is searched, by damped Gauss-Newton steps. The bend is taken as q at the root mean square
     speed: the same minimum as in s, but with height and bend nearly independent. A curve's result
-    does not depend on which others are in the batch.
-
-    Args:
-        points: run points of n_fits curves.
-
-    Returns:
-        n_fits curves; `converged` says where there is none.
+    does not depend on which others are in the batch. `converged` says where there is none.
     """
     curves = _flat(points)
     for start in range(0, len(curves.a_kg_m), CHUNK_FITS):
@@ -255,9 +245,6 @@ def fit_given_b(points: Points, b_m_s: ArrayLike) -> Curves:
         points: run points of n_fits curves.
         b_m_s: (n_fits,) or one for all; infinite for a flat curve. Where it is not above every
             used speed there is no curve (`converged` is False).
-
-    Returns:
-        n_fits curves with that B.
     """
     s = np.broadcast_to(s_of_b(b_m_s), points.used.shape[:1])
     return _fit_given_s(points, s)
@@ -273,20 +260,21 @@ def fit_capped(points: Points, free: Curves, b_cap_m_s: ArrayLike) -> Curves:
         points: run points of n_fits curves.
         free: their free fit (`fit`).
         b_cap_m_s: (n_fits,) or one for all; infinite caps only at the flat curve.
-
-    Returns:
-        n_fits curves with `b_capped` set where the cap was met.
     """
     s_min = np.broadcast_to(s_of_b(b_cap_m_s), free.s_s2_m2.shape)
     too_flat = free.converged & (free.s_s2_m2 < s_min)
     capped = _fit_given_s(points, s_min)
+    chosen = _where(too_flat, capped, free)
+    return replace(chosen, b_capped=too_flat & capped.converged)
+
+
+def _where(chosen: BoolArray, one: Curves, other: Curves) -> Curves:
+    """The chosen curves of the one, and those of the other elsewhere."""
     return Curves(
-        a_kg_m=np.where(too_flat, capped.a_kg_m, free.a_kg_m),
-        s_s2_m2=np.where(too_flat, capped.s_s2_m2, free.s_s2_m2),
-        rss_kg2_m2=np.where(too_flat, capped.rss_kg2_m2, free.rss_kg2_m2),
-        n_points=free.n_points,
-        converged=np.where(too_flat, capped.converged, free.converged),
-        b_capped=too_flat & capped.converged,
+        *(
+            np.where(chosen, getattr(one, field.name), getattr(other, field.name))
+            for field in fields(Curves)
+        )
     )
 
 
@@ -310,14 +298,7 @@ def _fit_given_s(points: Points, s: FloatArray) -> Curves:
     flat = _flat(points)
     rss, a, valid = _profile(_arrange(points.speed_m_s, points.cw_kg_m, points.used), s)
     valid &= flat.n_points > 0
-    return Curves(
-        a_kg_m=np.where(valid, a, flat.a_kg_m),
-        s_s2_m2=np.where(valid, s, 0.0),
-        rss_kg2_m2=np.where(valid, rss, flat.rss_kg2_m2),
-        n_points=flat.n_points,
-        converged=valid,
-        b_capped=flat.b_capped,
-    )
+    return _where(valid, replace(flat, a_kg_m=a, s_s2_m2=s, rss_kg2_m2=rss, converged=valid), flat)
 
 
 class _Arranged(NamedTuple):
@@ -474,7 +455,6 @@ def covariance(
 
     Args:
         points: run points the curves were fitted to.
-        curves: the fitted curves.
         scatter: own or pooled scatter of a point.
         reference_speed_m_s: v0, (n_fits,) or one for all; usually the declared speed.
     """
@@ -493,23 +473,17 @@ def covariance(
 
 
 def cw_interval(
-    curves: Curves,
-    errors: Covariance,
-    dof: ArrayLike,
-    speed_m_s: ArrayLike,
-    level: float = 0.95,
+    curves: Curves, errors: Covariance, dof: ArrayLike, speed_m_s: ArrayLike
 ) -> Interval:
-    """Interval of Cw [kg/m] at one speed per curve, from the covariance of (C0, q).
+    """95 % interval of Cw [kg/m] at one speed per curve, from the covariance of (C0, q).
 
     Taken on the logarithm, since errors of speed and force act as factors; so it is positive. It
     runs from 0 to infinity where the covariance is not known or the speed is not below B.
 
     Args:
-        curves: the fitted curves.
         errors: covariance of (C0, q): scatter alone, or with systematic components added.
         dof: (n_fits,) degrees of freedom of the t-quantile; infinite for a normal quantile.
         speed_m_s: (n_fits,) or one for all; any speed, not only the reference speed.
-        level: coverage, e.g. 0.95.
     """
     v0 = errors.reference_speed_m_s
     speed = np.broadcast_to(np.asarray(speed_m_s, dtype=np.float64), v0.shape)
@@ -523,15 +497,15 @@ def cw_interval(
     )
     safe_centre = np.where(known, centre, 1.0)
     sd_ratio = np.sqrt(np.maximum(variance, 0.0)) / safe_centre
-    half_width = np.where(known, _t_quantile(dof, level) * sd_ratio, 0.0)
+    half_width = np.where(known, _t_quantile(dof) * sd_ratio, 0.0)
     factor = np.exp(np.minimum(half_width, WIDEST_LOG_INTERVAL))
     return Interval(
         np.where(known, safe_centre / factor, 0.0), np.where(known, safe_centre * factor, np.inf)
     )
 
 
-def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 0.95) -> Interval:
-    """Profile-likelihood interval of B [m/s]: every B whose best fit is not significantly worse.
+def b_interval(points: Points, curves: Curves, scatter: Scatter) -> Interval:
+    """95 % interval of B [m/s] by profile likelihood: every B whose fit is not significantly worse.
 
     The set {s: RSS(s) - RSS_min <= t^2 variance}, the standard answer where a parameter may not be
     identifiable (Raue et al. 2009). The upper bound is infinite ("none") where a flat curve is
@@ -542,10 +516,9 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 
         points: run points the curves were fitted to.
         curves: their free fit (`fit`): a capped curve is not the minimum.
         scatter: own or pooled scatter of a point.
-        level: coverage, e.g. 0.95.
     """
     known = curves.converged & (scatter.dof > 0)
-    quantile = _t_quantile(scatter.dof, level)
+    quantile = _t_quantile(scatter.dof)
     increase = np.where(known, quantile * quantile * scatter.variance_kg2_m2, np.inf)
     limit = curves.rss_kg2_m2 + increase
     fastest = np.where(points.used, points.speed_m_s, 0.0).max(axis=1, initial=0.0)
@@ -581,9 +554,9 @@ def _sensitivities(
     return height, c0 * height * height * ((v / v0) ** 2 - 1.0) * valid
 
 
-def _t_quantile(dof: ArrayLike, level: float) -> FloatArray:
+def _t_quantile(dof: ArrayLike) -> FloatArray:
     """Two-sided t-quantile; 0 degrees of freedom give that of 1: callers treat them apart."""
-    return t_quantile(np.maximum(dof, 1.0), level)
+    return t_quantile(np.maximum(dof, 1.0))
 
 
 def _last_below(

@@ -9,9 +9,8 @@ Source of all formulas: presentation R. Pot, 24 January 2015. Arguments broadcas
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-FloatArray = NDArray[np.float64]
+from herijk.pipeline.arrays import FloatArray
 
 AIR_DENSITY_KG_M3: Final = 1.225
 CREW_FRONT_AREA_M2: Final = 0.5
@@ -21,33 +20,31 @@ CREW_SIDE_AREA_M2: Final = 1.0
 """Added to length x height in the oblique-wind formula of 2015."""
 
 USUAL_BOW_HEIGHT_M: Final = 1.0
-"""Of a bow that nobody measured (inferred): only boats towed without an anemometer may have one,
-of which it moves the interval and not Cw."""
+"""Of a bow that nobody measured (inferred). Only boats towed without an anemometer may lack the
+height; there it moves the interval and not Cw."""
 
 
-def hull_speed_m_s(waterline_length_m: ArrayLike) -> FloatArray:
+def hull_speed_m_s(waterline_length_m: FloatArray) -> FloatArray:
     """Speed [m/s] whose wave is as long as the waterline: 1.25 sqrt(L)."""
-    return 1.25 * np.sqrt(np.asarray(waterline_length_m, dtype=np.float64))
+    return 1.25 * np.sqrt(waterline_length_m)
 
 
-def front_area_m2(beam_m: ArrayLike, bow_height_m: ArrayLike) -> FloatArray:
+def front_area_m2(beam_m: FloatArray, bow_height_m: FloatArray) -> FloatArray:
     """Area [m2] seen by a head wind: b h + 0.5."""
-    return np.asarray(beam_m, dtype=np.float64) * _known_height_m(bow_height_m) + CREW_FRONT_AREA_M2
+    return beam_m * _known_height_m(bow_height_m) + CREW_FRONT_AREA_M2
 
 
-def side_area_m2(length_m: ArrayLike, bow_height_m: ArrayLike) -> FloatArray:
+def side_area_m2(length_m: FloatArray, bow_height_m: FloatArray) -> FloatArray:
     """Area [m2] seen by a beam wind: l h + 1.0."""
-    return (
-        np.asarray(length_m, dtype=np.float64) * _known_height_m(bow_height_m) + CREW_SIDE_AREA_M2
-    )
+    return length_m * _known_height_m(bow_height_m) + CREW_SIDE_AREA_M2
 
 
-def _known_height_m(bow_height_m: ArrayLike) -> FloatArray:
-    height = np.asarray(bow_height_m, dtype=np.float64)
-    return np.where(np.isnan(height), USUAL_BOW_HEIGHT_M, height)
+def _known_height_m(bow_height_m: FloatArray) -> FloatArray:
+    return np.where(np.isnan(bow_height_m), USUAL_BOW_HEIGHT_M, bow_height_m)
 
 
-def still_air_coefficient_kg_m(area_m2: ArrayLike, drag_coefficient: ArrayLike) -> FloatArray:
+def still_air_coefficient_kg_m(
+    area_m2: FloatArray, drag_coefficient: FloatArray | float
+) -> FloatArray:
     """Part of Cw [kg/m] due to still air: rho/2 area Cvt; force over speed squared, so constant."""
-    area, drag = (np.asarray(x, dtype=np.float64) for x in (area_m2, drag_coefficient))
-    return 0.5 * AIR_DENSITY_KG_M3 * area * drag
+    return 0.5 * AIR_DENSITY_KG_M3 * area_m2 * drag_coefficient

@@ -1,4 +1,4 @@
-"""TOML of people: what it says, or a `ValueError` that says in words what is wrong with it."""
+"""TOML that people write: its tables, or a `ValueError` that says in words what is wrong."""
 
 import re
 import tomllib
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 LONGEST_TEXT: Final = 1_000_000
 MOST_DOTS: Final = 1_000
-"""In a line. A key of 20,000 parts takes 1.6 GB, and one of 100,000 minutes."""
+"""In a line. A key of 20,000 parts takes 1.6 GB to read; one of 100,000 takes minutes."""
 
 
 def decoded(content: bytes) -> str:
@@ -33,7 +33,7 @@ def parse_toml(text: str) -> dict[str, object]:
     """The tables of a text.
 
     Raises:
-        ValueError: it is no TOML, or larger or deeper than a file of settings can be.
+        ValueError: it is not TOML, or larger or deeper than a file of settings can be.
     """
     most = max((line.count(".") for line in text.splitlines()), default=0)
     if len(text) > LONGEST_TEXT or most > MOST_DOTS:

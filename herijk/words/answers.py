@@ -82,12 +82,12 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "In {season} the log read {by} % too high (95 %: {low} to {high}); that is corrected.",
     ),
     "answer_fault": (
-        "In {season} is waarschijnlijk iets mis met {instrument}: {size} (kans {chance} %).",
-        "In {season} something is probably wrong with {instrument}: {size} (chance {chance} %).",
+        "In {season} is waarschijnlijk iets mis: {instrument}, {size} (kans {chance} %).",
+        "In {season} something is probably wrong: {instrument}, {size} (chance {chance} %).",
     ),
     "answer_cannot_be_told": (
-        "Of er in {season} iets mis was met {instrument}, is niet te zeggen (kans {chance} %).",
-        "Whether something was wrong with {instrument} in {season} cannot be told (chance "
+        "Of er in {season} iets mis was ({instrument}), is niet te zeggen (kans {chance} %).",
+        "Whether something was wrong in {season} ({instrument}) cannot be told (chance "
         "{chance} %).",
     ),
     "answer_not_settled": (
@@ -97,30 +97,11 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "{season} cannot be relied on.",
     ),
     "answer_alarm": (
-        "In {season} wijkt {instrument} sterk af van wat is aangenomen: {size}. Iemand moet "
-        "ernaar kijken.",
-        "In {season} {instrument} lies far from what is assumed: {size}. A person should look.",
+        "In {season} wijkt een instrument sterk af van wat is aangenomen: {instrument}, {size}. "
+        "Iemand moet ernaar kijken.",
+        "In {season} an instrument lies far from what is assumed: {instrument}, {size}. A person "
+        "should look.",
     ),
-    "instrument.log_scale": ("de log", "the log"),
-    "instrument.log_trend": (
-        "het verloop van de log door het seizoen",
-        "the drift of the log through the season",
-    ),
-    "instrument.log_change": (
-        "de log halverwege het seizoen",
-        "the log part way through the season",
-    ),
-    "instrument.gps_scale": ("de gewone gps", "the plain GPS"),
-    "instrument.force_scale": ("de schaal van de krachtmeter", "the scale of the load cell"),
-    "instrument.force_zero": ("het nulpunt van de krachtmeter", "the zero of the load cell"),
-    "instrument.force_zero_drift": (
-        "het verloop van het nulpunt van de krachtmeter",
-        "the drift of the load cell's zero",
-    ),
-    "instrument.anemometer_scale": ("de windmeter", "the anemometer"),
-    "instrument.water_temperature": ("de watertemperatuur", "the water temperature"),
-    "instrument.fleet_step": ("alle sloepen tegelijk", "all boats at once"),
-    "instrument.season_bend": ("de bocht van alle krommen", "the bend of all curves"),
     "answer_exceeds": (
         "De verandering is groter dan de onzekerheid van beide getallen samen.",
         "The change is larger than the uncertainty of both numbers together.",

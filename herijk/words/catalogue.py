@@ -35,6 +35,11 @@ def both(key: str, words: Words = WORDS) -> tuple[str, str]:
     return known or (bare, bare)
 
 
+def unbroken(heading: str) -> str:
+    """A heading without the places where it may be broken."""
+    return heading.replace("\u00ad", "").replace("\u200b", "")
+
+
 @cache
 def speaker(language: str) -> Say:
     """The texts of one language."""

@@ -37,6 +37,8 @@ COMMAND: Final[dict[str, str]] = {
     "Got unexpected extra argument(s) ({})": "Te veel argumenten ({})",
     "Option {} requires an argument.": "Optie {} vraagt een waarde.",
     "Invalid value for {}: {}": "Ongeldige waarde voor {}: {}",
+    "Invalid value: {}": "Ongeldige waarde: {}",
+    "{} is not one of {}.": "{} is niet een van {}.",
     "write a season, 2014, or a range, 2009:2018": (
         "schrijf een seizoen, 2014, of een reeks, 2009:2018"
     ),
@@ -50,7 +52,6 @@ COMMAND: Final[dict[str, str]] = {
         "geef --method NAAM of --printed JAAR, en niet allebei"
     ),
     "--carry goes with --method": "--carry hoort bij --method",
-    "{} is one of {}, not {!r}": "{} is een van {}, niet {!r}",
     "{!r} has no --json; these have: {}": "{!r} heeft geen --json; wel: {}",
     # Help: commands
     "Recomputes the history of the Dutch rowing-sloop register from its tow tests.": (
@@ -449,11 +450,9 @@ COMMAND: Final[dict[str, str]] = {
     "edition": "editie",
     "empty thwart": "lege doft",
     "equal": "gelijk",
-    "factor": "factor",
     "from": "van",
     "to": "tot",
     "gross kg/m": "bruto kg/m",
-    "hash": "hash",
     "highest": "hoogste",
     "lowest": "laagste",
     "median": "mediaan",
@@ -466,7 +465,6 @@ COMMAND: Final[dict[str, str]] = {
     "last tow": "laatste proef",
     "lines": "regels",
     "links": "koppelingen",
-    "log": "log",
     "lost": "verloren",
     "made again": "opnieuw gemaakt",
     "method": "methode",
@@ -481,8 +479,6 @@ COMMAND: Final[dict[str, str]] = {
     "race": "wedstrijd",
     "raced": "geroeid",
     "reason": "reden",
-    "register": "register",
-    "run": "run",
     "sd apart": "sd verschil",
     "season": "seizoen",
     "seasons": "seizoenen",
@@ -490,7 +486,6 @@ COMMAND: Final[dict[str, str]] = {
     "shared B": "gedeelde B",
     "size": "grootte",
     "source": "bron",
-    "status": "status",
     "step is of": "stap komt van",
     "title": "titel",
     "total": "totaal",
@@ -506,12 +501,10 @@ COMMAND: Final[dict[str, str]] = {
     "why": "waarom",
     "window s": "venster s",
     "without boats": "zonder sloepen",
-    "wind": "wind",
     "speed": "snelheid",
     "-inertia": "-traagheid",
     "-air": "-lucht",
     "+still": "+stil",
-    "+temp": "+temp",
     "spread": "spreiding",
     "explained": "verklaard",
     "slope": "helling",
@@ -520,19 +513,9 @@ COMMAND: Final[dict[str, str]] = {
     "yes": "ja",
     "no": "nee",
     "notice": "let op",
-    "podium": "podium",
     "changes": "wisselt",
     "the same": "dezelfde",
-    "v m/s": "v m/s",
-    "A kg/m": "A kg/m",
-    "Cw kg/m": "Cw kg/m",
-    "expired": "verlopen",
-    "removed": "vervallen",
     "gone": "weg",
-    "added": "nieuw",
-    "changed": "gewijzigd",
-    "same": "gelijk",
-    "recomputed": "herberekend",
     "as printed": "zoals gedrukt",
     "removed: {}": "vervallen: {}",
     "no: {}": "nee: {}",
@@ -735,11 +718,9 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "{} and {} say the same of every season.": "{} en {} zeggen van elk seizoen hetzelfde.",
     "{}: {} points": "{}: {} punten",
-    "A = {:.3f} kg/m; {}": "A = {:.3f} kg/m; {}",
     "Cw [kg/m] with its 95 % interval, from the scatter of the points alone:": (
         "Cw [kg/m] met 95 %-interval, uit de spreiding van de punten alleen:"
     ),
-    "  v [m/s]       Cw  interval": "  v [m/s]       Cw  interval",
     "  {:8.3f}  {:8.3f}  {} to {}": "  {:8.3f}  {:8.3f}  {} tot {}",
     "B above {:.2f} m/s is possible": "elke B boven {:.2f} m/s kan",
     "any B is possible": "elke B kan",
@@ -759,89 +740,9 @@ COMMAND: Final[dict[str, str]] = {
     "Season {}": "Seizoen {}",
     "Seasons {} to {}": "Seizoenen {} tot {}",
     "the present": "heden",
-    "log 1": "log 1",
-    "log 2": "log 2",
-    "mean of both logs where they agree": "gemiddelde van beide logs waar die overeenkomen",
-    "{}, as it reads.": "{}, zoals afgelezen.",
-    "{}, with the season's factor as estimated from repeat tows and GPS.": (
-        "{}, met de factor van het seizoen, geschat uit herhaalde proeven en GPS."
-    ),
-    "multiplied by {:g}": "vermenigvuldigd met {:g}",
-    "divided by {:g}": "gedeeld door {:g}",
-    "{}, {}; a percentage in the tow list goes before.": (
-        "{}, {}; een percentage in de sleeplijst gaat voor."
-    ),
-    "none.": "geen.",
-    "one factor per file from GPS speed / log speed, as many runs out as back.": (
-        "een factor per bestand uit GPS-snelheid / logsnelheid, evenveel runs heen als terug."
-    ),
-    "What the GPS is late is taken off.": "Wat de gps achterloopt gaat eraf.",
-    "A drift of the stream is taken off.": "Een verloop van de stroom gaat eraf.",
-    "Without GPS: as estimated.": "Zonder GPS: zoals geschat.",
-    "one factor per season, the mean of its tows' GPS speed / log speed.": (
-        "een factor per seizoen, het gemiddelde van GPS-snelheid / logsnelheid van de proeven."
-    ),
-    "all samples of a run.": "alle metingen van een run.",
-    "the steady part of a run, at least {:g} s; ends equal within {:g} m/s, {:g} % of "
-    "force and {:g} m/s of wind where that can be; without ramps over {:g} m/s, force "
-    "peaks over {:g} and gusts over {:g} deviations.": (
-        "het gelijkmatige deel van een run, minstens {:g} s; begin en eind gelijk binnen "
-        "{:g} m/s, {:g} % van de kracht en {:g} m/s wind waar dat kan; zonder versnelling "
-        "over {:g} m/s, krachtpieken boven {:g} en windvlagen boven {:g} afwijkingen."
-    ),
-    "no correction.": "geen correctie.",
-    "head wind only": "alleen tegenwind",
-    "oblique wind on front and side": "schuine wind op voor- en zijkant",
-    "{:g} from ahead, {:g} from behind": "{:g} van voren, {:g} van achteren",
-    ", {:g} on the side": ", {:g} op de zijkant",
-    "fixed coefficients ({})": "vaste coëfficiënten ({})",
-    "coefficients searched run by run between 0 and 1": (
-        "coëfficiënten per run gezocht tussen 0 en 1"
-    ),
-    "one coefficient per tow, searched between 0.3 and 0.7": (
-        "een coëfficiënt per proef, gezocht tussen 0,3 en 0,7"
-    ),
-    "one coefficient found for the whole archive": "een coëfficiënt voor het hele archief",
-    "wind averaged over {} s": "wind gemiddeld over {} s",
-    "sample by sample": "per meting",
-    ", where it was not measured as other tows let expect": (
-        ", waar hij niet gemeten is zoals andere proeven doen verwachten"
-    ),
-    ", scaled per season by runs out and back": ", per seizoen geschaald met runs heen en terug",
-    "; 'Cw vac' read as on the screens of 2014": "; 'Cw vac' gelezen als op de schermen van 2014",
-    "; 'Cw opt' read as on the screens of 2014: no still air put back": (
-        "; 'Cw opt' gelezen als op de schermen van 2014: geen stille lucht teruggelegd"
-    ),
-    "mean of force / speed squared of all samples": (
-        "gemiddelde van kracht / snelheid in het kwadraat van alle metingen"
-    ),
-    "mean force / mean speed squared": "gemiddelde kracht / gemiddelde snelheid in het kwadraat",
-    "{}, less what accelerated the boat (water moved along: {:g}).": (
-        "{}, zonder wat de sloep versnelde (meebewogen water: {:g})."
-    ),
-    "the water as it was.": "het water zoals het was.",
-    "friction brought to water of {:g} C by the ITTC-57 line.": (
-        "wrijving omgerekend naar water van {:g} C met de ITTC-57-lijn."
-    ),
-    "Where nobody recorded it: as other tows let expect.": (
-        "Waar niemand haar noteerde: zoals andere proeven doen verwachten."
-    ),
-    "at least {} runs, both ways; none faster than {:g} % of the declared speed.": (
-        "minstens {} runs, beide kanten op; geen sneller dan {:g} % van de opgegeven snelheid."
-    ),
-    "least squares in Cw, B free.": "kleinste kwadraten in Cw, B vrij.",
-    "least squares in Cw, B at most {:g} x hull speed.": (
-        "kleinste kwadraten in Cw, B hoogstens {:g} x rompsnelheid."
-    ),
-    "least squares for A alone, B is the hull speed.": (
-        "kleinste kwadraten voor A alleen, B is de rompsnelheid."
-    ),
-    "flags are shown; none rejects a tow.": "vlaggen worden getoond; geen keurt een proef af.",
-    "a tow is rejected for: {}.": "een proef wordt afgekeurd om: {}.",
     "noise": "ruis",
     # Audit
     "{} plots in {}": "{} figuren in {}",
-    "{} {}, type {}": "{} {}, type {}",
     "{}; towed for {} crews ({}): each has a register line and repeats of its own; in the "
     "statistics of a type they are one boat": (
         "{}; gesleept voor {} ploegen ({}): elk heeft een eigen registerregel en eigen "
@@ -889,7 +790,6 @@ COMMAND: Final[dict[str, str]] = {
     "Tow {} of {}: {}{}, declared {:.2f} m/s, {} m, {}, from {}": (
         "Proef {} van {}: {}{}, opgegeven {:.2f} m/s, {} m, {}, uit {}"
     ),
-    "{:.2f}": "{:.2f}",
     "  {} to {}: Cw {} %{}{}": "  {} naar {}: Cw {} %{}{}",
     "standard uncertainty of Cw: {}": "standaardonzekerheid van Cw: {}",
     "no curve, {}{}": "geen kromme, {}{}",
@@ -944,7 +844,6 @@ COMMAND: Final[dict[str, str]] = {
     "8. Second opinion without towing: Cw from weight, length, beam and type": (
         "8. Tweede mening zonder slepen: Cw uit gewicht, lengte, breedte en type"
     ),
-    "{} per {}": "{} per {}",
     "{} against {}": "{} tegen {}",
     "Cw lies closer together than both": "Cw ligt dichter bijeen dan beide",
     "Cw lies further apart": "Cw ligt verder uiteen",
@@ -1029,14 +928,6 @@ COMMAND: Final[dict[str, str]] = {
         "Wat verschilt: hellingen en verschuivingen met meer dan beide intervallen samen, "
         "en oordelen"
     ),
-    "unusual weight": "opvallend gewicht",
-    "unusual length": "opvallende lengte",
-    "its season lies to the same side": "haar seizoen ligt aan dezelfde kant",
-    "unusual calibration of its log": "opvallende ijking van de log",
-    "altered before this tow": "verbouwd voor deze proef",
-    "slow tow": "langzame proef",
-    "perhaps pulled askew": "misschien scheef getrokken",
-    "B at its cap": "B op zijn bovengrens",
     "weight": "gewicht",
     "tow speed": "sleepsnelheid",
     "two crews of one boat are not taken for two boats. Intervals are 95 %; a trend or "

@@ -348,6 +348,7 @@ ERRORS: Final[dict[str, str]] = {
     ),
     "{}: the seasons {} are not those of {}": "{}: de seizoenen {} zijn niet die van {}",
     "{} has {} ranges, not {}": "{} heeft {} reeksen seizoenen, niet {}",
+    "the present": "heden",
     "method {} says nothing about season {}; it covers {} to {}. Leave that season out "
     "with --seasons, or widen the method's `seasons`": (
         "methode {} zegt niets over seizoen {}; zij geldt van {} tot {}. Laat dat seizoen "

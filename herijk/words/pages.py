@@ -63,14 +63,12 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Without JavaScript the tables of the first choice are here, but no charts.",
     ),
     "made_by": ("Gemaakt met code", "Made by code"),
-    "csv": ("CSV", "CSV"),
     "download": ("Download als CSV", "Download as CSV"),
     "as_table": ("Als tabel", "As a table"),
     "search": ("Zoek", "Search"),
     "rows": ("Regels:", "Rows:"),
     "all": ("alle", "all"),
     "no_values": ("geen waarden", "no values"),
-    "choose": ("Toon", "Show"),
     "clear": ("Wis keuze", "Clear selection"),
     "from": ("van", "from"),
     "to": ("tot", "to"),
@@ -121,10 +119,6 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Every number depends on a method, and names it. Two equal hashes are two equal methods.",
     ),
     "tables": ("Tabellen in de database", "Tables in the database"),
-    "tables_note": (
-        "Alles op deze pagina's staat in warehouse.duckdb.",
-        "Everything on these pages is in warehouse.duckdb.",
-    ),
     "about_compare": (
         "Twee sloepen vergeleken: welke loopt lichter, en bij welke snelheid?",
         "Two boats compared: which runs easier, and at what speed?",
@@ -192,7 +186,6 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         " The uncertainty of {editions} leaves out the error of the log: in truth it is larger.",
     ),
     "and": (" en ", " and "),
-    "none_of_them": ("geen", "none"),
     "head_mostly": ("; meestal vooral door: {cause}", "; most often mainly: {cause}"),
     "head_due": (
         "Ploegen die binnen een jaar na {day} moeten slepen: {soon}; proeven die op die dag al "
@@ -368,20 +361,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Computed from everything behind a line of an edition: if any of that changes, so does "
         "the code.",
     ),
-    "tip.crew_class": ("H: heren, D: dames", "H: men, D: women"),
-    "tip.a_kg_m": ("A: Cw bij zeer lage snelheid", "A: Cw at very low speed"),
-    "tip.b_m_s": (
-        "B: de snelheid waarbij de weerstand oneindig wordt",
-        "B: the speed at which resistance becomes infinite",
-    ),
-    "tip.cw_kg_m": (
-        "Cw: sleepkracht gedeeld door snelheid in het kwadraat",
-        "Cw: tow force divided by speed squared",
-    ),
-    "tip.e_n": (
-        "Verschil gedeeld door beide 95 %-intervallen samen; voorbij 1: strijdig",
-        "Difference divided by both 95 % intervals together; beyond 1 they disagree",
-    ),
+    "term_crew_class": ("Klasse", "Class"),
+    "meaning_crew_class": ("H: heren, D: dames.", "H: men, D: women."),
     # Register
     "register_note": (
         "A en B gelden van 85 tot 115 % van de opgegeven roeisnelheid; Cw geldt bij die snelheid. "

@@ -1,10 +1,13 @@
 """A rebuild with its lake in a bucket, its seasons read on Dask: what it makes is the same."""
 
 import datetime as dt
+import os
 import shutil
 import signal
 import threading
 import time
+from contextlib import contextmanager
+from unittest import mock
 
 import dagster as dg
 import pytest
@@ -31,10 +34,17 @@ def remote(built, s3, tmp_path_factory):
     return Workbench(built.archive, data)
 
 
-@pytest.fixture(scope="module")
-def cluster(remote):
-    with dask_cluster(2, remote.store.dagster_home) as found:
-        yield found
+@contextmanager
+def dask_here(remote, workers):
+    """The address of a Dask scheduler with workers, all in this process."""
+    from distributed import LocalCluster  # noqa: PLC0415 - takes seconds to import
+
+    small = {"n_workers": workers, "threads_per_worker": 1, "dashboard_address": None}
+    with (
+        mock.patch.dict(os.environ, DAGSTER_HOME=str(remote.store.dagster_home)),
+        LocalCluster(processes=False, protocol="tcp://", host="127.0.0.1", **small) as cluster,
+    ):
+        yield cluster.scheduler_address
 
 
 class Told(Quiet):
@@ -63,18 +73,9 @@ def published(store):
 
 
 @pytest.mark.slow
-def test_a_rebuild_of_which_a_worker_is_killed_makes_what_is_made_here(
-    built, remote, cluster, tmp_path
-):
-    (remote.data / "beheer.toml").write_text(f'dask = "{cluster.address}"\n')
-    done, stuck, told = [], cluster.workers[0], Told()
-    stuck.send_signal(signal.SIGSTOP)  # it will be given a step and not finish it
-    arguments = (remote.store, stuck, done)
-    threading.Thread(target=kill_when_the_other_is_done, args=arguments, daemon=True).start()
-    rebuild.rebuild(remote.archive, remote.data, METHODS, told)
-    assert stuck.wait() == -signal.SIGKILL
-    assert len(done) == 1
-    assert not [step for step in told.steps if "reading it here" in step]
+def test_a_rebuild_of_which_a_worker_is_killed_makes_what_is_made_here(built, remote, tmp_path):
+    with dask_cluster(2, remote.store.dagster_home) as cluster:
+        rebuild_while_a_worker_is_killed(remote, cluster)
     assert_same_lake(built.store, remote.store)
     assert_same_tables(remote.tables(), built.tables())
     shutil.copytree(built.data, tmp_path / "here")
@@ -88,12 +89,24 @@ def test_a_rebuild_of_which_a_worker_is_killed_makes_what_is_made_here(
             assert instance.get_materialized_partitions(dg.AssetKey(asset)) == seasons
 
 
-def test_a_season_that_a_worker_cannot_read_is_told(built, remote, cluster):
+def rebuild_while_a_worker_is_killed(remote, cluster):
+    (remote.data / "beheer.toml").write_text(f'dask = "{cluster.address}"\n')
+    done, stuck, told = [], cluster.workers[0], Told()
+    stuck.send_signal(signal.SIGSTOP)  # it will be given a step and not finish it
+    arguments = (remote.store, stuck, done)
+    threading.Thread(target=kill_when_the_other_is_done, args=arguments, daemon=True).start()
+    rebuild.rebuild(remote.archive, remote.data, METHODS, told)
+    assert stuck.wait() == -signal.SIGKILL
+    assert len(done) == 1
+    assert not [step for step in told.steps if "reading it here" in step]
+
+
+def test_a_season_that_a_worker_cannot_read_is_told(built, remote):
     from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - takes seconds to import
 
     elsewhere = remote.data / "without-settings"  # so the worker looks for a lake in it
-    with runs.instance_of(remote.store) as instance:
-        read = read_seasons(instance, cluster.address, (built.archive, elsewhere), [2009], {})
+    with runs.instance_of(remote.store) as instance, dask_here(remote, 1) as address:
+        read = read_seasons(instance, address, (built.archive, elsewhere), [2009], {})
     assert list(read.failed) == [2009]
     assert "without-settings/lake/tables/listed_tows.parquet" in read.failed[2009]
 
@@ -111,13 +124,15 @@ def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote):
         read_seasons(instance, "tcp://127.0.0.1:1", (built.archive, remote.data), [2009], {})
 
 
-def test_a_scheduler_without_workers_is_not_waited_for_without_end(built, remote, monkeypatch):
+def test_a_scheduler_without_workers_is_not_waited_for_without_end(built, remote):
+    import dask  # noqa: PLC0415 - takes seconds to import
+
     from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - takes seconds to import
 
-    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__NO_WORKERS_TIMEOUT", "1s")
     with (
         runs.instance_of(remote.store) as instance,
-        dask_cluster(0, remote.store.dagster_home) as deserted,
+        dask.config.set({"distributed.scheduler.no-workers-timeout": "1s"}),
+        dask_here(remote, 0) as deserted,
         pytest.raises(UnavailableError, match=r"did not finish.*without any running workers"),
     ):
-        read_seasons(instance, deserted.address, (built.archive, remote.data), [2009], {})
+        read_seasons(instance, deserted, (built.archive, remote.data), [2009], {})

@@ -463,7 +463,7 @@ def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(
     assert 0 < shown(page, "type_boats").count() < boats
     page.evaluate(TWO_FRAMES)  # Vega tells of the last movement late; nobody clicks as quickly
     page.locator(".clear").click()
-    assert shown(page, "type_boats").count() == boats
+    visitor.expect(shown(page, "type_boats")).to_have_count(boats)
     chart.locator("svg .mark-symbol.role-mark path").first.click(force=True)
     page.wait_for_url("**/boats/*.html")
     assert page.locator(".answer .headline").count() >= 1

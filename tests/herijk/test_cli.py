@@ -8,6 +8,7 @@ from typer.main import get_command
 
 from herijk.cli.json_schemas import schemas
 from herijk.cli.main import app
+from herijk.pipeline.method.definition import Steps
 from tests.conftest import METHODS
 
 COMMANDS = ("simulate", "rebuild", "methods", "audit")
@@ -137,8 +138,17 @@ def test_methods_lists_and_shows(herijk):
         assert name in listed
         shown = herijk("methods", "show", name)[1]
         assert name in shown
-        for step in ("speed", "calibration", "window", "wind", "run_point", "runs", "curve"):
-            assert re.search(rf"^[ *]+{step} ", shown, re.MULTILINE), step
+        for step in ("Speed", "Calibration", "Window", "Wind", "Run point", "Runs", "Curve"):
+            assert re.search(rf"^  {step}\b.*\. ", shown, re.MULTILINE), step
+
+
+def test_a_method_is_shown_with_every_option_and_what_differs_is_marked(herijk):
+    shown = " ".join(herijk("methods", "show", "corrected-2013")[1].split())
+    first, *others = shown.split("Season")[1:]
+    assert "Prescribed correction (0.06 is 6 %): 0.06 *" in first
+    assert not any("*" in seasons for seasons in others)
+    steps = Steps.model_json_schema()["$defs"].values()
+    assert first.count(";") + len(steps) == sum(len(step["properties"]) for step in steps)
 
 
 def named(command, *path):

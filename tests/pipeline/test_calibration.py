@@ -1,16 +1,28 @@
 """The calibration factor: every run weighs the same, and the stream drops out."""
 
 import numpy as np
+import polars as pl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.steps.calibration import gps_factor, gps_factor_of_files, stream_drift_m_s
 
 WAY = np.array([1, 1, 1, -1, -1, -1])
 TOW = np.zeros(6, dtype=np.int64)
 ALL = np.ones(6, dtype=bool)
 LOG = np.array([2.0, 2.2, 2.4, 2.0, 2.2, 2.4])
+NUMBER = np.arange(1, 7)
+
+
+def batch_of(number: np.ndarray = NUMBER, way: np.ndarray = WAY) -> Batch:
+    """One tow with runs of these numbers and directions."""
+    runs = pl.DataFrame({"run": number, "direction": way})
+    blocks = RunBlocks(runs, np.ones((len(way), 1)), {})
+    return Batch(pl.DataFrame({"tow_id": ["a"]}), blocks, np.zeros(len(way), dtype=np.int64))
 
 
 @given(y=st.floats(0.9, 1.1), stream=st.floats(-0.3, 0.3))
@@ -44,11 +56,11 @@ def test_each_tow_has_its_own_factor():
 def of_two_files(used: list[int], second: float, steady: list[int] | None = None):
     """Factors of a combined tow, each file of six runs, whose second log reads otherwise."""
     way, log = np.tile(WAY, 2), np.concatenate([LOG, LOG * second])
-    tow, in_second = np.zeros(12, dtype=np.int64), np.repeat([False, True], 6)
+    batch = batch_of(np.concatenate([NUMBER, NUMBER + SECOND_FILE_OFFSET]), way)
     gps = np.tile(LOG, 2) + 0.05 * way
     chosen = np.array(used, dtype=bool)
     there = np.ones(12, dtype=bool) if steady is None else np.array(steady, dtype=bool)
-    return gps_factor_of_files(gps, log, way, tow, in_second, chosen, there, 1)
+    return gps_factor_of_files(batch, gps, log, chosen, there)
 
 
 @given(second=st.floats(0.95, 1.05))
@@ -69,15 +81,12 @@ def test_files_towed_one_way_each_share_the_factor_of_the_tow():
 
 def test_runs_that_were_not_chosen_calibrate_no_tow_of_one_file():
     used = np.array([1, 1, 1, 0, 0, 0], dtype=bool)
-    known = gps_factor_of_files(LOG, LOG, WAY, TOW, np.zeros(6, dtype=bool), used, ALL, 1)[1]
+    known = gps_factor_of_files(batch_of(), LOG, LOG, used, ALL)[1]
     assert not known.any()
 
 
-NUMBER = np.arange(1, 7)
-
-
 def drift_of(gps: np.ndarray, used: np.ndarray = ALL) -> np.ndarray:
-    return stream_drift_m_s(gps, LOG, WAY, NUMBER, TOW, used)
+    return stream_drift_m_s(batch_of(), gps, LOG, used)
 
 
 @pytest.mark.parametrize("lost", [None, 0, 4])
@@ -107,4 +116,5 @@ def test_what_is_no_drift_of_the_stream_stays(gps):
 
 
 def test_a_file_towed_one_way_once_has_no_drift():
-    assert stream_drift_m_s(LOG[:1], LOG[:1], WAY[:1], NUMBER[:1], TOW[:1], ALL[:1]) == [0.0]
+    batch = batch_of(NUMBER[:1], WAY[:1])
+    assert stream_drift_m_s(batch, LOG[:1], LOG[:1], ALL[:1]) == [0.0]

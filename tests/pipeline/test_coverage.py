@@ -5,9 +5,12 @@ import numpy as np
 import polars as pl
 import pytest
 
+from benchmarks.accuracy.foreign import reading, runs
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.recompute.results import Recomputed
+from herijk.pipeline.season_log.assumed import USUAL
+from herijk.pipeline.uncertainty.propagation import Assumed
 from herijk.simulate import WorldSettings
 from tests.worlds import Measured, measure
 
@@ -48,20 +51,54 @@ def test_intervals_of_cw_hold_the_truth(tows):
     assert inside.mean() >= least_share(tows.height)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="errors are 0.7 of what the budget says in archives of this size (docs/accuracy.md)",
-)
-def test_intervals_of_cw_are_no_wider_than_they_must(tows, made):
-    error = (tows["cw_kg_m"] / tows["cw_at_15c_kg_m"]).log()
-    # The standards of force and mass are without error in a simulated world.
-    standards = pl.col("component").is_in(["force", "mass"])
-    of_tow = made.uncertainty_budget.filter(~standards).group_by("tow_id")
-    sizes = of_tow.agg((pl.col("u_ratio") ** 2).sum().sqrt().alias("sd"))
-    sd = tows.join(sizes, on="tow_id", how="left", maintain_order="left")["sd"]
-    size = np.sqrt(((error / sd) ** 2).mean())
-    # Four standard errors of a standard deviation from so many.
-    assert size == pytest.approx(1.0, abs=4 / np.sqrt(2 * tows.height))
+def with_what_is_assumed(world: Measured, rng: np.random.Generator) -> Measured:
+    """The same world with what the budget assumes and the simulator does not draw.
+
+    Standards of force and mass, the formula for temperature, the load cell of each season, the
+    calibration of each tow, and what else differs from tow to tow.
+    """
+    assumed, listed = Assumed(), runs(world)
+    shared_by = {
+        "tow": (USUAL.tow_sd, assumed.temperature_formula_ratio, assumed.mass_standard_ratio),
+        "season": (USUAL.force_sd,),
+    }
+    ln_force = assumed.force_standard_ratio * rng.standard_normal()
+    for whose, sizes in shared_by.items():
+        place = listed[whose].rank("dense").to_numpy() - 1
+        drawn = rng.standard_normal(place.max() + 1)[place]
+        ln_force = ln_force + np.sqrt(np.square(sizes).sum()) * drawn
+    ln_gps = USUAL.calibration_sd * rng.standard_normal(world.tows.height)[listed["tow"]]
+    return reading(world, force=np.exp(ln_force), gps=np.exp(ln_gps))
+
+
+def test_errors_are_as_large_as_the_budget_says(world):
+    """Where they are drawn as it assumes them: without, the budget cannot but be too large."""
+    squares = []
+    for seed in range(8):
+        drawn = with_what_is_assumed(world, np.random.default_rng(seed))
+        made = recompute(shipped_method("rebased"), drawn.tows, drawn.blocks, with_bands=False)
+        of_tow = made.uncertainty_budget.group_by("tow_id")
+        variance = of_tow.agg((pl.col("u_ratio") ** 2).sum().alias("variance"))
+        held = made.curves.join(world.truth, on="tow_id").join(variance, on="tow_id")
+        error = (held["cw_kg_m"] / held["cw_at_15c_kg_m"]).log()
+        squares.append((error**2 / held["variance"]).mean())
+    error_of_mean = np.std(squares, ddof=1) / np.sqrt(len(squares))
+    assert np.mean(squares) == pytest.approx(1.0, abs=4 * error_of_mean)
+
+
+def test_chance_in_a_log_cancels_and_chance_in_a_gps_does_not(world, made):
+    """Calibration takes the mean of the log off, and that of the GPS stays."""
+    chance = np.exp(0.003 * np.random.default_rng(1).standard_normal(world.blocks.runs.height))
+
+    def random_variance(of: Recomputed) -> float:
+        return (of.uncertainty_budget.filter(component="random")["u_ratio"] ** 2).mean()
+
+    by_log, by_gps = (
+        random_variance(recompute(shipped_method("rebased"), otherwise.tows, otherwise.blocks))
+        - random_variance(made)
+        for otherwise in (reading(world, log=chance), reading(world, gps=chance))
+    )
+    assert by_gps > 2.0 * by_log
 
 
 def test_intervals_of_b_hold_the_truth(tows):

@@ -6,6 +6,7 @@ from scipy.optimize import least_squares
 
 from herijk.pipeline import curve
 from herijk.pipeline.errors import BrokenPromiseError
+from herijk.pipeline.quantiles import LEVEL
 from tests.pipeline.fieller import b_interval_fieller
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
@@ -49,7 +50,7 @@ def scipy_fit(speed, cw):
 
 def test_equals_scipy():
     # Wider than the field, with falling curves; the benchmark compares 10,000 cases.
-    points, *_ = noisy_points(seed=1, n_fits=2000, r=(-0.3, 0.6), noise=(0.0, 0.05))
+    points, *_ = noisy_points(seed=1, n_fits=500, r=(-0.3, 0.6), noise=(0.0, 0.05))
     fitted = curve.fit(points)
     cases = zip(points.speed_m_s, points.cw_kg_m, strict=True)
     a, s = np.transpose([scipy_fit(speed, cw) for speed, cw in cases])
@@ -237,7 +238,7 @@ def test_fieller_agrees_with_the_profile():
 
 @pytest.mark.parametrize("pooled", [False, True])
 def test_intervals_cover_the_truth_as_often_as_they_say(pooled):
-    n_fits, level = 2000, 0.95
+    n_fits, level = 2000, LEVEL
     points, c0, s, v0 = noisy_points(seed=10, n_fits=n_fits, noise=(0.02, 0.02))
     if not pooled:
         points, c0, s, v0 = noisy_points(seed=11, n_fits=n_fits)
@@ -248,8 +249,8 @@ def test_intervals_cover_the_truth_as_often_as_they_say(pooled):
         ratio = np.mean(scatter.variance_kg2_m2 / fitted.cw_at(v0) ** 2)
         scatter = curve.Scatter(ratio * fitted.cw_at(v0) ** 2, np.full(n_fits, np.inf))
     errors = curve.covariance(points, fitted, scatter, v0)
-    at_v0 = curve.cw_interval(fitted, errors, scatter.dof, v0, level)
-    b = curve.b_interval(points, fitted, scatter, level)
+    at_v0 = curve.cw_interval(fitted, errors, scatter.dof, v0)
+    b = curve.b_interval(points, fitted, scatter)
     true_b = 1 / np.sqrt(s)
     # Three standard errors of a share of n_fits trials.
     tolerance = 3 * np.sqrt(level * (1 - level) / n_fits)

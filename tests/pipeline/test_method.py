@@ -184,6 +184,12 @@ def test_a_season_before_the_first_is_missing_knowledge():
     assert made.for_season(2012) == made.for_season(2016)
 
 
+def test_an_open_end_is_the_present_in_either_language():
+    with pytest.raises(MissingKnowledgeError, match="2009 to the present") as caught:
+        parse(method_text()).for_season(2008)
+    assert "2009 tot heden" in spoken(caught.value, "nl")
+
+
 def test_a_method_cannot_be_changed():
     made = parse(method_text())
     with pytest.raises(ValueError, match="frozen"):

@@ -75,7 +75,7 @@ def test_the_first_choice_is_the_best_of_all_by_brute_force(tows):
     bare = tows.with_columns(pl.lit(None).cast(pl.Float64).alias("gps_ln_ratio"))
     found = dataclasses.replace(estimate_season_factors(bare), ageing_sd=0.0, drift_sd=0.0)
     found = dataclasses.replace(found, covariance=with_boats_as_unknowns(found))
-    choice = retow_choice(found, most=1)
+    choice = retow_choice(found).head(1)
     lines = tows.select(LINE).unique().rows()
     after = {line: typical_sd(with_boats_as_unknowns(found, line)) for line in lines}
     best = min(after, key=after.__getitem__)
@@ -96,13 +96,13 @@ def test_a_season_that_nothing_ties_is_tied_first(tows):
         pl.lit(2008).cast(tows.schema["season"]).alias("season"),
         pl.lit(False).alias("altered"),
     )
-    choice = retow_choice(estimate_season_factors(pl.concat([tows, alone])), most=2)
+    choice = retow_choice(estimate_season_factors(pl.concat([tows, alone])))
     assert choice["seasons"][0] == "2008"
     assert choice["factor_sd_before_ratio"][0] > 2 * choice["factor_sd_after_ratio"][0]
 
 
 def test_an_altered_boat_ties_no_season_before_its_alteration(tows):
-    first = retow_choice(estimate_season_factors(tows), most=1)
+    first = retow_choice(estimate_season_factors(tows)).head(1)
     mine = pl.all_horizontal(pl.col(name) == first[name][0] for name in LINE)
     last = tows.filter(mine)["season"].max()
     altered = tows.with_columns(pl.col("altered") | (mine & (pl.col("season") == last)))

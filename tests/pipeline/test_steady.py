@@ -58,7 +58,7 @@ def blocks_of(runs: Sequence[Run], hand: Sequence[Hand] | None = None) -> RunBlo
 
 def window_of(run: Run, rule: Window = STEADY) -> tuple[int, int, str]:
     found = choose_windows(blocks_of([run]), rule)
-    assert found.found[0]
+    assert found.exists[0]
     return int(found.start_s[0]), int(found.end_s[0]), found.reasons[0]
 
 
@@ -168,7 +168,7 @@ def test_seconds_without_samples_are_left_out_and_cut_nothing(
 
 
 def assert_none(found: Windows, run: int = 0) -> None:
-    assert not found.found[run]
+    assert not found.exists[run]
     assert not found.mask[run].any()
     assert found.start_s[run] == found.end_s[run] == 0
 
@@ -248,7 +248,7 @@ def test_a_window_is_contiguous_inside_the_run_and_never_too_short(
     assert not (found.mask & (blocks.n == 0)).any()
     length = found.mask.sum(axis=1)
     assert ((length == 0) | (length >= minimum_s)).all()
-    assert np.array_equal(found.found, length > 0)
+    assert np.array_equal(found.exists, length > 0)
     whole = length == (blocks.n > 0).sum(axis=1)
     assert all(reason == "" for reason, kept in zip(found.reasons, whole, strict=True) if kept)
 
@@ -281,4 +281,4 @@ def test_a_window_by_hand_is_as_long_as_any_other() -> None:
     found = choose_windows(blocks_of([Run(), Run()], [(5, 34, "kort"), (5, 35, "net")]), BY_HAND)
     assert_none(found)
     assert found.reasons[0] == "by_hand: kort"
-    assert found.found[1]
+    assert found.exists[1]

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks, WindowSums, stack_blocks
+from herijk.pipeline.blocks.run_blocks import RunBlocks, WindowSums, stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.channels import SAMPLE_SCHEMA
 from herijk.pipeline.method.definition import Wind
@@ -38,8 +38,7 @@ def blocks_of(wind_m_s: object, angle_deg: object, seconds: int = 4, rate_hz: in
 
 def parts(blocks: RunBlocks, model: str) -> AirParts:
     everything = WindowSums(blocks, blocks.n > 0)
-    terms = {name: everything.mean(f"log1_{name}") for name in AIR_SUMS}
-    return air_parts(blocks, terms, Wind(model=model), FRONT, SIDE)
+    return air_parts(Wind(model=model), lambda name: everything.mean(f"log1_{name}"), FRONT, SIDE)
 
 
 @given(wind=st.floats(0.1, 12.0), angle=st.floats(0.0, 359.9))

@@ -26,7 +26,10 @@ OF_LIBRARY = {
 }
 """What the library of the command line says itself."""
 
-SAME = {"A", "B", "Cw", "W", "kg", "m", "n", "p", "run", "s"}
+SAME = {
+    *("A", "B", "Cw", "W", "kg", "m", "n", "p", "run", "s", "v"),
+    *("factor", "hash", "interval", "log", "per", "podium", "register", "status", "type", "wind"),
+}
 """Words that are no others in Dutch."""
 
 
@@ -153,6 +156,8 @@ def test_wrong_arguments_are_told_in_dutch(monkeypatch, capsys):
         (["frob"], "Er is geen opdracht 'frob'."),
         (["rebuildd"], "Er is geen opdracht 'rebuildd'. Bedoelt u 'rebuild'?"),
         (["due", "--frob"], "Er is geen optie --frob"),
+        (["diff", "a", "b", "--fatigue", "x"], "'--fatigue': 'x' is niet een van 'none', 'known'"),
+        (["slides", *("--type", "a") * 3], "Ongeldige waarde: geef een of twee types"),
     ):
         monkeypatch.setattr("sys.argv", ["herijk", "--lang", "nl", *arguments])
         with pytest.raises(SystemExit) as stopped:

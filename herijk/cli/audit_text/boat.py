@@ -6,10 +6,10 @@ from math import exp
 from typing import Final
 
 from herijk.cli.audit_text.words import (
-    EXPLANATIONS,
     change,
     codes,
     distance,
+    explained,
     nothing,
     second_opinion,
     section,
@@ -108,7 +108,7 @@ def _place_title(report: BoatAudit) -> str:
 def _place(report: BoatAudit) -> list[str]:
     lines = []
     for row in report.in_type:
-        why = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
+        why = explained(row)
         place = tell("outside") if row["outside"] else tell("within")
         lines.append(
             tell(

@@ -12,21 +12,8 @@ from typing import Final
 
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit_types import TypeFacts, TypeStatistics
-from herijk.words import number, tell
-from herijk.words.catalogue import code
-
-EXPLANATIONS: Final = {
-    "weight": "unusual weight",
-    "length": "unusual length",
-    "season": "its season lies to the same side",
-    "log": "unusual calibration of its log",
-    "altered": "altered before this tow",
-    "slow_tow": "slow tow",
-    "askew": "perhaps pulled askew",
-    "b_at_cap": "B at its cap",
-    "b_not_determined": "B not determined",
-}
-"""What could explain a boat's place, by the codes in `type_outliers`."""
+from herijk.words import LANGUAGE, number, tell
+from herijk.words.catalogue import code, speaker
 
 QUANTITIES: Final = {"b_m_s": "B", "a_kg_m": "A", "cw_standard_kg_m": "Cw"}
 LETTERS: Final = QUANTITIES | {"q": "q"}
@@ -166,16 +153,21 @@ def apart(era: Row) -> str:
     return {True: "apart", False: tell("none seen"), None: "-"}[era["apart"]]
 
 
+def explained(row: Row) -> str:
+    """What could explain a boat's place."""
+    say = speaker(LANGUAGE.get())
+    return ", ".join(say(f"candidate.{name}") for name in row["candidates"])
+
+
 def outsider(row: Row) -> str:
     """A boat outside its type: how far, and what could explain it."""
-    codes = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
     return tell(
         "{}, {}: {}, {:+.1f} sd; {}",
         who(row),
         row["tow_id"],
         distance(row),
         row["deviation_sd"],
-        codes or tell("nothing known explains it"),
+        explained(row) or tell("nothing known explains it"),
     )
 
 

@@ -111,11 +111,11 @@ def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
     say = speech.say
     rows = [
         ("certificate_tow", line["tow_date"]),
-        ("certificate_from", line["valid_from"]),
+        ("column.valid_from", line["valid_from"]),
         ("certificate_until", line["valid_until"]),
-        ("certificate_edition", speech.edition(line["edition"])),
-        ("certificate_method", say(f"method.{line['method']}") if line["method"] else None),
-        ("certificate_decision", line["decision"]),
-        ("certificate_thwart", line["empty_thwart"] or say("no_empty_thwart")),
+        ("column.edition", speech.edition(line["edition"])),
+        ("column.method", say(f"method.{line['method']}") if line["method"] else None),
+        ("column.decision", line["decision"]),
+        ("column.empty_thwart", line["empty_thwart"] or say("code.none")),
     ]
     return [(say(key), "\u2013" if value is None else str(value)) for key, value in rows]

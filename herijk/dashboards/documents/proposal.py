@@ -51,7 +51,7 @@ def proposal(
         "parts": [
             *([_ballot(lines, speech)] if len(methods) > 1 else []),
             *(part for method in methods for part in _parts(views, method, lines[method], speech)),
-            {"title": say("proposal_check"), "sentences": [say("proposal_checking")], **NO_ROWS},
+            _part(say("proposal_check"), say("proposal_checking")),
         ],
         "annexes": [
             {"title": f"{say('proposal_annex')}: {title}", "text": known.text(method)}
@@ -62,7 +62,11 @@ def proposal(
     return pdf("proposal.typ", content)
 
 
-NO_ROWS: Final[Part] = {"head": [], "rows": []}
+def _part(
+    title: str, *sentences: str, head: Sequence[str] = (), rows: Sequence[Sequence[str]] = ()
+) -> Part:
+    """A part of the document: sentences, and a table where it has rows."""
+    return {"title": title, "sentences": sentences, "head": head, "rows": rows}
 
 
 def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
@@ -78,13 +82,13 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
                 *(speech.per_cent(ratio) for ratio in _middle_and_ends(known)),
             ]
         )
-    heads = ("method", "code.changed", "column.exceeds_interval", "middle", "lowest", "highest")
-    return {
-        "title": speech.say("proposal_side_by_side"),
-        "sentences": [],
-        "head": [speech.unbroken(key) for key in heads],
-        "rows": rows,
-    }
+    heads = (
+        *("method", "code.changed", "column.exceeds_interval"),
+        *("column.median", "column.lowest_ratio", "column.highest_ratio"),
+    )
+    return _part(
+        speech.say("proposal_side_by_side"), head=[*map(speech.unbroken, heads)], rows=rows
+    )
 
 
 def _middle_and_ends(changes: pl.DataFrame) -> tuple[float, float, float]:
@@ -102,23 +106,19 @@ def _beyond(changes: pl.DataFrame) -> int:
 def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
     """What a method changes, why, for whom, in races, and what it leaves undecided."""
     say = speech.say
-    yield {
-        "title": say("proposal_what").format(method=say(f"method.{method}")),
-        "sentences": [headlines.changes(lines)(speech)],
-        "head": [say("step"), say("proposal_mean"), say("number")],
-        "rows": _steps(lines, speech),
-    }
+    yield _part(
+        say("proposal_what").format(method=say(f"method.{method}")),
+        headlines.changes(lines)(speech),
+        head=[say("column.step"), say("proposal_mean"), say("column.number")],
+        rows=_steps(lines, speech),
+    )
     yield _types(lines, speech)
     yield _boats(lines, speech)
     yield _races(views, lines, speech)
     unknown = int(lines["exceeds_interval"].null_count())
     sure = say("proposal_unknown").format(unknown=unknown) if unknown else say("proposal_known")
     flagged = views.flagged_boats().filter(method=method)["fsn_no"].n_unique()
-    yield {
-        "title": say("proposal_undecided"),
-        "sentences": [sure, say("proposal_unsure").format(flagged=flagged)],
-        **NO_ROWS,
-    }
+    yield _part(say("proposal_undecided"), sure, say("proposal_unsure").format(flagged=flagged))
 
 
 def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
@@ -148,15 +148,15 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
         )
         .sort("boat_type", "crew_class", descending=[False, True])
     )
-    heads = ("type", "number", "proposal_median", "column.gain_in_two_hours_s")
-    return {
-        "title": speech.say("proposal_types"),
-        "sentences": [speech.say("proposal_seconds")],
-        "head": [
-            *map(speech.unbroken, heads),
-            speech.unbroken("column.exceeds_interval"),
-        ],
-        "rows": [
+    heads = (
+        *("type", "column.number", "proposal_median"),
+        *("column.gain_in_two_hours_s", "column.exceeds_interval"),
+    )
+    return _part(
+        speech.say("proposal_types"),
+        speech.say("proposal_seconds"),
+        head=[*map(speech.unbroken, heads)],
+        rows=[
             [
                 f"{speech.say(f'code.{boat_type}')}, {speech.say(f'crew.{crew_class}')}",
                 str(number),
@@ -166,7 +166,7 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
             ]
             for boat_type, crew_class, number, ratio, seconds, beyond in by_type.rows()
         ],
-    }
+    )
 
 
 def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
@@ -174,21 +174,14 @@ def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
     known = lines.drop_nulls("cw_ratio").filter(change="changed").sort("cw_ratio")
     shown = pl.concat([known.head(LARGEST), known.tail(LARGEST)]).unique(maintain_order=True)
     heads = (
-        "boat",
-        "column.old_cw_kg_m",
-        "column.new_cw_kg_m",
-        "proposal_change",
-        "column.gain_in_two_hours_s",
+        *("boat", "column.old_cw_kg_m", "column.new_cw_kg_m", "proposal_change"),
+        *("column.gain_in_two_hours_s", "column.exceeds_interval"),
     )
-    return {
-        "title": speech.say("proposal_boats"),
-        "sentences": [],
-        "head": [
-            *map(speech.unbroken, heads),
-            speech.unbroken("column.exceeds_interval"),
-        ],
-        "rows": [_boat(line, speech) for line in shown.to_dicts()],
-    }
+    return _part(
+        speech.say("proposal_boats"),
+        head=[*map(speech.unbroken, heads)],
+        rows=[_boat(line, speech) for line in shown.to_dicts()],
+    )
 
 
 def _boat(line: dict[str, Any], speech: Speech) -> list[str]:
@@ -209,14 +202,19 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
     say = speech.say
     winners, moved = replayed(views, lines["from_edition"][0], lines["to_edition"][0])
     if winners.is_empty():
-        return {"title": say("races"), "sentences": [say("no_races")], **NO_ROWS}
+        return _part(say("races"), say("no_races"))
     last = winners.filter(pl.col("race_date").dt.year() == winners["race_date"].dt.year().max())
     names = dict(views.table("boats").select("fsn_no", "name").rows())
-    return {
-        "title": say("proposal_races").format(year=last["race_date"][0].year),
-        "sentences": [say("proposal_moved").format(moved=moved[0], results=moved[1])],
-        "head": [say("race"), say("proposal_old"), say("proposal_new"), say("proposal_chance")],
-        "rows": [
+    return _part(
+        say("proposal_races").format(year=last["race_date"][0].year),
+        say("proposal_moved").format(moved=moved[0], results=moved[1]),
+        head=[
+            say("column.race"),
+            say("proposal_old"),
+            say("proposal_new"),
+            say("proposal_chance"),
+        ],
+        rows=[
             [
                 f"{race['race']} {race['race_date']}, {say('crew.' + race['crew_class'])}",
                 names.get(race["old_winner"]) or "\u2013",
@@ -225,7 +223,7 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
             ]
             for race in last.to_dicts()
         ],
-    }
+    )
 
 
 def _chance(chance: float | None, speech: Speech) -> str:

@@ -30,10 +30,12 @@ DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 
 def _directions(say: Say) -> tuple[alt.Color, alt.Shape]:
     """Out and back apart by colour and shape, in one legend."""
-    legend = alt.Legend(labelExpr=DIRECTION.format(out=say("out"), back=say("back")))
+    legend = alt.Legend(
+        labelExpr=DIRECTION.format(out=say("code.direction.1"), back=say("code.direction.-1"))
+    )
     inks = alt.Scale(domain=[1, -1], range=[OUT, BACK])
     shapes = alt.Scale(domain=[1, -1], range=["circle", "triangle-up"])
-    title = say("direction")
+    title = say("column.direction")
     return (
         alt.Color("direction:N", title=title, scale=inks, legend=legend),
         alt.Shape("direction:N", title=title, scale=shapes, legend=legend),
@@ -55,10 +57,8 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> Drawing:
     point = whole.transform_filter("datum.kind == 'point'")
     declared = whole.transform_filter("datum.kind == 'declared'")
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
-    point_tips = tips(
-        ("run:O", say("run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
-    )
-    declared_tips = tips(("speed_m_s:Q", say("tow_speed")), ("cw_kg_m:Q", say("cw_declared")))
+    point_tips = tips(say, "run:O", "speed_m_s:Q", ("cw_kg_m:Q", say("cw")))
+    declared_tips = tips(say, ("speed_m_s:Q", say("tow_speed")), "cw_kg_m:Q")
     ink, form = _directions(say)
     dash, complete = interval_dash(say), f"datum.interval == '{COMPLETE}'"
     full, light = alt.value(0.35), alt.value(0.12)
@@ -92,7 +92,7 @@ def history(frame: pl.DataFrame, say: Say) -> Drawing:
     """
     base = alt.Chart(frame).encode(alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)))
     value, ends = ("cw_kg_m", say("cw_declared")), ("cw_lo_kg_m", "cw_hi_kg_m")
-    more = (("tow:N", say("tow")), ("a_kg_m:Q", say("a")), ("b_m_s:Q", say("b")))
+    more = ("tow:N", "a_kg_m:Q", "b_m_s:Q")
     bars = by_method(base, say, value, ends, more, dash=interval_dash(say))
     return alt.layer(*bars).properties(width=WIDTH, height=HEIGHT)
 
@@ -110,7 +110,7 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
         (("force_n", OKABE_ITO[2], [1, 0]),),
         (("wind_m_s", OKABE_ITO[6], [1, 0]),),
     ]
-    titles = (say("speed_short"), say("force"), say("wind"))
+    titles = (say("speed_short"), say("column.force_n"), say("wind"))
     first, *others = zip(rows, titles, strict=True)
     return alt.vconcat(
         _trace_row(frame, say, *first, _cut_reasons(say)),
@@ -168,15 +168,13 @@ def _trace_row(
         alt.Chart()
         .transform_filter("datum.kind == 'trace'")
         .mark_line(color=ink, strokeDash=dash, strokeWidth=1.3)
-        .encode(
-            x, alt.Y(f"{field}:Q", title=title, scale=scale), tooltip=tips((f"{field}:Q", title))
-        )
+        .encode(x, alt.Y(f"{field}:Q", title=title, scale=scale), tooltip=tips(say, f"{field}:Q"))
         for field, ink, dash in fields
     ]
     return (
         alt.layer(*_cut_parts(), *lines, *above, data=frame)
         .properties(width=150, height=height)
-        .facet(alt.Facet("run:O", title=say("run")), columns=6)
+        .facet(alt.Facet("run:O", title=say("column.run")), columns=6)
     )
 
 
@@ -187,7 +185,7 @@ def out_and_back(frame: pl.DataFrame, say: Say) -> Drawing:
         frame: rows with `stage` (gross or net), `speed_m_s, cw_kg_m, direction, run`.
         say: gives texts.
     """
-    label = f"datum.value == 'gross' ? '{say('gross')}' : '{say('net')}'"
+    label = f"datum.value == 'gross' ? '{say('code.gross')}' : '{say('code.net')}'"
     return (
         alt.Chart(frame)
         .mark_point(size=80, filled=True, opacity=0.9)
@@ -195,7 +193,7 @@ def out_and_back(frame: pl.DataFrame, say: Say) -> Drawing:
             number(alt.X, "speed_m_s", say("speed")),
             number(alt.Y, "cw_kg_m", say("cw")),
             *_directions(say),
-            tooltip=tips(("run:O", say("run")), ("cw_kg_m:Q", say("cw"))),
+            tooltip=tips(say, "run:O", ("cw_kg_m:Q", say("cw"))),
         )
         .properties(width=280, height=240)
         .facet(alt.Facet("stage:N", title=None, header=alt.Header(labelExpr=label)), columns=2)
@@ -222,7 +220,7 @@ def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
             ),
             number(alt.Y, "wind_m_s", say("wind"), zero=True),
             *_directions(say),
-            tooltip=tips(("run:O", say("run")), ("wind_m_s:Q", say("wind"))),
+            tooltip=tips(say, "run:O", "wind_m_s:Q"),
         )
         .properties(width=WIDTH, height=200)
     )
@@ -238,11 +236,11 @@ def budget(frame: pl.DataFrame, say: Say) -> alt.Chart:
             alt.X("u_ratio:Q", title=say("u_ratio")),
             alt.Y(
                 "component:N",
-                title=say("component"),
+                title=say("column.component"),
                 sort="-x",
                 axis=alt.Axis(labelExpr=label, labelLimit=220),
             ),
-            tooltip=tips(("component:N", say("component")), ("u_ratio:Q", say("u_ratio"))),
+            tooltip=tips(say, "component:N", "u_ratio:Q"),
         )
         .properties(width=480, height=alt.Step(20))
     )

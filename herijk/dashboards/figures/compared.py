@@ -57,12 +57,7 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> Drawing:
             alt.Shape("method:N", scale=marks, **look),
             alt.Fill("method:N", scale=ink, **look),
             fillOpacity=alt.condition("datum.used", alt.value(0.85), alt.value(0)),
-            tooltip=tips(
-                ("method:N", say("method")),
-                ("run:O", say("run")),
-                ("speed_m_s:Q", say("speed")),
-                ("cw_kg_m:Q", say("cw")),
-            ),
+            tooltip=tips(say, "method:N", "run:O", "speed_m_s:Q", ("cw_kg_m:Q", say("cw"))),
         ),
     ).properties(width=WIDTH, height=HEIGHT)
 
@@ -77,7 +72,7 @@ def boats_compared(frame: pl.DataFrame, say: Say) -> Drawing:
     crew = colour("crew", say("boat"), sort=None, legend=legend)
     dash = alt.StrokeDash("crew:N", title=say("boat"), sort=None, legend=legend)
     base = alt.Chart(frame)
-    tip = tips(("crew:N", say("boat")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw")))
+    tip = tips(say, ("crew:N", say("boat")), "speed_m_s:Q", ("cw_kg_m:Q", say("cw")))
     return alt.layer(
         base.mark_area(opacity=0.25).encode(x, low, high, band),
         base.mark_line(strokeWidth=2).encode(

@@ -4,11 +4,11 @@ import altair as alt
 import polars as pl
 
 from herijk.dashboards.figures.style import (
-    GREY,
     HEIGHT,
     OKABE_ITO,
     WIDTH,
     Drawing,
+    at_one,
     by_method,
     named,
     number,
@@ -19,23 +19,16 @@ from herijk.pipeline.studies.options import CHOICES
 from herijk.words.catalogue import Say
 
 
-def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
-    line = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
-    return line.encode(**{channel: alt.datum(1.0)})
-
-
 def log_factors(frame: pl.DataFrame, say: Say) -> Drawing:
     """True speed / log speed per season and method, with 95 % intervals; `frame` is the table."""
-    more = (("season:O", say("season")), ("source:N", say("source")))
-    return _per_season(frame, say, ("factor", say("factor")), ("lo", "hi"), more)
+    value = ("factor", say("column.factor"))
+    return _per_season(frame, say, value, ("lo", "hi"), ("season:O", "source:N"))
 
 
 def season_change(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw re-based / as published: median and range per season; `frame` is `season_changes`."""
     value, ends = ("median_ratio", say("ratio_cw")), ("lowest_ratio", "highest_ratio")
-    return _per_season(
-        frame, say, value, ends, (("season:O", say("season")), ("tows:Q", say("number")))
-    )
+    return _per_season(frame, say, value, ends, ("season:O", "tows:Q"))
 
 
 def _per_season(
@@ -43,11 +36,11 @@ def _per_season(
     say: Say,
     value: tuple[str, str],
     ends: tuple[str, str],
-    more: tuple[tuple[str, str], ...],
+    more: tuple[str, ...],
 ) -> Drawing:
-    base = alt.Chart(frame).encode(alt.X("season:O", title=say("season")))
+    base = alt.Chart(frame).encode(alt.X("season:O", title=say("column.season")))
     layers = by_method(base, say, value, ends, more)
-    return alt.layer(_at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
+    return alt.layer(at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -62,11 +55,11 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart(frame).encode(
         alt.X(
             "step:N",
-            title=say("step"),
+            title=say("column.step"),
             sort=order,
             axis=alt.Axis(labelExpr=label, labelAngle=-45, orient="top"),
         ),
-        alt.Y("season:O", title=say("season")),
+        alt.Y("season:O", title=say("column.season")),
     )
     shades = alt.Scale(
         domain=[0.8, 1.0, 1.2],
@@ -76,10 +69,8 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     )
     return alt.layer(
         base.mark_rect(stroke="#dddddd").encode(
-            alt.Color("factor:Q", title=say("factor"), scale=shades),
-            tooltip=tips(
-                ("season:O", say("season")), ("step:N", say("step")), ("factor:Q", say("factor"))
-            ),
+            alt.Color("factor:Q", title=say("column.factor"), scale=shades),
+            tooltip=tips(say, "season:O", "step:N", "factor:Q"),
         ),
         base.mark_text(color="black").encode(alt.Text("factor:Q", format=".3f")),
     ).properties(width=WIDTH, height=HEIGHT)
@@ -89,15 +80,17 @@ def sensitivity_study(frame: pl.DataFrame, say: Say) -> Drawing:
     """What other choices of judgement do to Cw; `frame` is `option_summary`."""
     label = named([c.name for c in CHOICES], say)
     base = alt.Chart(frame).encode(
-        alt.Y("option:N", title=say("option"), axis=alt.Axis(labelExpr=label, labelLimit=260))
+        alt.Y(
+            "option:N", title=say("column.option"), axis=alt.Axis(labelExpr=label, labelLimit=260)
+        )
     )
     return alt.layer(
-        _at_one(frame, "x"),
+        at_one(frame, "x"),
         base.mark_rule(strokeWidth=3, color=OKABE_ITO[0]).encode(
             number(alt.X, "lo_ratio", say("ratio_cw")), alt.X2("hi_ratio:Q")
         ),
         base.mark_point(filled=True, size=80, color="black", opacity=1).encode(
             number(alt.X, "median_ratio", say("ratio_cw")),
-            tooltip=tips(("option:N", say("option")), ("median_ratio:Q", say("ratio_cw"))),
+            tooltip=tips(say, "option:N", "median_ratio:Q"),
         ),
     ).properties(width=480, height=220)

@@ -16,19 +16,15 @@ def statuses(frame: pl.DataFrame, say: Say) -> alt.Chart:
         alt.Chart(frame)
         .mark_bar(stroke="black", strokeWidth=0.5)
         .encode(
-            alt.X("season:O", title=say("season")),
-            alt.Y("number:Q", title=say("number")),
+            alt.X("season:O", title=say("column.season")),
+            alt.Y("number:Q", title=say("column.number")),
             alt.Color(
                 "status:N",
-                title=say("status"),
+                title=say("column.status"),
                 scale=shades,
                 legend=alt.Legend(labelExpr=named(STATUSES, say)),
             ),
-            tooltip=tips(
-                ("season:O", say("season")),
-                ("status:N", say("status")),
-                ("number:Q", say("number")),
-            ),
+            tooltip=tips(say, "season:O", "status:N", "number:Q"),
         )
         .properties(width=WIDTH, height=240)
     )

@@ -10,15 +10,14 @@ from herijk.dashboards.figures.style import (
     HEIGHT,
     WIDTH,
     Drawing,
+    at_one,
     by_method,
-    colour,
     crews,
     editions_legend,
-    method_colour,
-    method_shape,
+    kinds,
+    methods,
     named,
     number,
-    shape,
     tips,
     type_legend,
 )
@@ -30,50 +29,39 @@ def spread(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart(frame).encode(
         alt.X(
             "scope:N",
-            title=say("scope"),
+            title=say("column.era"),
             axis=alt.Axis(labelAngle=0, labelExpr=named(["all"], say)),
         )
     )
-    value, more = (
-        ("sd_ratio", say("sd_ratio")),
-        (("scope:N", say("scope")), ("n_pairs:Q", say("number"))),
-    )
+    value, more = ("sd_ratio", say("sd_ratio")), ("scope:N", "n_pairs:Q")
     layers = by_method(base, say, value, ("lo", "hi"), more, zero=True)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def era_shifts(frame: pl.DataFrame, say: Say) -> Drawing:
     """Next tow of the same boats against the tows of an era; `frame` is `era_shifts`."""
-    base = alt.Chart(frame).encode(alt.X("era:N", title=say("scope"), axis=alt.Axis(labelAngle=0)))
-    same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
-    value, more = ("shift_ratio", say("shift_ratio")), (("n:Q", say("number")),)
-    layers = by_method(base, say, value, ("lo", "hi"), more)
-    return alt.layer(same, *layers).properties(width=WIDTH, height=HEIGHT)
+    base = alt.Chart(frame).encode(
+        alt.X("era:N", title=say("column.era"), axis=alt.Axis(labelAngle=0))
+    )
+    layers = by_method(base, say, ("shift_ratio", say("shift_ratio")), ("lo", "hi"), ("n:Q",))
+    return alt.layer(at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
     """Every pair of repeat tows, by the season of the newer; `frame` has `page`."""
-    same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
     points = (
         alt.Chart(frame)
         .mark_point(size=45, filled=True, opacity=0.8, cursor="pointer")
         .encode(
-            alt.X("season:O", title=say("season")),
-            number(alt.Y, "cw_ratio", say("cw_ratio")),
-            method_colour(say),
-            method_shape(say),
+            alt.X("season:O", title=say("column.season")),
+            number(alt.Y, "cw_ratio", say("column.cw_ratio")),
+            *methods(say),
             xOffset="method:N",
             href="page:N",
-            tooltip=tips(
-                ("name:N", say("name")),
-                ("fsn_no:N", "FSN"),
-                ("method:N", say("method")),
-                ("season_before:O", say("season")),
-                ("cw_ratio:Q", say("cw_ratio")),
-            ),
+            tooltip=tips(say, "name:N", "fsn_no:N", "method:N", "season_before:O", "cw_ratio:Q"),
         )
     )
-    return alt.layer(same, points).properties(width=WIDTH, height=HEIGHT)
+    return alt.layer(at_one(frame, "y"), points).properties(width=WIDTH, height=HEIGHT)
 
 
 def components(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -81,7 +69,7 @@ def components(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart().encode(
         alt.X(
             "component:N",
-            title=say("component"),
+            title=say("column.component"),
             axis=alt.Axis(
                 labelExpr=named(["boat", "season", "boat_season", "run"], say), labelAngle=0
             ),
@@ -111,10 +99,9 @@ def predicted(frame: pl.DataFrame, say: Say) -> Drawing:
 
 def register_changes(frame: pl.DataFrame, say: Say) -> Drawing:
     """Time and Cw of every changed register line, new / old; `frame` has `page`."""
-    one = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
-    places = {"cw_ratio": say("column.cw_ratio"), "time_ratio": say("time_ratio")}
+    places = {"cw_ratio": say("column.cw_ratio"), "time_ratio": say("column.time_ratio")}
     points = _boats(frame, say, places, ("to_edition", say("edition"), editions_legend(say)))
-    return alt.layer(one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points).properties(
+    return alt.layer(at_one(frame, "x"), at_one(frame, "y"), points).properties(
         width=WIDTH, height=HEIGHT
     )
 
@@ -131,15 +118,9 @@ def _boats(
         .encode(
             number(alt.X, x, x_title),
             number(alt.Y, y, y_title),
-            colour(column, title, legend=legend),
-            shape(column, title, legend=legend),
+            *kinds(column, title, legend=legend),
             href="page:N",
-            tooltip=tips(
-                ("name:N", say("name")),
-                ("fsn_no:N", "FSN"),
-                (f"{x}:Q", x_title),
-                (f"{y}:Q", y_title),
-            ),
+            tooltip=tips(say, "name:N", "fsn_no:N", (f"{x}:Q", x_title), (f"{y}:Q", y_title)),
         )
     )
 
@@ -149,24 +130,24 @@ def race_ranks(frame: pl.DataFrame, say: Say) -> Drawing:
     same = (
         alt.Chart(frame)
         .mark_line(color=GREY, strokeDash=[4, 3])
-        .encode(alt.X("old_rank:Q", title=say("old_rank")), alt.Y("old_rank:Q", title=""))
+        .encode(alt.X("old_rank:Q", title=say("column.old_rank")), alt.Y("old_rank:Q", title=""))
     )
     points = (
         alt.Chart(frame)
         .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
         .encode(
-            alt.X("old_rank:Q", title=say("old_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
-            alt.Y("new_rank:Q", title=say("new_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
+            alt.X(
+                "old_rank:Q", title=say("column.old_rank"), axis=alt.Axis(tickMinStep=1, format="d")
+            ),
+            alt.Y(
+                "new_rank:Q", title=say("column.new_rank"), axis=alt.Axis(tickMinStep=1, format="d")
+            ),
             *crews(say),
             href="page:N",
             tooltip=tips(
-                ("race:N", say("race")),
-                ("name:N", say("name")),
-                ("fsn_no:N", "FSN"),
-                ("old_rank:Q", say("old_rank")),
-                ("new_rank:Q", say("new_rank")),
-                ("old_power_w:Q", say("old_power")),
-                ("new_power_w:Q", say("new_power")),
+                say,
+                *("race:N", "name:N", "fsn_no:N", "old_rank:Q", "new_rank:Q"),
+                *(("old_power_w:Q", say("old_power")), ("new_power_w:Q", say("new_power"))),
             ),
         )
     )

@@ -2,7 +2,7 @@
 
 Methods stand side by side on equal axes, below each other where there is no room. Men and women
 differ in shape. A tow made too slowly for the common speed is open, and a tow outside its type is
-named with its season and crew. Frames come from `dashboards.slides`.
+named with its season and crew. Frames come from `dashboards.slide_rows`.
 """
 
 import json
@@ -59,10 +59,10 @@ EXPLAINING: Final = {
     "length": "waterline_length_m",
 }
 TITLES: Final = {
-    "b_m_s": "b",
-    "a_kg_m": "a",
+    "b_m_s": "column.b_m_s",
+    "a_kg_m": "column.a_kg_m",
     "cw_standard_kg_m": "cw_standard",
-    "weight_kg": "weight",
+    "weight_kg": "column.weight_kg",
     "declared_speed_m_s": "tow_speed",
     "waterline_length_m": "waterline_length",
 }
@@ -146,12 +146,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
             fill=ink,
             fillOpacity=alt.condition("datum.beyond_curve", alt.value(0), alt.value(0.7)),
             tooltip=tips(
-                ("label:N", say("tow")),
-                (f"{x}:Q", x_title),
-                (f"{y}:Q", y_title),
-                (f"{lo}:Q", say("lowest")),
-                (f"{hi}:Q", say("highest")),
-                ("deviation_sd:Q", say("column.deviation_sd")),
+                say, "label:N", f"{x}:Q", f"{y}:Q", f"{lo}:Q", f"{hi}:Q", "deviation_sd:Q"
             ),
         )
         slow = tow.transform_filter("datum.slow").mark_circle(size=9, color="black", opacity=1)
@@ -232,16 +227,14 @@ def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
         .mark_point(size=30)
         .encode(
             x,
-            number(alt.Y, "b_m_s", say("b")),
+            number(alt.Y, "b_m_s", say("column.b_m_s")),
             ink,
             alt.Shape("boat_type:N", title=say("type")),
-            tooltip=tips(
-                ("label:N", say("tow")), ("b_m_s:Q", say("b")), ("b_hull_ratio:Q", "B / v")
-            ),
+            tooltip=tips(say, "label:N", "b_m_s:Q", "b_hull_ratio:Q"),
         )
     )
     hull = tow.mark_line(color="black", strokeDash=[5, 3]).encode(
-        x, number(alt.Y, "hull_speed_m_s", say("b")), order="waterline_length_m:Q"
+        x, number(alt.Y, "hull_speed_m_s", say("column.b_m_s")), order="waterline_length_m:Q"
     )
     return panels(alt.layer(points, hull, data=frame), say)
 
@@ -267,7 +260,7 @@ def towed_at(frame: pl.DataFrame, say: Say) -> Drawing:
             ),
             ink,
             form,
-            tooltip=tips(("label:N", say("tow")), ("tow_hull_ratio:Q", say("tow_hull_ratio"))),
+            tooltip=tips(say, "label:N", "tow_hull_ratio:Q"),
         )
     )
     return alt.layer(zone, points).properties(width=620, height=alt.Step(34))
@@ -288,10 +281,7 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
         colour("speed_case", say("speed_case"), legend=legend),
         alt.Shape("speed_case:N", title=say("speed_case"), legend=legend),
         tooltip=tips(
-            ("label:N", say("tow")),
-            ("power_w:Q", say("power")),
-            ("raced_power_w:Q", say("raced_power")),
-            ("power_ratio_raced:Q", ratio),
+            say, "label:N", ("power_w:Q", say("power")), "raced_power_w:Q", "power_ratio_raced:Q"
         ),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
@@ -307,7 +297,7 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
     """
     base = alt.Chart()
     ink = alt.Color(
-        "season:O", title=say("season"), scale=alt.Scale(scheme="viridis"),
+        "season:O", title=say("column.season"), scale=alt.Scale(scheme="viridis"),
         legend=alt.Legend(orient="bottom"),
     )  # fmt: skip
     curve = base.mark_line(strokeWidth=2).encode(
@@ -316,7 +306,7 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
         ink,
         alt.StrokeDash("crew:N", title=say("crew"), legend=alt.Legend(orient="bottom")),
         alt.Detail("tow_id:N"),
-        tooltip=tips(("tow_id:N", say("tow")), ("season:O", say("season"))),
+        tooltip=tips(say, "tow_id:N", "season:O"),
     )
     common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
         alt.X("mean(standard_speed_m_s):Q", title=say("speed_short"))

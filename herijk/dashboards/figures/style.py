@@ -5,10 +5,11 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 import altair as alt
+import polars as pl
 
 from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_method, shipped_methods
 from herijk.pipeline.register.register import draft_name
-from herijk.words.catalogue import Say
+from herijk.words.catalogue import Say, unbroken
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -34,7 +35,7 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
 
 def crews(say: Say) -> tuple[alt.Color, alt.Shape]:
     """Men and women apart by colour and shape, in one legend."""
-    people = f"{{'H': '{say('men')}', 'D': '{say('women')}'}}[datum.value]"
+    people = f"{{'H': '{say('crew.H')}', 'D': '{say('crew.D')}'}}[datum.value]"
     title, legend = say("crew_class"), alt.Legend(labelExpr=people, orient="bottom")
     shapes = alt.Scale(domain=["H", "D"], range=["circle", "triangle-up"])
     inks = alt.Scale(domain=["H", "D"], range=[OKABE_ITO[0], OKABE_ITO[1]])
@@ -44,32 +45,23 @@ def crews(say: Say) -> tuple[alt.Color, alt.Shape]:
     )
 
 
-def method_colour(say: Say) -> alt.Color:
-    """A method by colour: every method that ships has the same in every figure."""
-    scale = _of_methods(OKABE_ITO)
-    return alt.Color("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn(say))
+def methods(say: Say) -> tuple[alt.Color, alt.Shape]:
+    """A method by colour and shape: every method that ships has the same in every figure.
 
-
-def method_shape(say: Say) -> alt.Shape:
-    """The same method by shape."""
-    scale = _of_methods(SHAPES)
-    return alt.Shape("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn(say))
-
-
-def _drawn(say: Say) -> alt.Legend:
-    """Only methods that are drawn: those that stand side by side, of all that have a look."""
-    return alt.Legend(values=alt.ExprRef("domain('xOffset')"), labelExpr=methods_named(say))
-
-
-def _of_methods(looks: Sequence[str]) -> alt.Scale:
-    """Looks of the methods that ship, then of others that the data hold, as on the workbench."""
+    Others that the data hold have what follows, as on the workbench. Of all that have a look, the
+    legend names those that are drawn, which stand side by side.
+    """
     known = alt.DomainUnionWith(unionWith=list(shipped_methods()))
-    return alt.Scale(domain=known, range=list(looks))
+    legend = alt.Legend(values=alt.ExprRef("domain('xOffset')"), labelExpr=methods_named(say))
+    inks, shapes = (alt.Scale(domain=known, range=list(looks)) for looks in (OKABE_ITO, SHAPES))
+    look: dict[str, Any] = {"title": say("method"), "sort": None, "legend": legend}
+    return alt.Color("method:N", scale=inks, **look), alt.Shape("method:N", scale=shapes, **look)
 
 
-def shape(field: str, title: str, **more: Any) -> alt.Shape:
-    """The same category by shape, for print without colour; both share one legend."""
-    return alt.Shape(f"{field}:N", title=title, scale=alt.Scale(range=list(SHAPES)), **more)
+def kinds(field: str, title: str, **more: Any) -> tuple[alt.Color, alt.Shape]:
+    """A category by colour and, for print without colour, by shape; both share one legend."""
+    shapes = alt.Scale(range=list(SHAPES))
+    return colour(field, title, **more), alt.Shape(f"{field}:N", title=title, scale=shapes, **more)
 
 
 def number(channel: Any, field: str, title: str, zero: bool = False, **more: Any) -> Any:
@@ -102,12 +94,26 @@ def type_legend(say: Say, **more: Any) -> alt.Legend:
     return alt.Legend(labelExpr=named(["unknown"], say), **more)
 
 
-def tips(*pairs: tuple[str, str]) -> list[alt.Tooltip]:
-    """Tooltips of `field:type` with their titles; numbers with five digits."""
+def tips(say: Say, *shown: str | tuple[str, str]) -> list[alt.Tooltip]:
+    """Tooltips of `field:type`, numbers with five digits.
+
+    Each is called as its column is in tables, unless a title is given with it.
+    """
+    titled = [one if isinstance(one, tuple) else (one, _column(one, say)) for one in shown]
     return [
         alt.Tooltip(field, title=title, format=".5~g" if field.endswith(":Q") else alt.Undefined)
-        for field, title in pairs
+        for field, title in titled
     ]
+
+
+def _column(field: str, say: Say) -> str:
+    return unbroken(say(f"column.{field.partition(':')[0]}"))
+
+
+def at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
+    """A line at 1 along an axis of ratios."""
+    line = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
+    return line.encode(**{channel: alt.datum(1.0)})
 
 
 def by_method(
@@ -115,7 +121,7 @@ def by_method(
     say: Say,
     value: tuple[str, str],
     ends: tuple[str, str],
-    more: Sequence[tuple[str, str]] = (),
+    more: Sequence[str] = (),
     zero: bool = False,
     dash: alt.StrokeDash | None = None,
 ) -> list[alt.Chart]:
@@ -126,7 +132,7 @@ def by_method(
         say: gives texts.
         value: column of the point, and the title of the y axis.
         ends: columns of the lower and upper end of the bar.
-        more: what the tooltip shows besides method and value.
+        more: columns that the tooltip shows besides, as `field:type`.
         zero: whether the y axis begins at zero.
         dash: how the bar is drawn; `interval_dash` where intervals differ in kind.
     """
@@ -138,12 +144,10 @@ def by_method(
     )
     if dash is not None:
         bar = bar.encode(dash)
-    limits = [(f"{low}:Q", say("lowest")), (f"{high}:Q", say("highest"))]
     point = beside.mark_point(filled=True, size=65, opacity=1).encode(
         number(alt.Y, field, title, zero),
-        method_colour(say),
-        method_shape(say),
-        tooltip=tips(("method:N", say("method")), *more, (f"{field}:Q", title), *limits),
+        *methods(say),
+        tooltip=tips(say, "method:N", *more, (f"{field}:Q", title), f"{low}:Q", f"{high}:Q"),
     )
     return [bar, point]
 
@@ -159,7 +163,7 @@ def interval_dash(say: Say) -> alt.StrokeDash:
     """Full for a 95 % interval, dashed for the spread of the runs alone; `interval` says which."""
     return alt.StrokeDash(
         "interval:N",
-        title=say("interval"),
+        title=say("column.interval"),
         scale=alt.Scale(domain=[COMPLETE, RUNS_ALONE], range=[[1, 0], [4, 3]]),
         legend=alt.Legend(
             labelExpr=named([COMPLETE, RUNS_ALONE], say), labelLimit=400, orient="bottom"

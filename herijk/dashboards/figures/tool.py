@@ -51,7 +51,7 @@ def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
             ),
             alt.StrokeDash(
                 "speed:N",
-                title=say("log_speed"),
+                title=say("column.speed"),
                 scale=alt.Scale(range=[[1, 0], [5, 2], [2, 2]]),
                 sort=list(SPEED_NAMES),
                 legend=alt.Legend(labelExpr=used, orient="bottom"),
@@ -81,7 +81,7 @@ def tick_effects(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart().encode(
         alt.Y(
             "option:N",
-            title=say("option"),
+            title=say("column.option"),
             sort=order,
             axis=alt.Axis(labelExpr=in_words("datum.value", say), labelLimit=260),
         )
@@ -92,7 +92,7 @@ def tick_effects(frame: pl.DataFrame, say: Say) -> Drawing:
     )
     point = base.mark_point(filled=True, size=70, color="black", opacity=1).encode(
         small("median_ratio", ratio),
-        tooltip=tips(("option:N", say("option")), ("median_ratio:Q", ratio), ("tows:Q", "n")),
+        tooltip=tips(say, "option:N", "median_ratio:Q", "tows:Q"),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
     drawing = alt.layer(one, bar, point, data=frame)
@@ -105,15 +105,12 @@ def run_statistics(frame: pl.DataFrame, say: Say) -> Drawing:
         alt.Chart()
         .mark_point(filled=True, size=60, color=OKABE_ITO[0])
         .encode(
-            alt.X("run:O", title=say("run")),
+            alt.X("run:O", title=say("column.run")),
             number(alt.Y, "sd_ratio", say("sd_mean_ratio"), zero=True),
             tooltip=tips(
-                ("run:O", say("run")),
-                ("mean:Q", say("mean")),
-                ("sd:Q", say("sd")),
-                ("median:Q", say("median")),
-                ("median_ratio:Q", say("median_ratio")),
-                ("log1_ratio:Q", say("log1_ratio")),
+                say,
+                *("run:O", "mean:Q", "sd:Q", "median:Q"),
+                *(("median_ratio:Q", say("median_ratio")), "log1_ratio:Q"),
             ),
         )
     )

@@ -12,22 +12,21 @@ import polars as pl
 
 from herijk.dashboards.figures.style import (
     Drawing,
-    colour,
+    kinds,
     methods_named,
     number,
-    shape,
     tips,
     type_legend,
 )
 from herijk.words.catalogue import Say
 
 QUANTITIES: Final = {
-    "b": ("b_m_s", "b"),
-    "a": ("a_kg_m", "a"),
+    "b": ("b_m_s", "column.b_m_s"),
+    "a": ("a_kg_m", "column.a_kg_m"),
     "cw_standard": ("cw_standard_kg_m", "cw_standard"),
 }
 EXPLAINING: Final = {
-    "weight": ("weight_kg", "weight"),
+    "weight": ("weight_kg", "column.weight_kg"),
     "speed": ("declared_speed_m_s", "tow_speed"),
 }
 """Columns of the axes, with the keys of their titles."""
@@ -51,18 +50,12 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
             .encode(
                 number(alt.X, x, say(x_title)),
                 number(alt.Y, y, say(y_title)),
-                colour("boat_type", say("type"), legend=legend),
-                shape("boat_type", say("type"), legend=legend),
+                *kinds("boat_type", say("type"), legend=legend),
                 size=alt.condition("datum.fsn_no == chosen", alt.value(320), alt.value(70)),
                 opacity=alt.condition(brush, alt.value(0.9), alt.value(0.2)),
                 href="page:N",
                 tooltip=tips(
-                    ("name:N", say("name")),
-                    ("fsn_no:N", "FSN"),
-                    ("boat_type:N", say("type")),
-                    ("season:O", say("season")),
-                    (f"{x}:Q", say(x_title)),
-                    (f"{y}:Q", say(y_title)),
+                    say, "name:N", "fsn_no:N", "boat_type:N", "season:O", f"{x}:Q", f"{y}:Q"
                 ),
             )
             .add_params(brush, chosen)
@@ -83,11 +76,10 @@ def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
         alt.Chart(frame)
         .mark_point(filled=True, size=60, opacity=0.85)
         .encode(
-            number(alt.X, "b_m_s", say("b")),
+            number(alt.X, "b_m_s", say("column.b_m_s")),
             alt.Y("crew:N", title=say("boat")),
-            colour("pooling", say("pooling"), legend=legend),
-            shape("pooling", say("pooling"), legend=legend),
-            tooltip=tips(("crew:N", say("boat")), ("b_m_s:Q", say("b"))),
+            *kinds("pooling", say("pooling"), legend=legend),
+            tooltip=tips(say, ("crew:N", say("boat")), "b_m_s:Q"),
         )
         .properties(width=360)
     )

@@ -1,5 +1,5 @@
 """The site of plain files: every page made from the tables, written beside and swapped in whole.
 
 `pages` says what is on which page, `render` turns that into files; texts are in
-`dashboards.words`, charts in `dashboards.figures`, numbers in the warehouse.
+`words`, charts in `dashboards.figures`, numbers in the warehouse.
 """

@@ -141,10 +141,10 @@ def _answers(
         for name in ("line", "point")
     )
     faults = season_faults(views)
-    found: dict[str, list[Answer]] = defaultdict(list)
+    by_boat: dict[str, list[Answer]] = defaultdict(list)
     for line in lines.to_dicts():
         of_tow = (line["method"], line["tow_id"])
-        found[line["fsn_no"]].append(
+        by_boat[line["fsn_no"]].append(
             Answer(
                 line=line,
                 races=by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts(),
@@ -153,7 +153,7 @@ def _answers(
                 faults=faults.get((line["method"], line["season"]), ()),
             )
         )
-    return found
+    return by_boat
 
 
 def _parts(frame: pl.DataFrame, by: Sequence[str]) -> dict[tuple[object, ...], pl.DataFrame]:

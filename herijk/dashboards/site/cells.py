@@ -30,7 +30,7 @@ KEPT: Final = 7
 
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
-    *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
+    *("quantity", "explaining", "severity", "check", "shared", "kind", "scope"),
     *("old_remark", "new_remark", "choice"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
     *("instrument", "verdict", "confused_with"),
@@ -149,8 +149,11 @@ class Cells:
             return lambda value: self._type(value, root)
         named = {
             **dict.fromkeys(("titles", "meanings", "messages"), self._titles),
-            "direction": lambda value: self.text("out" if value == 1 else "back"),
+            "direction": lambda value: self.text(f"code.direction.{value}"),
             "causes": self._causes,
+            "candidates": lambda names: Markup(", ").join(
+                self.text(f"candidate.{name}") for name in names
+            ),
             "tows": lambda value: (
                 self.text(f"code.{value}") if value in STATED else escape(spoken_range(value))
             ),

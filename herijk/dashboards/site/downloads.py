@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Final
 
-from herijk.dashboards.documents.notice import notice
+from herijk.dashboards.documents import pdf
+from herijk.dashboards.markdown import to_blocks
 from herijk.warehouse.store.editions import (
     CSV,
     NOTES,
@@ -36,3 +37,11 @@ def copy_sheets(store: Store, folder: Path) -> None:
             (target / name).write_bytes((edition_path(store, edition) / name).read_bytes())
         for name, (text, language) in PAPERS.items():
             (target / name).write_bytes(notice((target / text).read_text("utf-8"), language))
+
+
+def notice(text: str, language: str) -> bytes:
+    """A notice to the members, written in Markdown, as PDF."""
+    blocks = to_blocks(text)
+    title = "".join(run["text"] for run in blocks[0]["runs"])
+    content = {"title": title, "language": language, "simulated": "", "blocks": blocks}
+    return pdf("notice.typ", content)

@@ -1,6 +1,6 @@
 """Which page shows what. A section is there only if its table is, and holds rows."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import polars as pl
 
@@ -16,6 +16,7 @@ from herijk.dashboards.site.parts import (
     draft_of,
     edition_page,
     editions_select,
+    listed,
     methods_select,
     once_for_methods,
     with_page,
@@ -132,17 +133,18 @@ def _due(views: Views, methods: Sequence[str]) -> Page:
     rows = views.due_list().rename({"tow_date": "last_tow"})
     due = Table("due_list", rows, DUE_COLUMNS, "due_list", ["method"], search=True, cards=DUE_CARDS)
     headline = headlines.due(rows.filter(method=default_method(methods)))
-    sections = [Section("due_list", "due_list_note", tables=[due], headline=headline)]
     choice = views.retow_choice()
-    if choice.height:
-        sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
-        frame = choice.hstack(sd)
-        table = Table("retow_choice", frame, CHOICE_COLUMNS, "retow_choice", ["method"])
-        headline = headlines.retow(choice)
-        sections.append(
-            Section("retow_choice", "retow_choice_note", tables=[table], headline=headline)
-        )
-    return Page("due.html", "due", sections, selects=[methods_select(methods)])
+    sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
+    retow, said = choice.hstack(sd), headlines.retow(choice)
+    return Page(
+        "due.html",
+        "due",
+        [
+            Section("due_list", "due_list_note", tables=[due], headline=headline),
+            *listed("retow_choice", "retow_choice", retow, CHOICE_COLUMNS, headline=said),
+        ],
+        selects=[methods_select(methods)],
+    )
 
 
 PART = pl.col("part") + 1
@@ -158,125 +160,80 @@ STEP_COLUMNS = (
 )
 
 
+FACTOR_COLUMNS = ("method", "season", "factor", "lo", "hi", "source")
+LADDER_COLUMNS = ("from_method", "to_method", "season", "step", "factor", "tows")
+SEASON_COLUMNS = ("method", "season", "tows", "median_ratio", "lowest_ratio", "highest_ratio")
+OPTION_COLUMNS = ("option", "tows", "median_ratio", "lo_ratio", "hi_ratio")
+
+
 def _corrections(views: Views, methods: list[str]) -> Page:
-    sections, data = [], {}
-    if views.has("log_factors"):
-        data["log_factors"] = views.table("log_factors")
-        table = Table(
-            "log_factors",
-            data["log_factors"],
-            ["method", "season", "factor", "lo", "hi", "source"],
-            "log_factors",
-            ["method"],
-        )
-        chart = Chart("log_factors", "log_factors", "log_factors")
-        own = data["log_factors"].filter(method=default_method(methods))
-        headline = headlines.log_factors(own)
-        sections.append(
-            Section("log_factors", "log_factors_note", [chart], [table], headline=headline)
-        )
-    if views.has("season_links"):
-        rows = views.table("season_links").with_columns(PART)
-        links = Table("season_links", rows, LINK_COLUMNS, "season_links", ["method"])
-        sections.append(Section("season_links", "season_links_note", tables=[links]))
-    if views.has("season_steps"):
-        steps = Table(
-            "season_steps", views.season_steps().with_columns(PART), STEP_COLUMNS, "season_steps",
-            ["method"], exact=False,
-        )  # fmt: skip
-        sections.append(Section("season_steps", "season_steps_note", tables=[steps]))
-    if views.has("correction_steps"):
-        data["ladder"] = views.table("season_ladder")
-        data["season_change"] = views.table("season_changes")
-        sections += [_ladder(data["ladder"]), _season_change(data["season_change"])]
-    if views.has("option_effects"):
-        data["options"] = views.table("option_summary").filter(study=JUDGEMENT)
-        shown = ["option", "tows", "median_ratio", "lo_ratio", "hi_ratio"]
-        table = Table("option_summary", data["options"], shown, "options")
-        chart = Chart("options", "options", "options")
-        sections.append(Section("options", "options_note", [chart], [table]))
+    factors, changes = views.table("log_factors"), views.table("season_changes")
+    links = views.table("season_links").with_columns(PART)
+    steps = views.season_steps().with_columns(PART)
+    ladder = views.table("season_ladder")
+    options = views.table("option_summary").filter(study=JUDGEMENT)
+    said = headlines.log_factors(factors.filter(method=default_method(methods)))
+    of_factors = Chart("log_factors", "log_factors", "log_factors")
+    of_ladder = Chart("ladder", "ladder", "ladder", {"to_method": "method"})
+    of_seasons = Chart("season_change", "season_change", "season_change")
+    of_options = Chart("options", "options", "options")
+    to_method = ladder.with_columns(method="to_method")
     return Page(
         "corrections.html",
         "corrections",
-        sections,
+        [
+            *listed(
+                "log_factors", "log_factors", factors, FACTOR_COLUMNS, [of_factors], headline=said
+            ),
+            *listed("season_links", "season_links", links, LINK_COLUMNS),
+            *listed("season_steps", "season_steps", steps, STEP_COLUMNS, exact=False),
+            *listed("ladder", "season_ladder", to_method, LADDER_COLUMNS, [of_ladder]),
+            *listed("season_change", "season_changes", changes, SEASON_COLUMNS, [of_seasons]),
+            *listed("options", "option_summary", options, OPTION_COLUMNS, [of_options], ()),
+        ],
         selects=[methods_select(methods)],
-        data={name: [frame] for name, frame in data.items()},
+        data={
+            "log_factors": [factors],
+            "ladder": [ladder],
+            "season_change": [changes],
+            "options": [options],
+        },
     )
 
 
-def _ladder(frame: pl.DataFrame) -> Section:
-    columns = ["from_method", "to_method", "season", "step", "factor", "tows"]
-    shown = frame.with_columns(method="to_method")
-    table = Table("season_ladder", shown, columns, "ladder", ["method"])
-    chart = Chart("ladder", "ladder", "ladder", {"to_method": "method"})
-    return Section("ladder", "ladder_note", [chart], [table])
-
-
-def _season_change(frame: pl.DataFrame) -> Section:
-    columns = ["method", "season", "tows", "median_ratio", "lowest_ratio", "highest_ratio"]
-    table = Table("season_changes", frame, columns, "season_change", ["method"])
-    chart = Chart("season_change", "season_change", "season_change")
-    return Section("season_change", "season_change_note", [chart], [table])
+AGREEMENT = {
+    "reproducibility": "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
+    "eras": "method boat_type era n shift_ratio lo hi apart ageing_per_year",
+    "repeats": "name fsn_no rowers crew_class season_before season cw_ratio e_n",
+    "components": "method scope component n n_boats sd_ratio lo hi share",
+    "predicted": "name fsn_no boat_type rowers crew_class cw_kg_m predicted_cw_kg_m disagrees",
+}
+"""Columns of the table below each figure of agreement."""
 
 
 def _reproducibility(views: Views, methods: list[str]) -> Page:
-    parts: dict[str, tuple[str, str, Callable[[], pl.DataFrame], str]] = {
-        "reproducibility": (
-            "repro",
-            "repro_note",
-            lambda: views.table("reproducibility"),
-            "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
-        ),
-        "era_shifts": (
-            "eras",
-            "eras_note",
-            lambda: views.table("era_shifts").drop_nulls("shift_ratio"),
-            "method boat_type era n shift_ratio lo hi apart ageing_per_year",
-        ),
-        "repeat_pairs": (
-            "repeats",
-            "repeats_note",
-            lambda: with_page(views.repeat_pairs()),
-            "name fsn_no rowers crew_class season_before season cw_ratio e_n",
-        ),
-        "variance_components": (
-            "components",
-            "components_note",
-            lambda: views.table("variance_components").drop_nulls("sd_ratio"),
-            "method scope component n n_boats sd_ratio lo hi share",
-        ),
-        "predicted_cw": (
-            "predicted",
-            "predicted_note",
-            lambda: with_page(views.predicted()),
-            "name fsn_no boat_type rowers crew_class cw_kg_m predicted_cw_kg_m disagrees",
-        ),
+    frames = {
+        "reproducibility": views.table("reproducibility"),
+        "era_shifts": views.table("era_shifts").drop_nulls("shift_ratio"),
+        "repeat_pairs": with_page(views.repeat_pairs()),
+        "variance_components": views.table("variance_components").drop_nulls("sd_ratio"),
+        "predicted_cw": with_page(views.predicted()),
     }
-    figures = {
-        "reproducibility": Chart("reproducibility", "reproducibility", "repro"),
-        "era_shifts": Chart("eras", "era_shifts", "eras"),
-        "repeat_pairs": Chart("repeats", "repeat_pairs", "repeats"),
-        "variance_components": Chart("components", "variance_components", "components"),
-        "predicted_cw": Chart("predicted", "predicted_cw", "predicted", {"method": "method"}),
-    }
-    sections, data = [], {}
-    for name, (title, note, read, columns) in parts.items():
-        frame = read() if views.has(name) else pl.DataFrame()
-        if frame.height:
-            data[name] = frame if name != "era_shifts" else frame.filter(boat_type="all")
-            shown = columns.split()
-            rows = frame if "method" in shown else once_for_methods(frame.select("method", *shown))
-            table = Table(name, rows, shown, title, ["method"], exact=False)
-            headline = None
-            if name == "reproducibility":
-                headline = headlines.reproducibility(frame, default_method(methods))
-            sections.append(Section(title, note, [figures[name]], [table], headline=headline))
+    said = {"repro": headlines.reproducibility(frames["reproducibility"], default_method(methods))}
+    sections: list[Section] = []
+    for (name, frame), (figure, columns) in zip(frames.items(), AGREEMENT.items(), strict=True):
+        title, shown = "repro" if figure == name else figure, columns.split()
+        rows = frame if "method" in shown else once_for_methods(frame.select("method", *shown))
+        follows = {"method": "method"} if figure == "predicted" else {}
+        chart = Chart(figure, name, title, follows)
+        sections += listed(title, name, rows, shown, [chart], exact=False, headline=said.get(title))
+    drawn = frames | {"era_shifts": frames["era_shifts"].filter(boat_type="all")}
     return Page(
         "reproducibility.html",
         "reproducibility",
         sections,
         selects=[methods_select(methods)],
-        data={name: [frame] for name, frame in data.items()},
+        data={name: [frame] for name, frame in drawn.items()},
     )
 
 
@@ -402,19 +359,18 @@ DIAGNOSIS_COLUMNS = (
 )
 
 
-def _season_diagnosis(views: Views) -> Iterator[Section]:
+def _season_diagnosis(views: Views) -> list[Section]:
     """What may be wrong with the instruments of a season; none where no method asks."""
     if not views.has("season_diagnosis"):
-        return
+        return []
     doubted = views.season_diagnosis().filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
     # What else it could be: the kinds, without their seasons.
     rows = doubted.with_columns(
         PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
     )
-    table = Table(
-        "season_diagnosis", rows, DIAGNOSIS_COLUMNS, "season_diagnosis", ["method"], exact=False
-    )
-    yield Section("season_diagnosis", "season_diagnosis_note", tables=[table])
+    title = "season_diagnosis"
+    table = Table(title, rows, DIAGNOSIS_COLUMNS, title, ["method"], exact=False)
+    return [Section(title, f"{title}_note", tables=[table])]
 
 
 def _flagged_boats(views: Views) -> Table:

@@ -168,6 +168,23 @@ class Page:
         return self.site or "../" * self.path.count("/")
 
 
+def listed(
+    title: str,
+    name: str,
+    frame: pl.DataFrame,
+    columns: Sequence[str],
+    charts: Sequence[Chart] = (),
+    follows: Sequence[str] = ("method",),
+    exact: bool = True,
+    headline: Headline | None = None,
+) -> list[Section]:
+    """A section with one table, and the note of its title; none where there are no rows."""
+    if frame.is_empty():
+        return []
+    table = Table(name, frame, columns, title, follows, exact=exact)
+    return [Section(title, f"{title}_note", charts, [table], headline=headline)]
+
+
 def is_chosen(value: object, *wanted: str) -> bool:
     """Whether selectors that say `wanted` show a value, or one of a list; "all" says nothing."""
     values = value if isinstance(value, (list, tuple)) else (value,)

@@ -56,6 +56,15 @@ HEADING: Final = Markup(
 TITLE: Final = Markup(' title="{}"')
 NUMERIC: Final = Markup(' class="n"')
 
+IN_GLOSSARY: Final = {
+    "crew_class": "crew_class",
+    "a_kg_m": "a",
+    "b_m_s": "b",
+    "cw_kg_m": "cw",
+    "e_n": "e_n",
+}
+"""The term of the glossary that a column holds."""
+
 POLICY: Final = "; ".join(
     (
         "default-src 'none'",
@@ -133,10 +142,10 @@ def _draw(
     page: Page, editions: Sequence["Edition"], other: Executor | None
 ) -> Callable[[], Stills]:
     """Has the picture of a page drawn, if it has one; gives what waits for it."""
-    found = first_chart(page)
-    if found is None:
+    first = first_chart(page)
+    if first is None:
         return dict
-    chart, rows = found
+    chart, rows = first
     captions = {e.speech.language: e.speech.say(chart.caption) for e in editions}
     task = chart.figure, rows, captions
     return other.submit(stills, *task).result if other else partial(stills, *task)
@@ -182,9 +191,9 @@ class Edition:
 
     def _heading(self, table: str, column: str, is_number: bool) -> Markup:
         """The heading of a column, which says what it means when pointed at."""
-        tip = self.speech.say(f"tip.{column}")
-        known = self._comments.get(f"{table}.{column}") or self._comments.get(column)
-        meaning = known or (tip if tip != column else None)
+        meaning = self._comments.get(f"{table}.{column}") or self._comments.get(column)
+        if not meaning and column in IN_GLOSSARY:
+            meaning = self.speech.say(f"meaning_{IN_GLOSSARY[column]}")
         return HEADING.format(
             column=column,
             title=TITLE.format(meaning) if meaning else "",
@@ -251,10 +260,10 @@ def _data_script(page: Page, others: Mapping[str, Mapping[str, str]]) -> str:
 
 def _search_script(views: Views) -> str:
     """What the search on every page looks through: boats, types and races, with their pages."""
-    return f"window.HERIJK_FIND = {as_json(list(_found(views)))};\n"
+    return f"window.HERIJK_FIND = {as_json(list(_findable(views)))};\n"
 
 
-def _found(views: Views) -> Iterator[list[str]]:
+def _findable(views: Views) -> Iterator[list[str]]:
     boats = views.table("boats").sort("fsn_no")
     for fsn_no, ht_no, name, boat_type in boats.select(
         "fsn_no", "ht_no", "name", "boat_type"
@@ -284,9 +293,7 @@ def vega_bundle() -> str:
 def charts_script(language: str) -> str:
     """A script with the figures and their words in one language."""
     say = speaker(language)
-    named = {
-        key: say(key) for key in WORDS if key.startswith(("column.", "code.", "method.", "tip."))
-    }
+    named = {key: say(key) for key in WORDS if key.startswith(("column.", "code.", "method."))}
     words = named | {key: say(key) for key in ("yes", "no", "no_values", "from", "to")}
     figures = as_json(chart_specifications(language))
     return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"

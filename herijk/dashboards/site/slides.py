@@ -1,6 +1,6 @@
 """The page with every chart of the presentation of 2015, over all tows or a choice of them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ from herijk.dashboards.site.parts import (
     Page,
     Section,
     Select,
-    Table,
+    listed,
     methods_select,
     tows_select,
 )
@@ -179,12 +179,9 @@ def _told(said: pl.DataFrame) -> Headline:
     return lambda speech: " ".join(said[speech.language])
 
 
-def _claims(views: Views) -> list[Section]:
-    sections = []
+def _claims(views: Views) -> Iterator[Section]:
     for name, columns in CLAIMS.items():
-        if views.has(name):
-            frame = views.table(name)
-            follows = ["method", *(["tows"] if frame["tows"].dtype == pl.String else [])]
-            table = Table(name, frame, ["method", *columns.split()], f"claim_{name}", follows)
-            sections.append(Section(f"claim_{name}", f"claim_{name}_note", tables=[table]))
-    return sections
+        frame = views.table(name)
+        follows = ["method", *(["tows"] if frame["tows"].dtype == pl.String else [])]
+        shown = ["method", *columns.split()]
+        yield from listed(f"claim_{name}", name, frame, shown, follows=follows)

@@ -27,12 +27,11 @@ def chart_specifications(language: str) -> dict[str, Any]:
         say = speaker(language)
         return as_json({name: specification(figure, say) for name, figure in FIGURES.items()})
 
-    found: dict[str, object] = json.loads(kept(f"charts-{language}", _made_from(), make))
-    return found
+    return _kept(f"charts-{language}", make)
 
 
 @cache
-def picture_specification(figure: str, language: str) -> dict[str, object]:
+def picture_specification(figure: str, language: str) -> dict[str, Any]:
     """A figure's Vega for a picture: without data, and without what a picture cannot keep."""
 
     def make() -> str:
@@ -41,8 +40,12 @@ def picture_specification(figure: str, language: str) -> dict[str, object]:
         spec["config"]["aria"] = False  # described as a whole
         return json.dumps(drawn.compiled(spec))
 
-    found: dict[str, object] = json.loads(kept(f"picture-{figure}-{language}", _made_from(), make))
-    return found
+    return _kept(f"picture-{figure}-{language}", make)
+
+
+def _kept(name: str, make: Callable[[], str]) -> dict[str, Any]:
+    """An object of an earlier process, if it was made by the same code."""
+    return dict(json.loads(kept(name, _made_from(), make)))
 
 
 @cache

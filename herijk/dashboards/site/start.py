@@ -23,7 +23,8 @@ from herijk.warehouse.queries.views import Views
 CARDS = ("register", "due", "types", "compare", "races", "corrections", "reproducibility",
          "changes", "quality", "slides", "words")  # fmt: skip
 TERMS = ("tow", "cw", "a", "b", "declared", "interval", "as_measured", "log_factor", "method",
-         "edition", "flag", "set_aside", "e_n", "power", "type", "verification_code")  # fmt: skip
+         "edition", "flag", "set_aside", "e_n", "power", "type", "crew_class",
+         "verification_code")  # fmt: skip
 
 
 def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:

@@ -49,12 +49,12 @@ def _renumbered(svg: str) -> str:
     """Names of clipping areas from 0: Vega counts on from one picture to the next."""
     names = dict.fromkeys(re.findall(r'id="(clip\d+)"', svg))
     places = {name: f"clip{place}" for place, name in enumerate(names)}
-    return re.sub(r"\bclip\d+\b", lambda found: places[found[0]], svg)
+    return re.sub(r"\bclip\d+\b", lambda name: places[name[0]], svg)
 
 
 def _marks_once(svg: str) -> str:
     """What marks look like once, then where each of them is: a third of the characters to load."""
-    looks = Counter(found["look"] for found in MARK.finditer(svg))
+    looks = Counter(mark["look"] for mark in MARK.finditer(svg))
     names = {look: f"mark{n}" for n, (look, often) in enumerate(looks.items()) if often > 1}
 
     def placed(mark: re.Match[str]) -> str:

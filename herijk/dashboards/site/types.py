@@ -12,6 +12,7 @@ from herijk.dashboards.site.parts import (
     Select,
     Table,
     default_method,
+    listed,
     methods_select,
     once_for_methods,
     tows_select,
@@ -115,48 +116,34 @@ OUTLIER_COLUMNS = (
 )
 
 
+OF_TYPE = ("after", "boat_type")
+NEWEST_COLUMNS = (
+    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
+    *("expected", "deviation_sd", "candidates"),
+)
+TEST_COLUMNS = (
+    *("boat_type", "n", "n_boats", "p_value", "power_at_10pct", "noise_share", "shared_b_m_s"),
+)
+
+
 def _type_tables(views: Views, tows: pl.DataFrame) -> list[Section]:
     """What differs: tows of the choice, then the newest with the bend, lines and tests."""
-    outside = tows.filter("outside").with_columns(after="method")
+    after = pl.col("method").alias("after")
+    outside, newest = tows.filter("outside").with_columns(after), views.outliers()
     tables = [
-        Table(
-            "compared_tows", outside, OUTLIER_COLUMNS, "types_outliers_tows",
-            ["after", "boat_type", "tows"],
-        )
-    ]  # fmt: skip
-    outliers = views.outliers() if views.has("type_outliers") else pl.DataFrame()
-    if outliers.height:
-        shown_columns = (
-            *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
-            *("expected", "deviation_sd", "candidates"),
-        )
-        shown = outliers.with_columns(after="method")
+        Table("compared_tows", outside, OUTLIER_COLUMNS, "types_outliers_tows", [*OF_TYPE, "tows"])
+    ]
+    if newest.height:
+        newest = newest.with_columns(after)
         tables.append(
-            Table(
-                "type_outliers",
-                shown,
-                shown_columns,
-                "types_outliers",
-                ["after", "boat_type"],
-                exact=False,
-            )
+            Table("type_outliers", newest, NEWEST_COLUMNS, "types_outliers", OF_TYPE, exact=False)
         )
-    sections = [Section("types_outliers", "types_outliers_note", tables=tables)]
-    wanted = {
-        "type_consistency": (
-            "types_lines_newest",
-            "types_lines_note",
-            f"boat_type {' '.join(LINE_COLUMNS)}",
-        ),
-        "type_homogeneity": (
-            "types_homogeneity",
-            "types_homogeneity_note",
-            "boat_type n n_boats p_value power_at_10pct noise_share shared_b_m_s",
-        ),
-    }
-    for name, (title, note, columns) in wanted.items():
-        if views.has(name):
-            shown = views.table(name).with_columns(after="method")
-            table = Table(name, shown, columns.split(), title, ["after", "boat_type"])
-            sections.append(Section(title, note, tables=[table]))
-    return sections
+    tests = views.table("type_homogeneity").with_columns(after)
+    fitted = views.table("type_consistency").with_columns(after)
+    columns = ("boat_type", *LINE_COLUMNS)
+    lines = Table("type_consistency", fitted, columns, "types_lines_newest", OF_TYPE)
+    return [
+        Section("types_outliers", "types_outliers_note", tables=tables),
+        Section("types_lines_newest", "types_lines_note", tables=[lines]),
+        *listed("types_homogeneity", "type_homogeneity", tests, TEST_COLUMNS, follows=OF_TYPE),
+    ]

@@ -33,7 +33,7 @@ def controls() -> list[Control]:
     for step, place in schema["properties"].items():
         rules = schema["$defs"][place["$ref"].rsplit("/", 1)[1]]
         options = [
-            {"option": name, "unit": _unit(name)} | _kind(rule)
+            {"option": name, "unit": unit_of(name)} | _kind(rule)
             for name, rule in rules["properties"].items()
         ]
         steps.append({"step": step, "meaning": rules["description"], "options": options})
@@ -70,5 +70,6 @@ def _number(rule: Schema) -> Control:
     }
 
 
-def _unit(option: str) -> str:
+def unit_of(option: str) -> str:
+    """The unit of an option, by the ending of its name."""
     return next(unit for ending, unit in UNITS.items() if option.endswith(ending))

@@ -1,8 +1,6 @@
-"""The workbench on loopback: routes, and what keeps other programs and sites away.
+"""The workbench on loopback: its routes, behind `dashboards.guard`.
 
-It listens on 127.0.0.1 only. A page of another site that reaches it by a name of its own (DNS
-rebinding) is refused by its Host header, one that sends a form or script by its Origin and type.
-Nothing is fetched from elsewhere, and the page may not be framed.
+It listens on 127.0.0.1 only. Nothing is fetched from elsewhere, and the page may not be framed.
 """
 
 import socket
@@ -17,13 +15,12 @@ from pydantic import BaseModel, ValidationError
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
-from starlette.middleware import Middleware
-from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
 from herijk.dashboards import fonts
+from herijk.dashboards.guard import guarded
 from herijk.dashboards.html import as_json, environment, in_both
 from herijk.dashboards.site.render import vega_bundle
 from herijk.dashboards.site.specifications import chart_specifications
@@ -34,7 +31,6 @@ from herijk.words import LANGUAGES
 from herijk.words.catalogue import both
 
 LOOPBACK: Final = "127.0.0.1"
-HOSTS: Final = (LOOPBACK, "localhost")
 HERE: Final = Path(__file__).parent
 SITE: Final = HERE.parent / "site" / "static"
 
@@ -86,10 +82,7 @@ def application(bench: Bench) -> Starlette:
             _asked("/answer", Question, bench.answer),
             _asked("/file", Named, lambda wish: {"text": bench.method_file(wish)}),
             _asked("/save", Named, saved),
-        ],
-        middleware=[
-            Middleware(TrustedHostMiddleware, allowed_hosts=list(HOSTS), www_redirect=False),
-        ],
+        ]
     )
 
 
@@ -112,19 +105,9 @@ def _asked(path: str, model: type[Wanted], answer: Callable[[Wanted], dict[str, 
             return JSONResponse({"refused": str(error)}, headers=HEADERS)
 
     async def endpoint(request: Request) -> Response:
-        _from_own_page(request)
         return await run_in_threadpool(work, await request.body())
 
     return Route(path, endpoint, methods=["POST"])
-
-
-def _from_own_page(request: Request) -> None:
-    """Refuses what a page of another site could send."""
-    origin = request.headers.get("origin", "")
-    if origin != f"{request.url.scheme}://{request.url.netloc}":
-        raise HTTPException(403, "only the workbench's own page may ask")
-    if request.headers.get("content-type") != "application/json":
-        raise HTTPException(415, "JSON is needed")
 
 
 def _refusal(error: ValidationError) -> dict[str, object]:
@@ -163,5 +146,4 @@ def address(listening: socket.socket) -> str:
 
 def serving(bench: Bench) -> uvicorn.Server:
     """The server, to be run on a socket of `guard.listen`."""
-    config = uvicorn.Config(application(bench), ws="none", log_level="warning", access_log=False)
-    return uvicorn.Server(config)
+    return guarded(application(bench), LOOPBACK)

@@ -1,6 +1,6 @@
 """A batch: tows that share every option of a method, with their runs as arrays.
 
-Here the bookkeeping between tows and runs: which run is whose, columns as arrays, one number a
+The bookkeeping between tows and runs: which run is of which tow, columns as arrays, one number per
 tow spread over its runs. No formula of the method.
 """
 
@@ -16,7 +16,7 @@ from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.channels import BACK, OUT, SECOND_FILE_OFFSET
 
 DOUBTED_SPEED: Final = "speed_not_plausible"
-"""Doubt that costs a tow nothing but a look."""
+"""A doubt for which a person must look, but that leaves the tow out of nothing."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Batch:
 
     @classmethod
     def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> "Batch":
-        """The given tows with those of the given runs that are theirs."""
+        """The given tows, with their runs among the given ones."""
         tows = tows.sort("tow_id")
         mine = blocks.take(blocks.runs["tow_id"].is_in(tows["tow_id"].implode()).to_numpy())
         index = tows["tow_id"].search_sorted(mine.runs["tow_id"])
@@ -55,19 +55,16 @@ class Batch:
 
     @cached_property
     def key(self) -> tuple[str, ...]:
-        """What tells this batch from others of the same tables: its tows."""
+        """The tows, which tell this batch from others of the same tables."""
         return tuple(self.tows["tow_id"])
 
     @cached_property
     def has_gps(self) -> BoolArray:
-        """Tows with fixes in runs that are to be used, out and back, shape (tows,)."""
-        fixed = self.selected & (self.blocks["gps_n"].sum(axis=1) > 0)
-        return self.any(fixed & (self.direction == OUT)) & self.any(
-            fixed & (self.direction == BACK)
-        )
+        """Tows with GPS fixes in selected runs, both out and back, shape (tows,)."""
+        return self.both_ways(self.selected & (self.blocks["gps_n"].sum(axis=1) > 0))
 
     def part(self, tows: BoolArray) -> "Batch":
-        """Some of its tows, marked in shape (tows,)."""
+        """The tows that are marked, shape (tows,)."""
         runs = tows[self.tow]
         tow = (np.cumsum(tows) - 1)[self.tow[runs]]
         whole, rows = self.whole
@@ -93,7 +90,7 @@ class Batch:
         return self.of_tow(column)[self.tow]
 
     def measured(self, channel: str) -> BoolArray:
-        """Tows that have a channel, `wind` or `log2`, shape (tows,); all where nothing is said."""
+        """Tows that have a channel, `wind` or `log2`, shape (tows,); all if no column says so."""
         name = f"{channel}_measured"
         if name not in self.tows.columns:
             return np.ones(self.size, dtype=bool)
@@ -103,7 +100,7 @@ class Batch:
     def trusted(self) -> BoolArray:
         """Tows that the rest of the archive does not rule out, shape (tows,).
 
-        A speed that is off counts: it may be the log's, which only the tows it is off in can tell.
+        Tows with a doubted speed are kept: the log may be off, and only those tows can show it.
         """
         if "doubts" not in self.tows.columns:
             return np.ones(self.size, dtype=bool)
@@ -119,6 +116,11 @@ class Batch:
     def in_second_file(self) -> BoolArray:
         """Runs of the second file of a combined tow, shape (runs,)."""
         return self.blocks.runs["run"].to_numpy() > SECOND_FILE_OFFSET
+
+    @property
+    def file(self) -> IntArray:
+        """Index of each run's file, two per tow, shape (runs,)."""
+        return 2 * self.tow + self.in_second_file
 
     @property
     def target_speed_ratio(self) -> FloatArray:
@@ -143,6 +145,10 @@ class Batch:
     def any(self, runs: BoolArray) -> BoolArray:
         """Whether any run of a tow is marked, shape (tows,)."""
         return self.count(runs) > 0
+
+    def both_ways(self, runs: BoolArray) -> BoolArray:
+        """Whether runs out and runs back of a tow are marked, shape (tows,)."""
+        return self.any(runs & (self.direction == OUT)) & self.any(runs & (self.direction == BACK))
 
     def mean(self, values: FloatArray, runs: BoolArray) -> FloatArray:
         """Mean of a run quantity over the marked runs of each tow; 0 where there are none."""

@@ -109,7 +109,6 @@ class WindowSums:
     """Sums over one window of every run, each added up when it is first asked for.
 
     Attributes:
-        blocks: the runs.
         window: blocks that count, shape (runs, seconds).
     """
 

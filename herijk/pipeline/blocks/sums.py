@@ -1,13 +1,11 @@
 """Adding up a tow's samples: one compiled loop makes the sums of every second.
 
-What the sums are is in `pipeline.blocks.run_blocks`. The loop is compiled by Numba, and written
-so that
-its result follows from the samples alone, to the last bit and on every processor. It uses only
-additions, multiplications and divisions, in a fixed order, and no function of a mathematical
-library (docs/decisions/0015). It is written without branches, so that the compiler can work on
-several samples at a time; sample i of a block is added to lane i modulo `LANES`, and the lanes to
-each other at the end. Importing this module compiles the loop, or finds it compiled: import it
-late.
+What the sums are is in `pipeline.blocks.run_blocks`. The loop is compiled by Numba. Its result
+follows from the samples alone, to the last bit and on every processor: it uses only additions,
+multiplications and divisions, in a fixed order, and no mathematical library (docs/decisions/0015).
+It has no branches, so that the compiler can work on several samples at a time; sample i of a block
+is added to lane i modulo `LANES`, and the lanes to each other at the end. Importing this module
+compiles the loop, or finds it compiled: import it late.
 """
 
 import math
@@ -16,10 +14,10 @@ from typing import Any, Final, ParamSpec, TypeVar
 
 import numpy as np
 import polars as pl
-from numba import float32, float64, int8, int16, int32, int64, njit, types
+from numba import float32, float64, int64, njit, types
 from numpy.typing import NDArray
 
-from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.blocks.run_blocks import SUM_NAMES
 
 LANES: Final = np.uintp(16)
@@ -34,8 +32,6 @@ _CHANNELS: Final = (
     "wind_angle_deg",
 )
 _GPS_NAME: Final = "gps_m_s"
-_RUN_NUMBERS: Final = 128
-"""Runs that a number of a run can tell apart."""
 _NOT_MEASURED: Final = {
     "log2_m_s": pl.col("log1_m_s"),
     "wind_speed_m_s": pl.col("log1_m_s"),
@@ -63,26 +59,36 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
         sums of `SUM_NAMES`, float64. A sum depends on the samples of its block alone, not on its
         neighbours, threads or the processor.
     """
-    run = samples["run"].to_numpy()
-    blocks = _count(run, sample_rate_hz)
-    number, second = np.empty(blocks, np.int8), np.empty(blocks, np.int16)
-    n, sums = np.empty(blocks, np.int32), np.empty((_ROWS, blocks))
+    number, second, n = _seconds(samples["run"].to_numpy(), sample_rate_hz)
     filled = _filled(samples)
-    channels = [filled[name].to_numpy() for name in _CHANNELS]
-    _add_up(run, sample_rate_hz, number, second, n, sums, *channels)
-    _leave_out(channels, sample_rate_hz, n, sums)
-    sums_of_blocks = pl.Series(sums.ravel())
-    return pl.DataFrame(
-        [
-            pl.Series("run", number),
-            pl.Series("second", second),
-            pl.Series("n", n),
-            *(
-                sums_of_blocks.slice(i * blocks, blocks).alias(name)
-                for i, name in enumerate(SUM_NAMES)
-            ),
-        ]
+    channels = {name: filled[name].to_numpy() for name in _CHANNELS}
+    measured = np.logical_and.reduce(
+        [np.isfinite(values) for name, values in channels.items() if name != _GPS_NAME]
     )
+    if not measured.all():
+        block = np.repeat(np.arange(len(n)), n)
+        n = np.bincount(block[measured], minlength=len(n))
+        channels = {name: values[measured] for name, values in channels.items()}
+    sums = np.empty((_ROWS, len(n)))
+    _add_up(np.cumsum(n), sums, *channels.values())
+    return pl.DataFrame(
+        {
+            "run": number,
+            "second": second.astype(np.int16),
+            "n": n.astype(np.int32),
+            **dict(zip(SUM_NAMES, sums, strict=True)),
+        }
+    )
+
+
+def _seconds(run: NDArray[np.int8], rate_hz: int) -> tuple[NDArray[np.int8], IntArray, IntArray]:
+    """Run number, second and number of samples of every block, each of shape (blocks,)."""
+    first = np.flatnonzero(np.append(True, run[1:] != run[:-1])[: len(run)])
+    length = np.diff(np.append(first, len(run)))
+    blocks = -(-length // rate_hz)
+    which = np.repeat(np.arange(len(first)), blocks)
+    second = np.arange(len(which)) - (np.cumsum(blocks) - blocks)[which]
+    return run[first][which], second, np.minimum(length[which] - rate_hz * second, rate_hz)
 
 
 def _filled(samples: pl.DataFrame) -> pl.DataFrame:
@@ -97,32 +103,6 @@ def _filled(samples: pl.DataFrame) -> pl.DataFrame:
         .otherwise("log2_m_s")
         .alias("log2_m_s")
     )
-
-
-def _leave_out(
-    channels: list[NDArray[np.float32]], rate_hz: int, n: NDArray[np.int32], sums: FloatArray
-) -> None:
-    """Adds up again, without them, the blocks that have samples that are not numbers."""
-    needed = (values for name, values in zip(_CHANNELS, channels, strict=True) if name != _GPS_NAME)
-    lacking = np.logical_or.reduce([~np.isfinite(values) for values in needed])
-    if not lacking.any():
-        return
-    block = np.repeat(np.arange(len(n)), n)
-    spoilt = np.unique(block[lacking])
-    kept = np.flatnonzero(np.isin(block, spoilt) & ~lacking)
-    n[spoilt], sums[:, spoilt] = 0, 0.0
-    left, count = np.unique(block[kept], return_counts=True)
-    for first in range(0, len(left), _RUN_NUMBERS):
-        some = left[first : first + _RUN_NUMBERS]
-        rows = kept[(block[kept] >= some[0]) & (block[kept] <= some[-1])]
-        # Each block is given a run of its own: however few samples are left, it ends with them.
-        run = np.searchsorted(some, block[rows]).astype(np.int8)
-        number, second = np.empty(len(some), np.int8), np.empty(len(some), np.int16)
-        again = np.empty((_ROWS, len(some)))
-        held = (values[rows] for values in channels)
-        _add_up(run, rate_hz, number, second, np.empty(len(some), np.int32), again, *held)
-        sums[:, some] = again
-    n[left] = count
 
 
 P = ParamSpec("P")
@@ -140,7 +120,6 @@ _part = _compiled(inline="always")
 
 Lane = int | np.uintp
 Channel = NDArray[np.float32]
-Runs = NDArray[np.int8]
 
 
 @_part
@@ -277,9 +256,7 @@ def _add(sums: FloatArray, lane: Lane, one: Terms, two: Terms) -> None:
     _add_kind(sums, _GPS, lane, one[6], two[6])
 
 
-_RUN: Final = types.Array(int8, 1, "C", readonly=True)
 _SAMPLES: Final = types.Array(float32, 1, "C", readonly=True)
-_FOUND: Final = (int8[::1], int16[::1], int32[::1], float64[:, ::1])
 
 
 def _compiled_once(signature: object) -> Callable[[Callable[P, R]], Callable[P, R]]:
@@ -294,33 +271,10 @@ def _compiled_once(signature: object) -> Callable[[Callable[P, R]], Callable[P, 
     return decorator
 
 
-@_part
-def _end(run: Runs, first: int, rate_hz: int) -> int:
-    """One after the last sample of the block that begins with the sample `first`."""
-    end = min(first + rate_hz, len(run))
-    while run[end - 1] != run[first]:
-        end -= 1
-    return end
-
-
-@_compiled_once(int64(_RUN, int64))
-def _count(run: Runs, rate_hz: int) -> int:
-    """How many blocks there are."""
-    blocks = first = 0
-    while first < len(run):
-        first = _end(run, first, rate_hz)
-        blocks += 1
-    return blocks
-
-
-@_compiled_once(types.void(_RUN, int64, *_FOUND, *[_SAMPLES] * len(_CHANNELS)))
+@_compiled_once(types.void(int64[::1], float64[:, ::1], *[_SAMPLES] * len(_CHANNELS)))
 def _add_up(
-    run: Runs,
-    rate_hz: int,
-    number: Runs,
-    second: NDArray[np.int16],
-    n: NDArray[np.int32],
-    found: FloatArray,
+    ends: IntArray,
+    totals: FloatArray,
     log1: Channel,
     log2: Channel,
     gps: Channel,
@@ -328,15 +282,11 @@ def _add_up(
     wind: Channel,
     angle_deg: Channel,
 ) -> None:
-    """Fills `number`, `second` and `n`, shape (blocks,), and `found`, shape (sums, blocks)."""
+    """Fills `totals`, shape (sums, blocks); `ends` says where each block ends, shape (blocks,)."""
     sums = np.empty(np.uintp(_ROWS) * LANES)
     end = 0
-    for block in range(len(n)):
-        start, end = end, _end(run, end, rate_hz)
-        goes_on = block > 0 and run[start] == number[block - 1]
-        number[block] = run[start]
-        second[block] = second[block - 1] + 1 if goes_on else 0
-        n[block] = end - start
+    for block in range(len(ends)):
+        start, end = end, ends[block]
         sums[:] = 0.0
         first, after = np.uintp(start), np.uintp(end)
         while first + LANES + LANES <= after:
@@ -355,4 +305,4 @@ def _add_up(
             total = 0.0
             for lane in range(LANES):
                 total += sums[_at(row, lane)]
-            found[row, block] = total
+            totals[row, block] = total

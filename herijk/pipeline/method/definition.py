@@ -12,9 +12,9 @@ import itertools
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping
-from functools import cache
+from functools import cache, cached_property
 from importlib import resources
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Final, Literal, NamedTuple
 
 from pydantic import (
     AfterValidator,
@@ -42,6 +42,11 @@ class _Options(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
+def _later(default: str) -> Any:
+    """An option added later: its default stays out of the hash, so that no older method changes."""
+    return Field(default=default, exclude_if=lambda value: value == default)
+
+
 class Speed(_Options):
     """Which speed through the water, and what is known to be wrong with it."""
 
@@ -55,15 +60,9 @@ class Calibration(_Options):
     """The factor that brings the log to ground speed, and what a tow without GPS gets instead."""
 
     rule: Literal["none", "gps_per_tow", "gps_per_season"]
-    without_gps: Literal["no_curve", "estimated"] = Field(
-        default="no_curve", exclude_if=lambda value: value == "no_curve"
-    )
-    stream: Literal["none", "drifting"] = Field(
-        default="none", exclude_if=lambda value: value == "none"
-    )
-    delay: Literal["none", "estimated"] = Field(
-        default="none", exclude_if=lambda value: value == "none"
-    )
+    without_gps: Literal["no_curve", "estimated"] = _later("no_curve")
+    stream: Literal["none", "drifting"] = _later("none")
+    delay: Literal["none", "estimated"] = _later("none")
 
 
 class Window(_Options):
@@ -90,9 +89,7 @@ class Wind(_Options):
     averaging_s: int = Field(default=0, ge=0, le=15)
     anemometer: Literal["as_read", "estimated"] = "as_read"
     reading: Literal["as_felt", "cw_vac_2014", "cw_opt_2014"] = "as_felt"
-    unmeasured: Literal["still_air", "expected"] = Field(
-        default="still_air", exclude_if=lambda value: value == "still_air"
-    )
+    unmeasured: Literal["still_air", "expected"] = _later("still_air")
 
 
 class RunPoint(_Options):
@@ -108,9 +105,7 @@ class Temperature(_Options):
 
     rule: Literal["none", "ittc57"]
     reference_c: float = Field(default=15.0, ge=0.0, le=30.0)
-    unrecorded: Literal["unchanged", "expected"] = Field(
-        default="unchanged", exclude_if=lambda value: value == "unchanged"
-    )
+    unrecorded: Literal["unchanged", "expected"] = _later("unchanged")
 
 
 class Runs(_Options):
@@ -160,7 +155,7 @@ class Steps(_Options):
     assessment: Assessment
 
     @property
-    def estimate_logs(self) -> bool:
+    def estimates_logs(self) -> bool:
         """Whether the factor of any tow's log is estimated from other tows."""
         return "estimated" in (self.speed.correction, self.calibration.without_gps)
 
@@ -216,20 +211,25 @@ class Method(_Options):
         for block in self.ranges:
             if block.first <= season <= block.last:
                 return block.steps
+        last = self.ranges[-1].last
         raise MissingKnowledgeError(
             "method {} says nothing about season {}; it covers {} to {}. Leave that "
             "season out with --seasons, or widen the method's `seasons`",
             self.name,
             season,
             self.ranges[0].first,
-            _season_text(self.ranges[-1].last),
+            say("the present") if last == LAST_SEASON else last,
         )
+
+    @property
+    def estimates_logs(self) -> bool:
+        """Whether it estimates the log factor of any season."""
+        return any(block.steps.estimates_logs for block in self.ranges)
 
     @property
     def interval(self) -> str:
         """What its intervals hold: `COMPLETE`, or `RUNS_ALONE` if no log factor is estimated."""
-        estimated = any(block.steps.estimate_logs for block in self.ranges)
-        return COMPLETE if estimated else RUNS_ALONE
+        return COMPLETE if self.estimates_logs else RUNS_ALONE
 
     @property
     def definition(self) -> str:
@@ -287,18 +287,17 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
         raise MethodFileError(
             "{}: {} letters; a method has at most {}", file_name, len(text), LONGEST_TEXT
         )
-    reader = _Reader(text, file_name)
-    head = reader.head()
-    layers = _layers(reader, head, text_of, seen=(head.name,))
-    seasons = _Range.parse(head.seasons, reader, "seasons")
+    lineage = _lineage(_Reader(text, file_name), text_of)
+    reader = lineage[-1]
+    head = reader.head
     return Method(
         name=head.name,
         title=head.title,
         title_en=head.title_en or head.title,
         description=head.description,
         extends=head.extends,
-        ranges=_ranges(reader, layers, seasons),
-        validity=_register_rule(reader, head, text_of),
+        ranges=_ranges(reader, [layer for one in lineage for layer in _layers(one)]),
+        validity=_register_rule(lineage),
     )
 
 
@@ -322,27 +321,11 @@ class _Head(_Options):
     overrides: list[dict[str, Any]] = []
 
 
-class _Range(_Options):
+class _Layer(NamedTuple):
+    """Options that hold for the seasons `first` to `last`, by step."""
+
     first: int
     last: int
-
-    @classmethod
-    def parse(cls, text: object, reader: "_Reader", key: str) -> "_Range":
-        match = re.fullmatch(r"(\d{4})(:(\d{4})?)?", text) if isinstance(text, str) else None
-        if match is None:
-            wrong = say("{!r} is no season range; write 2009:2011, 2015: or 2014", text)
-            raise reader.error(key, wrong)
-        first = int(match[1])
-        last = int(match[3]) if match[3] else (LAST_SEASON if match[2] else first)
-        if last < first:
-            raise reader.error(key, say("range {!r} ends before it begins", text))
-        return cls(first=first, last=last)
-
-
-class _Layer(_Options):
-    """One set of overrides: all of `seasons` get `options`."""
-
-    seasons: _Range
     options: dict[str, dict[str, object]]
 
 
@@ -356,6 +339,7 @@ class _Reader:
     def __init__(self, text: str, file_name: str) -> None:
         self.text, self.file_name = text, file_name
 
+    @cached_property
     def head(self) -> _Head:
         try:
             return _Head.model_validate(parse_toml(self.text))
@@ -363,6 +347,18 @@ class _Reader:
             raise self.from_validation(error, allowed=_Head) from error
         except ValueError as error:
             raise MethodFileError("{}: not valid TOML: {}", self.file_name, error) from error
+
+    def seasons(self, text: object, key: str) -> tuple[int, int]:
+        """First and last season of a range as the file writes it."""
+        match = re.fullmatch(r"(\d{4})(:(\d{4})?)?", text) if isinstance(text, str) else None
+        if match is None:
+            wrong = say("{!r} is no season range; write 2009:2011, 2015: or 2014", text)
+            raise self.error(key, wrong)
+        first = int(match[1])
+        last = int(match[3]) if match[3] else (LAST_SEASON if match[2] else first)
+        if last < first:
+            raise self.error(key, say("range {!r} ends before it begins", text))
+        return first, last
 
     def error(self, key: str, message: Sentence, where: str | None = None) -> MethodFileError:
         """An error about `key`, on the line of `where`, which is the key unless it is missing."""
@@ -388,7 +384,7 @@ class _Reader:
         """Where the key stands: the last line that holds it, or else the step it belongs to."""
         parts = key.split(".")
         for wanted in (parts[-2:], parts[-1:], parts[-2:-1]):
-            lines = [number for number, held in self._keys_of_lines() if set(wanted) <= held]
+            lines = [number for number, keys in self._keys_of_lines() if set(wanted) <= keys]
             if wanted and lines:
                 return lines[-1]
         return None
@@ -414,43 +410,45 @@ def _keys_at(model: type[BaseModel], path: list[str]) -> list[str]:
     return sorted(field.alias or name for name, field in model.model_fields.items())
 
 
-def _layers(
-    reader: _Reader, head: _Head, text_of: Callable[[str], str], seen: tuple[str, ...]
-) -> list[_Layer]:
-    """The overrides of a method in the order in which they apply, its ancestors' first."""
-    layers: list[_Layer] = []
-    if head.extends is not None:
-        if head.extends in seen:
-            circle = " > ".join((*seen, head.extends))
+def _lineage(reader: _Reader, text_of: Callable[[str], str]) -> list[_Reader]:
+    """A method file and those that it extends, the oldest first."""
+    lineage, names = [reader], [reader.head.name]
+    while (parent := reader.head.extends) is not None:
+        if parent in names:
+            circle = " > ".join((*names, parent))
             wrong = say("a method cannot build on itself: {}; change its name or this one", circle)
             raise reader.error("extends", wrong)
         try:
-            parent_text = text_of(head.extends)
+            text = text_of(parent)
         except MissingKnowledgeError as error:
             raise reader.error("extends", say("{}", error)) from error
-        parent = _Reader(parent_text, f"{head.extends}.toml")
-        layers += _layers(parent, parent.head(), text_of, (*seen, head.extends))
-    everywhere = _Range(first=0, last=LAST_SEASON)
-    layers.append(_Layer(seasons=everywhere, options=_step_tables(reader, head.steps, "steps")))
-    own = []
-    for block in head.overrides:
+        reader = _Reader(text, f"{parent}.toml")
+        lineage.insert(0, reader)
+        names.append(parent)
+    return lineage
+
+
+def _layers(reader: _Reader) -> list[_Layer]:
+    """What one file says of the steps: for all seasons, then for some."""
+    everywhere = _Layer(0, LAST_SEASON, _step_tables(reader, reader.head.steps, "steps"))
+    overrides = []
+    for block in reader.head.overrides:
         options = {key: value for key, value in block.items() if key not in ("range", "why")}
-        seasons = _Range.parse(block.get("range"), reader, "overrides.range")
-        own.append(_Layer(seasons=seasons, options=_step_tables(reader, options, "overrides")))
-    _refuse_overlap(reader, own)
-    return layers + own
+        seasons = reader.seasons(block.get("range"), "overrides.range")
+        overrides.append(_Layer(*seasons, _step_tables(reader, options, "overrides")))
+    _refuse_overlap(reader, overrides)
+    return [everywhere, *overrides]
 
 
-def _register_rule(reader: _Reader, head: _Head, text_of: Callable[[str], str]) -> RegisterRule:
-    """The rule of validity, with what the methods it extends say where it says nothing."""
-    table, own = dict(head.validity), head
-    while own.extends is not None:
-        own = _Reader(text_of(own.extends), f"{own.extends}.toml").head()
-        table = own.validity | table
+def _register_rule(lineage: list[_Reader]) -> RegisterRule:
+    """The rule of validity; what a file does not say, it has from the file it extends."""
+    table: dict[str, Any] = {}
+    for reader in lineage:
+        table |= reader.head.validity
     try:
         return RegisterRule.model_validate(table)
     except ValidationError as error:
-        raise reader.from_validation(error, RegisterRule) from error
+        raise lineage[-1].from_validation(error, RegisterRule) from error
 
 
 def _step_tables(
@@ -468,26 +466,24 @@ def _step_tables(
 
 
 def _refuse_overlap(reader: _Reader, layers: list[_Layer]) -> None:
-    for i, one in enumerate(layers):
-        for other in layers[i + 1 :]:
-            first = max(one.seasons.first, other.seasons.first)
-            if first > min(one.seasons.last, other.seasons.last):
-                continue
-            for step in one.options.keys() & other.options.keys():
-                for key in one.options[step].keys() & other.options[step].keys():
-                    wrong = say("given twice for season {}; ranges overlap", first)
-                    raise reader.error(f"overrides.{step}.{key}", wrong)
+    for one, other in itertools.combinations(layers, 2):
+        first = max(one.first, other.first)
+        if first > min(one.last, other.last):
+            continue
+        for step in one.options.keys() & other.options.keys():
+            for key in one.options[step].keys() & other.options[step].keys():
+                wrong = say("given twice for season {}; ranges overlap", first)
+                raise reader.error(f"overrides.{step}.{key}", wrong)
 
 
-def _ranges(reader: _Reader, layers: list[_Layer], seasons: _Range) -> tuple[SeasonSteps, ...]:
+def _ranges(reader: _Reader, layers: list[_Layer]) -> tuple[SeasonSteps, ...]:
     """The complete steps of every season, neighbouring seasons with equal steps together."""
-    edges = {seasons.first, seasons.last + 1}
-    for layer in layers:
-        edges |= {layer.seasons.first, layer.seasons.last + 1}
-    inside = sorted(e for e in edges if seasons.first <= e <= seasons.last + 1)
+    first, last = reader.seasons(reader.head.seasons, "seasons")
+    edges = {first, last + 1, *(edge for one in layers for edge in (one.first, one.last + 1))}
+    inside = sorted(edge for edge in edges if first <= edge <= last + 1)
     return joined(
-        SeasonSteps(first=first, last=end - 1, steps=_steps_of_season(reader, layers, first))
-        for first, end in itertools.pairwise(inside)
+        SeasonSteps(first=begin, last=end - 1, steps=_steps_of_season(reader, layers, begin))
+        for begin, end in itertools.pairwise(inside)
     )
 
 
@@ -505,14 +501,10 @@ def joined(ranges: Iterable[SeasonSteps]) -> tuple[SeasonSteps, ...]:
 def _steps_of_season(reader: _Reader, layers: list[_Layer], season: int) -> Steps:
     merged: dict[str, dict[str, object]] = {step: {} for step in Steps.model_fields}
     for layer in layers:
-        if layer.seasons.first <= season <= layer.seasons.last:
+        if layer.first <= season <= layer.last:
             for step, options in layer.options.items():
                 merged[step] |= options
     try:
         return Steps.model_validate(merged)
     except ValidationError as error:
         raise reader.from_validation(error, Steps, season) from error
-
-
-def _season_text(season: int) -> str:
-    return "the present" if season == LAST_SEASON else str(season)

@@ -18,11 +18,12 @@ from herijk.pipeline.method.definition import (
     shipped_methods,
 )
 from herijk.pipeline.method.writing import (
+    covered,
+    key_lines,
     method_text,
     override_lines,
     range_text,
     step_lines,
-    toml_value,
 )
 
 
@@ -47,7 +48,7 @@ class Difference:
 
 def cut_at(method: Method, seasons: Iterable[int]) -> tuple[SeasonSteps, ...]:
     """The ranges of a method, cut before each of the given seasons that it covers."""
-    whole_first, whole_last = _whole(method)
+    whole_first, whole_last = method.ranges[0].first, method.ranges[-1].last
     cuts = {block.first for block in method.ranges}
     firsts = sorted(cuts | {s for s in seasons if whole_first < s <= whole_last})
     lasts = [*(first - 1 for first in firsts[1:]), whole_last]
@@ -116,34 +117,31 @@ def variant_text(method: Method) -> str:
     """
     if method.extends is None:
         return method_text(method)
-    first, last = _whole(method)
-    head = [
-        f"name = {toml_value(method.name)}",
-        f"title = {toml_value(method.title)}",
-        f"description = {toml_value(method.description)}",
-        f"extends = {toml_value(method.extends)}",
-        f"seasons = {toml_value(range_text(first, last))}",
-    ]
+    head = key_lines(
+        {
+            "name": method.name,
+            "title": method.title,
+            "description": method.description,
+            "extends": method.extends,
+            "seasons": covered(method),
+        }
+    )
     parent = parse_method("\n".join(head), f"{method.name}.toml")
-    changed: dict[tuple[int, int], dict[str, dict[str, object]]] = {}
+    changed: dict[str, dict[str, dict[str, object]]] = {}
     for one in differences(method, parent):
-        steps = changed.setdefault((one.first, one.last), {})
+        steps = changed.setdefault(range_text(one.first, one.last), {})
         steps.setdefault(one.step, {})[one.option] = one.after
-    everywhere = changed.pop((first, last), {})
+    everywhere = changed.pop(covered(method), {})
     blocks = [_register_lines(method, parent)]
     blocks.append(["[steps]", *step_lines(everywhere)] if everywhere else [])
-    blocks += [override_lines(range_text(*seasons), steps) for seasons, steps in changed.items()]
+    blocks += [override_lines(seasons, steps) for seasons, steps in changed.items()]
     return "\n\n".join("\n".join(block) for block in [head, *blocks] if block) + "\n"
 
 
 def _register_lines(method: Method, parent: Method) -> list[str]:
     inherited = parent.validity.model_dump()
     own = {k: v for k, v in method.validity.model_dump().items() if v != inherited[k]}
-    return ["[register]", *(f"{k} = {toml_value(v)}" for k, v in own.items())] if own else []
-
-
-def _whole(method: Method) -> tuple[int, int]:
-    return method.ranges[0].first, method.ranges[-1].last
+    return ["[register]", *key_lines(own)] if own else []
 
 
 def _options() -> Iterator[tuple[str, str]]:

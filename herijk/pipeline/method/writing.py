@@ -11,22 +11,19 @@ def method_text(method: Method) -> str:
 
     Reading it gives a method with the same content hash and register rule.
     """
-    years = {k: v for k, v in method.validity.model_dump().items() if v is not None}
-    seasons = range_text(method.ranges[0].first, method.ranges[-1].last)
     lines = [
-        *(
-            f"{key} = {toml_value(value)}"
-            for key, value in (
-                ("name", method.name),
-                ("title", method.title),
-                ("title_en", method.title_en),
-                ("description", method.description),
-                ("seasons", seasons),
-            )
+        *key_lines(
+            {
+                "name": method.name,
+                "title": method.title,
+                "title_en": method.title_en,
+                "description": method.description,
+                "seasons": covered(method),
+            }
         ),
         "",
         "[register]",
-        *(f"{key} = {toml_value(value)}" for key, value in years.items()),
+        *key_lines(method.validity.model_dump(exclude_none=True)),
     ]
     for block in method.ranges:
         steps = block.steps.model_dump(mode="json", exclude_none=True)
@@ -34,61 +31,55 @@ def method_text(method: Method) -> str:
     return "\n".join(lines) + "\n"
 
 
+BEGINNING = """
+# For all seasons: a line such as
+#   [steps.wind]
+#   side = 0.3
+# For some of them:
+#   [[overrides]]
+#   range = "2009:2011"
+#   wind = { side = 0.3 }
+"""
+
+
 def beginning_text(name: str, base: Method) -> str:
     """A new method file that extends another, with every option of the other as a comment."""
-    seasons = range_text(base.ranges[0].first, base.ranges[-1].last)
-    listed = [
-        f"# {line}".rstrip()
-        for block in base.ranges
-        for line in (
-            f"Seasons {range_text(block.first, block.last)}",
-            *step_lines(block.steps.model_dump(mode="json", exclude_none=True)),
-            "",
-        )
-    ]
-    return (
-        "\n".join(
-            [
-                f"name = {toml_value(name)}",
-                f"title = {toml_value(name)}",
-                'description = ""',
-                f"extends = {toml_value(base.name)}",
-                f"seasons = {toml_value(seasons)}",
-                "",
-                "# For all seasons: a line such as",
-                "#   [steps.wind]",
-                "#   side = 0.3",
-                "# For some of them:",
-                "#   [[overrides]]",
-                '#   range = "2009:2011"',
-                "#   wind = { side = 0.3 }",
-                "",
-                f"# What {base.name} says:",
-                "#",
-                *listed,
-            ]
-        ).rstrip("#\n ")
-        + "\n"
-    )
+    head = {
+        "name": name,
+        "title": name,
+        "description": "",
+        "extends": base.name,
+        "seasons": covered(base),
+    }
+    listed = [f"# What {base.name} says:"]
+    for block in base.ranges:
+        steps = step_lines(block.steps.model_dump(mode="json", exclude_none=True))
+        seasons = f"Seasons {range_text(block.first, block.last)}"
+        listed += ["#", *(f"# {line}" for line in (seasons, *steps))]
+    return "\n".join([*key_lines(head), BEGINNING, *listed]) + "\n"
 
 
 def override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]]) -> list[str]:
     """The lines of an `[[overrides]]` block."""
-    return ["[[overrides]]", f"range = {toml_value(range_of)}", *step_lines(steps)]
+    return ["[[overrides]]", *key_lines({"range": range_of}), *step_lines(steps)]
 
 
 def step_lines(steps: Mapping[str, Mapping[str, object]]) -> list[str]:
     """One line per step, with its options."""
-    lines = []
-    for step, options in steps.items():
-        pairs = ", ".join(f"{key} = {toml_value(value)}" for key, value in options.items())
-        lines.append(f"{step} = {{ {pairs} }}")
-    return lines
+    return [f"{step} = {{ {', '.join(key_lines(options))} }}" for step, options in steps.items()]
 
 
-def toml_value(value: object) -> str:
-    """A text, number, truth value or list as TOML, which differs from JSON in one character."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+def key_lines(values: Mapping[str, object]) -> list[str]:
+    """Texts, numbers, truth values or lists as TOML, which differs from JSON in one character."""
+    return [
+        f"{key} = {json.dumps(value, ensure_ascii=False)}".replace("\x7f", "\\u007f")
+        for key, value in values.items()
+    ]
+
+
+def covered(method: Method) -> str:
+    """All seasons of a method, as method files write them."""
+    return range_text(method.ranges[0].first, method.ranges[-1].last)
 
 
 def range_text(first: int, last: int) -> str:

@@ -8,11 +8,10 @@ Arguments broadcast.
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.errors import MissingKnowledgeError
-
-FloatArray = NDArray[np.float64]
 
 FATIGUE_REFERENCE: Final = ((7200.0, 0.79), (10800.0, 0.77))
 """Race time [s] and mean power over it as a share of the reference: all that is published

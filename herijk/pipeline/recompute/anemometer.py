@@ -1,6 +1,6 @@
-"""The anemometer of each season as all tows show it: found, applied to the wind, and diagnosed.
+"""The anemometer of each season as all tows show it: estimated, applied to the wind, diagnosed.
 
-The formulas stand in `pipeline.steps.anemometer`.
+The formulas are in `pipeline.steps.anemometer`.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ def with_anemometer(prepared: Sequence[Prepared]) -> list[Prepared]:
     asking = [p for p in prepared if _asks(p)]
     if not asking:
         return list(prepared)
-    anemometer = _found(asking)
+    anemometer = _estimated(asking)
     return [_corrected(p, anemometer) if _asks(p) else p for p in prepared]
 
 
@@ -39,7 +39,7 @@ def _asks(prepared: Prepared) -> bool:
     return prepared.steps.wind.anemometer == "estimated"
 
 
-def _found(prepared: Sequence[Prepared]) -> Anemometer:
+def _estimated(prepared: Sequence[Prepared]) -> Anemometer:
     each = [
         WindRatio.of(
             p.batch, p.windows.mask, p.used, p.means.gps_m_s, p.speed_m_s, p.estimated.ln_sd

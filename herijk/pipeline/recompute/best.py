@@ -1,10 +1,10 @@
 """The best estimate of each tow's Cw, beside what was measured.
 
-All tows together know a boat at its usual speed; from there to the declared speed of a tow its bend
-by all tows leads. How far their points show the hull to lie from its hyperbola is added. What
-all tows share, and repeats can therefore not show, is added to the interval
-(ISO 5725-1: precision is not trueness). A tow of a season that is not determined stays as measured:
-the bend of its curves alone would say what its log was, and no hull is an exact hyperbola.
+All tows together tell a boat's Cw at its usual speed. The bend that they tell leads from there to
+the declared speed of a tow. How far the hull lies from its hyperbola by their points is added. What
+all tows share, so that repeats cannot show it, is added to the interval (ISO 5725-1: precision is
+not trueness). A tow of a season that is not determined stays as measured: only the bend of its
+curves would say what its log was, and no hull is an exact hyperbola.
 """
 
 from typing import Final

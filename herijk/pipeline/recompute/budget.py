@@ -24,6 +24,7 @@ from herijk.pipeline.uncertainty.propagation import (
     Assumed,
     budget,
     combine,
+    level_scatter,
     residual_scatter,
     run_point_uncertainty,
 )
@@ -54,13 +55,72 @@ def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
 def pooled_scatter(o: Outcome) -> curve.Scatter:
     """Scatter of single run points about their curve, pooled over the tows of a season."""
     ratio, used, on_curve = _residuals(o)
-    season = o.batch.of_tow("season").astype(np.int64)
-    residual, dof = residual_scatter(ratio, used, season)
-    # Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0.
-    known = np.isfinite(residual) & used.any(axis=1)
-    relative = np.where(known, residual, 0.0)
+    return _of_height(*residual_scatter(ratio, used, _season(o)), used, on_curve)
+
+
+def scatter_of_level(o: Outcome) -> curve.Scatter:
+    """The same as it makes the level of a curve uncertain.
+
+    Of tows that are calibrated by themselves, as far as the stream was steady: what is beyond is in
+    `stream_scatter`. Of others that of the points.
+    """
+    ratio, used, on_curve = _residuals(o)
+    batch, by_log = o.batch, pooled_scatter(o)
+    of_runs, told = _run_calibrations(o)
+    alone = ~batch.any(o.used & (~told | batch.in_second_file))
+    steady = alone & (_unsteady_stream(o)[0] == 0.0)
+    by_gps = ratio - (2.0 + 2.0 * _median_bend(o)) * batch.by_tow(np.log(of_runs))
+    way = batch.by_tow(batch.direction.astype(np.float64))
+    found = level_scatter(
+        ratio, by_gps, o.points.speed_m_s, way, used & steady[:, None], _season(o)
+    )
+    by_calibration = _of_height(*found, used, on_curve)
+    known = alone & (by_calibration.dof > 0)
+    return curve.Scatter(
+        np.where(known, by_calibration.variance_kg2_m2, by_log.variance_kg2_m2),
+        np.where(known, by_calibration.dof, by_log.dof),
+    )
+
+
+def _season(o: Outcome) -> IntArray:
+    return o.batch.of_tow("season").astype(np.int64)
+
+
+def _of_height(
+    ratio: FloatArray, dof: FloatArray, used: BoolArray, on_curve: FloatArray
+) -> curve.Scatter:
+    """A relative scatter in the coefficient of each tow.
+
+    Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0.
+    """
+    known = np.isfinite(ratio) & used.any(axis=1)
     height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
-    return curve.Scatter((relative * height) ** 2, np.where(known, dof, 0.0))
+    return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
+
+
+def covariance_of_curves(
+    points: curve.Points,
+    curves: curve.Curves,
+    scatter: curve.Scatter,
+    level: curve.Scatter,
+    speed_m_s: FloatArray,
+) -> curve.Covariance:
+    """Covariance of C0 and q at a speed, where the mean of points has a scatter of its own.
+
+    Args:
+        points, curves: of each tow.
+        scatter, level: of single points, about their curve and as it counts in their mean.
+        speed_m_s: shape (tows,).
+    """
+    errors = curve.covariance(points, curves, scatter, speed_m_s)
+    speeds = np.where(points.used, points.speed_m_s, 0.0)
+    on_curve = curve.cw(curves.a_kg_m[:, None], curves.s_s2_m2[:, None], speeds)
+    square = (np.where(points.used & np.isfinite(on_curve), on_curve, 0.0) ** 2).sum(axis=1)
+    cw = curves.cw_at(speed_m_s)
+    known = np.isfinite(cw) & (square > 0)
+    share = np.where(known, cw, 0.0) ** 2 / np.where(known, square, 1.0)
+    change = share * (level.variance_kg2_m2 - scatter.variance_kg2_m2)
+    return replace(errors, c0_variance_kg2_m2=errors.c0_variance_kg2_m2 + change)
 
 
 def _residuals(o: Outcome) -> tuple[FloatArray, BoolArray, FloatArray]:
@@ -112,27 +172,41 @@ def files_log_sd(o: Outcome) -> FloatArray:
 def stream_scatter(o: Outcome) -> tuple[FloatArray, IntArray]:
     """Standard deviation of ln y by a stream that is not the same in runs one way, and its dof.
 
-    Of these, in one file, GPS over log differs by no more than `USUAL_RUN_SCATTER`. What is beyond
-    moves the mean of n runs by its root-n-th part. A drift that was taken off is uncertain too.
-    Both of shape (tows,); 0 where no tow is calibrated by itself.
+    A drift that was taken off is uncertain too. Both of shape (tows,); 0 where no tow is
+    calibrated by itself.
     """
-    batch, gps, log = o.batch, o.means.gps_m_s - o.stream_m_s, o.means.speed_m_s
-    used = o.used & np.isfinite(gps) & (log > 0) & o.calibrated[batch.tow]
-    used &= o.steps.calibration.rule == "gps_per_tow"
-    ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
+    batch, used = o.batch, _run_calibrations(o)[1]
+    scatter, dof = _unsteady_stream(o)
+    drifts = (np.where(used, x, 0.0) for x in (o.stream_m_s, o.means.speed_m_s))
+    drift, speed = (
+        mean_over_both_ways(x, batch.direction, batch.tow, used, batch.size)[0] for x in drifts
+    )
+    drift_sd = UNTOLD_DRIFT * drift / np.where(speed > 0, speed, 1.0)
+    return np.where(dof > 0, np.hypot(scatter, drift_sd), 0.0), dof
+
+
+def _unsteady_stream(o: Outcome) -> tuple[FloatArray, IntArray]:
+    """Standard deviation of ln y by GPS over log that differs between runs one way, and its dof.
+
+    In one file it differs by no more than `USUAL_RUN_SCATTER`. What is beyond moves the mean of n
+    runs by its root-n-th part. Both of shape (tows,).
+    """
+    batch, (ratio, used) = o.batch, _run_calibrations(o)
     group = 4 * batch.tow + 2 * batch.in_second_file + (batch.direction > 0)
     count = np.bincount(group, used, 4 * batch.size)
     mean = np.bincount(group, used * ratio, 4 * batch.size) / np.maximum(count, 1)
     square = np.bincount(batch.tow, used * (ratio - mean[group]) ** 2, batch.size)
     dof = np.maximum(count - 1, 0).reshape(-1, 4).sum(axis=1).astype(np.int64)
     beyond = np.maximum(square / np.maximum(dof, 1) - USUAL_RUN_SCATTER**2, 0.0)
-    scatter = np.sqrt(beyond / np.maximum(batch.count(used), 1))
-    drifts = (np.where(used, x, 0.0) for x in (o.stream_m_s, log))
-    drift, speed = (
-        mean_over_both_ways(x, batch.direction, batch.tow, used, batch.size)[0] for x in drifts
-    )
-    drift_sd = UNTOLD_DRIFT * drift / np.where(speed > 0, speed, 1.0)
-    return np.where(dof > 0, np.hypot(scatter, drift_sd), 0.0), dof
+    return np.sqrt(beyond / np.maximum(batch.count(used), 1)), dof
+
+
+def _run_calibrations(o: Outcome) -> tuple[FloatArray, BoolArray]:
+    """GPS / log of each run, and which runs of tows calibrated by themselves have it; (runs,)."""
+    gps, log = o.means.gps_m_s - o.stream_m_s, o.means.speed_m_s
+    used = o.used & np.isfinite(gps) & (gps > 0) & (log > 0) & o.calibrated[o.batch.tow]
+    used &= o.steps.calibration.rule == "gps_per_tow"
+    return np.where(used, gps, 1.0) / np.where(used, log, 1.0), used
 
 
 def run_point_ratio(o: Outcome) -> FloatArray:
@@ -229,10 +303,11 @@ def _budget_of_batch(
     misfit: pl.DataFrame,
 ) -> pl.DataFrame:
     scatter = scatter_of(o, estimated is not None)
-    terms = _terms_of_tows(o, estimated, scatter)
+    level = scatter if estimated is None else scatter_of_level(o)
+    terms = _terms_of_tows(o, estimated, level)
     cw, bend = pl.col("cw_kg_m"), pl.col("bend")
     r = (bend / (1.0 + bend) * pl.col("speed_ratio") ** 2).clip(-1.0, MOST_BENT)
-    random = np.concatenate([_random_ratio(o, scatter, ratio) for ratio in speed_ratios])
+    random = np.concatenate([_random_ratio(o, scatter, level, ratio) for ratio in speed_ratios])
     rows = (
         _at_speeds(o, speed_ratios)
         .with_columns(pl.Series("random_ratio", random))
@@ -265,10 +340,12 @@ def _at_speeds(o: Outcome, speed_ratios: Sequence[float]) -> pl.DataFrame:
     )
 
 
-def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
+def _random_ratio(
+    o: Outcome, scatter: curve.Scatter, level: curve.Scatter, speed_ratio: float
+) -> FloatArray:
     """Relative random uncertainty of Cw at a speed / declared speed, shape (tows,)."""
     speed = speed_ratio * o.batch.of_tow("declared_speed_m_s")
-    errors = curve.covariance(o.points, o.free, scatter, speed)
+    errors = covariance_of_curves(o.points, o.free, scatter, level, speed)
     cw = o.free.cw_at(speed)
     known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
     variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
@@ -287,7 +364,8 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
     net_air = batch.mean(taken_off - o.still_air_kg_m, o.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
-    per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)
+    felt_unit = o.by_true_speed(o.means.air.ahead + o.means.air.behind)
+    per_coefficient = batch.mean(still_unit - felt_unit, o.used)
     stream_sd, stream_dof = stream_scatter(o)
     return batch.tows.select(
         "tow_id",

@@ -5,20 +5,17 @@ Filled by `pipeline.recompute.recompute`, made into tables by `pipeline.recomput
 
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from herijk.pipeline import curve
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, StrArray
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.channels import BACK, OUT
 from herijk.pipeline.method.definition import Steps
 from herijk.pipeline.steps.resistance import RunMeans
 from herijk.pipeline.steps.window import Windows
 from herijk.pipeline.uncertainty.propagation import Assumed
-
-Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 @dataclass(frozen=True)
@@ -82,7 +79,7 @@ class Prepared:
     calibrated: BoolArray
     stream_m_s: FloatArray
     estimated: TowFactor
-    reasons: Texts
+    reasons: StrArray
     still_unit_kg_m: FloatArray
     temperature_kg_m: FloatArray
     temperature_known: BoolArray
@@ -107,40 +104,24 @@ class Prepared:
 
     @cached_property
     def in_fit(self) -> BoolArray:
-        """Runs that count, of tows that have enough of them, shape (runs,)."""
-        enough = enough_runs(self.batch, self.used, self.steps.runs.minimum)
-        return self.used & enough[self.batch.tow]
+        """Runs that count, of tows that have enough of them, and both ways, shape (runs,)."""
+        enough = self.batch.count(self.used) >= self.steps.runs.minimum
+        return self.used & (enough & self.batch.both_ways(self.used))[self.batch.tow]
 
     @cached_property
     def speed_m_s(self) -> FloatArray:
         """Mean true speed, shape (runs,)."""
         return self.means.speed_m_s * self.speed_factor
 
-    @cached_property
-    def gross_kg_m(self) -> FloatArray:
-        """Force / true speed squared, shape (runs,)."""
-        return self.means.gross_kg_m / self.speed_factor**2
-
-    @cached_property
-    def sd_kg_m(self) -> FloatArray:
-        """Standard deviation of the samples' coefficients, shape (runs,)."""
-        return self.means.sd_kg_m / self.speed_factor**2
-
-    @cached_property
-    def inertia_kg_m(self) -> FloatArray:
-        """Part of the gross coefficient that accelerated the boat, shape (runs,)."""
-        return self.means.inertia_kg_m / self.speed_factor**2
-
-    @cached_property
-    def air_unit_kg_m(self) -> FloatArray:
-        """Air part as felt for drag coefficients of 1, shape (runs,)."""
-        return (self.means.air.ahead + self.means.air.behind) / self.speed_factor**2
+    def by_true_speed(self, kg_m: FloatArray) -> FloatArray:
+        """A coefficient of each run by log speed, now by true speed, shape (runs,)."""
+        return kg_m / self.speed_factor**2
 
     def air_of(self, ahead: FloatArray, behind: FloatArray) -> FloatArray:
         """The air part that is taken off for given drag coefficients, shape (runs,)."""
         if self.steps.wind.reading == "cw_vac_2014":
             return 2.0 * self.still_air_of(ahead)
-        felt = self.means.air.total(ahead, behind, self.steps.wind.side) / self.speed_factor**2
+        felt = self.by_true_speed(self.means.air.total(ahead, behind, self.steps.wind.side))
         if self.steps.wind.unmeasured == "still_air":
             return felt
         expected = (1.0 + self.expected_wind.mean) * self.still_air_of(ahead)
@@ -161,9 +142,9 @@ class Prepared:
 
     def cw_of(self, ahead: FloatArray, behind: FloatArray, still: FloatArray) -> FloatArray:
         """Corrected coefficient of each run for given drag coefficients, shape (runs,)."""
-        water = self.gross_kg_m - self.inertia_kg_m
+        gross, inertia = map(self.by_true_speed, (self.means.gross_kg_m, self.means.inertia_kg_m))
         air = self.air_of(ahead, behind) - self.still_air_of(still)
-        return water - air + self.temperature_kg_m
+        return gross - inertia - air + self.temperature_kg_m
 
     def points_of(self, cw_kg_m: FloatArray) -> curve.Points:
         """Points of all tows that have enough runs, for a batch fit."""
@@ -175,20 +156,13 @@ class Prepared:
         )
 
 
-def enough_runs(batch: Batch, used: BoolArray, minimum: int) -> BoolArray:
-    """Tows with enough runs, and runs both ways so that wind and stream can be judged."""
-    out = batch.count(used & (batch.direction == OUT))
-    back = batch.count(used & (batch.direction == BACK))
-    return (out + back >= minimum) & (out > 0) & (back > 0)
-
-
 @dataclass(frozen=True)
 class Outcome(Prepared):
     """A batch with all that a method found out about it.
 
     Attributes:
         ahead, behind, still_air_coefficient: drag coefficients of each run, shape (runs,).
-        coefficient_sd: standard deviation of the archive's coefficient; NaN where none was found.
+        coefficient_sd: standard deviation of the archive's coefficient; NaN where there is none.
         cw_kg_m: corrected coefficient, shape (runs,).
         points, free, curves: the fit's input, the free hyperbola and the one that the method
             chose, shape (tows,).
@@ -204,9 +178,9 @@ class Outcome(Prepared):
     curves: curve.Curves
 
     @classmethod
-    def of(cls, prepared: Prepared, **found: Any) -> "Outcome":
-        """The outcome of what was prepared, with the fields that were found since."""
-        return cls(**{f.name: getattr(prepared, f.name) for f in fields(prepared)}, **found)
+    def of(cls, prepared: Prepared, **own: Any) -> "Outcome":
+        """The outcome of what was prepared, with the fields of its own."""
+        return cls(**{f.name: getattr(prepared, f.name) for f in fields(prepared)}, **own)
 
     @cached_property
     def air_kg_m(self) -> FloatArray:

@@ -16,7 +16,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, StrArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.choice import first_largest
@@ -29,7 +29,6 @@ from herijk.pipeline.recompute.outcome import (
     ExpectedWind,
     Outcome,
     Prepared,
-    Texts,
     TowFactor,
 )
 from herijk.pipeline.recompute.results import Recomputed, as_tables
@@ -38,7 +37,6 @@ from herijk.pipeline.recompute.season_factors import (
     Instruments,
     find_season_factors,
     is_estimated,
-    tow_instruments,
     without_factor,
     without_gps,
 )
@@ -84,7 +82,6 @@ def recompute(
     """Run points, curves, log factors and assessments of all tows under a method.
 
     Args:
-        method: the method.
         tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
             be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
@@ -96,14 +93,9 @@ def recompute(
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     cache = RunCache() if cache is None else cache
-    estimated = season_factors(plans, cache) if estimates(method) else None
-    instruments = Instruments(None if estimated is None else tow_instruments(estimated))
-    return as_tables(method, tows, evaluate(plans, cache, instruments), estimated, with_bands)
-
-
-def estimates(method: Method) -> bool:
-    """Whether a method asks to estimate the log factor of any season."""
-    return any(block.steps.estimate_logs for block in method.ranges)
+    estimated = season_factors(plans, cache) if method.estimates_logs else None
+    outcomes = evaluate(plans, cache, Instruments.of(estimated))
+    return as_tables(method, tows, outcomes, estimated, with_bands)
 
 
 def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> SeasonFactors | None:
@@ -120,10 +112,8 @@ def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> Sea
 
 def instruments_of(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> Instruments:
     """What is estimated of the tows' instruments, as far as the steps ask for it."""
-    if not any(is_estimated(steps) for _, steps in plans):
-        return Instruments()
-    estimated = season_factors(plans, cache)
-    return Instruments(None if estimated is None else tow_instruments(estimated))
+    asked = any(is_estimated(steps) for _, steps in plans)
+    return Instruments.of(season_factors(plans, cache) if asked else None)
 
 
 def batches(
@@ -264,12 +254,12 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
     )
 
 
-def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> Texts:
+def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> StrArray:
     """Why a run does not count, before calibration; empty where it does."""
-    chosen = batch.selected & windows.found
+    chosen = batch.selected & windows.exists
     too_fast = above_target(batch, means.speed_m_s, chosen, steps.runs.highest_target_ratio)
     return np.select(
-        [~batch.selected, ~windows.found, too_fast],
+        [~batch.selected, ~windows.exists, too_fast],
         [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET],
         "",
     )
@@ -279,14 +269,7 @@ def _stream_drift(batch: Batch, steps: Steps, means: RunMeans, used: BoolArray) 
     """Part of the GPS speed that is a drift of the stream, as far as asked for, shape (runs,)."""
     if steps.calibration.stream == "none":
         return np.zeros(len(batch.tow))
-    return stream_drift_m_s(
-        means.gps_m_s,
-        means.speed_m_s,
-        batch.direction,
-        batch.blocks.runs["run"].to_numpy().astype(np.int64),
-        2 * batch.tow + batch.in_second_file,
-        used,
-    )
+    return stream_drift_m_s(batch, means.gps_m_s, means.speed_m_s, used)
 
 
 def _calibrate(
@@ -303,19 +286,11 @@ def _calibrate(
         return np.ones(len(batch.tow)), np.ones(len(batch.tow), dtype=bool)
     log = means.speed_m_s * known_factor[batch.tow]
     y, determined = gps_factor_of_files(
-        means.gps_m_s - stream_m_s,
-        log,
-        batch.direction,
-        batch.tow,
-        batch.in_second_file,
-        used,
-        windows.found & (log > 0),
-        batch.size,
+        batch, means.gps_m_s - stream_m_s, log, used, windows.exists & (log > 0)
     )
     if steps.calibration.rule == "gps_per_season":
         y, determined = _mean_of_season(batch, y, determined)
-    file = batch.in_second_file.astype(np.int64)
-    return y[batch.tow, file], determined[batch.tow, file]
+    return y.ravel()[batch.file], determined.ravel()[batch.file]
 
 
 def _mean_of_season(

@@ -7,6 +7,7 @@ person should look at, in `pipeline.assessment.assess`.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -34,11 +35,26 @@ from herijk.pipeline.recompute.budget import (
 from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.recompute.season_factors import tow_instruments
 from herijk.pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
-from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, STEP_SCHEMA
-from herijk.pipeline.season_log.retow_design import RETOW_SCHEMA
+from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
 from herijk.pipeline.steps.speed import log_factor
 from herijk.tables.frames import dtypes
-from herijk.tables.season_log import BestEstimateWeights, LogFactors, SeasonLinks, TowInstruments
+from herijk.tables.season_log import (
+    BestEstimateWeights,
+    LogFactors,
+    RetowChoice,
+    SeasonLinks,
+    SeasonSteps,
+    TowInstruments,
+)
+
+OF_ALL_TOWS: Final = {
+    "season_links": SeasonLinks,
+    "retow_choice": RetowChoice,
+    "season_steps": SeasonSteps,
+    "tow_instruments": TowInstruments,
+    "best_estimate_weights": BestEstimateWeights,
+}
+"""Tables of what all tows together tell, by name."""
 
 
 @dataclass(frozen=True)
@@ -103,21 +119,15 @@ def as_tables(
             pl.exclude("speed_ratio", "dof"),
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
-        curve_points=curve_points(outcomes, bounds).select(name, pl.all())
-        if with_bands
-        else pl.DataFrame(),
-        season_links=_season_links(estimated).select(name, pl.all()),
-        retow_choice=_retow_choice(estimated).select(name, pl.all()),
-        season_steps=_season_steps(estimated).select(name, pl.all()),
+        curve_points=together([curve_points(outcomes, bounds)]) if with_bands else pl.DataFrame(),
         season_diagnosis=diagnosis.select(name, pl.all()),
-        tow_instruments=_instruments(estimated).select(name, pl.all()),
-        best_estimate_weights=_weights(estimated).select(name, pl.all()),
+        **{table: rows.select(name, pl.all()) for table, rows in _of_all_tows(estimated).items()},
         factors=estimated,
     )
 
 
 def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
-    means, has_window, tow = o.means, o.windows.found, o.batch.tow
+    means, has_window, tow = o.means, o.windows.exists, o.batch.tow
     on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
     log1 = np.where(has_window, means.log1_m_s, 1.0)
     has_limits = o.steps.window.rule != "all"
@@ -132,16 +142,16 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
         "end_wind_m_s": o.windows.ends.wind_m_s,
         "speed_factor": o.speed_factor,
         "speed_m_s": o.speed_m_s,
-        "gross_cw_kg_m": o.gross_kg_m,
-        "inertia_cw_kg_m": o.inertia_kg_m,
+        "gross_cw_kg_m": o.by_true_speed(means.gross_kg_m),
+        "inertia_cw_kg_m": o.by_true_speed(means.inertia_kg_m),
         "air_cw_kg_m": o.air_kg_m,
         "still_air_cw_kg_m": o.still_air_kg_m,
         "temperature_cw_kg_m": o.temperature_kg_m,
         "wind_coefficient_ahead": o.ahead,
         "wind_coefficient_behind": o.behind,
         "cw_kg_m": o.cw_kg_m,
-        "cw_sd": o.sd_kg_m,
-        "u_ratio": run_point_ratio(o) if pooled else np.full(len(tow), np.nan),
+        "cw_sd": o.by_true_speed(means.sd_kg_m),
+        "u_ratio": run_point_ratio(o) if pooled else np.nan,
         "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
         "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
         "log2_ratio": np.where(log2, log2_ratio, np.nan),
@@ -152,8 +162,8 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
         pl.Series("lost_s", o.batch.lost_s),
         *(_column(name, values, has_window) for name, values in numbers.items()),
         _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), has_window & has_limits),
-        _column("gps_ratio", o.means.gps_m_s / log1, has_window),
-        pl.Series("gps_delay_s", o.means.gps_delay_s, pl.Int8),
+        _column("gps_ratio", means.gps_m_s / log1, has_window),
+        pl.Series("gps_delay_s", means.gps_delay_s, pl.Int8),
         _column("fitted_cw_kg_m", on_curve, has_window & o.curves.converged[tow]),
         pl.Series("cut_reason", o.windows.reasons, pl.String),
         pl.Series("used", o.used),
@@ -164,8 +174,8 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
 def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     tows = o.batch.tows
     declared = o.batch.of_tow("declared_speed_m_s")
-    cw = o.curves.cw_at(declared)
-    sound = o.curves.converged & np.isfinite(cw)
+    cw = o.cw_at_declared
+    sound = np.isfinite(cw)
     mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
     lo, hi = (mine[name].fill_null(np.nan).to_numpy() for name in ("lo_ratio", "hi_ratio"))
     b_interval = curve.b_interval(o.points, o.free, scatter_of(o, pooled))
@@ -188,14 +198,10 @@ def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     ).with_columns(
         *(_column(name, values, sound) for name, values in numbers.items()),
         _column("b_m_s", o.curves.b_m_s, sound & o.curves.b_determined),
-        _column("calibration_factor", o.calibration_factor, _calibrated(o)),
+        _column("calibration_factor", o.calibration_factor, o.steps.calibration.rule != "none"),
         pl.Series("b_capped", o.curves.b_capped),
         pl.Series("runs_used", o.batch.count(o.used), pl.Int8),
     )
-
-
-def _calibrated(o: Outcome) -> BoolArray:
-    return np.full(o.batch.size, o.steps.calibration.rule != "none")
 
 
 def _log_factors(o: Outcome, estimated: SeasonFactors | None) -> pl.DataFrame:
@@ -247,19 +253,20 @@ def _factor_row(o: Outcome, season: int, estimated: SeasonFactors | None) -> Fac
     return season, factor, None, None, "none" if factor == 1.0 else "prescribed"
 
 
-def _season_links(estimated: SeasonFactors | None) -> pl.DataFrame:
-    """What each estimated factor rests on; no rows where nothing was estimated."""
+def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
+    """The tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
+    schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
     if estimated is None:
-        return pl.DataFrame(schema=LINK_SCHEMA)
-    rows = pl.concat([estimated.factors, other_log_factors(estimated)], how="diagonal_relaxed")
-    return rows.select(pl.col(name).cast(kind) for name, kind in LINK_SCHEMA.items())
-
-
-def _season_steps(estimated: SeasonFactors | None) -> pl.DataFrame:
-    """Whether a season's step is the log's or the load cell's; no rows without an estimate."""
-    if estimated is None:
-        return pl.DataFrame(schema=STEP_SCHEMA)
-    return estimated.steps
+        return {name: pl.DataFrame(schema=schema) for name, schema in schemas.items()}
+    links = pl.concat([estimated.factors, other_log_factors(estimated)], how="diagonal_relaxed")
+    of_links = schemas["season_links"].items()
+    return {
+        "season_links": links.select(pl.col(column).cast(kind) for column, kind in of_links),
+        "retow_choice": retow_choice(estimated),
+        "season_steps": estimated.steps,
+        "tow_instruments": tow_instruments(estimated),
+        "best_estimate_weights": estimated.weights,
+    }
 
 
 def _diagnosis(estimated: SeasonFactors | None, outcomes: Sequence[Outcome]) -> pl.DataFrame:
@@ -269,31 +276,7 @@ def _diagnosis(estimated: SeasonFactors | None, outcomes: Sequence[Outcome]) -> 
     return both.sort("season", "part", "instrument")
 
 
-def _instruments(estimated: SeasonFactors | None) -> pl.DataFrame:
-    """What was found of the instruments of each tow; no rows without an estimate."""
-    return (
-        pl.DataFrame(schema=INSTRUMENT_SCHEMA) if estimated is None else tow_instruments(estimated)
-    )
-
-
-def _weights(estimated: SeasonFactors | None) -> pl.DataFrame:
-    """What each best estimate rests on; no rows without an estimate."""
-    return pl.DataFrame(schema=WEIGHT_SCHEMA) if estimated is None else estimated.weights
-
-
-INSTRUMENT_SCHEMA = dtypes(TowInstruments, without=["method"])
-WEIGHT_SCHEMA = dtypes(BestEstimateWeights, without=["method"])
-
-
-def _retow_choice(estimated: SeasonFactors | None) -> pl.DataFrame:
-    """The boats whose next tow would narrow the factors most; no rows without an estimate."""
-    return pl.DataFrame(schema=RETOW_SCHEMA) if estimated is None else retow_choice(estimated)
-
-
-LINK_SCHEMA = dtypes(SeasonLinks, without=["method"])
-
-
-def _column(name: str, values: ArrayLike, known: BoolArray) -> pl.Series:
+def _column(name: str, values: ArrayLike, known: BoolArray | bool) -> pl.Series:
     """A column of numbers, null where nothing is known or the number is infinite."""
     numbers = np.asarray(values, dtype=np.float64)
     sound = known & np.isfinite(numbers)

@@ -1,8 +1,7 @@
-"""Windows and means of runs that were found before: half of the time of a recompute goes into them.
+"""Windows and means of runs, kept between recomputes, of which they take half of the time.
 
-Most changes of a method leave them as they are: they depend on few of its options. Only those
-belong here that do not depend on a log factor or on other tows. They are found of all tows
-together, however a method parts them.
+Most changes of a method leave them as they are: they depend on few of its options, and not on log
+factors or other tows. They are made of all tows together, however a method parts them.
 """
 
 from collections import defaultdict
@@ -53,21 +52,21 @@ class RunCache:
         return self._sums[key]
 
     def _of_part(self, batch: Batch, options: Options, find: Callable[[Batch], T]) -> T:
-        """What is found of a batch: the rows that it has of what is found of the whole."""
+        """Windows or means of a batch: its rows of those of the whole that it is part of."""
         key = batch.key, options
         if key not in self._found:
             whole, rows = batch.whole
-            found = find(batch) if whole is batch else self._of_part(whole, options, find)
-            self._found[key] = found if whole is batch else _rows(found, rows)
+            of_whole = find(batch) if whole is batch else self._of_part(whole, options, find)
+            self._found[key] = of_whole if whole is batch else _rows(of_whole, rows)
         known: T = self._found[key]
         return known
 
     def __len__(self) -> int:
-        """Entries held."""
+        """Number of entries."""
         return len(self._found) + len(self._sums)
 
     def let_go(self) -> None:
-        """Lets go of the blocks, which take most of the memory; what was found of them stays."""
+        """Lets go of the blocks, which take most of the memory; windows and means stay."""
         self._sums.clear()
         self._averaged.clear()
 
@@ -82,9 +81,11 @@ def _rule(steps: Steps) -> Window:
     return Window(rule="all") if steps.window.rule == "all" else steps.window
 
 
-def _rows(found: Any, rows: IntArray) -> Any:
-    """The rows of some runs of all arrays of what was found."""
-    if is_dataclass(found) and not isinstance(found, type):
-        parts = {f.name: _rows(getattr(found, f.name), rows) for f in fields(found)}
-        return replace(found, **parts)
-    return tuple(found[row] for row in rows) if isinstance(found, tuple) else found[rows]
+def _rows(of_whole: Any, rows: IntArray) -> Any:
+    """The rows of some runs of all arrays of windows or means."""
+    if is_dataclass(of_whole) and not isinstance(of_whole, type):
+        parts = {f.name: _rows(getattr(of_whole, f.name), rows) for f in fields(of_whole)}
+        return replace(of_whole, **parts)
+    if isinstance(of_whole, tuple):
+        return tuple(of_whole[row] for row in rows)
+    return of_whole[rows]

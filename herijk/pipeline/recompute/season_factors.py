@@ -18,21 +18,23 @@ from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.method.definition import Calibration, Steps, Wind
 from herijk.pipeline.recompute.budget import (
+    covariance_of_curves,
     files_log_sd,
     force_uncertainty,
     pooled_scatter,
+    scatter_of_level,
     stream_scatter,
 )
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
 from herijk.pipeline.season_log import (
-    GROUP,
-    LINE,
     SeasonFactors,
     estimate_season_factors,
     other_log_factors,
 )
+from herijk.pipeline.season_log.network import GROUP
 from herijk.pipeline.steps.calibration import gps_factor
 from herijk.pipeline.steps.speed import log_part
+from herijk.tables.keys import LINE
 
 FEWEST_OF_TYPE: Final = 5
 """A type's own bend is taken from so many anchored tows on."""
@@ -97,7 +99,7 @@ def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
 
 @dataclass(frozen=True)
 class Instruments:
-    """What was estimated of the instruments of some tows, put beside each batch once per log.
+    """What was estimated of the instruments of some tows, matched to each batch once per log.
 
     Attributes:
         rows: of the table `tow_instruments`; None where nothing was estimated.
@@ -105,6 +107,11 @@ class Instruments:
 
     rows: pl.DataFrame | None = None
     _known: dict[tuple[tuple[str, ...], str, bool], TowFactor] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, estimated: SeasonFactors | None) -> "Instruments":
+        """What season factors say of them; nothing without an estimate."""
+        return cls(None if estimated is None else tow_instruments(estimated))
 
     def of_tows(self, batch: Batch, steps: Steps) -> TowFactor:
         """What was estimated of each tow of a batch, as far as its steps ask for it."""
@@ -135,7 +142,7 @@ def _factor_of_tows(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> To
 
 
 def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
-    """What was found of the instruments of each tow; of the other log, by the ratio of both.
+    """What was estimated of the instruments of each tow; of the other log, by the ratio of both.
 
     Returns:
         `tow_id, log`, and the fields of `TowFactor`.
@@ -175,7 +182,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     water = _water_points(o)
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
-    errors = curve.covariance(water, curves, pooled_scatter(o), speed)
+    errors = covariance_of_curves(water, curves, pooled_scatter(o), scatter_of_level(o), speed)
     sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
     sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
@@ -230,7 +237,7 @@ def _water_points(o: Outcome) -> curve.Points:
 
 
 def _other_ln_ratio(o: Outcome) -> FloatArray:
-    """Gives ln(log in use / other log), mean over each tow's runs; NaN where there is none."""
+    """Mean of ln(log in use / other log) over each tow's runs; NaN where there is none."""
     source = o.steps.speed.source
     if source not in OTHER_LOG:
         return np.full(o.batch.size, np.nan)

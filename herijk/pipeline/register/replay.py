@@ -7,7 +7,7 @@ no part of the handicap (presentation R. Pot, 24 January 2015).
 
 import operator
 from dataclasses import dataclass
-from typing import Final, Literal, get_args
+from typing import Final, Literal
 
 import numpy as np
 import polars as pl
@@ -22,7 +22,6 @@ from herijk.tables.frames import dtypes
 from herijk.tables.register import RaceChanges
 
 Fatigue = Literal["none", "known", "extend"]
-FATIGUES: Final = get_args(Fatigue)
 
 RACE: Final = ("race", "race_date")
 CLASSIFICATION: Final = (*RACE, "crew_class")

@@ -31,22 +31,8 @@ of the load cell, with what its days share; z is its zero. Faults are rare and l
 or not, and what cannot be told apart is averaged over.
 """
 
-from herijk.pipeline.season_log.assumed import Prior, Settings
 from herijk.pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
-from herijk.pipeline.season_log.network import GROUP
 from herijk.pipeline.season_log.other_log import other_log_factors
 from herijk.pipeline.season_log.retow_design import retow_choice
-from herijk.pipeline.season_log.scale import scale_effect
-from herijk.tables.keys import LINE
 
-__all__ = [
-    "GROUP",
-    "LINE",
-    "Prior",
-    "SeasonFactors",
-    "Settings",
-    "estimate_season_factors",
-    "other_log_factors",
-    "retow_choice",
-    "scale_effect",
-]
+__all__ = ["SeasonFactors", "estimate_season_factors", "other_log_factors", "retow_choice"]

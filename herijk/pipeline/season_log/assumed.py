@@ -1,4 +1,4 @@
-"""What is assumed about logs, boats and GPS before looking at the data. No arithmetic here."""
+"""The priors on logs, load cells, boats and GPS. No arithmetic here."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -6,7 +6,7 @@ from typing import Final
 
 @dataclass(frozen=True)
 class Prior:
-    """What is assumed of a number before the data: mean and standard deviation of its prior."""
+    """A prior: mean and standard deviation."""
 
     mean: float
     sd: float
@@ -14,7 +14,7 @@ class Prior:
 
 @dataclass(frozen=True)
 class Settings:
-    """What is assumed before looking at the data. Standard deviations, unless it says otherwise.
+    """All priors. Standard deviations, unless it says otherwise.
 
     Attributes:
         era_starts: first season of each era of logs; an era has one between-tow log variance.
@@ -103,7 +103,7 @@ class Settings:
 
     @property
     def change_counts(self) -> tuple[float, ...]:
-        """What each of them counts for: gaps and tows."""
+        """How many gaps and tows each of these shares counts for."""
         return self.changed_gaps, self.askew_tows, self.askew_tows
 
 

@@ -17,7 +17,7 @@ def day_variance(told: list[Told], covariance: FloatArray, day: IntArray) -> flo
     C. R. Rao (1971), Estimation of variance and covariance components, J. Multivariate Analysis 1.
 
     Args:
-        told: what boats say at the mode.
+        told: the density of the boats at the mode.
         covariance: (unknowns, unknowns) there.
         day: (tows,) index of each tow's day.
     """

@@ -4,20 +4,20 @@ Every season has them all, dGPS or not: dGPS anchors speed and nothing else. Whe
 told from another, both say so.
 """
 
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.quantiles import LEVEL
 from herijk.pipeline.season_log.effects import (
     CHANGE,
     FLEET,
     FORCE,
     GPS_SCALE,
     LOG,
-    OF_BOATS,
     ZERO,
     ZERO_DRIFT,
 )
@@ -27,7 +27,6 @@ from herijk.pipeline.season_log.posterior import Posterior, Problem
 from herijk.tables.frames import dtypes
 from herijk.tables.season_log import SeasonDiagnosis, SeasonSteps
 
-LEVEL: Final = 0.95
 FOUND: Final = 0.5
 """A fault of this probability is in the model."""
 POSSIBLE: Final = 0.1
@@ -45,13 +44,14 @@ NOT_SETTLED: Final = "not settled"
 USUAL_CALIBRATION: Final = 0.02
 """Size of ln(dGPS / log) that logs normally keep within (Sleepproef 2017, "IJking snelheid")."""
 FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
-_VERDICT: Final = ("season", "part", "instrument", "verdict")
+Key: TypeAlias = tuple[int, int, str]
+"""Season, part of it and instrument."""
 
 STEP_SCHEMA: Final = dtypes(SeasonSteps, without=["method"])
 DIAGNOSIS_SCHEMA: Final = dtypes(SeasonDiagnosis, without=["method"])
 
 
-def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -> pl.DataFrame:
+def season_diagnosis(posterior: Posterior) -> pl.DataFrame:
     """The diagnosis of every season.
 
     Returns:
@@ -63,21 +63,18 @@ def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -
         is `estimated` or `not determined`; a distance of 4 is an `alarm`. Where the search did not
         come to rest, all are `not settled`. `alarm`: a person should look.
     """
-    keys: dict[tuple[int, int, str], list[int]] = {}
+    parts = posterior.problem.network.groups["part"]
+    keys: dict[Key, list[int]] = {}
     for column, place in enumerate(posterior.places):
-        unknown = problem.unknowns[place]
+        unknown = posterior.problem.unknowns[place]
         if unknown.season is not None:
-            part = 0 if unknown.group is None else network.groups["part"][unknown.group]
+            part = 0 if unknown.group is None else parts[unknown.group]
             keys.setdefault((unknown.season, part, unknown.name), []).append(column)
-    rows = [
-        _row(problem, posterior, network, key, columns) for key, columns in sorted(keys.items())
-    ]
+    rows = [_row(posterior, key, columns) for key, columns in sorted(keys.items())]
     return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA, orient="row")
 
 
-def season_steps(
-    problem: Problem, posterior: Posterior, network: Network, diagnosis: pl.DataFrame
-) -> pl.DataFrame:
+def season_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
     """Whether the step of a season against the others comes from the log or from the load cell.
 
     Returns:
@@ -85,18 +82,19 @@ def season_steps(
         `force_step`, the part of the load cell, with standard deviations. `cause` is
 
         - `force` where a fault of the load cell is likelier than not;
-        - `not told` where one cannot be told, where it looks like a stream that runs with the boat
-          both ways, where the season is not determined or the search did not settle, or where a
-          fault of the load cell would not show and one no larger than usual could be the whole
-          step;
+        - `not told` where one cannot be told, or looks like a stream that runs with the boat both
+          ways; where the season is not determined, or the search did not settle; and where a fault
+          of the load cell would not show, and one no larger than usual could be the whole step;
         - `log` where the level differs by more than twice its standard deviation;
         - else `none`.
     """
-    names = np.array([problem.unknowns[i].name for i in posterior.places])
-    level = problem.design(posterior.fit.slopes, posterior.places)[:, LEVEL_NUMBER]
-    instruments = np.where(np.isin(names, tuple(OF_BOATS)), 0.0, level)
-    forces = np.where(np.isin(names, FORCES), instruments, 0.0)
-    verdicts = {(r[0], r[1], r[2]): r[3] for r in diagnosis.select(*_VERDICT).iter_rows()}
+    network, settings = posterior.problem.network, posterior.problem.settings
+    instruments = np.where(posterior.of_boats, 0.0, posterior.design[:, LEVEL_NUMBER])
+    forces = np.where(np.isin(posterior.names, FORCES), instruments, 0.0)
+    verdicts = {
+        tuple(key): verdict
+        for *key, verdict in diagnosis.select("season", "part", "instrument", "verdict").rows()
+    }
     rows = []
     placed = network.tows.select(GROUP).with_row_index("row")
     for key, part in placed.group_by(GROUP, maintain_order=True):
@@ -109,7 +107,7 @@ def season_steps(
         lost = of_log == NOT_DETERMINED or not posterior.fit.settled
         hidden = verdicts.get((season, 0, FORCE)) == WOULD_NOT_SHOW
         streams = _may_be_a_stream(network, season, force)
-        lost |= hidden and 2.0 * step_sd < abs(step) < USUAL_SIZES * problem.settings.force_fault_sd
+        lost |= hidden and 2.0 * step_sd < abs(step) < USUAL_SIZES * settings.force_fault_sd
         rows.append(
             dict(zip(GROUP, key, strict=True))
             | {
@@ -137,8 +135,6 @@ def _may_be_a_stream(network: Network, season: int, force: float) -> bool:
     A stream that runs with the boat both ways, or against it, does that: it makes dGPS over log
     unusual, and Cw err the other way.
     """
-    if "own_calibration_ln" not in network.tows.columns:
-        return False
     own = network.tows.filter(season=season)["own_calibration_ln"].drop_nulls()
     ln_y = 0.0 if own.is_empty() else float(own.to_numpy().mean())
     return abs(ln_y) > USUAL_CALIBRATION and force * ln_y < 0.0
@@ -152,25 +148,19 @@ def _cause(of_force: set[str | None], lost: bool, steps: bool, may_be_a_stream: 
     return "log" if steps else "none"
 
 
-def _row(
-    problem: Problem,
-    posterior: Posterior,
-    network: Network,
-    key: tuple[int, int, str],
-    columns: list[int],
-) -> dict[str, object]:
+def _row(posterior: Posterior, key: Key, columns: list[int]) -> dict[str, object]:
     """One season and instrument: what all its unknowns add up to."""
     season, part, name = key
-    fit, k = posterior.fit, len(posterior.fit.active)
+    fit, k, network = posterior.fit, len(posterior.fit.active), posterior.problem.network
     faults = [c - k for c in columns if c >= k]
     mean = float(posterior.mean[columns].sum())
     variance = float(posterior.covariance[np.ix_(columns, columns)].sum())
     half = float(scipy.special.ndtri(0.5 * (1.0 + LEVEL))) * np.sqrt(max(variance, 0.0))
     chance = min(float(posterior.chance[faults].sum()), 1.0) if faults else None
-    distance = _distance(problem, posterior, columns)
+    distance = _distance(posterior, columns)
     shows = bool(posterior.shows[faults].any())
     verdict = _verdict(network, key, chance, distance, shows) if fit.settled else NOT_SETTLED
-    confused = _confused_with(problem, posterior, columns)
+    confused = _confused_with(posterior, columns)
     if name == FORCE and verdict == FAULT and _may_be_a_stream(network, season, mean):
         confused = ", ".join(filter(None, (f"{GPS_SCALE} {season}", confused)))
     return {
@@ -185,15 +175,15 @@ def _row(
         "distance_sd": distance,
         "verdict": verdict,
         "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD, NOT_SETTLED),
-        "first_tow": _first_tow(problem, posterior, network, faults, chance),
+        "first_tow": _first_tow(posterior, faults, chance),
         "rests_on": _rests_on(network, season),
         "confused_with": confused,
     }
 
 
-def _distance(problem: Problem, posterior: Posterior, columns: list[int]) -> float | None:
+def _distance(posterior: Posterior, columns: list[int]) -> float | None:
     """How far what the archive shows of an unknown that there always is lies from its prior."""
-    fit = posterior.fit
+    fit, problem = posterior.fit, posterior.problem
     always = [c for c in columns if c < len(fit.active) and fit.active[c] in problem.always]
     if not always or problem.unknowns[fit.active[always[0]]].name == LOG:
         return None
@@ -203,11 +193,7 @@ def _distance(problem: Problem, posterior: Posterior, columns: list[int]) -> flo
 
 
 def _verdict(
-    network: Network,
-    key: tuple[int, int, str],
-    chance: float | None,
-    distance: float | None,
-    shows: bool,
+    network: Network, key: Key, chance: float | None, distance: float | None, shows: bool
 ) -> str:
     season, part, name = key
     if name == LOG:
@@ -224,20 +210,15 @@ def _verdict(
     return SOUND if shows else WOULD_NOT_SHOW
 
 
-def _first_tow(
-    problem: Problem,
-    posterior: Posterior,
-    network: Network,
-    faults: list[int],
-    chance: float | None,
-) -> str | None:
+def _first_tow(posterior: Posterior, faults: list[int], chance: float | None) -> str | None:
     """First tow after the likeliest change of a log or of all boats, if there seems to be one."""
+    problem = posterior.problem
     changes = [f for f in faults if problem.unknowns[problem.faults[f]].name in (CHANGE, FLEET)]
     if not changes or chance is None or chance < POSSIBLE:
         return None
     likeliest = max(changes, key=lambda f: float(posterior.chance[f]))
     change = problem.unknowns[problem.faults[likeliest]]
-    after = network.tows.filter(pl.Series(change.share > 0), season=change.season)
+    after = problem.network.tows.filter(pl.Series(change.share > 0), season=change.season)
     return str(after.sort("day", "tow_id")["tow_id"][0])
 
 
@@ -258,9 +239,9 @@ def _rests_on(network: Network, season: int) -> str:
     return ", ".join(told)
 
 
-def _confused_with(problem: Problem, posterior: Posterior, columns: list[int]) -> str | None:
+def _confused_with(posterior: Posterior, columns: list[int]) -> str | None:
     """Other faults that would explain as much, likeliest first; then what would pass for them."""
-    k = len(posterior.fit.active)
+    problem, k = posterior.problem, len(posterior.fit.active)
     faults = [c - k for c in columns if c >= k]
     mine = [c for c in columns if c < k]
     chance: FloatArray = posterior.instead[faults].sum(axis=0) + posterior.instead[:, faults].sum(

@@ -20,7 +20,6 @@ import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.season_log.assumed import Settings
-from herijk.pipeline.season_log.likelihood import BEND, GPS, LEVEL
 from herijk.pipeline.season_log.network import Network
 from herijk.pipeline.season_log.scale import LEAST_MARGIN
 
@@ -71,7 +70,6 @@ class Unknown(NamedTuple):
     Attributes:
         name: what it is.
         season, group: which it is of, where it is of one; `group` is a row of `Network.groups`.
-        place: first tow after a change, among the group's tows in order of date.
         share: (tows,) how much of it each tow has.
         sd: standard deviation of the prior; of a fault, if there is one.
         chance: that there is such a fault; 1 for what there always is.
@@ -81,7 +79,6 @@ class Unknown(NamedTuple):
     name: str
     season: int | None
     group: int | None
-    place: int | None
     share: FloatArray
     sd: float
     chance: float = 1.0
@@ -99,29 +96,28 @@ def _always(network: Network, settings: Settings) -> Iterator[Unknown]:
     for number, year in enumerate(network.groups["season"]):
         mine = network.group == number
         sd, mean = _log_prior(network, number, settings)
-        yield Unknown(LOG, year, number, None, mine * 1.0, sd, mean=mean)
-        yield Unknown(SEASON_BEND, year, number, None, mine * 1.0, settings.season_bend_sd)
+        yield Unknown(LOG, year, number, mine * 1.0, sd, mean=mean)
+        yield Unknown(SEASON_BEND, year, number, mine * 1.0, settings.season_bend_sd)
         if network.has_gps[number]:
             with_gps = mine & np.isfinite(network.numbers("gps_ln_ratio"))
             sd = float(np.hypot(settings.gps_season_sd, excess[with_gps].mean() / np.sqrt(3.0)))
-            yield Unknown(GPS_SCALE, year, number, None, mine * 1.0, sd)
+            yield Unknown(GPS_SCALE, year, number, mine * 1.0, sd)
     for year in np.unique(season).astype(int).tolist():
-        yield Unknown(
-            FORCE, year, None, None, (season == year) * 1.0, _force_sd(network, year, settings)
-        )
+        sd = _force_sd(network, year, settings)
+        yield Unknown(FORCE, year, None, (season == year) * 1.0, sd)
         unrecorded = (season == year) & ~network.tows["temperature_known"].to_numpy()
         if unrecorded.any():
-            yield Unknown(WATER, year, None, None, unrecorded * 1.0, settings.water_sd)
+            yield Unknown(WATER, year, None, unrecorded * 1.0, settings.water_sd)
     for name, values, prior in (
         (AGEING, season - settings.reference_year, settings.ageing_per_year),
         (WEIGHT, ln_size(network, "weight_kg"), settings.weight_elasticity),
         (LENGTH, ln_size(network, "waterline_length_m"), settings.length_elasticity),
     ):
-        yield Unknown(name, None, None, None, values, prior.sd, mean=prior.mean)
+        yield Unknown(name, None, None, values, prior.sd, mean=prior.mean)
     kinds = network.tows["boat_type"].fill_null("")
     for kind in kinds.unique().sort():
         mine = (kinds == kind).to_numpy()
-        yield Unknown(TYPE_BEND, None, None, None, mine * 1.0, settings.type_bend_sd)
+        yield Unknown(TYPE_BEND, None, None, mine * 1.0, settings.type_bend_sd)
 
 
 def _log_prior(network: Network, group: int, settings: Settings) -> tuple[float, float]:
@@ -135,8 +131,6 @@ def _log_prior(network: Network, group: int, settings: Settings) -> tuple[float,
 
 def _force_sd(network: Network, year: int, settings: Settings) -> float:
     """Prior standard deviation of a season's load cell: by its records where there are any."""
-    if "force_sd" not in network.tows.columns:
-        return settings.force_sd
     recorded = network.tows.filter(season=year)["force_sd"].drop_nulls()
     return settings.force_sd if recorded.is_empty() else float(np.median(recorded.to_numpy()))
 
@@ -147,34 +141,34 @@ def _faults(network: Network, settings: Settings) -> Iterator[Unknown]:
     years = np.unique(season).astype(int).tolist()
     for year in years:
         mine = season == year
-        yield Unknown(FORCE, year, None, None, mine * 1.0, settings.force_fault_sd, chance)
-        yield Unknown(ZERO, year, None, None, mine * 1.0, settings.zero_fault_n, chance)
+        yield Unknown(FORCE, year, None, mine * 1.0, settings.force_fault_sd, chance)
+        yield Unknown(ZERO, year, None, mine * 1.0, settings.zero_fault_n, chance)
         drift = _within(day, mine)
         if drift.any():
-            yield Unknown(ZERO_DRIFT, year, None, None, drift, settings.zero_fault_n, chance)
+            yield Unknown(ZERO_DRIFT, year, None, drift, settings.zero_fault_n, chance)
     for year in years[1:]:
         later = (season >= year) * 1.0
-        yield Unknown(FLEET, year, None, None, later, settings.fleet_fault_sd, chance)
+        yield Unknown(FLEET, year, None, later, settings.fleet_fault_sd, chance)
     for year in years:
         mine = season == year
         starts = _starts(day[mine])
-        for place, first in enumerate(starts):
+        for first in starts:
             later = ((season > year) | (mine & (day >= first))) * 1.0
             sd, each = settings.fleet_fault_sd, chance / len(starts)
-            yield Unknown(FLEET, year, None, place, later, sd, each)
+            yield Unknown(FLEET, year, None, later, sd, each)
     for number, year in enumerate(network.groups["season"]):
         mine = network.group == number
         if network.has_gps[number]:
-            yield Unknown(GPS_SCALE, year, number, None, mine * 1.0, settings.gps_fault_sd, chance)
+            yield Unknown(GPS_SCALE, year, number, mine * 1.0, settings.gps_fault_sd, chance)
         drift = _within(day, mine)
         if not drift.any():
             continue
-        yield Unknown(TREND, year, number, None, drift, settings.trend_fault_sd, chance)
+        yield Unknown(TREND, year, number, drift, settings.trend_fault_sd, chance)
         starts = _starts(day[mine])
-        for place, first in enumerate(starts):
+        for first in starts:
             after = (mine & (day >= first)) * 1.0
             sd, each = settings.change_fault_sd, chance / len(starts)
-            yield Unknown(CHANGE, year, number, place, after, sd, each)
+            yield Unknown(CHANGE, year, number, after, sd, each)
 
 
 def _within(day: FloatArray, mine: BoolArray) -> FloatArray:
@@ -237,8 +231,7 @@ def slopes(q: FloatArray, force_n: FloatArray, ln_factor: FloatArray) -> Slopes:
     one, nothing = np.ones(len(q)), np.zeros(len(q))
 
     def numbers(ln_cw: FloatArray, q_log: FloatArray, gps: FloatArray) -> FloatArray:
-        columns = {LEVEL: ln_cw, BEND: q_log, GPS: gps}
-        return np.stack([columns[place] for place in range(3)], axis=1)
+        return np.stack([ln_cw, q_log, gps], axis=1)
 
     by_bend = numbers((y2 - 1.0) / margin, y2 / margin**2, nothing)
     return Slopes(

@@ -17,7 +17,7 @@ from herijk.pipeline.season_log.diagnosis import (
     season_diagnosis,
     season_steps,
 )
-from herijk.pipeline.season_log.effects import AGEING, WAYS
+from herijk.pipeline.season_log.effects import AGEING
 from herijk.pipeline.season_log.network import GROUP, Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem, solve
 from herijk.pipeline.season_log.tows import best_estimates, instrument_errors
@@ -100,8 +100,9 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
             `boat_type` (may be null); `altered`, reported, since the line's previous tow;
             `declared_speed_m_s`; `gps_ln_ratio`, ln(mean GPS / log), null without, with `gps_sd`,
             its random part; `anchored`, calibrated on dGPS: no log error is left;
-            `others_calibration_ln`, ln factor of the log by other tows that are, null without, with
-            `others_calibration_sd` (both may be absent);
+            `own_calibration_ln`, ln factor of the log by dGPS, null where it is not calibrated;
+            `others_calibration_ln`, the same by other tows, null without, with its `_sd`;
+            `force_sd`, of the load cell by its record, null without one;
             `temperature_known`, of the water.
 
     Returns:
@@ -120,24 +121,21 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     _refuse_unknown(tows)
     network = Network.of(tows)
     posterior = solve(Problem.of(network, USUAL))
-    problem = posterior.problem
     fit = posterior.fit
-    ageing = int(np.flatnonzero([problem.unknowns[i].name == AGEING for i in fit.active])[0])
+    ageing = int(np.flatnonzero(posterior.names == AGEING)[0])
     ageing_per_year = float(posterior.mean[ageing])
     ageing_sd = float(np.sqrt(posterior.covariance[ageing, ageing]))
     second = without_boats(network, (ageing_per_year, ageing_sd), USUAL)
-    along = _group_means(problem, posterior, network)
+    along = _group_means(posterior)
     covariance = along @ posterior.covariance @ along.T
-    mode = _weakest_mode(covariance)
-    change = _without_each_boat(network, posterior)
-    instruments = instrument_errors(problem, posterior, network, change)
-    best, weights = best_estimates(problem, posterior, network, instruments)
+    change = _without_each_boat(posterior)
+    instruments = instrument_errors(posterior, change)
+    best, weights = best_estimates(posterior, instruments)
     eras = len(USUAL.era_starts)
     *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
-    diagnosis = season_diagnosis(problem, posterior, network)
-    numbers = _numbers(network, posterior, along, mode, change)
+    diagnosis = season_diagnosis(posterior)
     return SeasonFactors(
-        factors=_described(numbers, network, second, fit.settled),
+        factors=_described(posterior, along, covariance, change, second),
         covariance=covariance,
         tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
         calibration_sd=calibration_sd,
@@ -150,7 +148,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
         best=best,
         weights=weights,
         diagnosis=diagnosis,
-        steps=season_steps(problem, posterior, network, diagnosis),
+        steps=season_steps(posterior, diagnosis),
     )
 
 
@@ -170,10 +168,10 @@ def _refuse_unknown(tows: pl.DataFrame) -> None:
             )
 
 
-def _group_means(problem: Problem, posterior: Posterior, network: Network) -> FloatArray:
+def _group_means(posterior: Posterior) -> FloatArray:
     """Mean ln factor over the tows of each determined group as a sum of unknowns."""
-    speed = [WAYS[problem.unknowns[i].name] == "speed" for i in posterior.places]
-    share = problem.share[:, posterior.places] * np.array(speed)
+    network = posterior.problem.network
+    share = posterior.problem.share[:, posterior.places] * posterior.of_log
     groups = np.flatnonzero(network.determined)
     means = [share[network.group == number].mean(axis=0) for number in groups]
     return np.array(means).reshape(len(groups), len(posterior.places))
@@ -188,100 +186,75 @@ def _weakest_mode(covariance: FloatArray) -> FloatArray:
     return np.asarray(mode * sign)
 
 
-def _without_each_boat(network: Network, posterior: Posterior) -> FloatArray:
+def _without_each_boat(posterior: Posterior) -> FloatArray:
     """Change of every unknown of the fit when a boat is left out, (boats, unknowns)."""
-    fit = posterior.fit
-    clusters = int(network.cluster.max()) + 1
+    fit, cluster = posterior.fit, posterior.problem.network.cluster
+    clusters = int(cluster.max()) + 1
     information = np.zeros((clusters, len(fit.active), len(fit.active)))
     score = np.zeros((clusters, len(fit.active)))
     for told in fit.told:
-        whose = network.cluster[told.patterns.tow[:, 0]]
+        whose = cluster[told.patterns.tow[:, 0]]
         np.add.at(information, whose, told.information)
         np.add.at(score, whose, np.einsum("bi,bip->bp", told.mean_pull, told.slope))
     left = np.linalg.inv(fit.covariance) - information
     return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
 
 
-def _numbers(
-    network: Network,
+def _described(
     posterior: Posterior,
     along: FloatArray,
-    weakest_mode: FloatArray,
+    covariance: FloatArray,
     change: FloatArray,
+    second: Second,
 ) -> pl.DataFrame:
-    """What the joint estimate says about each group; null where it is not determined."""
+    """The factor of each group with its interval and what it rests on; see `SeasonFactors`.
+
+    Args:
+        along: as `_group_means` gives it; `covariance`: of those means.
+        change: of every unknown of the fit without each boat, (boats, unknowns).
+        second: the estimate without boats.
+    """
+    network, fit = posterior.problem.network, posterior.fit
     known = np.flatnonzero(network.determined)
-    k = len(posterior.fit.active)
-    ln_factor = along @ posterior.mean
-    lost = network.critical[:, known]
-    moved = np.expm1(change @ along[:, :k].T)
-    move = np.where(lost, np.inf, np.abs(moved) * np.exp(ln_factor))
-    influence = move.max(axis=0, initial=0.0) if len(known) else np.zeros(0)
-    placed = {
-        "ln_factor": ln_factor,
-        "ln_sd": np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along)),
-        "dof": posterior.fit.dof(along[:, :k]),
-        "influence": np.where(np.isfinite(influence), influence, np.nan),
-        "boat": first_largest(move) if move.size else np.zeros(len(known)),
-        "critical_boats": lost.sum(axis=0),
-        "weakest_mode": weakest_mode,
-    }
-    return network.groups.with_columns(
-        *(_placed(name, values, known, network) for name, values in placed.items()),
-        pl.Series("n_tows", np.bincount(network.group[network.group >= 0]), pl.Int64),
-        pl.Series("n_links", network.links, pl.Int64),
-        pl.Series("component", network.component, pl.Int64),
-        pl.Series("by_gps", network.has_gps | network.calibrated),
-    )
 
+    def placed(values: FloatArray | IntArray) -> pl.Series:
+        """Numbers of the determined groups, null for the others."""
+        column = np.full(network.groups.height, np.nan)
+        column[known] = values
+        return pl.Series(column, dtype=pl.Float64).fill_nan(None)
 
-def _placed(name: str, values: FloatArray, known: IntArray, network: Network) -> pl.Series:
-    """Values of the determined groups as a column of all groups, null for the others."""
-    column = np.full(network.groups.height, np.nan)
-    column[known] = values
-    return pl.Series(name, column, pl.Float64).fill_nan(None)
-
-
-def _described(
-    table: pl.DataFrame, network: Network, second: Second, settled: bool
-) -> pl.DataFrame:
-    """Factors and intervals from the ln factors, with where they come from."""
-    names = pl.Series(network.boat_names, dtype=pl.String)
-    boat = table["boat"].cast(pl.Int64)
-    source = (
-        pl.when(pl.col("ln_factor").is_null())
-        .then(pl.lit(NOT_DETERMINED))
-        .when(not settled)
-        .then(pl.lit(NOT_SETTLED))
-        .when((pl.col("n_links") == 0) & pl.col("by_gps"))
-        .then(pl.lit(GPS))
-        .otherwise(pl.lit(ESTIMATED))
-    )
-    half = _half_width(table["ln_sd"], table["dof"])
+    of_fit, mean = along[:, : len(fit.active)], along @ posterior.mean
+    critical = network.critical[:, known]
+    move = np.where(critical, np.inf, np.abs(np.expm1(change @ of_fit.T)) * np.exp(mean))
+    influence = move.max(axis=0, initial=0.0)
+    boat = first_largest(move) if move.size else np.zeros(len(known))
+    ln_factor, dof = placed(mean), placed(fit.dof(of_fit))
+    sd = placed(np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along)))
+    half = _half_width(sd, dof)
     other = pl.Series(np.where(second.known, second.ln_factor, np.nan)).fill_nan(None)
     other_sd = pl.Series(second.sd)
     other_half = _half_width(other_sd, pl.Series(second.dof))
-    ln_factor = table["ln_factor"]
-    apart = (ln_factor - other) / (table["ln_sd"] ** 2 + other_sd**2).sqrt()
-    return table.select(
+    by_gps_alone = (network.links == 0) & (network.has_gps | network.calibrated)
+    source = np.where(by_gps_alone, GPS, ESTIMATED) if fit.settled else NOT_SETTLED
+    return network.groups.select(
         *GROUP,
-        ln_factor.exp().alias("factor"),
-        (ln_factor - half).exp().alias("lo"),
-        (ln_factor + half).exp().alias("hi"),
-        source.alias("source"),
-        "ln_sd",
-        "dof",
-        "n_tows",
-        "n_links",
-        "component",
-        "influence",
-        names.gather(boat).alias("influence_boat"),
-        pl.col("critical_boats").cast(pl.Int64),
-        "weakest_mode",
-        other.exp().alias("factor_no_boats"),
-        (other - other_half).exp().alias("lo_no_boats"),
-        (other + other_half).exp().alias("hi_no_boats"),
-        apart.alias("agreement"),
+        factor=ln_factor.exp(),
+        lo=(ln_factor - half).exp(),
+        hi=(ln_factor + half).exp(),
+        source=pl.Series(np.where(network.determined, source, NOT_DETERMINED), dtype=pl.String),
+        ln_sd=sd,
+        dof=dof,
+        n_tows=pl.Series(np.bincount(network.group[network.group >= 0]), dtype=pl.Int64),
+        n_links=pl.Series(network.links, dtype=pl.Int64),
+        component=pl.Series(network.component, dtype=pl.Int64),
+        influence=placed(np.where(np.isfinite(influence), influence, np.nan)),
+        influence_boat=pl.Series(network.boat_names).gather(placed(boat).cast(pl.Int64)),
+        critical_boats=placed(critical.sum(axis=0)).cast(pl.Int64),
+        weakest_mode=placed(_weakest_mode(covariance)),
+        factor_no_boats=other.exp(),
+        lo_no_boats=(other - other_half).exp(),
+        hi_no_boats=(other + other_half).exp(),
+        agreement=(ln_factor - other) / (sd**2 + other_sd**2).sqrt(),
     )
 
 

@@ -57,21 +57,21 @@ class Patterns:
     excess_variance: float
 
     @property
-    def found(self) -> IntArray:
+    def changes(self) -> IntArray:
         """Number of alterations, and of tows pulled askew, early and later, (patterns, 3)."""
         early, later = self.askew[:, : self.early], self.askew[:, self.early :]
         return np.stack([x.sum(axis=1) for x in (self.altered, early, later)], axis=1)
 
     @property
     def possible(self) -> IntArray:
-        """How many of each a boat may have, (3,)."""
+        """How many of each a boat can have, (3,)."""
         gaps, tows = self.altered.shape[1], self.askew.shape[1]
         return np.array([gaps, self.early, len(_between(self.early, tows))])
 
     def prior(self, shares: FloatArray) -> FloatArray:
         """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
-        not_found = self.possible - self.found
-        ln_prior = self.found @ np.log(shares) + not_found @ np.log1p(-shares)
+        unchanged = self.possible - self.changes
+        ln_prior = self.changes @ np.log(shares) + unchanged @ np.log1p(-shares)
         return ln_prior - _normalised(ln_prior)[0]
 
 
@@ -151,7 +151,7 @@ class Told:
     slope: FloatArray
 
     def few(self) -> Iterator["Told"]:
-        """The same of a few boats at a time, for what would be too large of all."""
+        """The same for a few boats at a time, where all at once would be too large."""
         arrays = [getattr(self, one.name) for one in fields(self)[1:]]
         for first in range(0, len(self.weight), FEW_BOATS):
             some = slice(first, first + FEW_BOATS)
@@ -160,12 +160,15 @@ class Told:
             yield Told(of_some, *(array[some] for array in arrays))
 
     @property
-    def information(self) -> FloatArray:
-        """Observed information on the unknowns, per boat (Louis 1982)."""
+    def observed_precision(self) -> FloatArray:
+        """Precision of the numbers, less what the pattern being unknown takes off (Louis 1982)."""
         off = self.pull - self.mean_pull[:, None]
-        unsure = np.einsum("bp,bpi,bpj->bij", self.weight, off, off)
-        seen = self.mean_precision - unsure
-        return np.asarray(np.swapaxes(self.slope, 1, 2) @ seen @ self.slope)
+        return np.asarray(self.mean_precision - np.einsum("bp,bpi,bpj->bij", self.weight, off, off))
+
+    @property
+    def information(self) -> FloatArray:
+        """Observed information on the unknowns, per boat."""
+        return np.asarray(np.swapaxes(self.slope, 1, 2) @ self.observed_precision @ self.slope)
 
     @property
     def complete_information(self) -> FloatArray:
@@ -229,7 +232,6 @@ def covariance_of(
     """Covariance of the numbers of each boat.
 
     Args:
-        group: the boats.
         covariance, state, drift_variance: as `tell` takes them.
 
     Returns:

@@ -68,9 +68,9 @@ class Network:
         has_gps = np.zeros(groups.height, dtype=bool)
         has_gps[group_index[loose & tows["gps_ln_ratio"].is_not_null().to_numpy()]] = True
         calibrated = np.zeros(groups.height, dtype=bool)
-        if "others_calibration_ln" in tows.columns:
-            beside = loose & tows["others_calibration_ln"].is_not_null().to_numpy()
-            calibrated[group_index[beside]] = True
+        calibrated[group_index[loose & tows["others_calibration_ln"].is_not_null().to_numpy()]] = (
+            True
+        )
         names = tows["fsn_no"].unique().sort().to_list()
         links, component = _connect(group_index, boat, has_gps | calibrated)
         cluster = index_of(tows, ("fsn_no",))
@@ -92,6 +92,11 @@ class Network:
     def determined(self) -> BoolArray:
         """Groups that are tied to the anchor, shape (groups,)."""
         return np.asarray(self.component == 0)
+
+    @property
+    def log_known(self) -> BoolArray:
+        """Tows whose group is determined, and anchored ones, shape (tows,)."""
+        return np.append(self.determined, [True])[self.group]  # -1, anchored, reads the last
 
     @cached_property
     def critical(self) -> BoolArray:

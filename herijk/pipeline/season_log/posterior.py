@@ -15,12 +15,13 @@ from typing import Final
 import numpy as np
 import scipy
 
-from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.assumed import Settings
 from herijk.pipeline.season_log.days import day_variance, share_of_season
 from herijk.pipeline.season_log.effects import (
     FORCE,
+    OF_BOATS,
     WAYS,
     Slopes,
     Unknown,
@@ -69,6 +70,7 @@ class Problem:
     """The tows of an archive as arrays; n tows.
 
     Attributes:
+        network: the tows.
         observed: (n, 3) level (less its boat's mean), bend and ln(GPS / log).
         given: (n, 3, 3) their random covariance.
         absent: (n, 3, 3) huge variance of numbers that a tow does not have.
@@ -80,6 +82,7 @@ class Problem:
         groups: boats by their number of tows, with what may have changed between these.
     """
 
+    network: Network
     observed: FloatArray
     given: FloatArray
     absent: FloatArray
@@ -112,6 +115,7 @@ class Problem:
         season = network.numbers("season")
         era = np.searchsorted(settings.era_starts, season, side="right") - 1
         return cls(
+            network,
             np.stack(
                 [
                     level - mean,
@@ -201,9 +205,9 @@ class Fit:
 
     Attributes:
         active: (k,) unknowns in the model.
-        state: their values, the ln variances (between tows, of bend, of GPS, of the log per era
-            and where calibrated, then the factor of each season, last the drift of boats per year)
-            and the shares of what changes.
+        state: their values, the ln variances and the shares of what changes. The variances are
+            between tows, of bend, of GPS, of the log per era and where calibrated; then the factor
+            of each season; last the drift of boats per year.
         covariance: (k, k) of the values.
         ln_variance_covariance: of the ln variances.
         told: what the boats say there.
@@ -270,7 +274,6 @@ def fit(
     """Unknowns and variances with given faults in the model.
 
     Args:
-        problem: the archive.
         active: unknowns in the model.
         start: an earlier fit to begin at.
         tolerance: movement below which nothing moves any more.
@@ -414,11 +417,11 @@ def _variance_slopes(
 def _shares(told: list[Told], settings: Settings) -> FloatArray:
     """Shares of gaps with an alteration and of tows askew: their priors and what was found."""
     possible = np.array(settings.change_counts)
-    found = possible * settings.change_shares
+    changes = possible * settings.change_shares
     for t in told:
-        found += (t.weight @ t.patterns.found).sum(axis=0)
+        changes += (t.weight @ t.patterns.changes).sum(axis=0)
         possible += len(t.patterns.tow) * t.patterns.possible
-    return np.asarray(found / possible)
+    return np.asarray(changes / possible)
 
 
 @dataclass(frozen=True)
@@ -426,7 +429,7 @@ class Posterior:
     """What is known of all unknowns, averaged over the faults that there may be.
 
     Attributes:
-        problem: with load cells as uncertain as the days of their seasons show.
+        problem: the archive, with load cells as uncertain as the days of their seasons show.
         fit: with the faults that are likelier than not.
         places: (k + faults,) index of each unknown below: those of the fit, then every fault.
         mean, covariance: of their values; a fault that is not there is 0.
@@ -446,6 +449,26 @@ class Posterior:
     instead: FloatArray
     shows: BoolArray
     taken_for: IntArray
+
+    @cached_property
+    def names(self) -> StrArray:
+        """What each unknown is, (k + faults,)."""
+        return np.array([self.problem.unknowns[i].name for i in self.places])
+
+    @cached_property
+    def design(self) -> FloatArray:
+        """Slopes of each tow's numbers by all unknowns, (n, 3, k + faults)."""
+        return self.problem.design(self.fit.slopes, self.places)
+
+    @cached_property
+    def of_boats(self) -> BoolArray:
+        """Unknowns of boats, (k + faults,); the others are of instruments."""
+        return np.isin(self.names, tuple(OF_BOATS))
+
+    @cached_property
+    def of_log(self) -> BoolArray:
+        """Unknowns that act as the scale of a log does, (k + faults,)."""
+        return np.array([WAYS[name] == "speed" for name in self.names.tolist()])
 
 
 def solve(problem: Problem) -> Posterior:
@@ -480,7 +503,6 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
     a start where no boat had changed it is found; what changed boats do without is left again.
 
     Args:
-        problem: the archive.
         start: where to begin.
         changes: boats may have been altered, and tows pulled askew.
     """
@@ -504,14 +526,14 @@ def _ln_evidence(problem: Problem, fitted: Fit) -> float:
     mean, precision = _prior(problem, fitted.active)
     prior, prior_precision = _variance_prior(problem)
     s, shares = problem.settings, fitted.state.shares
-    found = np.array(s.change_counts) * s.change_shares
-    not_found = np.array(s.change_counts) - found
+    changes = np.array(s.change_counts) * s.change_shares
+    unchanged = np.array(s.change_counts) - changes
     faults = np.intersect1d(fitted.active, problem.faults)
     chance = np.array([problem.unknowns[i].chance for i in faults])
     return float(
         sum(told.ln_density.sum() for told in fitted.told)
-        + found @ np.log(shares)
-        + not_found @ np.log1p(-shares)
+        + changes @ np.log(shares)
+        + unchanged @ np.log1p(-shares)
         - 0.5 * precision @ (fitted.value - mean) ** 2
         - 0.5 * prior_precision @ (fitted.state.ln_variance - prior) ** 2
         + 0.5 * (np.log(precision).sum() + np.linalg.slogdet(fitted.covariance)[1])
@@ -553,9 +575,7 @@ def _candidates(problem: Problem, fitted: Fit) -> tuple[FloatArray, FloatArray, 
     for t in fitted.told:
         boats, n = t.mean_pull.shape
         by = design[t.patterns.tow].reshape(boats, n, -1)
-        off = t.pull - t.mean_pull[:, None]
-        seen = t.mean_precision - np.einsum("bp,bpi,bpj->bij", t.weight, off, off)
-        weighted = seen @ by
+        weighted = t.observed_precision @ by
         across += np.einsum("bik,bif->kf", t.slope, weighted, optimize=True)
         itself += (by * weighted).sum(axis=(0, 1))
         score += np.einsum("bi,bif->f", t.mean_pull, by, optimize=True)
@@ -568,7 +588,7 @@ def _more(
     covariance: FloatArray,
     away: FloatArray,
 ) -> _More:
-    """Every fault added to a normal posterior whose mean is `away` from the fit's."""
+    """Each fault added by itself to a normal posterior whose mean is `away` from the fit's."""
     across, itself, score = candidates
     prior, chance = _faults_prior(problem)
     shift = covariance @ across

@@ -28,17 +28,12 @@ MOST_BOATS: Final = 10
 RETOW_SCHEMA: Final = dtypes(RetowChoice, without=["method"])
 
 
-def retow_choice(estimated: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
+def retow_choice(estimated: SeasonFactors) -> pl.DataFrame:
     """The boats to tow again, the most informative first, each given those before it.
 
-    Of boats that tell as much the first by boat and crew is chosen.
-
-    Every candidate is a boat and crew as it was left after its last reported alteration, towed
-    once, with dGPS, in the season after the last.
-
-    Args:
-        estimated: the season factors, with the tows they were estimated from.
-        most: no more boats than this; fewer where another one would add nothing.
+    Of boats that tell as much, the first by boat and crew is chosen. Every candidate is a boat and
+    crew as it was left after its last reported alteration, towed once, with dGPS, in the season
+    after the last. They are `MOST_BOATS`, or fewer where another one would add nothing.
 
     Returns:
         Rows of `RETOW_SCHEMA`: `seasons` are those without dGPS in which the boat was towed;
@@ -53,7 +48,7 @@ def retow_choice(estimated: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFra
     lines = _lines(network)
     open_to_choice = current.copy()
     rows: list[dict[str, object]] = []
-    for position in range(1, most + 1):
+    for position in range(1, MOST_BOATS + 1):
         shift = tie @ covariance
         gain = (shift**2).sum(axis=1) / ((shift * tie).sum(axis=1) + variance)
         gain[~open_to_choice] = 0.0

@@ -12,28 +12,24 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
-from herijk.pipeline.season_log.effects import FORCE, OF_BOATS, WAYS, ZERO, ZERO_DRIFT, slopes
+from herijk.pipeline.quantiles import LEVEL as INTERVAL_LEVEL
+from herijk.pipeline.season_log.effects import FORCE, ZERO, ZERO_DRIFT, slopes
 from herijk.pipeline.season_log.likelihood import LEVEL, Told
-from herijk.pipeline.season_log.network import Network
 from herijk.pipeline.season_log.posterior import WINDOW, Fit, Posterior, Problem
 
-LEVEL_OF_INTERVALS: Final = 0.95
 BISECTIONS: Final = 40
 FARTHEST_SD: Final = 12.0
 LEAST_WEIGHT: Final = 0.005
 """A smaller share of what an estimate rests on is left out of the list."""
 
 
-def instrument_errors(
-    problem: Problem, posterior: Posterior, network: Network, change: FloatArray
-) -> pl.DataFrame:
+def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     """What the instruments did to each tow.
 
     A fault of the load cell counts from where it is likelier than not; what is less likely is in
     the uncertainty alone.
 
     Args:
-        problem, posterior, network: the archive and what is known of it.
         change: of every unknown of the fit without each boat, (boats, unknowns).
 
     Returns:
@@ -44,20 +40,18 @@ def instrument_errors(
         instruments do to ln Cw, per unit of the elasticity 2 + 2 q; `others_ln_ratio`, change of ln
         Cw with the instruments as the other boats alone show them. In the order of the network.
     """
-    design, of_boats, speed = _design(problem, posterior)
-    level = np.where(of_boats, 0.0, design[:, LEVEL])
+    problem, network, speed = posterior.problem, posterior.problem.network, posterior.of_log
+    level = np.where(posterior.of_boats, 0.0, posterior.design[:, LEVEL])
     share = problem.share[:, posterior.places]
-    names = np.array([problem.unknowns[i].name for i in posterior.places])
     corrected = np.isin(posterior.places, posterior.fit.active) & np.isin(
         posterior.places, problem.faults
     )
     k = len(posterior.fit.active)
     corrected[k:] = False
-    force, zero = corrected & (names == FORCE), corrected & np.isin(names, (ZERO, ZERO_DRIFT))
+    force = corrected & (posterior.names == FORCE)
+    zero = corrected & np.isin(posterior.names, (ZERO, ZERO_DRIFT))
     variance = np.maximum(((level @ posterior.covariance) * level).sum(axis=1), 0.0)
-    loose = network.group >= 0
-    determined = ~loose
-    determined[loose] = network.determined[network.group[loose]]
+    determined = network.log_known
     known = np.sqrt(variance) / (2.0 + 2.0 * problem.q)
     applied = np.where(speed | force | zero, level, 0.0)[:, :k]
     others = -(applied * change[network.cluster]).sum(axis=1)
@@ -97,12 +91,11 @@ def _where(known: BoolArray, name: str, values: FloatArray) -> pl.Series:
 
 
 def best_estimates(
-    problem: Problem, posterior: Posterior, network: Network, instruments: pl.DataFrame
+    posterior: Posterior, instruments: pl.DataFrame
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
     """What all tows of a boat, and all boats, say of ln Cw at each tow.
 
     Args:
-        problem, posterior, network: the archive and what is known of it.
         instruments: as `instrument_errors` gives them.
 
     Returns:
@@ -110,22 +103,21 @@ def best_estimates(
         tow alone with the corrections of `instrument_errors`, then by all; and the shares
         `tow_id, rests_on, weight` that sum to 1 per tow.
     """
-    design, of_boats, _ = _design(problem, posterior)
-    true_level = np.where(of_boats, design[:, LEVEL], 0.0)
+    problem, network = posterior.problem, posterior.problem.network
+    true_level = np.where(posterior.of_boats, posterior.design[:, LEVEL], 0.0)
     away = posterior.mean.copy()
     away[: len(posterior.fit.value)] -= posterior.fit.value
     numbers = np.zeros((len(problem.q), 4))
     shares = []
     for told in (few for every in posterior.fit.told for few in every.few()):
-        found = _of_boats(told, posterior, (design, true_level, away))
-        numbers[told.patterns.tow] = found[0]
+        numbers[told.patterns.tow], weight = _of_boats(told, posterior, true_level, away)
         tows = told.patterns.tow.shape[1]
         shares.append(
             pl.DataFrame(
                 {
                     "tow": np.repeat(told.patterns.tow, tows, axis=1).ravel(),
                     "other": np.tile(told.patterns.tow, (1, tows)).ravel(),
-                    "weight": found[1].ravel(),
+                    "weight": weight.ravel(),
                 }
             )
         )
@@ -134,10 +126,7 @@ def best_estimates(
     )
     ln_cw, sd, lo, hi = numbers.T
     names = network.tows["tow_id"]
-    loose = network.group >= 0
-    lost = np.zeros(len(loose), dtype=bool)
-    lost[loose] = ~network.determined[network.group[loose]]
-    lost_tows = np.flatnonzero(lost)
+    lost_tows = np.flatnonzero(~network.log_known)
     weights = (
         pl.concat(shares)
         .with_columns(
@@ -157,7 +146,7 @@ def best_estimates(
     return (
         network.tows.select(
             "tow_id",
-            pl.Series("as_measured", _as_measured(problem, network, instruments)),
+            pl.Series("as_measured", _as_measured(problem, instruments)),
             pl.Series("ln_cw", base + ln_cw),
             pl.Series("sd", sd),
             pl.Series("lo", base + lo),
@@ -171,7 +160,7 @@ def best_estimates(
     )
 
 
-def _as_measured(problem: Problem, network: Network, errors: pl.DataFrame) -> FloatArray:
+def _as_measured(problem: Problem, errors: pl.DataFrame) -> FloatArray:
     """Ln Cw of each tow alone, with its instruments corrected as `instrument_errors` says."""
     factor, scale, zero = (
         errors[name].fill_null(1.0).to_numpy()
@@ -179,24 +168,13 @@ def _as_measured(problem: Problem, network: Network, errors: pl.DataFrame) -> Fl
     )
     by_log = slopes(problem.q, problem.force_n, np.log(factor)).predicted[:, LEVEL]
     by_force = np.log(scale) - np.log1p(-zero / problem.force_n)
-    return np.asarray(network.numbers("ln_cw") - by_log - by_force)
-
-
-def _design(problem: Problem, posterior: Posterior) -> tuple[FloatArray, BoolArray, BoolArray]:
-    """Slopes of each tow's numbers by all unknowns; which are of boats, which of the log."""
-    names = [problem.unknowns[i].name for i in posterior.places]
-    design = problem.design(posterior.fit.slopes, posterior.places)
-    of_boats = np.array([name in OF_BOATS for name in names])
-    return design, of_boats, np.array([WAYS[name] == "speed" for name in names])
+    return np.asarray(problem.network.numbers("ln_cw") - by_log - by_force)
 
 
 def _of_boats(
-    told: Told,
-    posterior: Posterior,
-    given: tuple[FloatArray, FloatArray, FloatArray],
+    told: Told, posterior: Posterior, true_level: FloatArray, away: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Boats with the same number of tows: (boats, tows, 4) numbers, (boats, tows, tows) shares."""
-    design, true_level, away = given
     tow = told.patterns.tow
     boats, tows = tow.shape
     state = posterior.fit.slopes.state[tow][..., 0]
@@ -208,7 +186,7 @@ def _of_boats(
     gain = with_level @ posterior.fit.precision(told)
     prior = np.einsum("bpkk->bpk", level)
     variance = prior - (gain * with_level).sum(axis=3)
-    by = true_level[tow][:, None] - gain @ design[tow].reshape(boats, 1, 3 * tows, -1)
+    by = true_level[tow][:, None] - gain @ posterior.design[tow].reshape(boats, 1, 3 * tows, -1)
     mean = np.einsum("bpkn,bpn->bpk", with_level, told.pull) + by @ away
     shared = np.einsum("bpkf,fg,bpkg->bpk", by, posterior.covariance, by, optimize=True)
     variance = np.maximum(variance + shared, 1e-12)
@@ -224,7 +202,7 @@ def _of_boats(
 def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> list[FloatArray]:
     """Bounds of the 95 % interval of normal mixtures over axis 1, by bisection."""
     bounds = []
-    for level in (0.5 - LEVEL_OF_INTERVALS / 2, 0.5 + LEVEL_OF_INTERVALS / 2):
+    for level in (0.5 - INTERVAL_LEVEL / 2, 0.5 + INTERVAL_LEVEL / 2):
         low = (mean - FARTHEST_SD * sd).min(axis=1)
         high = (mean + FARTHEST_SD * sd).max(axis=1)
         for _ in range(BISECTIONS):

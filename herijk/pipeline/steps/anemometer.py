@@ -4,8 +4,7 @@ The wind that a boat feels is the true wind less its own velocity. Out and back 
 about the boat and cancels; the boat's own speed is left. So mean apparent wind over boat speed is
 what the anemometer reads of the wind, and needs no resistance and no other boat. A vane that points
 askew turns the mean vector and leaves its length. Here: that ratio per tow, and the scale of each
-season with what the other seasons say of it. Not here: what
-wind does to resistance (`wind`).
+season with what the other seasons say of it. Not here: what wind does to resistance (`wind`).
 """
 
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ import scipy
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import WindowSums
-from herijk.pipeline.channels import BACK, OUT
+from herijk.pipeline.steps.calibration import mean_over_both_ways
 
 UNKNOWN_LOG_SD: Final = 0.06
 """Of ln boat speed by a log of which nothing is known: the worst was 6 % wrong."""
@@ -88,9 +87,8 @@ class WindRatio:
 
 def _both_ways(batch: Batch, values: FloatArray, runs: BoolArray) -> FloatArray:
     """Mean of out and back, each direction weighing the same; NaN without both."""
-    ways = [runs & (batch.direction == way) for way in (OUT, BACK)]
-    middle = 0.5 * sum(batch.mean(values, way) for way in ways)
-    return np.where(batch.any(ways[0]) & batch.any(ways[1]), middle, np.nan)
+    mean, both = mean_over_both_ways(values, batch.direction, batch.tow, runs, batch.size)
+    return np.where(both, mean, np.nan)
 
 
 @dataclass(frozen=True)
@@ -131,9 +129,8 @@ def anemometer_of_seasons(ratio: WindRatio) -> Anemometer:
         for values in (ratio.ahead, ratio.abeam, ratio.shared_sd)
     )
     length = np.where(tows > 0, np.hypot(ahead, abeam), 1.0)
-    along = (ratio.ahead[known] * ahead[mine] + ratio.abeam[known] * abeam[mine]) / length[
-        mine
-    ] ** 2
+    along = ratio.ahead[known] * ahead[mine] + ratio.abeam[known] * abeam[mine]
+    along /= length[mine] ** 2
     spare = np.maximum(tows - 1.0, 0.0).sum()
     tow_sd = np.sqrt(((along - 1.0) ** 2).sum() / spare) if spare else USUAL_TOW_SD
     variance = np.where(tows > 0, tow_sd**2 / count + shared**2, 1e6)

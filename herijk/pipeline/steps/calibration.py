@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.channels import BACK, OUT
 
 USUAL_RUN_SCATTER: Final = 0.006
@@ -50,12 +51,7 @@ def mean_over_both_ways(
 
 
 def stream_drift_m_s(
-    gps_m_s: FloatArray,
-    log_m_s: FloatArray,
-    direction: IntArray,
-    number: IntArray,
-    file: IntArray,
-    used: BoolArray,
+    batch: Batch, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray
 ) -> FloatArray:
     """What a stream that rises or falls evenly from run to run adds to the GPS of each run.
 
@@ -66,14 +62,13 @@ def stream_drift_m_s(
     `USUAL_RUN_SCATTER` where that is more.
 
     Args:
-        gps_m_s, log_m_s, direction, used: as in `gps_factor`.
-        number: of the run in its file, shape (runs,).
-        file: index of the run's file, shape (runs,).
+        gps_m_s, log_m_s, used: as in `gps_factor`.
 
     Returns:
         Shape (runs,), m/s; 0 where no way of a file has two runs.
     """
-    files = int(file.max(initial=-1)) + 1
+    direction, file, files = batch.direction, batch.file, 2 * batch.size
+    number = batch.blocks.runs["run"].to_numpy().astype(np.int64)
     with_fix = used & np.isfinite(gps_m_s) & (log_m_s > 0)
     counted = with_fix.astype(np.float64)
     gps, log = (np.where(with_fix, speed, 0.0) for speed in (gps_m_s, log_m_s))
@@ -123,14 +118,7 @@ def gps_factor(
 
 
 def gps_factor_of_files(
-    gps_m_s: FloatArray,
-    log_m_s: FloatArray,
-    direction: IntArray,
-    tow: IntArray,
-    in_second: BoolArray,
-    used: BoolArray,
-    steady: BoolArray,
-    tows: int,
+    batch: Batch, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray, steady: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
     """The factor y of every file of a tow, and whether it could be determined.
 
@@ -140,19 +128,21 @@ def gps_factor_of_files(
     factor of the tow.
 
     Args:
-        gps_m_s, log_m_s, direction, tow, used, tows: as in `gps_factor`.
-        in_second: runs of the tow's second file, shape (runs,).
+        gps_m_s, log_m_s, used: as in `gps_factor`.
         steady: runs with a steady window, chosen or not, shape (runs,).
 
     Returns:
         Both of shape (tows, 2): by tow, of the first and of the second file.
     """
-    file = 2 * tow + in_second
-    combined = np.bincount(tow, in_second, tows) > 0
-    y, known = gps_factor(gps_m_s, log_m_s, direction, file, used, 2 * tows)
-    of_all, known_of_all = gps_factor(gps_m_s, log_m_s, direction, file, steady, 2 * tows)
-    of_tow, known_of_tow = gps_factor(gps_m_s, log_m_s, direction, tow, used, tows)
-    known_of_all &= np.repeat(combined, 2)
+
+    def factor(of: IntArray, runs: BoolArray, count: int) -> tuple[FloatArray, BoolArray]:
+        return gps_factor(gps_m_s, log_m_s, batch.direction, of, runs, count)
+
+    files = 2 * batch.size
+    y, known = factor(batch.file, used, files)
+    of_all, known_of_all = factor(batch.file, steady, files)
+    of_tow, known_of_tow = factor(batch.tow, used, batch.size)
+    known_of_all &= np.repeat(batch.any(batch.in_second_file), 2)
     y = np.select([known, known_of_all], [y, of_all], np.repeat(of_tow, 2))
     known = known | known_of_all | np.repeat(known_of_tow, 2)
-    return y.reshape(tows, 2), known.reshape(tows, 2)
+    return y.reshape(-1, 2), known.reshape(-1, 2)

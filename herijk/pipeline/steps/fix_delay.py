@@ -5,7 +5,6 @@ gains speed, a late GPS reads too low, and so does the calibration factor. How l
 every run: its unrest is that of the log, later.
 """
 
-from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
@@ -43,21 +42,22 @@ def fix_delay_s(blocks: RunBlocks, season: IntArray) -> IntArray:
     if blocks.seconds <= MOST_S + 1 or not blocks["gps_n"].any():
         return delay
     tow = np.unique(blocks.runs["tow_id"].to_numpy(), return_inverse=True)[1]
-    products = _products(blocks)
+    both, square = _products(blocks)
     for year in np.unique(season):
         mine = season == year
         _, place = np.unique(tow[mine], return_inverse=True)
-        delay[mine] = _of_season(
-            {
-                name: np.stack([np.bincount(place, lag) for lag in of_lag[:, mine]])
-                for name, of_lag in products.items()
-            }
-        )
+        of_tows = (_summed(products[:, mine], place) for products in (both, square))
+        delay[mine] = _of_season(*of_tows)
     return delay
 
 
-def _products(blocks: RunBlocks) -> dict[str, FloatArray]:
-    """Sums of products of GPS and log about their means, per delay, shape (delays, runs).
+def _summed(of_runs: FloatArray, tow: IntArray) -> FloatArray:
+    """Sums over the runs of each tow, shape (delays, tows)."""
+    return np.stack([np.bincount(tow, lag).astype(np.float64) for lag in of_runs])
+
+
+def _products(blocks: RunBlocks) -> tuple[FloatArray, FloatArray]:
+    """Sums of GPS times log and of log squared, about their means, both (delays, runs).
 
     Over the seconds whose log is known at every delay, so that all explain the same.
     """
@@ -71,7 +71,7 @@ def _products(blocks: RunBlocks) -> dict[str, FloatArray]:
         of_log = _about_mean(log[:, MOST_S - delay : end - delay], counts)
         both.append((of_gps * of_log).sum(axis=1))
         square.append((of_log**2).sum(axis=1))
-    return {"both": np.stack(both), "log": np.stack(square)}
+    return np.stack(both), np.stack(square)
 
 
 def _about_mean(values: FloatArray, counts: FloatArray) -> FloatArray:
@@ -79,9 +79,8 @@ def _about_mean(values: FloatArray, counts: FloatArray) -> FloatArray:
     return np.asarray(counts * (values - mean[:, None]), dtype=np.float64)
 
 
-def _of_season(products: Mapping[str, FloatArray]) -> int:
-    """The delay of a season by the products of its tows, each of shape (delays, tows)."""
-    both, log = products["both"], products["log"]
+def _of_season(both: FloatArray, log: FloatArray) -> int:
+    """The delay of a season by the `_products` of its tows, each of shape (delays, tows)."""
     tows = int((log[0] > 0).sum())
     square = log.sum(axis=1)
     if tows < FEWEST_TOWS or not square.all():
@@ -103,7 +102,6 @@ def fixes_in_time(blocks: RunBlocks, delay_s: IntArray) -> dict[str, FloatArray]
     The last seconds of a run have none: their fixes came after it.
 
     Args:
-        blocks: the runs.
         delay_s: of each run, shape (runs,).
     """
     at = np.arange(blocks.seconds) + delay_s[:, None]

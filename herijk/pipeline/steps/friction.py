@@ -7,11 +7,10 @@ here: what a method does with them (the temperature correction, `resistance`). A
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.errors import BrokenPromiseError
-
-FloatArray = NDArray[np.float64]
 
 LIQUID_RANGE_C: Final = (0.0, 40.0)
 """Temperatures both formulas below hold for."""
@@ -50,31 +49,27 @@ def kinematic_viscosity_m2_s(temperature_c: ArrayLike) -> FloatArray:
 
 
 def reynolds_number(
-    speed_m_s: ArrayLike, length_m: ArrayLike, kinematic_viscosity_m2_s: ArrayLike
+    speed_m_s: FloatArray, length_m: FloatArray, kinematic_viscosity_m2_s: FloatArray
 ) -> FloatArray:
     """V L / nu."""
-    speed, length, nu = (
-        np.asarray(x, dtype=np.float64) for x in (speed_m_s, length_m, kinematic_viscosity_m2_s)
-    )
-    return speed * length / nu
+    return speed_m_s * length_m / kinematic_viscosity_m2_s
 
 
-def ittc57_friction_coefficient(reynolds: ArrayLike) -> FloatArray:
+def ittc57_friction_coefficient(reynolds: FloatArray) -> FloatArray:
     """ITTC-57 model-ship correlation line: 0.075 / (log10 Re - 2)^2."""
-    return 0.075 / (np.log10(np.asarray(reynolds, dtype=np.float64)) - 2.0) ** 2
+    return 0.075 / (np.log10(reynolds) - 2.0) ** 2
 
 
 def friction_cw_kg_m(
-    speed_m_s: ArrayLike,
-    length_m: ArrayLike,
-    wetted_surface_m2: ArrayLike,
+    speed_m_s: FloatArray,
+    length_m: FloatArray,
+    wetted_surface_m2: FloatArray,
     temperature_c: ArrayLike,
 ) -> FloatArray:
     """Part of Cw [kg/m] due to friction: rho/2 S CF, CF by ITTC-57 on the given length."""
     reynolds = reynolds_number(speed_m_s, length_m, kinematic_viscosity_m2_s(temperature_c))
-    surface = np.asarray(wetted_surface_m2, dtype=np.float64)
     coefficient = ittc57_friction_coefficient(reynolds)
-    return 0.5 * water_density_kg_m3(temperature_c) * surface * coefficient
+    return 0.5 * water_density_kg_m3(temperature_c) * wetted_surface_m2 * coefficient
 
 
 def _liquid(temperature_c: ArrayLike) -> FloatArray:

@@ -2,11 +2,11 @@
 
 Per sample the gross coefficient is `Cw = F / (v y)^2` (Sleepproef, R. Pot 2017, "IJking
 snelheid"). Everything here is in the speed that the log reads; a factor k that turns it into true
-speed divides every coefficient by k^2, and is applied last (`true_cw_kg_m`). Which runs count and
-which factor holds is decided elsewhere.
+speed divides every coefficient by k^2, and is applied last (`pipeline.recompute.outcome`). Which
+runs count and which factor holds is decided elsewhere.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -21,7 +21,6 @@ from herijk.pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from herijk.pipeline.steps.wind import (
     AirParts,
     air_parts,
-    air_sums,
     mean_wind_angle_deg,
     with_averaged_wind,
 )
@@ -73,17 +72,6 @@ class RunMeans:
         """These means for an anemometer that reads the wind x scale, shape (runs,)."""
         return replace(self, air=self.air.times(scale**-2.0))
 
-    def where(self, chosen: BoolArray, other: "RunMeans") -> "RunMeans":
-        """These means for the chosen runs, shape (runs,), those of the other elsewhere."""
-        return replace(
-            self,
-            speed_m_s=np.where(chosen, self.speed_m_s, other.speed_m_s),
-            gross_kg_m=np.where(chosen, self.gross_kg_m, other.gross_kg_m),
-            sd_kg_m=np.where(chosen, self.sd_kg_m, other.sd_kg_m),
-            inertia_kg_m=np.where(chosen, self.inertia_kg_m, other.inertia_kg_m),
-            air=self.air.where(chosen, other.air),
-        )
-
 
 @dataclass(frozen=True)
 class OverWindow:
@@ -92,14 +80,13 @@ class OverWindow:
     Attributes:
         whole: over all of it.
         first, last: over its two ends.
-        averaged: the blocks by the seconds that their wind is averaged over, as far as asked for.
+        averaged: the blocks by the seconds over which their wind is averaged, as far as asked for.
     """
 
     whole: WindowSums
     first: WindowSums
     last: WindowSums
-    averaged: dict[int, RunBlocks] = field(repr=False)
-    _with_averaged_wind: dict[int, WindowSums] = field(default_factory=dict, repr=False)
+    averaged: dict[int, RunBlocks]
 
     @classmethod
     def of(
@@ -111,28 +98,59 @@ class OverWindow:
 
     def with_wind(self, averaging_s: int) -> WindowSums:
         """Over all of it, with the air terms of a wind that is averaged over some seconds."""
-        known = self._with_averaged_wind
         if not averaging_s:
             return self.whole
-        if averaging_s not in known:
-            if averaging_s not in self.averaged:
-                self.averaged[averaging_s] = with_averaged_wind(self.whole.blocks, averaging_s)
-            known[averaging_s] = WindowSums(self.averaged[averaging_s], self.whole.window)
-        return known[averaging_s]
+        if averaging_s not in self.averaged:
+            self.averaged[averaging_s] = with_averaged_wind(self.whole.blocks, averaging_s)
+        return WindowSums(self.averaged[averaging_s], self.whole.window)
 
 
 def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
     """Means of every run over its window.
 
     Args:
-        batch: tows and runs.
         sums: of its blocks.
         steps: speed source, estimator, wind model and inertia of the method.
     """
-    if steps.speed.source != "mean":
-        return _means_of_source(batch, sums, steps, steps.speed.source)
-    of_both, of_log1 = (_means_of_source(batch, sums, steps, s) for s in ("mean", "log1"))
-    return of_both.where(_both_logs_good(batch, sums.whole), of_log1)
+    whole, windy = sums.whole, sums.with_wind(steps.wind.averaging_s)
+    source = steps.speed.source
+    both_logs = _both_logs_good(batch, whole) if source == "mean" else None
+
+    def by_log(over: WindowSums, quantity: str) -> FloatArray:
+        """A mean by the log in use: of both, log 1 alone where they do not agree."""
+        values = over.mean(f"{source}_{quantity}")
+        if both_logs is None:
+            return values
+        return np.where(both_logs, values, over.mean(f"log1_{quantity}"))
+
+    speed, ratio = by_log(whole, "v"), by_log(whole, "cw")
+    square = _or_one(speed) ** 2
+    of_ratios = steps.run_point.estimator == "mean_of_ratios"
+
+    def air_term(name: str) -> FloatArray:
+        return by_log(windy, name) if of_ratios else windy.mean(name) / square
+
+    delay = _gps_delay_s(batch, steps)
+    rise = by_log(sums.last, "v") - by_log(sums.first, "v")
+    seconds_apart = np.maximum(whole.window.sum(axis=1) - END_SECONDS, 1)
+    return RunMeans(
+        speed_m_s=speed,
+        gross_kg_m=ratio if of_ratios else whole.mean("force") / square,
+        sd_kg_m=np.sqrt(np.maximum(by_log(whole, "cw2") - ratio**2, 0.0)),
+        inertia_kg_m=_inertia(batch, steps.run_point, rise / seconds_apart, square),
+        air=air_parts(
+            steps.wind,
+            air_term,
+            front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m")),
+            side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m")),
+        ),
+        gps_m_s=_gps_m_s(whole, delay, source),
+        gps_delay_s=delay,
+        log1_m_s=whole.mean("log1_v"),
+        log2_m_s=whole.mean("log2_v"),
+        wind_m_s=whole.mean("wind_v"),
+        wind_angle_deg=mean_wind_angle_deg(whole),
+    )
 
 
 def _both_logs_good(batch: Batch, sums: WindowSums) -> BoolArray:
@@ -141,36 +159,6 @@ def _both_logs_good(batch: Batch, sums: WindowSums) -> BoolArray:
     seen = log1 > 0
     ratio = batch.mean(log2, seen) / _or_one(batch.mean(log1, seen))
     return ((np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO) & batch.measured("log2"))[batch.tow]
-
-
-def _means_of_source(batch: Batch, sums: OverWindow, steps: Steps, source: str) -> RunMeans:
-    """Means of every run by one speed source of `pipeline.blocks.run_blocks`."""
-    whole = sums.whole
-    speed, samples_cw = (whole.mean(f"{source}_{name}") for name in ("v", "cw"))
-    variance = np.maximum(whole.mean(f"{source}_cw2") - samples_cw**2, 0.0)
-    if steps.run_point.estimator == "mean_of_ratios":
-        gross = samples_cw
-    else:
-        gross = whole.mean("force") / _or_one(speed) ** 2
-    terms = _air_terms(sums.with_wind(steps.wind.averaging_s), steps, speed, source)
-    front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
-    side = side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m"))
-    air = air_parts(batch.blocks, terms, steps.wind, front, side)
-    inertia = _inertia(batch, steps.run_point, _end_speed_change(sums, source), speed)
-    delay = _gps_delay_s(batch, steps)
-    return RunMeans(
-        speed,
-        gross,
-        np.sqrt(variance),
-        inertia,
-        air,
-        _gps_m_s(whole, delay, source),
-        delay,
-        log1_m_s=whole.mean("log1_v"),
-        log2_m_s=whole.mean("log2_v"),
-        wind_m_s=whole.mean("wind_v"),
-        wind_angle_deg=mean_wind_angle_deg(whole),
-    )
 
 
 def _gps_delay_s(batch: Batch, steps: Steps) -> IntArray:
@@ -202,25 +190,8 @@ def _gps_m_s(whole: WindowSums, delay_s: IntArray, source: str) -> FloatArray:
     return gps
 
 
-def _air_terms(
-    sums: WindowSums, steps: Steps, speed: FloatArray, source: str
-) -> dict[str, FloatArray]:
-    """Mean of each air term / v^2, per sample or of the means."""
-    names = air_sums(steps.wind)
-    if steps.run_point.estimator == "ratio_of_means":
-        return {name: sums.mean(name) / _or_one(speed) ** 2 for name in names}
-    return {name: sums.mean(f"{source}_{name}") for name in names}
-
-
-def _end_speed_change(sums: OverWindow, source: str) -> FloatArray:
-    """Rise of speed over the window / its length, from the means of its two ends, m/s2."""
-    length = sums.whole.window.sum(axis=1)
-    rise = sums.last.mean(f"{source}_v") - sums.first.mean(f"{source}_v")
-    return np.asarray(rise / np.maximum(length - END_SECONDS, 1), dtype=np.float64)
-
-
 def _inertia(
-    batch: Batch, rule: RunPoint, acceleration_m_s2: FloatArray, speed_m_s: FloatArray
+    batch: Batch, rule: RunPoint, acceleration_m_s2: FloatArray, square_m2_s2: FloatArray
 ) -> FloatArray:
     """Part of F / v^2 that accelerates boat, crew and water: m_eff a / v^2.
 
@@ -228,9 +199,9 @@ def _inertia(
     known.
     """
     if rule.inertia == "none":
-        return np.zeros_like(speed_m_s)
+        return np.zeros_like(square_m2_s2)
     mass = (1.0 + rule.added_mass_ratio) * np.nan_to_num(displaced_mass_kg(batch))[batch.tow]
-    return mass * acceleration_m_s2 / _or_one(speed_m_s) ** 2
+    return mass * acceleration_m_s2 / square_m2_s2
 
 
 def displaced_mass_kg(batch: Batch) -> FloatArray:
@@ -247,8 +218,6 @@ def temperature_change_kg_m(
     `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
 
     Args:
-        batch: tows and runs.
-        rule: the method's option.
         speed_m_s: true speed of each run, shape (runs,).
 
     Returns:

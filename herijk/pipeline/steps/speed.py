@@ -25,7 +25,6 @@ def log_factor(
     """True speed / log speed for each tow.
 
     Args:
-        speed: the method's option.
         tow_list_ratio: correction of the tow list as a ratio (0.06 for 6 %), NaN where the list
             gives none, shape (tows,).
         estimated_factor: factor estimated for the tow's season and log, NaN where there is none,

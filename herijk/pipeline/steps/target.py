@@ -21,7 +21,6 @@ def above_target(
     lower, as the runs towed too fast are the high ones): a factor on all speeds drops out.
 
     Args:
-        batch: tows and runs.
         log_m_s: mean speed of each run as read, shape (runs,).
         runs: runs that take part, shape (runs,).
         highest_ratio: limit of speed / declared speed.

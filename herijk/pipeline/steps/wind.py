@@ -6,12 +6,13 @@ eq. 9). Divided by boat speed squared, the still-air part is a constant of the b
 formulas and the coefficients that are searched. Areas are in `pipeline.hull`.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks, WindowSums
 from herijk.pipeline.hull import AIR_DENSITY_KG_M3
 from herijk.pipeline.method.definition import Wind
@@ -47,25 +48,10 @@ class AirParts:
         """These parts times a factor of each run, shape (runs,)."""
         return AirParts(self.ahead * factor, self.behind * factor, self.side * factor)
 
-    def where(self, chosen: BoolArray, other: "AirParts") -> "AirParts":
-        """These parts for the chosen runs, shape (runs,), those of the other elsewhere."""
-        return AirParts(
-            ahead=np.where(chosen, self.ahead, other.ahead),
-            behind=np.where(chosen, self.behind, other.behind),
-            side=np.where(chosen, self.side, other.side),
-        )
-
-
-def air_sums(wind: Wind) -> tuple[str, ...]:
-    """Those of `AIR_SUMS` that a wind model is made of."""
-    terms = {"none": (), "head": ("head",), "oblique": ("front", "side")}[wind.model]
-    return tuple(name for name in AIR_SUMS if name.startswith(terms))
-
 
 def air_parts(
-    blocks: RunBlocks,
-    terms: dict[str, FloatArray],
     wind: Wind,
+    term: Callable[[str], FloatArray],
     front_area_m2: FloatArray,
     side_area_m2: FloatArray,
 ) -> AirParts:
@@ -76,24 +62,17 @@ def air_parts(
       ("Dwarse tegenwind")
 
     Args:
-        blocks: the runs.
-        terms: mean over the window of each air term / v^2, by its name in `air_sums`.
-        wind: the model.
-        front_area_m2: shape (runs,).
-        side_area_m2: shape (runs,).
+        term: gives the mean over the window of a term of `AIR_SUMS` / v^2, shape (runs,).
+        front_area_m2, side_area_m2: shape (runs,).
     """
-    nothing = np.zeros(len(blocks.n))
+    nothing = np.zeros(len(front_area_m2))
     if wind.model == "none":
         return AirParts(nothing, nothing, nothing)
     front = 0.5 * AIR_DENSITY_KG_M3 * front_area_m2
     if wind.model == "head":
-        return AirParts(front * terms["head_ahead"], front * terms["head_behind"], nothing)
+        return AirParts(front * term("head_ahead"), front * term("head_behind"), nothing)
     side = 0.5 * AIR_DENSITY_KG_M3 * side_area_m2
-    return AirParts(
-        front * terms["front_ahead"],
-        front * terms["front_behind"],
-        side * terms["side"],
-    )
+    return AirParts(front * term("front_ahead"), front * term("front_behind"), side * term("side"))
 
 
 def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]:
@@ -105,8 +84,7 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
     jitter.
 
     Args:
-        blocks: the runs.
-        averaging_s: length of the centred average, in blocks; shorter at the ends of a run.
+        averaging_s: length of the centred average; shorter at the ends of a run.
 
     Returns:
         Means by name of `AIR_SUMS`, each of shape (runs, seconds), m2/s2.

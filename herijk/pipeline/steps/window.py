@@ -62,9 +62,9 @@ class Windows:
     """One window per run.
 
     Attributes:
-        mask: blocks inside the window, shape (runs, seconds); empty where none was found.
+        mask: blocks inside the window, shape (runs, seconds); empty where there is none.
         start_s, end_s: the same in seconds, shape (runs,).
-        found: a window of at least the prescribed length exists, shape (runs,).
+        exists: whether the run has a window of at least the prescribed length, shape (runs,).
         reasons: why the rest was cut, one text per run; empty when nothing was.
         ends: how much the two ends differ.
     """
@@ -72,7 +72,7 @@ class Windows:
     mask: BoolArray
     start_s: IntArray
     end_s: IntArray
-    found: BoolArray
+    exists: BoolArray
     reasons: tuple[str, ...]
     ends: "Ends"
 

@@ -48,7 +48,6 @@ def ladder(
     Args:
         from_method, to_method: the ends of the ladder.
         tows: rows of the warehouse's `tows`.
-        blocks: their runs.
         links: log factors of both methods, where they were estimated before: their rows of the
             table `tow_instruments`.
         cache: what was found before of the same tows; added to.

@@ -67,7 +67,6 @@ def option_effects(
     Args:
         method: the method whose other options hold.
         tows: rows of the warehouse's `tows`.
-        blocks: their runs.
         links: the method's rows of the table `tow_instruments`; none where it estimates no log.
         cache: what was found before of the same tows; added to.
 
@@ -97,8 +96,8 @@ def option_effects(
             "b_effect_ratio": np.exp(_effect(ln_b, signs[:, i])),
         }
         frames.append(_frame(tow_ids, choice.name, effect).filter(can))
-    found = pl.concat(frames, how="diagonal").sort("tow_id", "option")
-    return found.select("tow_id", "option", *NUMBERS)
+    effects = pl.concat(frames, how="diagonal").sort("tow_id", "option")
+    return effects.select("tow_id", "option", *NUMBERS)
 
 
 def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:

@@ -1,7 +1,7 @@
 """What many tows have in common, one row per season, step or code: medians, means and counts.
 
-Frames of the warehouse in, frames out. What pages and commands say about a season or an archive
-is here once, so that it is the same number everywhere. Statistics with an interval are in
+Frames of the warehouse in, frames out. What pages and commands say about a season or an archive is
+computed here once, so that it is the same number everywhere. Statistics with an interval are in
 `pipeline.consistency`.
 """
 

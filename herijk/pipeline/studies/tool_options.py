@@ -132,8 +132,7 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
         pl.lit(ALL_OPTIONS).alias("option"),
         *_of_both(lambda x: x.std(ddof=0), "sd_ratio"),
     )
-    found = pl.concat([*ticks, *pairs, spread], how="diagonal")
-    return found.sort("tow_id", "option")
+    return pl.concat([*ticks, *pairs, spread], how="diagonal").sort("tow_id", "option")
 
 
 def _effect(logs: pl.DataFrame, name: str, on: pl.Expr) -> pl.DataFrame:

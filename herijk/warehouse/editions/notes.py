@@ -4,6 +4,7 @@ Filled in from the edition and its comparison with the one before; no number is 
 the texts say is in the templates beside this module, the words in `warehouse.editions.words`.
 """
 
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -47,6 +48,14 @@ HEADS: Final = {
 def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
     """All texts of an edition as Markdown, by file name."""
     changes = None if previous is None else report(previous)
+    return {
+        name: _template(name).render(_facts(edition, language) | _changes(changes, language)) + "\n"
+        for name, language in TEXTS.items()
+    }
+
+
+@cache
+def _template(name: str) -> jinja2.Template:
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
         undefined=jinja2.StrictUndefined,
@@ -54,13 +63,7 @@ def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return {
-        name: environment.get_template(name).render(
-            _facts(edition, language) | _changes(changes, language)
-        )
-        + "\n"
-        for name, language in TEXTS.items()
-    }
+    return environment.get_template(name)
 
 
 def summary(edition: Edition) -> str:

@@ -206,7 +206,7 @@ CELLS = st.sampled_from(
 )
 
 
-@settings(max_examples=150)
+@settings(max_examples=75)
 @given(st.lists(st.lists(CELLS, min_size=6, max_size=8), min_size=1, max_size=4))
 def test_fast_reading_gives_what_careful_reading_gives(
     tmp_path_factory: pytest.TempPathFactory, rows: list[list[str]]
@@ -220,7 +220,7 @@ def test_fast_reading_gives_what_careful_reading_gives(
         )
 
 
-@settings(max_examples=300)
+@settings(max_examples=150)
 @given(st.data())
 def test_spoiled_bytes_are_read_or_set_aside_and_nothing_else(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
