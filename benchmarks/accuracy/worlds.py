@@ -34,7 +34,8 @@ import polars as pl
 from benchmarks.accuracy.score import EQUAL_BOATS, Record, score, table
 from herijk.pipeline.assessment.plausibility import plausibility
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.consistency import observe, type_homogeneity
+from herijk.pipeline.consistency.homogeneity import type_homogeneity
+from herijk.pipeline.consistency.observed import observe
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WORLDS, simulate_world, world_settings

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from herijk.cli.arguments import AsJson, show, show_files
+from herijk.cli.text import place
 from herijk.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
-    from herijk.warehouse.archive.check import CauseReport, CheckReport, Place
+    from herijk.warehouse.archive.check import CauseReport, CheckReport
 
 
 def check(
@@ -82,7 +83,7 @@ def _cause(cause: "CauseReport") -> str:
     if len(cause.cells) > 1:
         cells = ", ".join(f"'{cell}'" for cell in cause.cells[1:9])
         lines.append(f"    {tell('There is also: {}', cells)}")
-    lines += [f"    {_place(place)}" for place in cause.places]
+    lines += [f"    {place(vars(one))}" for one in cause.places]
     if cause.number > len(cause.places):
         lines.append(f"    {tell('and {} more', cause.number - len(cause.places))}")
     for proposal in cause.proposals:
@@ -93,9 +94,3 @@ def _cause(cause: "CauseReport") -> str:
         )
         lines.append(f"  > {how}: {proposal['line']}")
     return "\n".join(lines)
-
-
-def _place(place: "Place") -> str:
-    line = "" if place.line is None else f", {tell('line {}', place.line)}"
-    tow = "" if place.tow_id is None else f" ({place.tow_id})"
-    return f"{place.path}{line}{tow}"

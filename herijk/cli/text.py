@@ -61,6 +61,13 @@ def boat(row: Row) -> tuple[str, str, str]:
     return row["fsn_no"], row["name"] or "-", f"{row['rowers']}{row['crew_class']}"
 
 
+def window(run: Row) -> str:
+    """The seconds of a run that count."""
+    if run["window_start_s"] is None:
+        return "-"
+    return f"{run['window_start_s']:.0f}-{run['window_end_s']:.0f}"
+
+
 def _in_two_hours(row: Row) -> str:
     """What a line of the register gives in a race of two hours."""
     return f"{7200 * (row['time_ratio'] - 1):+.0f} s"
@@ -107,20 +114,27 @@ def _set_aside(report: "RebuildReport") -> list[str]:
 
 
 def _faults(first: list[Row], number: int) -> str:
-    said = "message_nl" if LANGUAGE.get() == "nl" else "message"
-    lines = [f"  {_place(fault)}: {fault[said]}" for fault in first]
+    lines = []
+    for fault in first:
+        more = tell(" and {} more", fault["number"] - 1) if fault["number"] > 1 else ""
+        lines.append(f"  {place(fault)}{more}: {why_set_aside(fault)}")
     told = sum(fault["number"] for fault in first)
     if number > told:
         lines.append(tell("  and {} more: see the table quarantine", number - told))
     return "\n".join(lines)
 
 
-def _place(fault: Row) -> str:
-    said = fault["line"] is None or fault["message"].startswith(f"Line {fault['line']}:")
+def why_set_aside(fault: Row) -> str:
+    """What is wrong with something that was set aside."""
+    return str(fault["message_nl" if LANGUAGE.get() == "nl" else "message"])
+
+
+def place(fault: Row) -> str:
+    """Where a fault is: its file, and the line and the tow where these are known."""
+    said = fault["line"] is None or fault.get("message", "").startswith(f"Line {fault['line']}:")
     line = "" if said else tell(", line {}", fault["line"])
     tow = "" if fault["tow_id"] is None else tell(" (tow {})", fault["tow_id"])
-    more = tell(" and {} more", fault["number"] - 1) if fault["number"] > 1 else ""
-    return f"{fault['path']}{line}{tow}{more}"
+    return f"{fault['path']}{line}{tow}"
 
 
 def _by_season(rows: list[Row]) -> str:

@@ -5,7 +5,7 @@ tow. Arrays and frames only: writing an archive is `simulate.archive_writer`. Wh
 and where it comes from, is on the page `docs/simulator.md`.
 """
 
-from herijk.simulate.defects import Defects, gps_on_board
+from herijk.simulate.defects import Defects
 from herijk.simulate.hull import AirCoefficients, true_cw_kg_m
 from herijk.simulate.motion import Disturbance, RunTruth
 from herijk.simulate.tow import simulate_tow
@@ -23,7 +23,6 @@ __all__ = [
     "TowTruth",
     "World",
     "WorldSettings",
-    "gps_on_board",
     "simulate_tow",
     "simulate_world",
     "true_cw_kg_m",

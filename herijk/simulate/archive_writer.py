@@ -1,4 +1,4 @@
-"""Writes a simulated world as a tow archive, spelled the way real ones are, truth beside it.
+"""Writes a simulated world as a tow archive, spelled as real ones are, with the truth beside it.
 
 Each season has another of the allowed spellings, so that reading one archive exercises them all.
 What is measured is decided elsewhere in `herijk.simulate`; archives are read by
@@ -10,11 +10,11 @@ import datetime as dt
 import io
 import json
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 import polars as pl
@@ -29,6 +29,11 @@ from herijk.simulate.practice import Practice, practices, printed_curve
 
 SPEED_UNITS: Final = {"m/s": 1.0, "km/h": 3.6, "kn": 3600.0 / 1852.0}
 FORCE_UNITS: Final = {"N": 1.0, "kgf": 1.0 / 9.80665}
+COMPRESSIONS: Final[Mapping[str, Literal["uncompressed", "gzip", "zstd"]]] = {
+    ".csv": "uncompressed",
+    ".csv.gz": "gzip",
+    ".csv.zst": "zstd",
+}
 SAMPLE_DECIMALS: Final = 3
 CURVE_SPEED_RATIOS: Final = np.linspace(0.8, 1.2, 17)
 """Speeds of the true curve in the truth file, relative to the declared speed."""
@@ -79,71 +84,13 @@ SPELLINGS: Final = (
 )
 """In turn by season, from the first season that can be simulated."""
 
-LIST_COLUMNS: Final = (
-    "sleep_id",
-    "datum",
-    "fsn_nr",
-    "meetfile",
-    "meetfile2",
-    "roeiers",
-    "klasse",
-    "roeisnelheid [m/s]",
-    "lengte [m]",
-    "breedte [m]",
-    "hoogte [m]",
-    "gewicht [kg]",
-    "gewicht na [kg]",
-    "bemanning [kg]",
-    "watertemperatuur [C]",
-    "correctie [%]",
-    "gebruik runs",
-    "verbouwd",
-    "meetfrequentie [Hz]",
-    "opmerking",
-)
-OPTIONAL_LIST_COLUMNS: Final = (
-    "lege doft",
-    "vrijboord laagst [m]",
-    "vrijboord boeg [m]",
-    "vrijboord achter [m]",
-)
-"""Left out of a list in which all of them would be empty."""
+FREEBOARD_COLUMNS: Final = ("vrijboord laagst [m]", "vrijboord boeg [m]", "vrijboord achter [m]")
 ALL_RUNS: Final = "1,2,3,4,5,6"
 OUT_AND_BACK_OF_THE_SECOND: Final = "1,2,3,b4,b5,b6"
-BOAT_COLUMNS: Final = (
-    "fsn_nr",
-    "ht_nr",
-    "sloep",
-    "type",
-    "lengte [m]",
-    "breedte [m]",
-    "hoogte [m]",
-    "gewicht [kg]",
-    "roeiers",
-    "klasse",
-)
-REGISTER_COLUMNS: Final = (
-    "fsn_nr",
-    "roeiers",
-    "klasse",
-    "A",
-    "B",
-    "Cw",
-    "roeisnelheid [m/s]",
-    "sleepdatum",
-)
-RACE_COLUMNS: Final = (
-    "wedstrijd",
-    "datum",
-    "afstand [km]",
-    "fsn_nr",
-    "roeiers",
-    "klasse",
-    "roeitijd",
-    "stroom [km]",
-    "straf [W]",
-)
 RACE_NAME: Final = "Spiegelrace"
+
+Row: TypeAlias = dict[str, str]
+"""Cells of a list by the header of their column; the first row of a list gives all headers."""
 
 
 def spelling_of(season: int) -> Spelling:
@@ -264,11 +211,7 @@ def _write_samples(path: Path, samples: pl.DataFrame, spelling: Spelling, rate_h
     if spelling.extension == ".parquet":
         table.write_parquet(path)
         return
-    compression: Literal["uncompressed", "gzip", "zstd"] = "uncompressed"
-    if spelling.extension == ".csv.gz":
-        compression = "gzip"
-    elif spelling.extension == ".csv.zst":
-        compression = "zstd"
+    compression = COMPRESSIONS[spelling.extension]
     table.write_csv(
         path,
         include_bom=spelling.encoding == "utf-8-sig",
@@ -316,13 +259,12 @@ def _write_papers(directory: Path, world: World) -> None:
         (directory / folder).mkdir(parents=True)
     (directory / "archief.toml").write_text(_profile(seasons), encoding="utf-8")
     register = directory / "sloepregister"
-    _write_table(register / "sloependata.csv", BOAT_COLUMNS, _boat_rows(world), PLAIN)
+    _write_table(register / "sloependata.csv", _boat_rows(world), PLAIN)
     for season in seasons:
         path = directory / "sleeplijsten" / f"sleeplijst_{season}.csv"
-        columns, rows = _tow_list(world, season)
-        _write_table(path, columns, rows, spelling_of(season))
+        _write_table(path, _list_rows(world, season), spelling_of(season))
     path = directory / "wedstrijden" / f"{RACE_NAME.lower()}_{seasons[-1]}.csv"
-    _write_table(path, RACE_COLUMNS, _race_rows(world, seasons[-1]), spelling_of(seasons[-1]))
+    _write_table(path, _race_rows(world, seasons[-1]), spelling_of(seasons[-1]))
 
 
 def _write_registers(directory: Path, world: World, curves: Curves) -> None:
@@ -330,16 +272,15 @@ def _write_registers(directory: Path, world: World, curves: Curves) -> None:
     seasons = world.settings.seasons
     for year in sorted({seasons[len(seasons) // 2], seasons[-1]}):
         path = directory / "sloepregister" / f"sloepregister_{year}.csv"
-        rows = _register_rows(world, year, curves)
-        _write_table(path, REGISTER_COLUMNS, rows, spelling_of(year))
+        _write_table(path, _register_rows(world, year, curves), spelling_of(year))
 
 
-def _write_table(
-    path: Path, columns: Sequence[str], rows: Sequence[Sequence[str]], spelling: Spelling
-) -> None:
+def _write_table(path: Path, rows: Sequence[Row], spelling: Spelling) -> None:
     text = io.StringIO()
-    writer = csv.writer(text, delimiter=spelling.separator, lineterminator=spelling.line_end)
-    writer.writerow(columns)
+    writer = csv.DictWriter(
+        text, list(rows[0]), delimiter=spelling.separator, lineterminator=spelling.line_end
+    )
+    writer.writeheader()
     writer.writerows(rows)
     path.write_bytes(text.getvalue().encode(spelling.encoding))
 
@@ -366,111 +307,102 @@ def _profile(seasons: Sequence[int]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _boat_rows(world: World) -> list[list[str]]:
+def _boat_rows(world: World) -> list[Row]:
     newest = {tow.boat.index: tow for tow in world.tows}
     return [
-        [
-            boat.fsn_no,
-            boat.ht_no,
-            boat.name,
-            boat.boat_type.name,
-            PLAIN.number(boat.waterline_length_m, 2),
-            PLAIN.number(boat.beam_m, 2),
-            PLAIN.number(boat.bow_height_m, 2),
-            PLAIN.number(newest[boat.index].weight_kg, 0),
-            str(boat.boat_type.rowers),
-            boat.crew_classes[0],
-        ]
+        {
+            "fsn_nr": boat.fsn_no,
+            "ht_nr": boat.ht_no,
+            "sloep": boat.name,
+            "type": boat.boat_type.name,
+            "lengte [m]": PLAIN.number(boat.waterline_length_m, 2),
+            "breedte [m]": PLAIN.number(boat.beam_m, 2),
+            "hoogte [m]": PLAIN.number(boat.bow_height_m, 2),
+            "gewicht [kg]": PLAIN.number(newest[boat.index].weight_kg, 0),
+            "roeiers": str(boat.boat_type.rowers),
+            "klasse": boat.crew_classes[0],
+        }
         for boat in world.boats
     ]
 
 
-def _tow_list(world: World, season: int) -> tuple[tuple[str, ...], list[list[str]]]:
-    """Columns and rows of a season's list; optional columns where they say something."""
-    rows = _list_rows(world, season)
-    optional = _optional_rows(world, season)
-    if not any(any(row) for row in optional):
-        return LIST_COLUMNS, rows
-    joined = [row + more for row, more in zip(rows, optional, strict=True)]
-    return (*LIST_COLUMNS, *OPTIONAL_LIST_COLUMNS), joined
+def _list_rows(world: World, season: int) -> list[Row]:
+    """A season's list; what is optional is left out where it is empty for every tow."""
+    tows = [tow for tow in world.tows if tow.season == season]
+    rows = [_list_row(world, tow) for tow in tows]
+    if any(tow.free_thwart or tow.freeboards_m for tow in tows):
+        return [row | _optional_cells(tow) for row, tow in zip(rows, tows, strict=True)]
+    return rows
 
 
-def _optional_rows(world: World, season: int) -> list[list[str]]:
-    spelling = spelling_of(season)
-    return [
-        [
-            tow.free_thwart,
-            *("" if m is None else spelling.number(m, 3) for m in tow.freeboards_m or [None] * 3),
-        ]
-        for tow in world.tows
-        if tow.season == season
-    ]
+def _list_row(world: World, tow: Tow) -> Row:
+    spelling, listed_c = spelling_of(tow.season), tow.listed_temperature_c
+    return {
+        "sleep_id": tow.tow_id,
+        "datum": spelling.date(tow.day),
+        "fsn_nr": tow.boat.fsn_no,
+        "meetfile": tow.samples_name,
+        "meetfile2": tow.second_name,
+        "roeiers": str(tow.rowers),
+        "klasse": tow.crew_class,
+        "roeisnelheid [m/s]": spelling.number(tow.declared_speed_m_s, 2),
+        "lengte [m]": spelling.number(tow.boat.waterline_length_m, 2),
+        "breedte [m]": spelling.number(tow.boat.beam_m, 2),
+        "hoogte [m]": spelling.number(tow.boat.bow_height_m, 2),
+        "gewicht [kg]": spelling.number(tow.weight_kg, 0),
+        "gewicht na [kg]": spelling.number(tow.weight_after_kg, 0),
+        "bemanning [kg]": spelling.number(tow.crew_kg, 0),
+        "watertemperatuur [C]": "" if listed_c is None else spelling.number(listed_c, 1),
+        "correctie [%]": "",
+        "gebruik runs": OUT_AND_BACK_OF_THE_SECOND if tow.second_name else ALL_RUNS,
+        "verbouwd": "ja" if tow.altered_reported else "nee",
+        "meetfrequentie [Hz]": str(world.settings.rate_hz),
+        "opmerking": REMARKS[tow.number % len(REMARKS)],
+    }
 
 
-def _list_rows(world: World, season: int) -> list[list[str]]:
-    spelling = spelling_of(season)
-    return [
-        [
-            tow.tow_id,
-            spelling.date(tow.day),
-            tow.boat.fsn_no,
-            tow.samples_name,
-            tow.second_name,
-            str(tow.rowers),
-            tow.crew_class,
-            spelling.number(tow.declared_speed_m_s, 2),
-            spelling.number(tow.boat.waterline_length_m, 2),
-            spelling.number(tow.boat.beam_m, 2),
-            spelling.number(tow.boat.bow_height_m, 2),
-            spelling.number(tow.weight_kg, 0),
-            spelling.number(tow.weight_after_kg, 0),
-            spelling.number(tow.crew_kg, 0),
-            ""
-            if tow.listed_temperature_c is None
-            else spelling.number(tow.listed_temperature_c, 1),
-            "",
-            OUT_AND_BACK_OF_THE_SECOND if tow.second_name else ALL_RUNS,
-            "ja" if tow.altered_reported else "nee",
-            str(world.settings.rate_hz),
-            REMARKS[tow.number % len(REMARKS)],
-        ]
-        for tow in world.tows
-        if tow.season == season
-    ]
+def _optional_cells(tow: Tow) -> Row:
+    spelling = spelling_of(tow.season)
+    freeboards = zip(FREEBOARD_COLUMNS, tow.freeboards_m or (), strict=False)
+    return (
+        {"lege doft": tow.free_thwart}
+        | dict.fromkeys(FREEBOARD_COLUMNS, "")
+        | {column: spelling.number(height_m, 3) for column, height_m in freeboards}
+    )
 
 
-def _register_rows(world: World, year: int, curves: Curves) -> list[list[str]]:
+def _register_rows(world: World, year: int, curves: Curves) -> list[Row]:
     spelling = spelling_of(year)
     return [
-        [
-            line.boat.fsn_no,
-            str(line.rowers),
-            line.crew_class,
-            spelling.number(line.a_kg_m, 2),
-            spelling.number(line.b_m_s, 2),
-            spelling.number(line.cw_kg_m, 2),
-            spelling.number(line.declared_speed_m_s, 2),
-            spelling.date(line.tow_day) if line.tow_day else "",
-        ]
+        {
+            "fsn_nr": line.boat.fsn_no,
+            "roeiers": str(line.rowers),
+            "klasse": line.crew_class,
+            "A": spelling.number(line.a_kg_m, 2),
+            "B": spelling.number(line.b_m_s, 2),
+            "Cw": spelling.number(line.cw_kg_m, 2),
+            "roeisnelheid [m/s]": spelling.number(line.declared_speed_m_s, 2),
+            "sleepdatum": spelling.date(line.tow_day) if line.tow_day else "",
+        }
         for line in printed_register(world, year, curves)
     ]
 
 
-def _race_rows(world: World, season: int) -> list[list[str]]:
+def _race_rows(world: World, season: int) -> list[Row]:
     spelling = spelling_of(season)
     day, lines = race(world, season)
     return [
-        [
-            RACE_NAME,
-            spelling.date(day),
-            spelling.number(RACE_KM, 3),
-            line.tow.boat.fsn_no,
-            str(line.tow.rowers),
-            line.tow.crew_class,
-            str(dt.timedelta(seconds=line.seconds)),
-            "" if line.stream_km is None else spelling.number(line.stream_km, 3),
-            "",
-        ]
+        {
+            "wedstrijd": RACE_NAME,
+            "datum": spelling.date(day),
+            "afstand [km]": spelling.number(RACE_KM, 3),
+            "fsn_nr": line.tow.boat.fsn_no,
+            "roeiers": str(line.tow.rowers),
+            "klasse": line.tow.crew_class,
+            "roeitijd": str(dt.timedelta(seconds=line.seconds)),
+            "stroom [km]": "" if line.stream_km is None else spelling.number(line.stream_km, 3),
+            "straf [W]": "",
+        }
         for line in lines
     ]
 

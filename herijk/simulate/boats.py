@@ -121,6 +121,7 @@ def draw_boat(index: int, rng: np.random.Generator, shape: Shape, spread: float)
     length_spread, spread = (spread, spread) if boat_type.name else (NO_TYPE_SPREAD, 1.0)
     if shape == "hump":
         boat_type = replace(boat_type, hump_amplitude=HUMP_AMPLITUDE, hump_phase_rad=HUMP_PHASE_RAD)
+    form = kind if boat_type.name else index  # boats of no type each have their own
     length, beam, weight, roughness = rng.standard_normal(4)
     crew_shares = [share for _, share in CREWS]
     return Boat(
@@ -136,13 +137,8 @@ def draw_boat(index: int, rng: np.random.Generator, shape: Shape, spread: float)
         roughness=float(np.exp(spread * ROUGHNESS_SD * roughness)),
         crew_classes=CREWS[int(rng.choice(len(CREWS), p=crew_shares))][0],
         power_share=float(rng.random()),
-        residuary=_delft_hull(kind if boat_type.name else index) if shape == "delft" else None,
+        residuary=RESIDUARY[form % len(RESIDUARY)] if shape == "delft" else None,
     )
-
-
-def _delft_hull(number: int) -> tuple[float, ...]:
-    """Boats of a type have one shape, those of no type each their own."""
-    return RESIDUARY[number % len(RESIDUARY)]
 
 
 def crew_kg(crew_class: str, rowers: int) -> float:

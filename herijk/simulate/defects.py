@@ -1,7 +1,8 @@
 """What can go wrong in a simulated tow, each by name and size, and what went wrong when.
 
-`Defects` has one field per defect; zero (or one, for a factor) switches it off. `SEASONS` says as
-data which instruments and defects each season had; sources are in `docs/simulator.md`.
+`Defects` has one field per defect; zero (or one, for a factor) switches it off: `Defects()` is a
+perfect tow test in still water without wind at 15 C. `SEASONS` says as data which instruments and
+defects each season had; sources are in `docs/simulator.md`.
 How a defect works on a channel is in `motion` and `instruments`.
 """
 
@@ -26,9 +27,7 @@ class Defects:
     log2_ratio: tuple[float, float] = (1.0, 1.0)  # range of log 2 / log 1, drawn each tow
     log_trend: float = 0.0  # change of ln factor from the first day of the season to the last
     log_replaced: float = 0.0  # change of ln factor at an unreported change of log in mid-season
-    steered_by_log: float = (
-        0.0  # 1: the helmsman holds the target that log 1 reads; 0: the true one
-    )
+    steered_by_log: float = 0.0  # 1: the helmsman holds the target by log 1; 0: by true speed
     # GPS
     gps_wander_m_s: float = 0.0  # sd, slow
     gps_noise_m_s: float = 0.0  # sd of each fix
@@ -85,14 +84,21 @@ class Defects:
     ageing_per_year: float = 0.0  # relative growth of water resistance
 
     @classmethod
-    def none(cls) -> "Defects":
-        """A perfect tow test in still water without wind at 15 C."""
-        return cls()
-
-    @classmethod
     def history(cls, season: int) -> "Defects":
-        """As the instruments and habits of that season had it."""
-        return _row(season).defects
+        """As the instruments and habits of that season had it.
+
+        Raises:
+            MissingKnowledgeError: the season is before the first of `SEASONS`.
+        """
+        if season < FIRST_SEASON:
+            raise MissingKnowledgeError(
+                "season {} cannot be simulated: the table of instruments begins in {}; "
+                "ask for {} or later",
+                season,
+                FIRST_SEASON,
+                FIRST_SEASON,
+            )
+        return SEASONS[max(first for first in SEASONS if first <= season)]
 
     @classmethod
     def clean(cls, season: int) -> "Defects":
@@ -109,15 +115,6 @@ class Defects:
             alteration_share=0.0,
             ageing_per_year=0.0,
         )
-
-
-@dataclass(frozen=True)
-class SeasonRow:
-    """Instruments and defects from one season on."""
-
-    first_season: int
-    gps_on_board: bool
-    defects: Defects
 
 
 _PROPELLER_LOGS = Defects(
@@ -178,30 +175,15 @@ _WITH_DGPS = replace(
 )
 _SINCE_2015 = replace(_WITH_DGPS, log2_ratio=(0.996, 1.004), fast_run_share=0.0)
 
-SEASONS: Final = (
-    SeasonRow(2009, False, _PROPELLER_LOGS),
-    SeasonRow(2011, True, _WITH_GPS),
-    SeasonRow(2012, True, _DOPPLER_LOGS),
-    SeasonRow(2014, True, _WITH_DGPS),
-    SeasonRow(2015, True, _SINCE_2015),
-)
-"""Each row holds until the next; the last holds on."""
+SEASONS: Final = {
+    2009: _PROPELLER_LOGS,
+    2011: _WITH_GPS,
+    2012: _DOPPLER_LOGS,
+    2014: _WITH_DGPS,
+    2015: _SINCE_2015,
+}
+"""Each holds from its season until the next; the last holds on."""
 
-FIRST_SEASON: Final = SEASONS[0].first_season
-
-
-def gps_on_board(season: int) -> bool:
-    """Whether the tow had a GPS receiver (plain until 2013, then differential)."""
-    return _row(season).gps_on_board
-
-
-def _row(season: int) -> SeasonRow:
-    if season < FIRST_SEASON:
-        raise MissingKnowledgeError(
-            "season {} cannot be simulated: the table of instruments begins in {}; "
-            "ask for {} or later",
-            season,
-            FIRST_SEASON,
-            FIRST_SEASON,
-        )
-    return next(row for row in reversed(SEASONS) if row.first_season <= season)
+FIRST_SEASON: Final = min(SEASONS)
+FIRST_GPS_SEASON: Final = 2011
+"""From then on there was a GPS receiver on board, from 2014 on a differential one."""

@@ -8,22 +8,7 @@ github.com/MariosKokmo/yacht_hydrodynamics at 95bc1e7b.
 
 from typing import Final
 
-FROUDE: Final = (
-    0.125,
-    0.15,
-    0.175,
-    0.2,
-    0.225,
-    0.25,
-    0.275,
-    0.3,
-    0.325,
-    0.35,
-    0.375,
-    0.4,
-    0.425,
-    0.45,
-)
+FROUDE: Final = tuple(thousandth / 1000 for thousandth in range(125, 475, 25))
 
 RESIDUARY: Final = (
     (0.11, 0.27, 0.47, 0.78, 1.18, 1.82, 2.61, 3.76, 4.99, 7.16, 11.93, 20.11, 32.75, 49.49),

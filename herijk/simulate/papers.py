@@ -1,6 +1,6 @@
 """What was printed in a simulated world: registers of the day and race results.
 
-A printed register has the faults of its day in it, as a real one has; it is there to compare
+A printed register contains the faults of its day, as a real one does; it is there to compare
 with, not to learn from. How it is spelled in a file is `simulate.archive_writer`.
 """
 

@@ -1,4 +1,4 @@
-"""What was printed of a tow: its curve by the practice of its year, from its own samples.
+"""The printed curve of a tow: by the practice of its year, from its own samples.
 
 Written from the texts (R. Pot 2015 and 2017), apart from the method's own code, so that a method
 that says it repeats the practice of a year can be compared with what that year printed. Where a
@@ -80,7 +80,7 @@ class _Run:
 def printed_curve(
     samples: pl.DataFrame, runs: Sequence[RunTruth], tow: Tow, practice: Practice
 ) -> tuple[float, float]:
-    """A [kg/m] and B [m/s] as a practice found them."""
+    """A [kg/m] and B [m/s] by a practice."""
     used = [_run(samples, run, practice) for run in runs if _is_used(run, tow)]
     y = _calibration(used) if practice.calibrated else 1.0
     speed = np.array([y * run.log_m_s.mean() for run in used])

@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline.channels import RUN_SECONDS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
-from herijk.simulate.defects import gps_on_board
+from herijk.simulate.defects import FIRST_GPS_SEASON
 from herijk.simulate.instruments import (
     Samples,
     damage,
@@ -50,7 +50,6 @@ def _simulate_file(
     runs = true_runs(tow, defects, streams)
     count = round(RUN_SECONDS * world.settings.rate_hz)
     time_s = np.arange(count) / world.settings.rate_hz
-    has_gps = gps_on_board(tow.season)
     channels: dict[str, list[Samples]] = {name: [] for name in SAMPLE_SCHEMA}
     for run in runs:
         log1, log2 = read_logs(time_s, run, tow, defects, streams)
@@ -61,7 +60,7 @@ def _simulate_file(
         channels["run"].append(np.full(count, run.truth.run, dtype=np.float32))
         channels["log1_m_s"].append(log1)
         channels["log2_m_s"].append(log2)
-        if has_gps:
+        if tow.season >= FIRST_GPS_SEASON:
             channels["gps_m_s"].append(read_gps(time_s, run, defects, streams))
         channels["force_n"].append(force)
         wind_speed, wind_angle = read_anemometer(time_s, run, defects, streams)

@@ -6,9 +6,10 @@ so that a season holds the same tows whichever other seasons are asked for.
 """
 
 import datetime as dt
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import count
 from typing import Final
 
 import numpy as np
@@ -179,10 +180,10 @@ class _Slot:
 class _Condition:
     """State of a boat in one season, by age and by everything altered since it was built."""
 
-    resistance: float = 1.0
-    weight: float = 1.0
-    altered_seasons: tuple[int, ...] = ()
-    reported_seasons: tuple[int, ...] = ()
+    resistance: float
+    weight: float
+    altered_seasons: Sequence[int]
+    reported_seasons: Sequence[int]
 
 
 def simulate_world(settings: WorldSettings) -> World:
@@ -191,8 +192,10 @@ def simulate_world(settings: WorldSettings) -> World:
     Raises:
         MissingKnowledgeError: a season before the first in the table of instruments.
     """
+    factors = {}
     for season in settings.seasons:
-        settings.defects(season)
+        low, high = settings.defects(season).log_season_factor
+        factors[season] = float(stream(settings.seed, Subject.SEASON, season).uniform(low, high))
 
     @cache
     def boat(index: int) -> Boat:
@@ -202,7 +205,6 @@ def simulate_world(settings: WorldSettings) -> World:
     slots = _schedule(settings, boat)
     history: dict[int, list[int]] = {}
     crew_history: dict[tuple[int, str], int] = {}
-    factors = {season: _season_log_factor(settings, season) for season in settings.seasons}
     tows: list[Tow] = []
     for slot in slots:
         seasons = history.setdefault(slot.boat_index, [])
@@ -212,16 +214,14 @@ def simulate_world(settings: WorldSettings) -> World:
         previous = crew_history.get(crew, slot.season)
         crew_history[crew] = slot.season
         if slot.season in factors:
-            condition = _condition(settings, slot.boat_index, tuple(seasons))
-            factor = factors[slot.season]
             tows.append(
                 _tow(
                     settings,
                     slot,
                     boat(slot.boat_index),
-                    condition=condition,
+                    condition=_condition(settings, slot.boat_index, seasons),
                     previous_season=previous,
-                    season_log_factor=factor,
+                    season_log_factor=factors[slot.season],
                 )
             )
     indices = sorted({tow.boat.index for tow in tows})
@@ -230,15 +230,7 @@ def simulate_world(settings: WorldSettings) -> World:
 
 def _schedule(settings: WorldSettings, boat: Callable[[int], Boat]) -> list[_Slot]:
     """Who is towed when: boats that are due, longest waiting first, then new boats."""
-
-    def new_crews() -> Iterator[tuple[int, str]]:
-        index = 0
-        while True:
-            for crew_class in boat(index).crew_classes:
-                yield index, crew_class
-            index += 1
-
-    newcomers = new_crews()
+    newcomers = ((index, crew) for index in count() for crew in boat(index).crew_classes)
     due: dict[tuple[int, str], int] = {}
     slots: list[_Slot] = []
     for season in range(FIRST_SEASON, settings.seasons[-1] + 1):
@@ -255,12 +247,7 @@ def _schedule(settings: WorldSettings, boat: Callable[[int], Boat]) -> list[_Slo
     return slots
 
 
-def _season_log_factor(settings: WorldSettings, season: int) -> float:
-    low, high = settings.defects(season).log_season_factor
-    return float(stream(settings.seed, Subject.SEASON, season).uniform(low, high))
-
-
-def _condition(settings: WorldSettings, boat_index: int, seasons: tuple[int, ...]) -> _Condition:
+def _condition(settings: WorldSettings, boat_index: int, seasons: Sequence[int]) -> _Condition:
     """State of a boat in the last of the `seasons` in which it was towed so far."""
     resistance, weight = 1.0, 1.0
     altered: list[int] = []
@@ -279,7 +266,7 @@ def _condition(settings: WorldSettings, boat_index: int, seasons: tuple[int, ...
     age_years = seasons[-1] - FIRST_SEASON
     now = settings.defects(seasons[-1])
     resistance *= (1.0 + now.ageing_per_year) ** age_years * now.fleet_resistance
-    return _Condition(resistance, weight, tuple(altered), tuple(reported))
+    return _Condition(resistance, weight, altered, reported)
 
 
 def _tow(

@@ -8,7 +8,9 @@ How large and in which seasons is an example; what must hold must hold for other
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
+
+import numpy as np
 
 from herijk.pipeline.errors import HerijkError
 from herijk.simulate.defects import FIRST_SEASON, Defects
@@ -18,6 +20,10 @@ BEFORE_DGPS: Final = range(FIRST_SEASON, 2014)
 EVER: Final = range(FIRST_SEASON, 10_000)
 LOGS_ONLY: Final = range(2010, 2011)
 WITH_DGPS: Final = range(2016, 2017)
+SINCE_DGPS: Final = range(2014, 10_000)
+
+Faults: TypeAlias = Mapping[range, Mapping[str, Any]]
+"""By seasons what differs from the base in them: fields of `Defects`."""
 
 
 @dataclass(frozen=True)
@@ -26,38 +32,35 @@ class NamedWorld:
 
     Attributes:
         about: what is wrong, one sentence.
-        faults: seasons with what differs from the base in them: fields of `Defects`.
+        faults: what is wrong, by seasons.
         options: fields of `WorldSettings` that differ from the default.
         base: what holds without faults.
     """
 
     about: str
-    faults: tuple[tuple[range, Mapping[str, Any]], ...] = ()
+    faults: Faults = field(default_factory=dict)
     options: Mapping[str, Any] = field(default_factory=dict)
     base: Callable[[int], Defects] = Defects.clean
 
     def defects(self, season: int) -> Defects:
         """What is wrong in a season."""
         of_season = self.base(season)
-        for seasons, sizes in self.faults:
+        for seasons, sizes in self.faults.items():
             if season in seasons:
                 of_season = replace(of_season, **sizes)
         return of_season
 
 
-def _warming(first: float, last: float) -> tuple[tuple[range, Mapping[str, object]], ...]:
+def _warming(first: float, last: float) -> Faults:
     """Water that warms by the season until dGPS came, its temperature not written down."""
-    step = (last - first) / (len(BEFORE_DGPS) - 1)
-    return tuple(
-        (
-            range(season, season + 1),
-            {
-                "temperature_missing_share": 1.0,
-                "water_temperature_c": (first + i * step - 1.0, first + i * step + 1.0),
-            },
-        )
-        for i, season in enumerate(BEFORE_DGPS)
-    )
+    middles = np.linspace(first, last, len(BEFORE_DGPS))
+    return {
+        range(season, season + 1): {
+            "temperature_missing_share": 1.0,
+            "water_temperature_c": (middle - 1.0, middle + 1.0),
+        }
+        for season, middle in zip(BEFORE_DGPS, middles.tolist(), strict=True)
+    }
 
 
 SPREAD_OUT: Final = {"tows_a_day": 2, "days_apart": 3}
@@ -68,81 +71,73 @@ WORLDS: Final[Mapping[str, NamedWorld]] = {
     "clean": NamedWorld("Instruments and weather of each season, and nothing else wrong."),
     "restless": NamedWorld(
         "Logs vary 1.2 % between tows, 12 % of boats are altered unreported, boats age.",
-        (
-            (BEFORE_DGPS, {"log_tow_wander": 0.012}),
-            (
-                EVER,
-                {
-                    "alteration_share": 0.12,
-                    "alteration_sd": 0.08,
-                    "unreported_share": 1.0,
-                    "ageing_per_year": 0.004,
-                },
-            ),
-        ),
+        {
+            BEFORE_DGPS: {"log_tow_wander": 0.012},
+            EVER: {
+                "alteration_share": 0.12,
+                "alteration_sd": 0.08,
+                "unreported_share": 1.0,
+                "ageing_per_year": 0.004,
+            },
+        },
     ),
     "log-steers": NamedWorld(
         "The helmsman holds the speed that log 1 reads: a log that reads low makes him go faster.",
-        ((EVER, {"steered_by_log": 1.0}),),
+        {EVER: {"steered_by_log": 1.0}},
     ),
     "fouling": NamedWorld(
         "Logs foul by 4 % from the first day of a season to the last, until 2013.",
-        ((BEFORE_DGPS, {"log_trend": 0.04}),),
+        {BEFORE_DGPS: {"log_trend": 0.04}},
         SPREAD_OUT,
     ),
     "log-replaced": NamedWorld(
         "In mid-season of 2010 the log is replaced by one 4 % off; nobody writes it down.",
-        ((LOGS_ONLY, {"log_replaced": -0.04}),),
+        {LOGS_ONLY: {"log_replaced": -0.04}},
         SPREAD_OUT,
     ),
     "force-scale-dgps": NamedWorld(
-        "The load cell reads 4 % too much in 2016.", ((WITH_DGPS, {"force_scale": 1.04}),)
+        "The load cell reads 4 % too much in 2016.", {WITH_DGPS: {"force_scale": 1.04}}
     ),
     "force-scale-logs": NamedWorld(
-        "The load cell reads 4 % too much in 2010.", ((LOGS_ONLY, {"force_scale": 1.04}),)
+        "The load cell reads 4 % too much in 2010.", {LOGS_ONLY: {"force_scale": 1.04}}
     ),
     "force-zero": NamedWorld(
-        "The load cell reads 10 N without force in 2016.", ((WITH_DGPS, {"force_zero_n": 10.0}),)
+        "The load cell reads 10 N without force in 2016.", {WITH_DGPS: {"force_zero_n": 10.0}}
     ),
     "force-zero-drift": NamedWorld(
         "The zero of the load cell drifts from -12 to 12 N within 2016.",
-        ((WITH_DGPS, {"force_zero_drift_n": 24.0}),),
+        {WITH_DGPS: {"force_zero_drift_n": 24.0}},
         SPREAD_OUT,
     ),
     "anemometer": NamedWorld(
-        "The anemometer reads 0.8 of the wind, always.", ((EVER, {"anemometer_scale": 0.8}),)
+        "The anemometer reads 0.8 of the wind, always.", {EVER: {"anemometer_scale": 0.8}}
     ),
     "anemometer-one": NamedWorld(
         "The anemometer reads 0.7 of the wind in 2012.",
-        ((range(2012, 2013), {"anemometer_scale": 0.7}),),
+        {range(2012, 2013): {"anemometer_scale": 0.7}},
     ),
     "vane": NamedWorld(
-        "The vane points 15 degrees off, always.", ((EVER, {"vane_offset_deg": 15.0}),)
+        "The vane points 15 degrees off, always.", {EVER: {"vane_offset_deg": 15.0}}
     ),
-    "tide": NamedWorld("A tide of 0.3 m/s turns during every tow.", ((EVER, {"tide_m_s": 0.3}),)),
+    "tide": NamedWorld("A tide of 0.3 m/s turns during every tow.", {EVER: {"tide_m_s": 0.3}}),
     "fleet-step": NamedWorld(
         "The whole fleet has 3 % less resistance from 2014 on.",
-        ((range(2014, 10_000), {"fleet_resistance": 0.97}),),
+        {SINCE_DGPS: {"fleet_resistance": 0.97}},
     ),
     "askew": NamedWorld(
         "A quarter of the tows is pulled askew until 2013, 5 to 10 %, some 40 %.",
-        (
-            (
-                BEFORE_DGPS,
-                {
-                    "askew_share": 0.25,
-                    "askew_excess": (0.05, 0.10),
-                    "askew_gross_share": 0.05,
-                    "askew_gross_excess": 0.40,
-                },
-            ),
-        ),
+        {
+            BEFORE_DGPS: {
+                "askew_share": 0.25,
+                "askew_excess": (0.05, 0.10),
+                "askew_gross_share": 0.05,
+                "askew_gross_excess": 0.40,
+            }
+        },
     ),
-    "gps-lag": NamedWorld(
-        "The dGPS lags 4 s from 2014 on.", ((range(2014, 10_000), {"gps_lag_s": 4.0}),)
-    ),
+    "gps-lag": NamedWorld("The dGPS lags 4 s from 2014 on.", {SINCE_DGPS: {"gps_lag_s": 4.0}}),
     "gps-scale": NamedWorld(
-        "The dGPS reads 1 % too much in 2016.", ((WITH_DGPS, {"gps_scale": 1.01}),)
+        "The dGPS reads 1 % too much in 2016.", {WITH_DGPS: {"gps_scale": 1.01}}
     ),
     "delft": NamedWorld(
         "Hulls have the resistance of the Delft series.", options={"shape": "delft"}
@@ -154,19 +149,19 @@ WORLDS: Final[Mapping[str, NamedWorld]] = {
     ),
     "slow-tows": NamedWorld(
         "A third of the tows is done at 75 to 90 % of the usual speed.",
-        ((EVER, {"slow_share": 1 / 3, "slow_ratio": (0.75, 0.90)}),),
+        {EVER: {"slow_share": 1 / 3, "slow_ratio": (0.75, 0.90)}},
     ),
     "dropouts": NamedWorld(
         "In 2 % of runs each: log 1 drops to 0, the load cell gives no number, or peaks.",
-        ((EVER, {"dropout_share": 0.02, "gap_share": 0.02, "spike_share": 0.02}),),
+        {EVER: {"dropout_share": 0.02, "gap_share": 0.02, "spike_share": 0.02}},
     ),
     "two-files": NamedWorld(
         "A quarter of the tows has its runs back in a second file, with a log 2 % off the first.",
-        ((EVER, {"second_file_share": 0.25, "second_file_log": 0.02}),),
+        {EVER: {"second_file_share": 0.25, "second_file_log": 0.02}},
     ),
     "lists": NamedWorld(
         "Freeboards from 2017 on, and a tenth of the tows with a thwart left free.",
-        ((EVER, {"empty_thwart_share": 0.10}),),
+        {EVER: {"empty_thwart_share": 0.10}},
         {"freeboards_from": 2017},
     ),
     "temperatures": NamedWorld(

@@ -1,13 +1,13 @@
 """Are equal boats equal: statistics per boat type and of repeat tows."""
 
 from herijk.tables import column
+from herijk.tables.bases import PerCrewTow, PerMethod
 from herijk.tables.declare import dy
 
 
-class TypeConsistency(dy.Schema):
+class TypeConsistency(PerMethod):
     """How a quantity follows weight, length or tow speed within a type, by the newest tows."""
 
-    method = column.method(primary_key=True)
     boat_type = column.text(
         "type of boat; unknown: boats without type, no claims", primary_key=True
     )
@@ -47,10 +47,9 @@ class TypeLines(TypeConsistency):
     )
 
 
-class TypeLinePoints(dy.Schema):
+class TypeLinePoints(PerMethod):
     """A line of `type_lines` with its 95 % interval, for drawing."""
 
-    method = column.method(primary_key=True)
     tows = column.text("all, newest, a season, or an era (2012:2013)", primary_key=True)
     boat_type = column.text("type of boat", primary_key=True)
     quantity = column.text("b_m_s, a_kg_m or cw_standard_kg_m", primary_key=True)
@@ -66,14 +65,9 @@ class TypeLinePoints(dy.Schema):
     hi = column.number("as quantity", "upper end")
 
 
-class ComparedTows(dy.Schema):
+class ComparedTows(PerCrewTow):
     """Every tow next to the others of its type: A, B and Cw at one speed, hull speed, outliers."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
-    fsn_no = column.fsn_no()
-    rowers = column.rowers()
-    crew_class = column.crew_class()
     boat_type = column.text("type of boat, or unknown")
     season = column.season()
     newest = dy.Bool(description="the newest tow of its boat and crew")
@@ -111,15 +105,12 @@ class ComparedTows(dy.Schema):
         "1", "difference of ln Cw in standard deviations of a prediction", nullable=True
     )
     outside = dy.Bool(description="differs at 5 % over all tows of the type", nullable=True)
-    candidates = dy.List(
-        dy.String(), description="codes of what could explain a difference", nullable=True
-    )
+    candidates = column.texts(description="codes of what could explain a difference", nullable=True)
 
 
-class HullSpeed(dy.Schema):
+class HullSpeed(PerMethod):
     """Is B hull speed, and at what part of hull speed are boats towed? Medians over boats."""
 
-    method = column.method(primary_key=True)
     tows = column.text(
         "all, newest (of each boat and crew), a season, or an era (2012:2013)", primary_key=True
     )
@@ -142,14 +133,9 @@ class HullSpeed(dy.Schema):
     length_r2 = column.number("1", "share of the spread of ln B explained", nullable=True)
 
 
-class TypeOutliers(dy.Schema):
+class TypeOutliers(PerCrewTow):
     """Every boat and crew against the other boats of its type."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
-    fsn_no = column.fsn_no()
-    rowers = column.rowers()
-    crew_class = column.crew_class()
     boat_type = column.text("type of boat")
     season = column.season()
     quantity = column.text("ln_cw_standard, or bend: (v/B)^2 there", primary_key=True)
@@ -158,13 +144,12 @@ class TypeOutliers(dy.Schema):
     expected = column.number("1", "the same as the type's other boats predict it")
     deviation_sd = column.number("1", "difference in standard deviations of a prediction")
     outside = dy.Bool(description="differs at 5 % over all boats of the type together")
-    candidates = dy.List(dy.String(), description="codes of what could explain a difference")
+    candidates = column.texts(description="codes of what could explain a difference")
 
 
-class TypeHomogeneity(dy.Schema):
+class TypeHomogeneity(PerMethod):
     """Equal boats, equal B? An F test per method and type, and what noise alone gives."""
 
-    method = column.method(primary_key=True)
     boat_type = column.text(
         "type of boat; unknown: boats without type, no claims", primary_key=True
     )
@@ -192,14 +177,9 @@ class TypeHomogeneity(dy.Schema):
     reason = column.text("why there is no test: no_type, few_boats, no_scatter; else empty")
 
 
-class PooledCurves(dy.Schema):
+class PooledCurves(PerCrewTow):
     """The register if boats of a type kept their bend (own), shared it in part, or wholly."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
-    fsn_no = column.fsn_no()
-    rowers = column.rowers()
-    crew_class = column.crew_class()
     boat_type = column.text("type of boat, or unknown")
     pooling = column.text(
         "own, partial or shared", primary_key=True, regex="^(own|partial|shared)$"
@@ -213,10 +193,9 @@ class PooledCurves(dy.Schema):
     cw_115_kg_m = column.number("kg/m", "Cw at 115 % of the declared speed", nullable=True)
 
 
-class SpeedTrend(dy.Schema):
+class SpeedTrend(PerMethod):
     """Does the bend follow the speed of the tow? If the hyperbola is true, it does not."""
 
-    method = column.method(primary_key=True)
     boat_type = column.text(
         "type of boat, or all: all types, each about its level", primary_key=True
     )
@@ -230,17 +209,12 @@ class SpeedTrend(dy.Schema):
     reason = column.text("why there is no trend: few_boats, equal_values, not_settled; else empty")
 
 
-class SlowTows(dy.Schema):
+class SlowTows(PerCrewTow):
     """Tows made with little power or raced beyond their curve, and race power by their curve.
 
     Each power ratio is that by the tow's own curve / by the same runs with the bend of its type.
     """
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
-    fsn_no = column.fsn_no()
-    rowers = column.rowers()
-    crew_class = column.crew_class()
     boat_type = column.text("type of boat, or unknown")
     declared_speed_m_s = column.speed("speed v0 the crew declared")
     season = column.season()
@@ -272,10 +246,9 @@ class SlowTows(dy.Schema):
     power_ratio_rowed_hi = column.number("1", "upper end", nullable=True)
 
 
-class RepeatPairs(dy.Schema):
+class RepeatPairs(PerMethod):
     """Consecutive tows of one boat and crew without an alteration between them."""
 
-    method = column.method(primary_key=True)
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
@@ -288,10 +261,9 @@ class RepeatPairs(dy.Schema):
     e_n = column.number("1", "difference / both intervals (ISO 13528)", nullable=True)
 
 
-class EraShifts(dy.Schema):
+class EraShifts(PerMethod):
     """Do seasons with other instruments stand apart? Next tow of the same boat, in a later era."""
 
-    method = column.method(primary_key=True)
     boat_type = column.text("type of boat, or all", primary_key=True)
     era = column.text("seasons of the older tow", primary_key=True)
     n = dy.Int32(description="pairs of tows", min=0)
@@ -308,10 +280,9 @@ class EraShifts(dy.Schema):
     reason = column.text("why there is no shift: few_pairs; else empty")
 
 
-class Reproducibility(dy.Schema):
+class Reproducibility(PerMethod):
     """How well repeat tows of unaltered boats agree."""
 
-    method = column.method(primary_key=True)
     scope = column.text("all pairs, or an era", primary_key=True)
     n_pairs = dy.Int32(description="pairs of consecutive tows of one boat and crew", min=0)
     n_tows = dy.Int32(description="tows behind run_sd_ratio", min=0)
@@ -328,10 +299,9 @@ class Reproducibility(dy.Schema):
     distinct_categories = column.number("1", "classes told apart: 1.41 s_boat / s_R", nullable=True)
 
 
-class VarianceComponents(dy.Schema):
+class VarianceComponents(PerMethod):
     """Spread of Cw by cause, from a mixed model over all tows (REML)."""
 
-    method = column.method(primary_key=True)
     scope = column.text("fleet, or within_type", primary_key=True)
     component = column.text("boat, season, boat_season or run", primary_key=True)
     n = dy.Int32(description="tows", min=0)
@@ -346,14 +316,9 @@ class VarianceComponents(dy.Schema):
     reason = column.text("why there are no numbers: too_few_repeats, not_settled; else empty")
 
 
-class PredictedCw(dy.Schema):
+class PredictedCw(PerCrewTow):
     """A second opinion without towing: Cw from weight, length, beam and type."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
-    fsn_no = column.fsn_no()
-    rowers = column.rowers()
-    crew_class = column.crew_class()
     boat_type = column.text("type of boat, or unknown")
     standard_speed_m_s = column.speed("median declared speed of type and crew class")
     cw_kg_m = column.number("kg/m", "Cw of the tow at that speed")
@@ -369,10 +334,9 @@ class PredictedCw(dy.Schema):
     reason = column.text("why there is no prediction: few_boats, not_settled; else empty")
 
 
-class PredictionError(dy.Schema):
+class PredictionError(PerMethod):
     """Cross-validated error of the prediction, boats left out one by one."""
 
-    method = column.method(primary_key=True)
     n = dy.Int32(description="boats and crews predicted", min=0)
     n_boats = dy.Int32(description="boats", min=0)
     rmse_ratio = column.number("1", "root mean square of ln tow / predicted", min=0)

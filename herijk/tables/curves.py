@@ -3,17 +3,16 @@
 from typing import Final
 
 from herijk.tables import column
+from herijk.tables.bases import PerTow
 from herijk.tables.declare import dy
 from herijk.tables.severity import SEVERITY_PATTERN
 
 STATUSES: Final = ("accepted", "flagged", "rejected")
 
 
-class Curves(dy.Schema):
+class Curves(PerTow):
     """One curve Cw = A / (1 - (v/B)^2) per method and tow."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     fsn_no = column.fsn_no()
     season = column.season()
     rowers = column.rowers()
@@ -42,26 +41,22 @@ class Curves(dy.Schema):
     calibration_factor = column.number("1", "GPS speed / log speed", nullable=True)
     runs_used = dy.Int8(description="points the curve is fitted through", min=0)
     status = column.text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
-    flags = dy.List(dy.String(), description="codes of what a person should look at")
+    flags = column.texts(description="codes of what a person should look at")
     unseen_error_ratio = column.unseen_error()
 
 
-class CurvePoints(dy.Schema):
+class CurvePoints(PerTow):
     """Curves over the speeds at which they are valid, 85 to 115 % of the declared speed."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     speed_m_s = column.speed("speed through the water", primary_key=True)
     cw_kg_m = column.number("kg/m", "Cw at this speed", min_exclusive=0)
     cw_lo_kg_m = column.number("kg/m", column.LOWER_END, min_exclusive=0)
     cw_hi_kg_m = column.number("kg/m", "upper end", min_exclusive=0)
 
 
-class Assessments(dy.Schema):
+class Assessments(PerTow):
     """What each check found, one row per method, tow and check; a check not made has no row."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     check = column.text("code of the check", primary_key=True)
     severity = column.text(
         "note: worth knowing; look: somebody must decide; refuse: nothing to register",
@@ -73,11 +68,9 @@ class Assessments(dy.Schema):
     flagged = dy.Bool(description="the observed number is beyond its limit")
 
 
-class UncertaintyBudget(dy.Schema):
+class UncertaintyBudget(PerTow):
     """What makes Cw at the declared speed uncertain, per method, tow and component."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     component = column.text("what is uncertain", primary_key=True)
     shared = column.text("single, season or archive: with whom the error is shared")
     key = column.text("rows with one key share one error")
@@ -86,14 +79,12 @@ class UncertaintyBudget(dy.Schema):
     dof = column.number("1", "degrees of freedom; empty: not limited", nullable=True)
 
 
-class Ensemble(dy.Schema):
+class Ensemble(PerTow):
     """Equally likely values of Cw, with the errors that tows share drawn together.
 
     Kept in the lake, a file per method, and not in the database.
     """
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     member = dy.Int16(
         primary_key=True, description="equal numbers of different tows belong together", min=1
     )

@@ -1,6 +1,7 @@
 """Published editions, the methods, and the files that lines were made from."""
 
 from herijk.tables import column
+from herijk.tables.bases import PerMethod
 from herijk.tables.declare import dy
 
 
@@ -19,10 +20,9 @@ class Editions(dy.Schema):
     seal = column.sha256("SHA-256 over all that the edition says of itself")
 
 
-class Methods(dy.Schema):
+class Methods(PerMethod):
     """The methods that made the tables."""
 
-    method = column.method(primary_key=True)
     title = column.text("title for people")
     title_en = column.text("title in English; the same where the method has one title")
     interval = column.text(

@@ -4,7 +4,8 @@ These tables are not in the database and no other program relies on them.
 """
 
 from herijk.tables import column
-from herijk.tables.archive import LOST, Boats, HandWindows, RunList, TowFacts
+from herijk.tables.archive import LOST, Boats, HandWindows
+from herijk.tables.bases import RunList, TowFacts
 from herijk.tables.declare import dy
 
 

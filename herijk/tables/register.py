@@ -1,8 +1,10 @@
 """The register: its lines, when they expire, and what differs between two registers."""
 
+from functools import partial
 from typing import Final
 
 from herijk.tables import column
+from herijk.tables.bases import PerMethod
 from herijk.tables.declare import dy
 
 PLACE: Final = (
@@ -17,10 +19,9 @@ REMARK: Final = (
 )
 
 
-def _flags() -> dy.List:
-    return dy.List(
-        dy.String(), description="codes of what a person should look at in its tow", nullable=True
-    )
+_FLAGS: Final = partial(
+    column.texts, description="codes of what a person should look at in its tow", nullable=True
+)
 
 
 class _Line(dy.Schema):
@@ -56,7 +57,7 @@ class Register(_Line):
     beam_m = column.beam("breadth that day", nullable=True)
     bow_height_m = column.bow_height("height of the bow that day", nullable=True)
     weight_kg = column.boat_weight("empty boat with oars that day", nullable=True)
-    flags = _flags()
+    flags = _FLAGS()
     unseen_error_ratio = column.unseen_error()
     verification_code = column.text(
         "ten letters and digits that follow from all that made the line; drafts have none",
@@ -72,14 +73,13 @@ class RegisterHistory(_Line):
     """
 
     position = dy.Int32(primary_key=True, description="the highest goes before", min=1)
-    flags = _flags()
+    flags = _FLAGS()
     unseen_error_ratio = column.unseen_error()
 
 
-class DueList(dy.Schema):
+class DueList(PerMethod):
     """Until when each boat and crew's tow counts, and the speed of its next tow."""
 
-    method = column.method(primary_key=True)
     fsn_no = column.fsn_no(primary_key=True)
     rowers = column.rowers(primary_key=True)
     crew_class = column.crew_class(primary_key=True)

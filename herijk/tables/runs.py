@@ -1,14 +1,13 @@
 """One point per run, as a method computes it."""
 
 from herijk.tables import column
+from herijk.tables.bases import PerTow
 from herijk.tables.declare import dy
 
 
-class RunPoints(dy.Schema):
+class RunPoints(PerTow):
     """One point per method, tow and run."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     run = column.run(primary_key=True)
     direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
     target_speed_ratio = column.number("1", "intended speed / declared speed", min_exclusive=0)

@@ -6,11 +6,14 @@ physically is explained in the module that computes it; how tables are stored is
 `warehouse.store.store`.
 """
 
+import re
+from types import ModuleType
 from typing import Final
 
 import polars as pl
 
 from herijk.tables import (
+    about,
     archive,
     consistency,
     curves,
@@ -22,66 +25,24 @@ from herijk.tables import (
 )
 from herijk.tables.declare import dy
 
-TABLES: Final[dict[str, type[dy.Schema]]] = {
-    "boats": archive.Boats,
-    "seasons": archive.Seasons,
-    "tows": archive.Tows,
-    "tow_runs": archive.TowRuns,
-    "hand_windows": archive.HandWindows,
-    "run_points": runs.RunPoints,
-    "curves": curves.Curves,
-    "curve_points": curves.CurvePoints,
-    "assessments": curves.Assessments,
-    "log_factors": season_log.LogFactors,
-    "season_links": season_log.SeasonLinks,
-    "retow_choice": season_log.RetowChoice,
-    "season_steps": season_log.SeasonSteps,
-    "season_diagnosis": season_log.SeasonDiagnosis,
-    "tow_instruments": season_log.TowInstruments,
-    "best_estimate_weights": season_log.BestEstimateWeights,
-    "uncertainty_budget": curves.UncertaintyBudget,
-    "ensemble": curves.Ensemble,
-    "register": register.Register,
-    "due_list": register.DueList,
-    "editions": editions.Editions,
-    "register_history": register.RegisterHistory,
-    "register_changes": register.RegisterChanges,
-    "race_changes": register.RaceChanges,
-    "correction_steps": studies.CorrectionSteps,
-    "option_effects": studies.OptionEffects,
-    "option_curves": studies.OptionCurves,
-    "season_changes": studies.SeasonChanges,
-    "season_ladder": studies.SeasonLadder,
-    "option_summary": studies.OptionSummary,
-    "quality_counts": studies.QualityCounts,
-    "check_counts": studies.CheckCounts,
-    "promise": studies.Promise,
-    "print_reproduction": studies.PrintReproduction,
-    "print_summary": studies.PrintSummary,
-    "run_statistics": studies.RunStatistics,
-    "trace_seconds": archive.TraceSeconds,
-    "type_consistency": consistency.TypeConsistency,
-    "type_lines": consistency.TypeLines,
-    "type_line_points": consistency.TypeLinePoints,
-    "compared_tows": consistency.ComparedTows,
-    "hull_speed": consistency.HullSpeed,
-    "type_outliers": consistency.TypeOutliers,
-    "type_homogeneity": consistency.TypeHomogeneity,
-    "pooled_curves": consistency.PooledCurves,
-    "speed_trend": consistency.SpeedTrend,
-    "slow_tows": consistency.SlowTows,
-    "repeat_pairs": consistency.RepeatPairs,
-    "era_shifts": consistency.EraShifts,
-    "reproducibility": consistency.Reproducibility,
-    "variance_components": consistency.VarianceComponents,
-    "predicted_cw": consistency.PredictedCw,
-    "prediction_error": consistency.PredictionError,
-    "quarantine": archive.Quarantine,
-    "methods": editions.Methods,
-    "lineage": editions.Lineage,
-}
 
-ABOUT: Final[dict[str, type[dy.Schema]]] = {"about": archive.About, "contents": archive.Contents}
+def _declared_in(*modules: ModuleType) -> dict[str, type[dy.Schema]]:
+    """The tables of modules by name: that of the class, in snake case."""
+    return {
+        re.sub("(?<!^)(?=[A-Z])", "_", name).lower(): declared
+        for module in modules
+        for name, declared in vars(module).items()
+        if isinstance(declared, type) and declared.__module__ == module.__name__
+        if not name.startswith("_")
+    }
+
+
+TABLES: Final = _declared_in(
+    archive, runs, curves, season_log, register, editions, studies, consistency
+)
+"""Every class of these modules but those that begin with an underscore, which tables inherit."""
+
+ABOUT: Final = _declared_in(about)
 """Tables of the database about itself."""
 
 

@@ -1,13 +1,13 @@
 """How far each season's speed log was off, and what that rests on."""
 
 from herijk.tables import column
+from herijk.tables.bases import PerMethod, PerPart, PerTow
 from herijk.tables.declare import dy
 
 
-class LogFactors(dy.Schema):
+class LogFactors(PerMethod):
     """True speed = log speed x factor, per method and season."""
 
-    method = column.method(primary_key=True)
     season = column.season(primary_key=True)
     factor = column.number("1", "true speed / log speed", min_exclusive=0)
     lo = column.number("1", "lower end of the 95 % interval; empty where unknown", nullable=True)
@@ -18,12 +18,9 @@ class LogFactors(dy.Schema):
     )
 
 
-class SeasonLinks(dy.Schema):
+class SeasonLinks(PerPart):
     """What each estimated log factor rests on, per method, season, part of it and log."""
 
-    method = column.method(primary_key=True)
-    season = column.season(primary_key=True)
-    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
     log = column.text("speed source", primary_key=True)
     source = column.text(
         "estimated, gps, other log (by the ratio of both), not determined, or not settled"
@@ -50,12 +47,9 @@ class SeasonLinks(dy.Schema):
     agreement = column.number("1", "difference of the two in standard deviations", nullable=True)
 
 
-class SeasonSteps(dy.Schema):
+class SeasonSteps(PerPart):
     """Whether a season's step against the boats' other tows is the log's or the load cell's."""
 
-    method = column.method(primary_key=True)
-    season = column.season(primary_key=True)
-    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
     log = column.text("speed source", primary_key=True)
     n_boats = dy.Int32(description="boats also towed in other seasons", min=0)
     level_step = column.number("1", "step of ln Cw, by the log as it reads", nullable=True)
@@ -68,12 +62,9 @@ class SeasonSteps(dy.Schema):
     )
 
 
-class SeasonDiagnosis(dy.Schema):
+class SeasonDiagnosis(PerPart):
     """What is wrong with the instruments of each season: each possible fault with its odds."""
 
-    method = column.method(primary_key=True)
-    season = column.season(primary_key=True)
-    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
     instrument = column.text(
         "log_scale, log_trend (end of the season against its middle), log_change (from a tow on), "
         "gps_scale (plain GPS), force_scale, force_zero, force_zero_drift (end against middle), "
@@ -108,11 +99,9 @@ class SeasonDiagnosis(dy.Schema):
     confused_with = column.text("what else would explain it, likeliest first", nullable=True)
 
 
-class TowInstruments(dy.Schema):
+class TowInstruments(PerTow):
     """What was found of the instruments of each tow, and is corrected in its curve."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     log = column.text("speed source", primary_key=True)
     factor = column.number(
         "1", "true speed / log speed; 1 with dGPS; empty: not determined", nullable=True
@@ -127,19 +116,16 @@ class TowInstruments(dy.Schema):
     dof = column.number("1", "its degrees of freedom", nullable=True)
 
 
-class BestEstimateWeights(dy.Schema):
+class BestEstimateWeights(PerTow):
     """What the best estimate of a tow rests on: shares of the boat's tows, 1 together."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     rests_on = column.text("the tow that it rests on", primary_key=True)
     weight = column.number("1", "its share")
 
 
-class RetowChoice(dy.Schema):
+class RetowChoice(PerMethod):
     """Which few boats to tow again, with dGPS, to narrow the season factors most."""
 
-    method = column.method(primary_key=True)
     position = dy.Int32(primary_key=True, description="order: 1 reduces the uncertainty most")
     fsn_no = column.fsn_no()
     rowers = column.rowers()

@@ -3,5 +3,4 @@
 from typing import Final, Literal, get_args
 
 Severity = Literal["note", "look", "refuse"]
-SEVERITIES: Final[tuple[str, ...]] = get_args(Severity)
-SEVERITY_PATTERN: Final = f"^({'|'.join(SEVERITIES)})$"
+SEVERITY_PATTERN: Final = f"^({'|'.join(get_args(Severity))})$"

@@ -1,6 +1,7 @@
 """What the steps and options of a method change, and counts over many tows."""
 
 from herijk.tables import column
+from herijk.tables.bases import PerMethod, PerRun, PerTow
 from herijk.tables.declare import dy
 from herijk.tables.severity import SEVERITY_PATTERN
 
@@ -33,10 +34,9 @@ class SeasonLadder(dy.Schema):
     )
 
 
-class SeasonChanges(dy.Schema):
+class SeasonChanges(PerMethod):
     """Cw of each method / Cw of the first method, of the same tows, per season."""
 
-    method = column.method(primary_key=True)
     from_method = column.text("first method, which the others are compared with")
     season = column.season(primary_key=True)
     tows = dy.Int32(description="tows with a curve under both", min=1)
@@ -48,10 +48,9 @@ class SeasonChanges(dy.Schema):
 _STUDY = "judgement: what could be chosen either way; tool: what the tool of 2015 let one tick"
 
 
-class OptionEffects(dy.Schema):
+class OptionEffects(PerMethod):
     """How much choices matter, on top of a method: of judgement, and those of the tool of 2015."""
 
-    method = column.method(primary_key=True)
     study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
     tow_id = column.tow_id(primary_key=True)
     option = column.text("option of a step, or all", primary_key=True)
@@ -63,11 +62,9 @@ class OptionEffects(dy.Schema):
     b_interval_ratio = column.number("1", "the same for B; empty: no bound", nullable=True, min=0)
 
 
-class OptionCurves(dy.Schema):
+class OptionCurves(PerTow):
     """Curves of a tow under every combination of the ticks of the tool of 2015, at each speed."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     speed = column.text(
         "the log as_read, with the method's dgps or estimated factor, or its percentage by which "
         "to multiply or divide",
@@ -83,10 +80,9 @@ class OptionCurves(dy.Schema):
     cw_kg_m = column.number("kg/m", "Cw at the declared speed")
 
 
-class OptionSummary(dy.Schema):
+class OptionSummary(PerMethod):
     """How much each option moves Cw over all tows to which it can matter."""
 
-    method = column.method(primary_key=True)
     study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
     option = column.text("option of a step", primary_key=True)
     tows = dy.Int32(description="tows", min=1)
@@ -95,30 +91,27 @@ class OptionSummary(dy.Schema):
     hi_ratio = column.number("1", "5 % of the tows lie above")
 
 
-class QualityCounts(dy.Schema):
+class QualityCounts(PerMethod):
     """How many curves have each status and flag, and how many runs do not count, and why."""
 
-    method = column.method(primary_key=True)
     kind = column.text("status, flag or run", primary_key=True, regex="^(status|flag|run)$")
     code = column.text("the status, flag or reason", primary_key=True)
     scope = column.text("a season, or all", primary_key=True)
     number = dy.Int32(description="how many", min=1)
 
 
-class CheckCounts(dy.Schema):
+class CheckCounts(PerMethod):
     """How often each check was made, and found something beyond its limit."""
 
-    method = column.method(primary_key=True)
     check = column.text("code of the check", primary_key=True)
     severity = column.text("note, look or refuse", regex=SEVERITY_PATTERN)
     tows = dy.Int32(description="tows on which it was made", min=1)
     beyond = dy.Int32(description="of which beyond the limit", min=0)
 
 
-class Promise(dy.Schema):
+class Promise(PerMethod):
     """Within 2 % for most tows and 1 % for all? Per method and season, as stated and as seen."""
 
-    method = column.method(primary_key=True)
     season = dy.Int32(primary_key=True, description="year of the tow list")
     tows = dy.Int32(description="tows with a curve", min=1)
     half_interval_ratio = column.number(
@@ -131,14 +124,12 @@ class Promise(dy.Schema):
         "1", "share of those off by less than 1 % (difference / root 2)", nullable=True
     )
     share_seen_2pct = column.number("1", "the same for 2 %", nullable=True)
-    outside_2pct = dy.List(dy.String(), description="tows beyond 2 %, stated or seen")
+    outside_2pct = column.texts(description="tows beyond 2 %, stated or seen")
 
 
-class PrintReproduction(dy.Schema):
+class PrintReproduction(PerTow):
     """Does a method reproduce print? A, B and Cw of a tow as printed, next to each method's."""
 
-    method = column.method(primary_key=True)
-    tow_id = column.tow_id(primary_key=True)
     season = column.season()
     fsn_no = column.fsn_no()
     rowers = column.rowers()
@@ -154,10 +145,9 @@ class PrintReproduction(dy.Schema):
     cw_ratio = column.number("1", "printed / recomputed Cw", nullable=True)
 
 
-class PrintSummary(dy.Schema):
+class PrintSummary(PerMethod):
     """How near each method comes to print, per season; look here before re-basing."""
 
-    method = column.method(primary_key=True)
     season = dy.Int32(primary_key=True, description="year of the tow list")
     tows = dy.Int32(description="tows that were printed", min=1)
     median_ratio = column.number("1", "printed / recomputed Cw, median")
@@ -166,11 +156,9 @@ class PrintSummary(dy.Schema):
     share_within_1pct = column.number("1", "share of tows within 1 % of print")
 
 
-class RunStatistics(dy.Schema):
+class RunStatistics(PerRun):
     """What the tool of 2014 showed of a run, per channel, over means of a second."""
 
-    tow_id = column.tow_id(primary_key=True)
-    run = column.run(primary_key=True)
     channel = column.text("log1, log2, gps, force, wind or cw", primary_key=True)
     mean = column.number("as channel", "mean")
     sd = column.number("as channel", "standard deviation of the means of a second", min=0)

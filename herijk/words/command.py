@@ -356,7 +356,6 @@ COMMAND: Final[dict[str, str]] = {
     "  and {} more: see the table quarantine": "  en nog {}: zie de tabel quarantine",
     "Put into archief.toml": "Zet in archief.toml",
     "Choose, and put into archief.toml": "Kies en zet in archief.toml",
-    "line {}": "regel {}",
     ", line {}": ", regel {}",
     " (tow {})": " (proef {})",
     "tow {}: {}": "proef {}: {}",

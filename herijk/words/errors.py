@@ -168,9 +168,11 @@ ERRORS: Final[dict[str, str]] = {
     "{}: not valid TOML: {}": "{}: geen geldige TOML: {}",
     "{} is not valid TOML: {}": "{} is geen geldige TOML: {}",
     "{}: {}: {}; it may hold {}": "{}: {}: {}; er mag in staan: {}",
-    "{}: {}: {}; a decision has sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
-        "{}: {}: {}; een besluit heeft sleep_id, oordeel (uitsluiten of voorkeur), reden, "
-        "wie en datum"
+    "[[besluit]], each with sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
+        "[[besluit]], elk met sleep_id, oordeel (uitsluiten of voorkeur), reden, wie en datum"
+    ),
+    "lake and editions, each as 's3://bucket/prefix' without a name or password": (
+        "lake en editions, elk als 's3://bucket/prefix' zonder naam of wachtwoord"
     ),
     "{}: more than one decision about {}": "{}: meer dan een besluit over {}",
     # TOML that people write
@@ -376,9 +378,6 @@ ERRORS: Final[dict[str, str]] = {
     "boat {} is not in edition {}; its register.csv lists the boats": (
         "sloep {} staat niet in editie {}; register.csv noemt de sloepen"
     ),
-    "a register as printed has no lineage": (
-        "van een register zoals gedrukt is geen herkomst bekend"
-    ),
     "edition {} was recomputed; only lines of an edition as printed can be carried over": (
         "editie {} is herberekend; alleen regels van een editie zoals gedrukt kunnen "
         "overgenomen worden"
@@ -420,6 +419,7 @@ ERRORS: Final[dict[str, str]] = {
     "edition {}: {} is missing or damaged ({}); put the folder back from a copy": (
         "editie {}: {} ontbreekt of is beschadigd ({}); zet de map terug uit een kopie"
     ),
+    "{}/{} names no file": "{}/{} noemt geen bestand",
     "edition {}: {}.parquet is missing or damaged; put the folder back from a copy": (
         "editie {}: {}.parquet ontbreekt of is beschadigd; zet de map terug uit een kopie"
     ),

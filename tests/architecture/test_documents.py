@@ -10,6 +10,7 @@ import typer.main
 
 from herijk.cli.main import app
 from herijk.dashboards.guides import GUIDES
+from herijk.pipeline.assessment.checks import CHECKS
 from herijk.pipeline.method.definition import Steps, shipped_methods
 from herijk.tables.schemas import TABLES
 from herijk.tables.views import VIEWS
@@ -50,6 +51,41 @@ def test_every_option_of_a_method_is_documented(step, option):
 def test_no_option_is_documented_that_is_not_there():
     found = set(re.findall(r"^\| `(\w+)\.(\w+)` \|", read("docs/method.md"), re.MULTILINE))
     assert found == set(OPTIONS)
+
+
+def limit_text(check):
+    """The limits of a check as method.md writes them."""
+
+    def of_class(crew_class):
+        low, high = check.limits(crew_class)
+        if low is None:
+            return f"at most {high:g}"
+        return f"at least {low:g}" if high is None else f"{low:g} to {high:g}"
+
+    men, women = map(of_class, "HD")
+    limit = men if men == women else f"H {men}, D {women}"
+    limit += "" if check.unit == "1" else f" {check.unit}"
+    return f"{limit}; to {check.last_season}" if check.last_season else limit
+
+
+DUTCH = {
+    "refuse": "afwijzen",
+    "look": "nakijken",
+    "note": "opmerking",
+    "at most": "hoogstens",
+    "at least": "minstens",
+    " to ": " tot ",
+    ".": ",",
+}
+
+
+def test_the_checks_of_a_tow_are_documented_with_their_limits():
+    row = re.compile(r"^\| `(\w+)` \| (\w+) \| [^|]+ \| ([^|]+) \| [^|]+ \|$", re.MULTILINE)
+    stated = [(check.code, check.severity, limit_text(check)) for check in CHECKS]
+    assert row.findall(read("docs/method.md")) == stated
+    for english, dutch in DUTCH.items():
+        stated = [(code, *(x.replace(english, dutch) for x in rest)) for code, *rest in stated]
+    assert row.findall(read("docs/nl/method.md")) == stated
 
 
 @pytest.mark.parametrize("name", shipped_methods())

@@ -6,6 +6,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
+from herijk.pipeline.consistency.lines import newest_lines, type_lines
 from herijk.tables.lake import ListedRaces
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
@@ -113,3 +114,8 @@ def _fitted(speed, cw, v0):
     yield pl.Series("b_capped", np.zeros(len(v0), bool))
     yield pl.Series("status", ["accepted"] * len(v0))
     yield pl.Series("flags", [[]] * len(v0), dtype=pl.List(pl.String))
+
+
+def type_consistency(observed):
+    """Rows of the table `type_consistency`."""
+    return newest_lines(type_lines(observed)[0])

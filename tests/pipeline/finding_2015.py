@@ -9,13 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.consistency import (
-    compared_tows,
-    era_shifts,
-    observe,
-    repeat_pairs,
-    type_lines,
-)
+from herijk.pipeline.consistency.compared import compared_tows
+from herijk.pipeline.consistency.eras import era_shifts
+from herijk.pipeline.consistency.lines import type_lines
+from herijk.pipeline.consistency.observed import observe
+from herijk.pipeline.consistency.repeats import repeat_pairs
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import World, WorldSettings, simulate_world

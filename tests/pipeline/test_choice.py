@@ -4,7 +4,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.assessment.assess import _held_against_limits
+from herijk.pipeline.assessment.assess import _beside_limits
 from herijk.pipeline.assessment.checks import CHECKS
 from herijk.pipeline.choice import first_largest
 
@@ -29,4 +29,4 @@ def test_half_way_between_two_limits_rounding_does_not_choose(observed, side):
     check = next(check for check in CHECKS if check.code == "out_and_back_differ")
     curves = pl.DataFrame({"method": ["m"], "tow_id": ["t"], "season": [2014], "crew_class": ["H"]})
     long = pl.DataFrame({"tow_id": ["t"], "check": ["out_and_back_differ"], "observed": [observed]})
-    assert _held_against_limits(long, curves)["limit"].item() == check.limits("H")[side]
+    assert _beside_limits(long, curves)["limit"].item() == check.limits("H")[side]

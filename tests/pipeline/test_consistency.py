@@ -9,31 +9,23 @@ import polars as pl
 import pytest
 from scipy import optimize, stats
 
-from herijk.pipeline.consistency import (
-    compared_tows,
-    consistency_tables,
-    hull_speed_statistics,
-    line_tables,
-    mixed,
-    observe,
-    pooled_curves,
-    reml,
-    repeat_pairs,
-    reproducibility,
-    slow_tows,
-    speed_trend,
-    tow_speed,
-    type_consistency,
-    type_homogeneity,
+from herijk.pipeline.consistency import mixed, reml, tow_speed
+from herijk.pipeline.consistency.compared import compared_tows, hull_speed_statistics
+from herijk.pipeline.consistency.components import variance_components
+from herijk.pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
+from herijk.pipeline.consistency.lines import (
+    LN_CW,
+    quantities,
     type_lines,
     type_outliers,
-    variance_components,
 )
-from herijk.pipeline.consistency.lines import LN_CW, quantities
-from herijk.pipeline.consistency.observed import newest
-from herijk.pipeline.consistency.reml import Design, Problem, Stack
+from herijk.pipeline.consistency.observed import newest, observe
+from herijk.pipeline.consistency.reml import Design, Problem, Stack, Whitened
+from herijk.pipeline.consistency.repeats import repeat_pairs, reproducibility
+from herijk.pipeline.consistency.tables import consistency_tables, line_tables
+from herijk.pipeline.consistency.tow_speed import slow_tows, speed_trend
 from herijk.tables.schemas import conform
-from tests.pipeline.consistency_fleet import NO_RACES, fleet
+from tests.pipeline.consistency_fleet import NO_RACES, fleet, type_consistency
 
 
 def within(observed, expected, trials):
@@ -56,6 +48,11 @@ def grouped_data(seed=1, n=60, boats=20, others=5):
 
 def deviance(problem, sd):
     return Stack.of([problem]).likelihood(np.square([sd])).deviance[0]
+
+
+def fit_at(problem, free, sd):
+    """The model with these standard deviations."""
+    return mixed.Fit(problem, free, sd, Whitened(Stack.of([problem]), np.square([sd])), 0)
 
 
 def dense_deviance(problem, sd):
@@ -167,7 +164,7 @@ def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
     other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
     only_mean = replace(problem, design=Design.of(np.ones(12), range(12)))
-    found = mixed.Fit.at(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
+    found = fit_at(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
     assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
     half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
     assert found.coefficients().hi[0] - found.beta[0] == pytest.approx(half, rel=1e-6)
@@ -218,7 +215,7 @@ def test_a_mask_takes_the_problems_that_it_names():
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem = grouped_data()
     sd = (2.0, 1.0, 0.5)
-    fit = mixed.Fit.at(problem, mixed.COMPONENTS, sd)
+    fit = fit_at(problem, mixed.COMPONENTS, sd)
     found = fit.leave_boats_out()
     v = np.diag(problem.variance + sd[2] ** 2)
     v += sd[0] ** 2 * (problem.design.boat[:, None] == problem.design.boat)
@@ -672,7 +669,7 @@ CASES = {
 
 
 def everything(*tables):
-    return line_tables(*tables) | consistency_tables(*tables, NO_RACES)
+    return line_tables(observe(*tables)) | consistency_tables(*tables, NO_RACES)
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -5,8 +5,7 @@ import polars as pl
 import pytest
 from scipy import stats
 
-from herijk.pipeline.consistency import era_shifts
-from herijk.pipeline.consistency.eras import median_interval
+from herijk.pipeline.consistency.eras import era_shifts, median_interval
 
 BOATS = pl.DataFrame({"fsn_no": [f"FSN{k}" for k in range(40)], "boat_type": ["like"] * 40})
 

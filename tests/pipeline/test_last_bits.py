@@ -9,7 +9,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.consistency import consistency_tables
+from herijk.pipeline.consistency.tables import consistency_tables
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WorldSettings, simulate_world

@@ -12,7 +12,6 @@ from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE, METHOD
 from herijk.warehouse.editions.publish import Terms, publish
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
 from tests.intake import bring_in
 
@@ -42,7 +41,9 @@ class EditionBench:
         shutil.copytree(self.archive, root / "archive")
         shutil.copytree(self.data, root / "data")
         copied = EditionBench(root / "archive", root / "data")
-        intake.index(copied.store, copied.archive)
+        about = copied.store.read("about_archive")
+        place = pl.lit(str(copied.archive.resolve())).alias("root")
+        copied.store.write("about_archive", about.with_columns(place), made_from="")
         return copied
 
     @property

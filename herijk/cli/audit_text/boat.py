@@ -17,11 +17,11 @@ from herijk.cli.audit_text.words import (
     slow_tow,
     wrapped,
 )
-from herijk.cli.text import table
+from herijk.cli.text import decimals, place, table, why_set_aside, window
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit import BoatAudit
-from herijk.words import LANGUAGE, tell
+from herijk.words import tell
 from herijk.words.catalogue import code
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
@@ -72,7 +72,8 @@ def boat_page(report: BoatAudit) -> list[str]:
         ),
         (
             tell("Set aside, by its number or the name of its file:"),
-            [_set_aside(row) for row in report.set_aside] or [tell("  nothing")],
+            [f"  {place(row)}: {why_set_aside(row)}" for row in report.set_aside]
+            or [tell("  nothing")],
         ),
     ]
     laid = [(title, [wrapped(line.strip()) for line in lines]) for title, lines in sections]
@@ -207,13 +208,6 @@ def _register(row: Row) -> str:
     )
 
 
-def _set_aside(row: Row) -> str:
-    tow = "" if row["tow_id"] is None else tell(" (tow {})", row["tow_id"])
-    line = "" if row["line"] is None else tell(", line {}", row["line"])
-    said = row["message_nl" if LANGUAGE.get() == "nl" else "message"]
-    return f"  {row['path']}{line}{tow}: {said}"
-
-
 def _tow(tow: Row) -> str:
     weight = tell("weight not known") if tow["weight_kg"] is None else f"{tow['weight_kg']:.0f} kg"
     sizes = (tow[key] for key in ("waterline_length_m", "beam_m", "bow_height_m"))
@@ -224,7 +218,7 @@ def _tow(tow: Row) -> str:
         tow["rowers"],
         tow["crew_class"],
         tow["declared_speed_m_s"],
-        " x ".join("-" if size is None else tell("{:.2f}", size) for size in sizes),
+        " x ".join(decimals(size, 2) for size in sizes),
         weight,
         tow["samples_path"],
     )
@@ -274,9 +268,7 @@ def _curve(curve: Row) -> str:
     rows = [
         (
             p["run"],
-            "-"
-            if p["window_start_s"] is None
-            else f"{p['window_start_s']:.0f}-{p['window_end_s']:.0f}",
+            window(p),
             codes(p["cut_reason"].split(",")),
             p["speed_factor"],
             p["speed_m_s"],

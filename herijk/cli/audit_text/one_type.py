@@ -26,8 +26,8 @@ from herijk.cli.audit_text.words import (
     wrapped,
     yes,
 )
-from herijk.cli.text import table
-from herijk.pipeline.consistency import ERAS
+from herijk.cli.text import decimals, table
+from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.consistency.tow_speed import SLOW_POWER_W
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
@@ -367,7 +367,7 @@ def _agreement(fleet: Mapping[str, Fleet]) -> list[str]:
             *(share(row[f"share_{which}"]) for which in ("within_1pct", "within_2pct")),
             share(row["share_e_n_above_1"]),
             row["n_pairs"],
-            _classes(row),
+            decimals(row["distinct_categories"], 1),
         )
         for method, figures in fleet.items()
         for row in figures.reproducibility
@@ -388,11 +388,6 @@ def _agreement(fleet: Mapping[str, Fleet]) -> list[str]:
         "boats of a type can be told apart."
     )
     return [table(head, cells), wrapped(meaning)]
-
-
-def _classes(row: Row) -> str:
-    """How many classes of boats the test tells apart."""
-    return "-" if row["distinct_categories"] is None else tell("{:.1f}", row["distinct_categories"])
 
 
 def _between(row: Row) -> str:

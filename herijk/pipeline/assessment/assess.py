@@ -1,6 +1,6 @@
 """Assessment: what a person should look at in a tow. A flag never changes a number.
 
-Here each check's number is observed, from the finished curves and run points of all tows of a
+Here the number of each check is computed from the finished curves and run points of all tows of a
 method at once, since a tow is also compared with earlier ones and with like boats. The checks are
 those of the federation's first assessment (Sleepproef, R. Pot 2017, "Eerste beoordeling" and
 "Opmetingen en keuring"); their limits are data, in `pipeline.assessment.checks`. Which of
@@ -13,26 +13,40 @@ from typing import Final
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
+from herijk.pipeline.assessment.checks import CHECK, CHECKS, CODES, DOUBTS, UNUSUAL
 from herijk.pipeline.assessment.days import days_apart
 from herijk.pipeline.assessment.freeboard import by_freeboard
 from herijk.pipeline.assessment.mean_shift import MOSTLY, NORMAL_MAD
 from herijk.pipeline.assessment.season_levels import season_levels
-from herijk.pipeline.assessment.shared import rising_with_wind, unless_chance, ways_apart
-from herijk.pipeline.channels import SECOND_FILE_OFFSET
+from herijk.pipeline.assessment.shared import (
+    rising_with_speed,
+    rising_with_wind,
+    ways_apart,
+)
 from herijk.pipeline.choice import SAME_SHARE
 from herijk.pipeline.season_log.diagnosis import FAULT
 from herijk.pipeline.season_log.effects import FLEET
+from herijk.tables.archive import Tows
+from herijk.tables.frames import dtypes
 from herijk.tables.keys import LINE
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
 FEWEST_LIKE_BOATS: Final = 4
-"""A type needs so many boats before one of them can stick out (inferred)."""
+"""Fewest boats of a type among which one can stand out (inferred)."""
 
 NORMAL_WIDTH: Final = 3.92
 """Standard deviations in a 95 % interval."""
 
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
+NOT_ALWAYS_KNOWN: Final = pl.DataFrame(
+    schema={
+        **dtypes(Tows),
+        "boat_type": pl.String,
+        **dict.fromkeys(("listed_length_m", "listed_beam_m"), pl.Float64),
+    }
+)
+"""Columns that the tows of an old edition, or a single tow, may lack."""
+
 SIZES: Final = {
     "weight_changed": "weight_kg",
     "length_changed": "waterline_length_m",
@@ -46,14 +60,6 @@ themselves (presentation 24-01-2015: tows agree within 2 %)."""
 
 FEWEST_PAIRS: Final = 10
 
-FEWEST_SLOPES: Final = 4
-"""Tows that a season needs before they tell how its log goes with speed (inferred)."""
-LEAST_SPREAD: Final = 0.01
-"""Sum of squares of ln speed within which a tow tells a slope; runs at 90 to 110 % have 0.04."""
-
-_HIGHEST: Final = {check.code: check.limits("H")[1] for check in CHECKS}
-_LAST_SEASON: Final = {check.code: check.last_season for check in CHECKS}
-
 
 def assess(
     curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
@@ -62,26 +68,27 @@ def assess(
 
     Args:
         curves, run_points: the tables of one method, curves without `status` and `flags`.
-        tows: rows of `tows`, with `boat_type` where it is known; without the column no tow is
-            compared with like boats.
+        tows: rows of `tows`, with `boat_type` and what the boat list says where that is known; of a
+            column that is missing nothing is known.
         diagnosis: rows of `season_diagnosis` of that method.
 
     Returns:
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
         weight not known, season after its last) has no row.
     """
+    tows = pl.concat([tows, NOT_ALWAYS_KNOWN], how="diagonal_relaxed")
     pairs = _pairs(curves, tows, diagnosis)
     observed = [
         _of_curves(curves),
         _of_runs(curves, run_points),
-        _of_logs(curves, run_points),
+        rising_with_speed(curves, run_points),
         _of_doubts(tows),
         _of_correction(run_points, tows),
         _of_sizes(tows),
         _of_steps(curves, tows),
         ways_apart(curves, run_points),
         rising_with_wind(curves, run_points),
-        _of_freeboards(tows),
+        by_freeboard(tows),
         _of_season(curves, tows, diagnosis),
         days_apart(curves, tows),
         _of_previous_curve(pairs),
@@ -89,7 +96,7 @@ def assess(
         _of_like_boats(curves, tows),
     ]
     long = pl.concat([_long(frame) for frame in observed])
-    return _held_against_limits(long, curves)
+    return _beside_limits(long, curves)
 
 
 def with_status(
@@ -150,30 +157,26 @@ def _long(frame: pl.DataFrame) -> pl.DataFrame:
 
 def _limits() -> pl.DataFrame:
     rows = [
-        (check.code, crew_class, *check.limits(crew_class), check.unit, check.severity)
-        for check in CHECKS
+        (c.code, crew_class, *c.limits(crew_class), c.unit, c.severity, c.last_season)
+        for c in CHECKS
         for crew_class in ("H", "D")
     ]
-    names = ("check", "crew_class", "lowest", "highest", "unit", "severity")
+    names = ("check", "crew_class", "lowest", "highest", "unit", "severity", "last_season")
     schema = dict.fromkeys(names, pl.String()) | dict.fromkeys(names[2:4], pl.Float64())
-    return pl.DataFrame(rows, schema=schema, orient="row")
+    return pl.DataFrame(rows, schema=schema | {"last_season": pl.Int32()}, orient="row")
 
 
-def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
+def _beside_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
     """Adds the limit that is exceeded or nearest, and whether it is exceeded."""
     x, lowest, highest = pl.col("observed"), pl.col("lowest"), pl.col("highest")
-    # Of two that are as near, but for rounding, the highest: as where nothing differs at all.
+    # Of two limits equally near, but for rounding, the highest.
     nearer = (highest - x) - (x - lowest) > SAME_SHARE * (highest - lowest)
     nearer_lowest = highest.is_null() | nearer
-    last = pl.col("check").replace_strict(_LAST_SEASON, return_dtype=pl.Int32)
+    of_tow = curves.select("method", "tow_id", "season", "crew_class")
     return (
-        observed.join(
-            curves.select("method", "tow_id", "season", "crew_class"),
-            on="tow_id",
-            maintain_order="left",
-        )
-        .filter(last.is_null() | (pl.col("season") <= last))
+        observed.join(of_tow, on="tow_id", maintain_order="left")
         .join(_limits(), on=["check", "crew_class"], maintain_order="left")
+        .filter(pl.col("season") <= pl.col("last_season").fill_null(pl.col("season")))
         .select(
             "method",
             "tow_id",
@@ -187,7 +190,7 @@ def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.Dat
     )
 
 
-# A tow by itself
+# A single tow
 
 
 def _of_curves(curves: pl.DataFrame) -> pl.DataFrame:
@@ -239,51 +242,17 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
-    """How the log's factor changes with speed, by the GPS of all its season.
-
-    Per tow it is the slope of ln(GPS / log) by ln speed, among runs one way, in which the stream is
-    the same. Per season it is their mean, or 0 where chance alone makes as much of it in a share
-    `CHANCE` of seasons.
-    """
-    ways = ["tow_id", pl.col("run") > SECOND_FILE_OFFSET, "direction"]
-    x, y = (pl.col(name).log() for name in ("speed_m_s", "gps_ratio"))
-    slope, x2 = pl.col("slope"), pl.col("x") ** 2
-    seasons = (
-        run_points.filter("used", pl.col("gps_ratio") > 0)
-        .select("tow_id", x=x - x.mean().over(ways), y=y - y.mean().over(ways))
-        .group_by("tow_id", maintain_order=True)
-        .agg(slope=(pl.col("x") * pl.col("y")).sum() / x2.sum(), spread=x2.sum())
-        .filter(pl.col("spread") > LEAST_SPREAD)
-        .join(curves.select("tow_id", "season"), on="tow_id", maintain_order="left")
-        .group_by("season", maintain_order=True)
-        .agg(slope.mean(), sd=slope.std() / pl.len().sqrt(), n=pl.len())
-        .filter(pl.col("n") >= FEWEST_SLOPES)
-        .with_columns(log_not_linear=unless_chance(slope, pl.col("sd"), pl.col("n") - 1.0))
-    )
-    return curves.join(seasons, on="season", maintain_order="left").select(
-        "tow_id", "log_not_linear"
-    )
-
-
 def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
     """What the rest of the archive says of a tow, judged before any method."""
-    judged = {"doubts": DOUBTS, "unusual": UNUSUAL}
     return tows.select(
         "tow_id",
-        *(
-            pl.col(column).list.contains(code).alias(code)
-            for column, codes in judged.items()
-            if column in tows.columns
-            for code in codes
-        ),
+        *(pl.col("doubts").list.contains(code).alias(code) for code in DOUBTS),
+        *(pl.col("unusual").list.contains(code).alias(code) for code in UNUSUAL),
     )
 
 
 def _of_correction(run_points: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """The tow list's speed correction, where the speeds are as the log read them; else 0."""
-    if "speed_correction_ratio" not in tows.columns:
-        return pl.DataFrame(schema={"tow_id": pl.String()})
     as_read = (pl.col("speed_factor") - 1.0).abs().max() < SAME_SHARE
     speeds = (
         run_points.filter("used")
@@ -307,46 +276,41 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
     """Weight after, and measurements against those of the boat's previous tow with any crew."""
     same = ~pl.col("altered")
     freeboards = [(pl.col(c) - _before(c, ["fsn_no"])).abs() for c in FREEBOARDS]
-    noted = {
-        "runs_set_aside": pl.col("runs_set_aside"),
-        "lamps_burned": pl.col("lamp_ratio").alias("lamps_burned"),
-        "load_cell_off": (pl.col("load_cell_ratio") - 1).alias("load_cell_off"),
-        "boat_list_differs": _off_boat_list().alias("boat_list_differs"),
+    changes = {
+        code: pl.when(same).then(pl.col(column) / _before(column, ["fsn_no"]) - 1)
+        for code, column in SIZES.items()
     }
-    known = [e for e in noted.values() if set(e.meta.root_names()) <= set(tows.columns)]
     return tows.sort("tow_date", "tow_id").select(
         "tow_id",
-        *known,
-        (pl.col("crew_weight_kg") / pl.col("rowers")).alias("crew_weight"),
-        (pl.col("weight_after_kg") / pl.col("weight_kg") - 1).alias("heavier_after"),
-        pl.when(same).then(pl.max_horizontal(freeboards)).alias("freeboard_changed"),
-        *(
-            pl.when(same).then(pl.col(column) / _before(column, ["fsn_no"]) - 1).alias(code)
-            for code, column in SIZES.items()
-        ),
+        "runs_set_aside",
+        lamps_burned="lamp_ratio",
+        load_cell_off=pl.col("load_cell_ratio") - 1,
+        boat_list_differs=_off_boat_list(),
+        crew_weight=pl.col("crew_weight_kg") / pl.col("rowers"),
+        heavier_after=pl.col("weight_after_kg") / pl.col("weight_kg") - 1,
+        freeboard_changed=pl.when(same).then(pl.max_horizontal(freeboards)),
+        **changes,
     )
 
 
 def _of_steps(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """What it does to Cw if readings were cut off at their step and not rounded: half a step.
+    """Change of Cw if readings were truncated to their step and not rounded: half a step.
 
-    Of a GPS only where it calibrates the tow.
+    That of a GPS counts only where it calibrates the tow.
     """
-    steps = [c for c in ("gps_step_m_s", "force_step_n") if c in tows.columns]
-    if not steps:
-        return pl.DataFrame(schema={"tow_id": pl.String()})
     speed = pl.col("declared_speed_m_s")
     by_gps = pl.when(pl.col("calibration_factor").is_not_null()).then(
         pl.col("gps_step_m_s") / speed  # half a step; speed counts twice
     )
     by_force = pl.col("force_step_n") / 2 / (pl.col("cw_kg_m") * speed**2)
-    return curves.join(tows.select("tow_id", *steps), on="tow_id", maintain_order="left").select(
+    steps = tows.select("tow_id", "gps_step_m_s", "force_step_n")
+    return curves.join(steps, on="tow_id", maintain_order="left").select(
         "tow_id", coarse_readings=pl.max_horizontal(by_gps, by_force)
     )
 
 
 def _off_boat_list() -> pl.Expr:
-    """How far length or breadth is from the boat list; of a boat ever altered that says nothing."""
+    """How far length or breadth is from the boat list; null for a boat that was ever altered."""
     off = [
         (pl.col(column) / pl.col(listed) - 1).abs()
         for column, listed in (
@@ -357,27 +321,20 @@ def _off_boat_list() -> pl.Expr:
     return pl.when(~pl.col("altered").any().over("fsn_no")).then(pl.max_horizontal(off))
 
 
-def _of_freeboards(tows: pl.DataFrame) -> pl.DataFrame:
-    if "freeboard_bow_m" not in tows.columns:
-        return pl.DataFrame(schema={"tow_id": pl.String()})
-    return by_freeboard(tows)
-
-
 def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Curves that were found, with the boat of the day, sorted by date.
+    """Tows with a curve, with the boat of the day, sorted by date.
 
     `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
     `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is
     1/B^2, also of a flat or falling curve, from A and Cw at the declared speed. `ln_sd` is that of
     ln Cw, where the method estimates the logs: the interval of others holds the runs alone.
     """
-    kept = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
-    types = [c for c in ("boat_type",) if c in tows.columns]
+    of_tow = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
     displacement = pl.col("weight_kg") + pl.col("crew_weight_kg")
     ln_width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
-        .join(tows.select("tow_id", *kept, *types), on="tow_id", maintain_order="left")
+        .join(tows.select("tow_id", "boat_type", *of_tow), on="tow_id", maintain_order="left")
         .with_columns(
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
@@ -454,23 +411,25 @@ def _of_previous_curve(pairs: pl.DataFrame) -> pl.DataFrame:
 
 
 def _of_unseen_errors(pairs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """From which size on an error of a tow's Cw is looked at, in 19 of 20 cases.
+    """Smallest error of a tow's Cw that would be noticed in 19 of 20 cases.
 
-    By the tow before or after it, or by what all others let its force be.
+    By the tow before or after it, or by the force that all others predict.
     """
-    limit, sds = _HIGHEST["curve_change_unexplained"], _HIGHEST["curve_change_significant"]
+    limit, sds = (
+        CHECK[code].limits("H")[1]
+        for code in ("curve_change_unexplained", "curve_change_significant")
+    )
     scatter = _scatter_of_pairs(pairs["ln"].drop_nulls())
     told = pl.min_horizontal(pl.lit(limit).log1p(), pl.lit(sds) * pl.col("sd")) + MOSTLY * scatter
     by_pair = pl.when(pl.col("ln").is_not_null()).then(told.exp() - 1)
-    by_force = [name for name in ("unseen_force_ratio",) if name in tows.columns]
+    by_next_pair = pl.col("by_pair").shift(-1).over(LINE)
+    by_force = tows.select("tow_id", "unseen_force_ratio")
     return (
-        pairs.join(tows.select("tow_id", *by_force), on="tow_id", maintain_order="left")
+        pairs.join(by_force, on="tow_id", maintain_order="left")
         .with_columns(by_pair=by_pair)
         .select(
             "tow_id",
-            unseen_error=pl.min_horizontal(
-                "by_pair", pl.col("by_pair").shift(-1).over(LINE), *by_force
-            ),
+            unseen_error=pl.min_horizontal("by_pair", by_next_pair, "unseen_force_ratio"),
         )
     )
 
@@ -503,10 +462,8 @@ def _of_like_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     was steered straight, is its own and does not count.
     """
     boats = _with_boats(curves, tows)
-    if "boat_type" not in boats.columns:
-        return pl.DataFrame(schema={"tow_id": pl.String(), "pulled_askew": pl.Float64()})
     common_speed = pl.col("declared_speed_m_s").median().over(LIKE)
-    ln, straight = pl.col("ln_excess"), pl.col("season") > _LAST_SEASON["pulled_askew"]
+    ln, straight = pl.col("ln_excess"), pl.col("season") > CHECK["pulled_askew"].last_season
     later = ln.filter(straight).min().over("fsn_no")
     return (
         boats.drop_nulls(["boat_type", "size"])

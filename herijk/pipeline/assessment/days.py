@@ -1,8 +1,8 @@
-"""Days of a season that differ: two load cells in turn, a zero that was wrong one morning.
+"""Days of a season that differ: two load cells used in turn, a zero that was wrong one morning.
 
-What the tows of a day share is compared with what they do not: one-way analysis of variance of each
-tow against the best estimate of its boat, which rests on the boat's tows of other days too. The
-variance within days is drawn towards that of other seasons, as a season may have few tows a day
+One-way analysis of variance, with the day as the group, of each tow against the best estimate of
+its boat, which rests on the boat's tows of other days too. The variance within days is shrunk
+towards that of other seasons, as a season may have few tows per day
 (Smyth 2004, Statistical Applications in Genetics and Molecular Biology 3, the moderated F).
 """
 
@@ -15,23 +15,23 @@ from herijk.pipeline.assessment.shared import CHANCE
 from herijk.tables.keys import LINE
 
 PRIOR_DOF: Final = 10
-"""Degrees of freedom that other seasons count for (inferred)."""
+"""Degrees of freedom with which other seasons count (inferred)."""
 
 
 def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Standard deviation of ln Cw that the tows of one day share, in the season of each tow.
 
     Args:
-        curves: curves of one method; without best estimates nothing is told.
+        curves: curves of one method, with best estimates.
         tows: rows of `tows`.
 
     Returns:
-        `tow_id, days_differ`: 0 where chance makes as much of it; no row in a season of one day.
+        `tow_id, days_differ`: 0 where chance explains it; no row in a season of one day.
     """
-    ln, n = pl.col("ln"), pl.col("n")
+    ratio, ln, n = pl.col("cw_kg_m") / pl.col("cw_best_kg_m"), pl.col("ln"), pl.col("n")
     days = (
         curves.filter(pl.len().over(LINE) > 1)
-        .select("tow_id", "season", "calibration_factor", ln=(_cw("cw") / _cw("cw_best")).log())
+        .select("tow_id", "season", "calibration_factor", ln=ratio.log())
         .filter(ln.is_finite())
         .join(tows.select("tow_id", "tow_date"), on="tow_id", maintain_order="left")
         .group_by("season", "tow_date", maintain_order=True)
@@ -71,7 +71,3 @@ def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     return curves.join(
         seasons.select("season", days_differ=sure), on="season", maintain_order="left"
     ).select("tow_id", "days_differ")
-
-
-def _cw(name: str) -> pl.Expr:
-    return pl.col(f"{name}_kg_m")

@@ -1,4 +1,4 @@
-"""What freeboards say: weight and its fore-and-aft balance, beside those of the previous tow.
+"""Changes of weight and fore-and-aft balance since the previous tow, as freeboards show them.
 
 Freeboards are measured afloat since 2017, to check weight and how it lies over the length
 (Sleepproef, R. Pot 2017, "Opmetingen en keuring"). A boat that sinks by d displaces density times
@@ -22,7 +22,7 @@ ENDS: Final = ("freeboard_bow_m", "freeboard_stern_m")
 
 
 def by_freeboard(tows: pl.DataFrame) -> pl.DataFrame:
-    """Change of weight and balance that freeboards tell of, since the boat's previous tow.
+    """Change of weight and balance since the boat's previous tow, as freeboards show it.
 
     Args:
         tows: `tow_id`, `fsn_no`, `tow_date`, `altered`, sizes, `weight_kg` and freeboards.

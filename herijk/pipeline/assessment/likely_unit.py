@@ -1,11 +1,11 @@
-"""Likely units: which exchange of units would shift a quantity as it is seen to be shifted."""
+"""Likely units: which exchange of units would shift a quantity as much as is observed."""
 
 from typing import Final
 
 import numpy as np
 
 TOLERANCE: Final = 0.12
-"""How far a logarithm may lie from that of an exchange, when it is known exactly."""
+"""How far a logarithm that is known exactly may lie from that of an exchange."""
 
 Cause = tuple[str, ...]
 """A text, and what goes between its braces."""
@@ -31,11 +31,11 @@ _EXCHANGES: Final[dict[str, dict[Cause, float]]] = {
         instead_of("ft/s", "m/s"): 3.2808399,
     },
 }
-"""Size of an exchange, whichever way round. kgf and daN differ by 2 % and are named together."""
+"""Ratio of the two units. kgf and daN differ by 2 % and are named together."""
 
 
 def likely_causes(quantity: str, ln_size: float, sd: float) -> tuple[Cause, ...]:
-    """The exchanges that give a shift, likeliest first; several where they cannot be told apart.
+    """The exchanges that explain a shift, likeliest first; several where they are too alike.
 
     Args:
         quantity: `force` or `wind`; nothing is known of others.

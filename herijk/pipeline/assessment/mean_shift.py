@@ -4,7 +4,7 @@ Observations are Gaussian with known variances: independent noise and random eff
 group in a given direction g is estimated from all the rest. With P the inverse of the covariance of
 y, it is g'Py / g'Pg, with variance 1 / g'Pg (Cook & Weisberg 1982, Residuals and Influence in
 Regression, 2.2.2). The clearest shift is taken out, which makes it a fixed effect, and the rest is
-judged again. What is observed and what may shift is said elsewhere.
+judged again. What is observed and what may shift is decided by the caller.
 """
 
 from dataclasses import dataclass
@@ -24,10 +24,10 @@ SAME_DIRECTION: Final = 1e-6
 
 FEWEST_FOR_SCALE: Final = 10
 MOSTLY: Final = 1.645
-"""Standard deviations below its mean that a Gaussian number reaches in 19 of 20 cases."""
+"""A Gaussian number is less than this many standard deviations below its mean in 19 of 20 cases."""
 
 AT_A_TIME: Final = 2048
-"""Candidates that are weighed together: all of ten thousand tows would take gigabytes."""
+"""Candidates that are weighed together: those of ten thousand tows would take gigabytes."""
 
 NORMAL_MAD: Final = 0.6745
 
@@ -47,12 +47,12 @@ class Effects:
 
 @dataclass(frozen=True)
 class Observations:
-    """What is seen, and how it scatters beforehand.
+    """What is observed, and its prior scatter.
 
     Attributes:
         values: deviations from the expected mean, shape (n,).
         variance: of their independent noise, shape (n,).
-        own: the random effects of which each one has one at most: those of its boat.
+        own: random effects of which each observation has at most one: those of its boat.
         shared: the other random effects.
     """
 
@@ -84,7 +84,7 @@ class Found:
     """A shift: place of the candidate, its size, and the standard deviation of that.
 
     Attributes:
-        clear: it is beyond the limit from which chance is ruled out.
+        clear: whether it is beyond the limit from which chance is ruled out.
     """
 
     place: int
@@ -95,12 +95,12 @@ class Found:
 
 @dataclass(frozen=True)
 class Shifted:
-    """What shifted, and what else would have been seen.
+    """What shifted, and what other shifts would have been noticed.
 
     Attributes:
         shifts: the shifts, the clearest first.
         seen_from: size from which a shift of each candidate is beyond its last limit in 19 of 20
-            cases, shape (candidates,); NaN of one that was taken out, or is one with such a one.
+            cases, shape (candidates,); NaN for one that was taken out, or equals one that was.
     """
 
     shifts: list[Found]
@@ -120,20 +120,18 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
         look: from which a single tow is unusual, judged when all clear shifts are taken out.
     """
     left = _Left(seen, may)
-    gross = left.take_out(np.full(len(may.least), limit), np.maximum(may.least, may.gross))
+    shifts = left.take_out(limit, np.maximum(may.least, may.gross), clear=True)
     scales = left.scales()
-    clear = left.take_out(limit * scales, may.least)
+    shifts += left.take_out(limit * scales, may.least, clear=True)
     limits = np.where(may.single, look * scales, np.inf)
-    unusual = left.take_out(limits, may.least)
+    shifts += left.take_out(limits, may.least, clear=False)
     _, sd = left.sizes()
     seen_from = np.maximum(sd * (limits + MOSTLY * scales), may.least)
-    shifts = [Found(*one, clear=True) for one in gross + clear]
-    shifts += [Found(*one, clear=False) for one in unusual]
     return Shifted(shifts, np.where(left.told, seen_from, np.nan))
 
 
 class _Left:
-    """What the candidates show beside all that was taken out before."""
+    """What the candidates show given all that was taken out before."""
 
     def __init__(self, seen: Observations, may: Candidates) -> None:
         self._may = may
@@ -148,7 +146,7 @@ class _Left:
         return np.asarray(self._weight > SAME_DIRECTION * self._at_first)
 
     def sizes(self) -> tuple[FloatArray, FloatArray]:
-        """Size of each shift and its standard deviation; of no use where it cannot be told."""
+        """Size of each shift and its standard deviation; meaningless where `told` is false."""
         sd = 1.0 / np.sqrt(np.where(self.told, self._weight, 1.0))
         return self._score * sd**2, sd
 
@@ -161,9 +159,11 @@ class _Left:
         scatter = float(np.median(np.abs(z))) / NORMAL_MAD
         return np.where(self._may.single, max(scatter, NARROWEST), max(scatter, 1.0))
 
-    def take_out(self, limits: FloatArray, least: FloatArray) -> list[tuple[int, float, float]]:
-        """Takes out what is beyond its limit in standard deviations: place, size and sd of each."""
-        taken: list[tuple[int, float, float]] = []
+    def take_out(
+        self, limits: FloatArray | float, least: FloatArray, *, clear: bool
+    ) -> list[Found]:
+        """Takes out what is beyond its limit in standard deviations, the clearest first."""
+        taken: list[Found] = []
         while True:
             size, sd = self.sizes()
             beyond = np.abs(size) / (sd * limits)
@@ -171,7 +171,7 @@ class _Left:
             best = int(first_largest(beyond))
             if beyond[best] < 1.0:
                 return taken
-            taken.append((best, float(size[best]), float(sd[best])))
+            taken.append(Found(best, float(size[best]), float(sd[best]), clear))
             moved = self._precision.take_out(self._may.directions[:, [best]].toarray()[:, 0])
             share = np.asarray(self._may.directions.T @ moved)
             self._score = self._score - share * size[best]

@@ -1,10 +1,10 @@
-"""Plausibility: can the samples of a tow be true, beside size, type, boat, day, season and archive?
+"""Plausibility: can the samples of a tow be true, given size, type, boat, day, season and archive?
 
 A force in kgf under a header of newtons is a sound number of a boat that does not exist. No tow
-shows that by itself; the others do. What each tow shows is compared with what all the others let
-expect, and a shift of a tow, a day, a season, a part of one, or the whole archive that they rule
-out is found and named. Nothing here depends on a method, and nothing here changes a number: whoever
-computes leaves these tows out of what others share.
+reveals that by itself; the others do. Each tow is compared with what all the others predict. A
+shift of a tow, a day, a season, a part of one, or the whole archive that they rule out is reported.
+Nothing here depends on a method or changes a number: later steps leave these tows out of what tows
+share.
 
 The expectation is a Gaussian model with known variances (mean-shift outliers; Cook & Weisberg 1982,
 Residuals and Influence in Regression, 2.2.2). The shift of a group of tows is estimated from all
@@ -33,14 +33,14 @@ from herijk.pipeline.blocks.batch import Batch
 from herijk.tables.keys import LINE
 
 LIMIT: Final = 4.5
-"""Standard deviations from which a shift is no chance: one in 300,000, as thousands are tried."""
+"""Standard deviations from which a shift is not chance: one in 300,000, as thousands are tried."""
 
 LOOK: Final = 3.0
-"""Standard deviations from which a single tow is unusual: somebody has to look, and its numbers
-stand. One sound tow in 400, were all as Gaussian as the model."""
+"""Standard deviations from which a single tow is unusual: somebody has to look, but its numbers
+stand. One sound tow in 400, if all were as Gaussian as the model."""
 
 FEWEST: Final = 3
-"""Tows that a day, a season, either part of one, or an archive needs to be judged as a whole."""
+"""Fewest tows for which a day, a season, either part of one, or an archive is judged as a whole."""
 
 GROSS: Final = np.log(1.6)
 """Shift of a logarithm that no boat explains: the widest spread within a type is far less."""
@@ -51,7 +51,7 @@ _WITH_UNITS: Final = ("force", "wind")
 
 @dataclass(frozen=True)
 class Spread:
-    """Standard deviations that one observed quantity has beforehand (inferred).
+    """Prior standard deviations of one observed quantity (inferred).
 
     Attributes:
         tow, day, season, archive: of a single tow, and of what those of a group share.
@@ -79,7 +79,7 @@ WIND_ABEAM: Final = Spread(tow=0.06, day=0.03, season=0.05, archive=0.05)
 SPEED: Final = Spread(tow=0.008, day=0.004, season=0.01, archive=0.01)
 
 LEAST: Final = {"force": 0.05, "zero": 0.0, "wind": 0.2, "vane": 0.2, "speed": 0.025}
-"""Sizes that matter, however clear: smaller ones change Cw by less than a tow scatters."""
+"""Smallest sizes that matter, however clear: smaller ones change Cw by less than a tow scatters."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Shift:
 
     @property
     def is_gross(self) -> bool:
-        """Whether nothing but a wrong unit, column or file does this."""
+        """Whether only a wrong unit, column or file can explain this."""
         if not self.clear:
             return False
         if self.quantity == "vane":
@@ -121,13 +121,13 @@ class Shift:
 
 @dataclass(frozen=True)
 class Plausibility:
-    """What all tows together say of each.
+    """What all tows together say of each one.
 
     Attributes:
-        shifts: of force, wind and speed that the other tows rule out, the clearest first; after
-            these, single tows that are only unusual.
-        force_seen_from: per tow, the smallest relative error of its force that would have it looked
-            at in 19 of 20 cases; a tow of which nothing can be told is missing.
+        shifts: those of force, wind and speed that the other tows rule out, the clearest first;
+            then single tows that are only unusual.
+        force_seen_from: per tow, the smallest relative error of its force that would be noticed in
+            19 of 20 cases; a tow about which nothing can be said is missing.
     """
 
     shifts: tuple[Shift, ...]
@@ -140,7 +140,7 @@ def plausibility(batch: Batch) -> Plausibility:
     Args:
         batch: all tows of the archive with their runs, in one batch.
     """
-    seen = Seen.of(batch)
+    seen = Seen(batch)
     of_force, force_seen_from = _of_force(seen)
     shifts = (
         *_in_radians(seen),
@@ -187,7 +187,7 @@ def _turned(seen: Seen) -> Iterator[Shift]:
     low, high = _TURNED_WIND
     known = (np.abs(felt) > low) & (np.abs(felt) < high)  # NaN is not
     tows = seen.batch.tows
-    found: set[str] = set()
+    turned: set[str] = set()
     for kind, key, places in _groups(tows, ("season", "tow")):
         mine = places[known[places]]
         if kind == "season" and len(mine) < FEWEST:
@@ -195,12 +195,12 @@ def _turned(seen: Seen) -> Iterator[Shift]:
         mean = (felt[mine] / np.abs(felt[mine])).sum() / max(len(mine), 1)
         angle = float(np.degrees(np.angle(mean)))
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
-        if abs(mean) > _TURNED_ALIKE and abs(angle) > _TURNED_DEG[kind] and not found & {*ids}:
-            found |= {*ids}
+        if abs(mean) > _TURNED_ALIKE and abs(angle) > _TURNED_DEG[kind] and not turned & {*ids}:
+            turned |= {*ids}
             yield Shift(kind, key, "vane", round(angle) % 360, 0.0, ids, TURNED)
 
 
-# What may have shifted, and how much it scatters by itself
+# What may have shifted, and how much it scatters
 
 Group = tuple[str, str, IntArray]
 """Kind, key, and the places of its tows."""
@@ -342,17 +342,17 @@ def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
         zero = per_newton[mine]
         both = np.concatenate([mine, tows.height + mine])
         columns.append(("zero", group, both, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
-    found = _find(observed, columns)
+    shifted = _find(observed, columns)
     seen_from = {
         key: float(np.expm1(size))
-        for (quantity, (kind, key, _), *_), size in zip(columns, found.seen_from, strict=True)
+        for (quantity, (kind, key, _), *_), size in zip(columns, shifted.seen_from, strict=True)
         if (quantity, kind) == ("force", "tow") and np.isfinite(size)
     }
-    return _named(seen, known, columns, found), seen_from
+    return _named(seen, known, columns, shifted), seen_from
 
 
 def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
-    """What is found among the candidates."""
+    """The candidates that have shifted."""
     ends = np.cumsum([0, *(len(places) for *_, places, _ in columns)])
     places, sizes = (np.concatenate([c[k] for c in columns]) for k in (2, 3))
     shape = len(observed.values), len(columns)
@@ -365,12 +365,12 @@ def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
     return find_shifts(observed, may, LIMIT, LOOK)
 
 
-def _named(seen: Seen, there: BoolArray, columns: list[Candidate], found: Shifted) -> list[Shift]:
-    """The shifts that were found among the tows that are there, and what may have caused them."""
+def _named(seen: Seen, there: BoolArray, columns: list[Candidate], shifted: Shifted) -> list[Shift]:
+    """The shifts among the tows that are there, and what may have caused them."""
     tow_ids = seen.batch.tows["tow_id"].filter(pl.Series(there))
     air_share, stands_still = seen.air_share[there], seen.wind_stands_still[there]
     shifts = []
-    for one in found.shifts:
+    for one in shifted.shifts:
         quantity, (kind, key, places), *_ = columns[one.place]
         size = one.size
         if quantity == "force":

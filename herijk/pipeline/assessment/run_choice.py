@@ -1,4 +1,4 @@
-"""Which runs to keep of more: where runs were towed again, the most reliable of each kind.
+"""Which runs to keep where runs were towed again: the most reliable of each kind.
 
 When a run is towed again "the most reliable six runs" count (Sleepproef, R. Pot 2017, "Eerste
 beoordeling"). Which these are is proposed here, with the reason; a person writes them into
@@ -18,7 +18,7 @@ KIND: Final = ("tow_id", "target_speed_ratio", "direction")
 
 
 def with_run_choice(run_points: pl.DataFrame) -> pl.DataFrame:
-    """Run points with `choice`, for runs of which there are more at one target and direction.
+    """Run points with `choice`, where there are several at one target speed and direction.
 
     They are ranked by, in this order: a steady window; ends that agree within the method's limits;
     how little was left out; the standard error of the mean Cw (`cw_sd` over the root of the

@@ -1,7 +1,7 @@
-"""What all boats towed in a season changed together: its instruments, and not the boats.
+"""What all boats towed in a season seem to change together: its instruments, not the boats.
 
 A log that nothing calibrates gives every tow of its season the same error. Between two such seasons
-each boat seems to change, and none did. The level of a season is found from the boats towed in it
+each boat seems to change, though none did. The level of a season follows from the boats towed in it
 and in another one, by medians, so that a tow that is off moves it little (median polish; Tukey
 1977, Exploratory Data Analysis, ch. 11).
 """
@@ -13,14 +13,14 @@ import numpy as np
 import polars as pl
 
 FEWEST: Final = 4
-"""Changes that a season needs before what they share is the season's (inferred)."""
+"""Fewest changes for which what they share is taken to be the season's (inferred)."""
 
 ROUNDS: Final = 60
-"""Half a step each, as neighbouring seasons move towards each other; then 1e-4 is left at most."""
+"""Of half a step each, as neighbouring seasons move towards each other; at most 1e-4 is left."""
 
 
 def season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int, float]:
-    """Level of ln Cw of every season that is not to scale and has changes enough; others have none.
+    """Level of ln Cw of every season that is not to scale and has enough changes.
 
     Args:
         changes: `season`, `before` (the season of the boat's previous tow), and `ln`, the logarithm

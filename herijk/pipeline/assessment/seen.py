@@ -1,11 +1,9 @@
 """What a tow shows of itself, before any method: resistance, bend, wind and speed.
 
-Means over whole runs, plain enough to hold a tow against others; the numbers of the register come
-from the steps of a method. Which numbers are compared is
-decided in `pipeline.assessment.plausibility`.
+Means over whole runs, simple enough to compare tows; the numbers of the register come from the
+steps of a method. Which numbers are compared is decided in `pipeline.assessment.plausibility`.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -31,7 +29,7 @@ USUAL_BEND: Final = 0.75
 """Usual dlnCw/dlnv; B lies at 1.06 to 1.5 times the hull speed."""
 
 LEAST_WATER: Final = 0.2
-"""Part of the resistance that is the water's at least."""
+"""Smallest part of the resistance that is the water's."""
 
 RADIANS: Final = 2.0 * np.pi
 """Angles in radians lie between -3.14 and 6.28: degrees of a vane that hardly moves."""
@@ -46,13 +44,13 @@ LEAST_RESULTANT: Final = float(np.cos(np.radians(3.3)))
 """Length of the mean direction of angles of which half are 0 and half 6.28 degrees."""
 
 
-@dataclass(frozen=True)
 class Seen:
-    """What each tow shows, arrays of shape (tows,); NaN where it shows nothing.
+    """What the selected runs of each tow show, arrays of shape (tows,); NaN where nothing is shown.
 
     Attributes:
+        batch: the tows.
         has_gps: whether any tow of its season has GPS.
-        level: ln Cw at the declared speed less what power, class, weight and length let expect;
+        level: ln Cw at the declared speed less what power, class, weight and length predict;
             the log as the season's GPS corrects it, where there is one.
         bend: dlnCw/dlnv less the usual; `bend_sd`, its random part.
         force_n: mean tow force.
@@ -64,22 +62,8 @@ class Seen:
         wind_stands_still: the anemometer shows no wind through a whole run, and some in another.
     """
 
-    batch: Batch
-    has_gps: BoolArray
-    level: FloatArray
-    bend: FloatArray
-    bend_sd: FloatArray
-    force_n: FloatArray
-    air_share: FloatArray
-    wind_ahead: FloatArray
-    wind_abeam: FloatArray
-    speed: FloatArray
-    in_radians: BoolArray
-    wind_stands_still: BoolArray
-
-    @classmethod
-    def of(cls, batch: Batch) -> "Seen":
-        """What the selected runs of each tow show."""
+    def __init__(self, batch: Batch) -> None:
+        self.batch = batch
         whole = WindowSums(batch.blocks, batch.blocks.n > 0)
         mean = {
             name: whole.mean(name)
@@ -95,22 +79,20 @@ class Seen:
         windy = good.copy()
         if "wind_measured" in batch.tows.columns:
             windy &= batch.tows["wind_measured"].to_numpy()[batch.tow]
-        ahead = _both_ways(batch, mean["wind_x"] / np.where(good, mean["log1_v"], 1.0), windy) - 1.0
-        return cls(
-            batch,
-            np.isfinite(ln_gps),
-            level - (2.0 + USUAL_BEND) * np.nan_to_num(ln_gps) - _expected_level(batch),
-            bend - USUAL_BEND,
-            bend_sd,
-            batch.mean(mean["force"], good),
-            batch.mean(mean["air"] / np.where(good, mean["log1_cw"], 1.0), good),
-            ahead,
-            _both_ways(batch, mean["wind_y"] / np.where(good, mean["log1_v"], 1.0), windy),
-            _median(batch, speed - np.log(batch.target_speed_ratio), good),
-            _angles_in_radians(batch, windy) & (ahead > TOO_MUCH_AHEAD),
-            batch.any(windy & (mean["wind_v"] < NO_WIND_M_S))
-            & batch.any(windy & (mean["wind_v"] >= NO_WIND_M_S)),
-        )
+        speed_m_s = np.where(good, mean["log1_v"], 1.0)
+        self.has_gps = np.isfinite(ln_gps)
+        by_gps = (2.0 + USUAL_BEND) * np.nan_to_num(ln_gps)
+        self.level = level - by_gps - _expected_level(batch)
+        self.bend, self.bend_sd = bend - USUAL_BEND, bend_sd
+        self.force_n = batch.mean(mean["force"], good)
+        self.air_share = batch.mean(mean["air"] / np.where(good, mean["log1_cw"], 1.0), good)
+        self.wind_ahead = _both_ways(batch, mean["wind_x"] / speed_m_s, windy) - 1.0
+        self.wind_abeam = _both_ways(batch, mean["wind_y"] / speed_m_s, windy)
+        self.speed = _median(batch, speed - np.log(batch.target_speed_ratio), good)
+        too_far_ahead = self.wind_ahead > TOO_MUCH_AHEAD
+        self.in_radians = _angles_in_radians(batch, windy) & too_far_ahead
+        still, blows = mean["wind_v"] < NO_WIND_M_S, mean["wind_v"] >= NO_WIND_M_S
+        self.wind_stands_still = batch.any(windy & still) & batch.any(windy & blows)
 
 
 def _season_gps(batch: Batch, log_m_s: FloatArray, runs: BoolArray) -> FloatArray:
@@ -151,7 +133,7 @@ def _line(
 
 
 def _expected_level(batch: Batch) -> FloatArray:
-    """What ln Cw may be from size alone, less an archive's mean that power leaves to expect."""
+    """The ln Cw that size alone predicts, at the level that the archive's median power gives."""
     size = _ln_size(batch)
     power = np.array([POWER_W[c] for c in batch.tows["crew_class"]])
     by_power = np.log(power * batch.of_tow("rowers") / batch.of_tow("declared_speed_m_s") ** 3)

@@ -12,11 +12,7 @@ import polars as pl
 
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.eras import median_interval, season_ranges
-from herijk.pipeline.consistency.lines import (
-    ALL_TOWS,
-    NEWEST,
-    tow_outliers,
-)
+from herijk.pipeline.consistency.lines import ALL_TOWS, NEWEST, tow_outliers
 from herijk.pipeline.consistency.observed import (
     ALL_TYPES,
     NORMAL_95,

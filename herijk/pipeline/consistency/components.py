@@ -37,10 +37,10 @@ NAMES: Final = {"boat": mixed.BOAT, "season": mixed.OTHER, "boat_season": mixed.
 def variance_components(observed: Observed) -> dy.DataFrame[VarianceComponents]:
     """Standard deviations of ln Cw by cause, over the fleet and within types, per method.
 
-    A boat with a crew is compared at its median declared speed; that Cw grows with speed is taken
-    out, for boats are told apart at one speed. `run` is what the scatter of the
-    runs does to the Cw of one tow; it is known from within the tows. The spread of boats divided
-    by that of everything else says how many boats the test can tell apart.
+    A boat with a crew is compared at its median declared speed; the growth of Cw with speed is
+    taken out, as boats are distinguished at one speed. `run` is what the scatter of the runs does
+    to the Cw of one tow; it is known from within the tows. The spread of boats divided by that of
+    everything else says how many boats the test can distinguish.
 
     Returns:
         Rows of the table `variance_components`: `boat`, `season`, `boat_season` and `run` for each
@@ -116,11 +116,8 @@ def _identified(tows: Observed) -> Observed:
 
 def _compared(tows: Observed) -> tuple[FloatArray, FloatArray]:
     speed = tows.column("median_speed_m_s")
-    cw = curve_at(tows, speed)
-    unit = ln_cw_unit_variance(tows, speed)
-    known = np.isfinite(cw)
-    y = np.where(known, np.log(np.where(known, cw, 1.0)), np.nan)
-    return y, unit * tows.column("run_sd_ratio") ** 2
+    variance = ln_cw_unit_variance(tows, speed) * tows.column("run_sd_ratio") ** 2
+    return np.log(curve_at(tows, speed)), variance
 
 
 def _fixed(tows: Observed, scope: str) -> FloatArray:

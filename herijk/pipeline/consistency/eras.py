@@ -28,21 +28,22 @@ class Era:
     Attributes:
         name: as it is in tables.
         first, last: seasons, both included.
-        steering_checked: whether a tow pulled askew would have been seen.
     """
 
     name: str
     first: int
     last: int
-    steering_checked: bool
 
 
 ERAS: Final = (
-    Era("2009-2011", 2009, 2011, steering_checked=False),
-    Era("2012-2013", 2012, 2013, steering_checked=False),
-    Era("2014-", 2014, 9999, steering_checked=True),
+    Era("2009-2011", 2009, 2011),
+    Era("2012-2013", 2012, 2013),
+    Era("2014-", 2014, 9999),
 )
-"""Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017); straight steering from 2014 on."""
+"""Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017)."""
+
+STEERED_STRAIGHT_FROM: Final = 2014
+"""First season in which a tow pulled askew would have been seen."""
 
 
 def season_ranges(seasons: Iterable[int]) -> dict[str, tuple[int, int]]:
@@ -80,41 +81,30 @@ def era_shifts(pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShif
     rows = []
     for method in pairs["method"].unique().sort():
         own = typed.filter(pl.col("method") == method)
-        ageing = _ageing(own, ERAS[-1])
+        within = own.filter((pl.col("season_before") >= ERAS[-1].first) & (_years() > 0))
+        yearly = within.select(pl.col("ln_ratio") / _years()).to_series().to_numpy()
         groups = {ALL_TYPES: own} | {t: own.filter(pl.col("boat_type") == t) for t in types}
         rows += [
-            {"method": method, "boat_type": boat_type, "era": era.name} | _shift(group, era, ageing)
+            {"method": method, "boat_type": boat_type, "era": era.name} | _shift(group, era, yearly)
             for boat_type, group in groups.items()
             for era in ERAS[:-1]
         ]
     return frame_of(EraShifts, rows)
 
 
-@dataclass(frozen=True)
-class _Ageing:
-    """Change of ln Cw per year with its interval; None with fewer than six pairs."""
-
-    n: int
-    per_year: tuple[float, float, float] | None
-
-
-def _ageing(pairs: pl.DataFrame, last: Era) -> _Ageing:
-    within = pairs.filter((pl.col("season_before") >= last.first) & (_years() > 0))
-    yearly = within.select(pl.col("ln_ratio") / _years()).to_series().to_numpy()
-    return _Ageing(len(yearly), median_interval(yearly))
-
-
 def _years() -> pl.Expr:
     return pl.col("season") - pl.col("season_before")
 
 
-def _shift(pairs: pl.DataFrame, era: Era, ageing: _Ageing) -> Row:
+def _shift(pairs: pl.DataFrame, era: Era, yearly: FloatArray) -> Row:
+    """Shift from an era to later ones, less ageing by its changes of ln Cw per year."""
     across = pairs.filter(
         pl.col("season_before").is_between(era.first, era.last) & (pl.col("season") > era.last)
     )
-    per_year, slowest, fastest = ageing.per_year or (0.0, 0.0, 0.0)
-    facts: Row = {"n": across.height, "n_ageing": ageing.n}
-    if ageing.per_year is not None:
+    ageing = median_interval(yearly)
+    per_year, slowest, fastest = ageing or (0.0, 0.0, 0.0)
+    facts: Row = {"n": across.height, "n_ageing": len(yearly)}
+    if ageing is not None:
         facts |= {"ageing_per_year": per_year, "ageing_lo": slowest, "ageing_hi": fastest}
     years = across.select(_years()).to_series().to_numpy()
     interval = median_interval(across["ln_ratio"].to_numpy() - per_year * years)

@@ -7,7 +7,7 @@ method caps it.
 """
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -41,7 +41,7 @@ SAME_COLUMN: Final = 1e-9
 """Columns that differ by less, relatively, are one: a single class, or speeds all alike."""
 
 BEND_MARGIN: Final = 1e-3
-"""Within this of the least that a plain search finds lies the least itself."""
+"""The minimum lies within this of the one that a plain search gives."""
 
 OWN, PARTIAL, SHARED = "own", "partial", "shared"
 
@@ -51,19 +51,20 @@ def shared_bend(boats: Observed) -> float:
     fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
     lowest, highest = BEND_BOUNDS
     optimum = scipy.optimize.minimize_scalar(
-        lambda r: _misfit(boats, r / fastest), bounds=BEND_BOUNDS, method="bounded"
+        lambda r: _misfit(boats, r / fastest)[0], bounds=BEND_BOUNDS, method="bounded"
     )
     below = max(float(optimum.x) - BEND_MARGIN, lowest)
     above = min(float(optimum.x) + BEND_MARGIN, highest)
-    if _misfit_slope(boats, below / fastest) >= 0.0:
+
+    def slope(r: float) -> float:
+        return _misfit(boats, r / fastest)[1]
+
+    if slope(below) >= 0.0:
         return below / fastest
-    if _misfit_slope(boats, above / fastest) <= 0.0:
+    if slope(above) <= 0.0:
         return above / fastest
     # The least of a smooth function is flat over the root of its rounding; its slope is not.
-    least = scipy.optimize.brentq(
-        lambda r: _misfit_slope(boats, r / fastest), below, above, xtol=1e-15
-    )
-    return float(least) / fastest
+    return float(scipy.optimize.brentq(slope, below, above, xtol=1e-15)) / fastest
 
 
 def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
@@ -75,24 +76,18 @@ def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
     return np.asarray((g * points.cw_kg_m).sum(axis=1) / (g * g).sum(axis=1))
 
 
-def _misfit(boats: Observed, s_s2_m2: float) -> float:
-    """Residual sum of squares relative to each boat's own Cw, with one s for all."""
-    points = boats.points
-    v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
-    a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
-    residual = np.where(points.used, points.cw_kg_m - a / (1.0 - s_s2_m2 * v2), 0.0)
-    return float(((residual / boats.column("c0_kg_m")[:, None]) ** 2).sum())
+def _misfit(boats: Observed, s_s2_m2: float) -> tuple[float, float]:
+    """Residual sum of squares relative to each boat's own Cw, with one s for all, and its slope.
 
-
-def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
-    """Derivative of `_misfit` along s: a height at its best does not count (envelope theorem)."""
-    points = boats.points
+    A height at its best does not count in the slope along s (envelope theorem).
+    """
+    points, c0 = boats.points, boats.column("c0_kg_m")[:, None]
     v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
     a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
     fitted = a * points.used / (1.0 - s_s2_m2 * v2)
     residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
     slope = fitted * v2 / (1.0 - s_s2_m2 * v2)
-    return float((-2.0 * residual * slope / boats.column("c0_kg_m")[:, None] ** 2).sum())
+    return float(((residual / c0) ** 2).sum()), float((-2.0 * residual * slope / c0**2).sum())
 
 
 def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
@@ -114,22 +109,16 @@ def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
     return frame_of(TypeHomogeneity, rows)
 
 
-class _Squares(NamedTuple):
-    """Sums of squares of ln Cw: what own slopes explain, and what they leave."""
-
-    between: float
-    within: float
-    dof_between: int
-    dof_within: int
-
-
-def _same_or_own_slopes(boats: Observed) -> _Squares:
+def _same_or_own_slopes(boats: Observed) -> tuple[float, float, tuple[int, int]]:
     """Whether boats need slopes of their own beside one shape (analysis of covariance).
 
     If boats are alike, ln Cw has one shape in ln speed, a polynomial, with a height for
     each boat and, as women are lighter, a slope for each class. Against it every boat may have a
     slope of its own. The shape is free in both, so that a hull that is no hyperbola counts for
     neither.
+
+    Returns:
+        Sums of squares of ln Cw that own slopes explain and that they leave; degrees of freedom.
     """
     used = boats.points.used
     ln_speed, ln_cw = (
@@ -144,12 +133,8 @@ def _same_or_own_slopes(boats: Observed) -> _Squares:
     same = _rest(used, [height], [x, women * x, *shape], ln_cw)
     own = _rest(used, [height, x], shape, ln_cw)
     boats_in_both, points = len(used), int(used.sum())
-    return _Squares(
-        max(same[0] - own[0], 0.0),
-        own[0],
-        boats_in_both + own[1] - same[1],
-        points - 2 * boats_in_both - own[1],
-    )
+    dof = boats_in_both + own[1] - same[1], points - 2 * boats_in_both - own[1]
+    return max(same[0] - own[0], 0.0), own[0], dof
 
 
 def _rest(
@@ -171,12 +156,11 @@ def _tested(boats: Observed, boat_type: str) -> Row:
         return counts | {"reason": "no_type"}
     if n_boats < FEWEST_BOATS:
         return counts | {"reason": "few_boats"}
-    slopes = _same_or_own_slopes(boats)
-    if slopes.within <= 1e-20 * boats.table.height:
+    between, within, dof = _same_or_own_slopes(boats)
+    if within <= 1e-20 * boats.table.height:
         return counts | {"reason": "no_scatter"}
-    dof = slopes.dof_between, slopes.dof_within
-    f = slopes.between / dof[0] / (slopes.within / dof[1])
-    sigma = float(np.sqrt(slopes.within / dof[1]))
+    f = between / dof[0] / (within / dof[1])
+    sigma = float(np.sqrt(within / dof[1]))
     return (
         counts
         | {"dof_between": dof[0], "dof_within": dof[1], "f_value": f, "run_sd_ratio": sigma}

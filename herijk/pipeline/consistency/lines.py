@@ -1,6 +1,6 @@
-"""Does a quantity follow weight, length or tow speed within a type, and which tows lie outside?
+"""Does a quantity follow weight, length or tow speed within a type, and which tows are outliers?
 
-Which tows is a choice: the newest of each boat and crew, all, or those of one season. Lines are
+The tows are a choice: the newest of each boat and crew, all, or those of one season. Lines are
 weighted: each tow has its own measuring error, and boats differ truly by a standard deviation that
 is estimated (REML); tows of one boat, also of two crews, share that difference. Over all tows a
 season and a single tow have a deviation of their own as well, so that repeats count as repeats.
@@ -8,7 +8,7 @@ Women's and men's crews differ in weight and speed, so lines against weight or l
 within a crew; displacement contains the crew.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
@@ -18,7 +18,7 @@ import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency import mixed
-from herijk.pipeline.consistency.eras import ERAS, season_ranges
+from herijk.pipeline.consistency.eras import STEERED_STRAIGHT_FROM, season_ranges
 from herijk.pipeline.consistency.observed import (
     UNKNOWN_TYPE,
     Observed,
@@ -37,7 +37,7 @@ from herijk.tables.keys import LINE
 from herijk.tables.row import Row
 
 LN_CW, BEND = "ln_cw_standard", "bend"
-"""What tells an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the
+"""What makes an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the
 forms of the bend this one has the most even spread: where B truly spreads 10 %, 27 % of types of 24
 boats had an outlier by q, 11 % have one by this."""
 
@@ -57,11 +57,6 @@ SLIDE_PAIRS: Final = tuple(
 FEWEST_BOATS: Final = 3
 PLACES: Final = 7
 """Points at which a line is given for drawing."""
-
-NO_TYPE = "no_type"
-FEW_BOATS = "few_boats"
-EQUAL_VALUES = "equal_values"
-NOT_SETTLED = "not_settled"
 
 OUTSIDE_LEVEL: Final = 0.05
 """Chance that any boat of a type of like boats is called outside (Bonferroni)."""
@@ -94,12 +89,12 @@ def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
     """Every choice of tows, with them."""
     yield NEWEST, newest(observed)
     yield ALL_TOWS, observed
-    for season in observed.table["season"].unique().sort():
-        rows = np.flatnonzero((observed.table["season"] == season).to_numpy())
-        yield Choice(str(season)), observed.take(rows)
-    for name, ends in season_ranges(observed.table["season"]).items():
-        rows = np.flatnonzero(observed.table["season"].is_between(*ends).to_numpy())
-        yield Choice(name, ALL_TOWS.components), observed.take(rows)
+    season = observed.table["season"]
+    by_ends = {Choice(str(one)): (one, one) for one in season.unique().sort()}
+    for name, ends in season_ranges(season).items():
+        by_ends[Choice(name, ALL_TOWS.components)] = ends
+    for choice, ends in by_ends.items():
+        yield choice, observed.take(np.flatnonzero(season.is_between(*ends).to_numpy()))
 
 
 Measured = tuple[FloatArray, FloatArray]
@@ -138,43 +133,31 @@ def quantities(observed: Observed) -> dict[str, Measured]:
     }
 
 
-def type_consistency(observed: Observed) -> pl.DataFrame:
-    """Straight line of each quantity on each explaining variable, per method and boat type.
-
-    Of the newest tow of each boat and crew. The physics model is among them: the slope of ln Cw on
-    ln displacement is the power with which resistance grows.
-
-    Returns:
-        Rows of the table `type_consistency`; where no line is drawn, `reason` says why.
-    """
-    return newest_lines(_lines([(NEWEST, newest(observed))])[0])
-
-
 def newest_lines(lines: pl.DataFrame) -> pl.DataFrame:
-    """The rows of `type_consistency` among those of `type_lines`."""
+    """Rows of the table `type_consistency`: those of `type_lines` by the newest tows.
+
+    The physics model is among them: the slope of ln Cw on ln displacement is the power with which
+    resistance grows.
+    """
     return lines.filter(tows=NEWEST.tows).drop("tows")
 
 
 def type_lines(
     observed: Observed,
 ) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
-    """The lines of every choice of tows, per method and boat type.
+    """Straight lines of each quantity on each explaining variable, per method and boat type.
 
-    Of the newest tows all, of other choices those that the presentation of 2015 plots.
+    Of the newest tow of each boat and crew all, of other choices of tows those that the
+    presentation of 2015 plots.
 
     Returns:
-        Rows of the tables `type_lines` and `type_line_points`. Where a line compares boats within
-        a crew, its points are given per class; `crew_class` is `all` elsewhere.
+        Rows of the tables `type_lines` and `type_line_points`. Where no line is drawn, `reason`
+        says why. Where a line compares boats within a crew, its points are given per class;
+        `crew_class` is `all` elsewhere.
     """
-    return _lines(chosen_tows(observed))
-
-
-def _lines(
-    chosen: Iterable[tuple[Choice, Observed]],
-) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
     rows: list[Row] = []
     to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
-    for choice, tows in chosen:
+    for choice, tows in chosen_tows(observed):
         measured, shared = quantities(tows), _Shared(tows, choice)
         run_variance = tows.column("run_sd_ratio") ** 2
         speeds = tows.column("standard_speed_m_s")
@@ -188,14 +171,14 @@ def _lines(
                 row = names | {"standard_speed_m_s": float(speeds[own[0]])} | facts
                 rows.append(row)
                 if across is not None:
-                    line = _Line.of(across, quantity, y[mine], unit[mine] * run_variance[mine])
+                    line = _Line(across, quantity, y[mine], unit[mine] * run_variance[mine])
                     to_fit.setdefault(choice.components, []).append((row, names, line))
     points: dict[str, list[object]] = {name: [] for name in TypeLinePoints.column_names()}
     for components, lines in to_fit.items():
         fits = mixed.fit_all([line.problem for *_, line in lines], components)
         for (row, names, line), fit in zip(lines, fits, strict=True):
             if fit is None:
-                row["reason"] = NOT_SETTLED
+                row["reason"] = "not_settled"
                 continue
             ends = fit.line_at(line.across.at)
             row.update(line.row(fit, ends))
@@ -266,15 +249,15 @@ class _Shared:
         n_boats = len(np.unique(self._boat[rows]))
         counts: Row = {"n": len(rows), "n_boats": n_boats}
         if boat_type == UNKNOWN_TYPE:
-            return counts | {"reason": NO_TYPE}, None
+            return counts | {"reason": "no_type"}, None
         if n_boats < max(FEWEST_BOATS, crews.shape[1] + 2):
-            return counts | {"reason": FEW_BOATS}, None
+            return counts | {"reason": "few_boats"}, None
         x = self.explaining[explaining][rows]
         centre = np.linalg.lstsq(crews, x)[0]
         centred = x - crews @ centre
         width = float(np.abs(centred).max())
         if width <= 1e-9 * np.abs(x).max():
-            return counts | {"reason": EQUAL_VALUES}, None
+            return counts | {"reason": "equal_values"}, None
         season = None if self._season is None else self._season[rows]
         design = Design.of(np.column_stack([crews, centred / width]), self._boat[rows], season)
         names, places, at = [], [], []
@@ -293,7 +276,6 @@ class _Shared:
         return counts | {"reason": ""}, across
 
 
-@dataclass(frozen=True)
 class _Line:
     """A line of a quantity on an explaining variable, to be fitted.
 
@@ -304,17 +286,11 @@ class _Line:
         level: what the spread is a share of.
     """
 
-    across: _Across
-    problem: Problem
-    noise: float
-    level: float
-
-    @classmethod
-    def of(cls, across: _Across, quantity: str, y: FloatArray, variance: FloatArray) -> Self:
-        """A line of values with these variances."""
-        level = 1.0 if quantity == LN_CW else float(abs(y.mean()))
-        problem = Problem.of(across.design, y, variance)
-        return cls(across, problem, float(np.sqrt(variance.mean())), level)
+    def __init__(self, across: _Across, quantity: str, y: FloatArray, variance: FloatArray) -> None:
+        self.across = across
+        self.problem = Problem.of(across.design, y, variance)
+        self.noise = float(np.sqrt(variance.mean()))
+        self.level = 1.0 if quantity == LN_CW else float(abs(y.mean()))
 
     def row(self, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
         """The line itself and its spread, as in `type_lines`; `ends` are at `across.at`."""
@@ -455,7 +431,7 @@ class _Compared:
 def _candidates(boats: Observed, quantity: str, error: FloatArray) -> list[list[str]]:
     """What could explain a boat's place, as codes; the season is judged afterwards."""
     table = boats.table
-    unchecked = np.array([not _steering_checked(season) for season in table["season"]])
+    unchecked = (table["season"] < STEERED_STRAIGHT_FROM).to_numpy()
     high = (error > ASKEW_EXCESS) & (quantity == LN_CW)
     differ = table["flags"].list.contains("out_and_back_differ").to_numpy()
     checks = {
@@ -469,10 +445,6 @@ def _candidates(boats: Observed, quantity: str, error: FloatArray) -> list[list[
         "b_not_determined": table["b_m_s"].is_null().to_numpy(),
     }
     return [[code for code, applies in checks.items() if applies[i]] for i in range(table.height)]
-
-
-def _steering_checked(season: int) -> bool:
-    return any(era.steering_checked and era.first <= season <= era.last for era in ERAS)
 
 
 def _unusual(values: FloatArray) -> BoolArray:

@@ -12,7 +12,7 @@ elsewhere.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, NamedTuple, Self
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -27,24 +27,24 @@ PROFILE_DROP: Final = 3.841458820694124
 """Deviance above its minimum at the ends of a 95 % profile interval (chi-squared, 1 dof)."""
 
 PROFILE_PRECISION: Final = 1e-7
-"""An end of a profile interval is found when it moves by less, as a share of the spread: Newton's
-method then leaves the square of that."""
+"""The search for an end of a profile interval stops when a step is less, as a share of the spread:
+Newton's method then leaves the square of that."""
 
 PROFILE_TOLERANCE: Final = 1e-5
 """When the search for the other variances is done: their error counts squared in the deviance."""
 
 ROUGHLY: Final = 1e-2
-"""The same where only the side of an end is asked for."""
+"""The same where only the sign is needed."""
 
 MAX_STEPS: Final = 60
 MAX_DOUBLINGS: Final = 7
-"""The upper end of an interval is looked for up to this power of 2 times where it is expected."""
+"""The upper end of an interval is sought up to 2 to this power times its expected place."""
 
 NUMBERS_AT_ONCE: Final = 1 << 16
 """Numbers of a stack: enough to make calls cheap, few enough for the nearer cache."""
 
 LEAST_MISFIT: Final = 0.05
-"""Misfit that the other boats' rows are taken to have, also where they agree by chance."""
+"""Least misfit of the other boats' rows, also where they agree by chance."""
 
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
@@ -91,12 +91,7 @@ class Fit:
     free: tuple[str, ...]
     sd: tuple[float, float, float]
     white: Whitened
-    place: int = 0
-
-    @classmethod
-    def at(cls, problem: Problem, free: tuple[str, ...], sd: tuple[float, float, float]) -> Self:
-        """The model with these standard deviations."""
-        return cls(problem, free, sd, Whitened.of(Stack.of([problem]), np.square([sd])))
+    place: int
 
     @property
     def dof(self) -> int:
@@ -186,9 +181,9 @@ class Fit:
         """95 % profile-likelihood intervals of the components' sds; None without an upper bound.
 
         Raises:
-            NotSettledError: an end was not found.
+            NotSettledError: the search for an end did not come to rest.
         """
-        profile = _Profile.of(self)
+        profile = _Profile(self)
         sd, places = np.asarray(self.sd), np.arange(len(COMPONENTS))
         lo, nothing = np.zeros(len(sd)), np.zeros(len(sd))
         at_nothing, _ = profile.excess(nothing, places, ROUGHLY)
@@ -208,29 +203,21 @@ class Fit:
         return {name: (float(lo[i]), upper.get(i)) for i, name in enumerate(COMPONENTS)}
 
 
-@dataclass(frozen=True)
 class _Profile:
     """How much worse a fit is where one of its sds is something else, the others at their best.
 
     Attributes:
         stack: the problem once per component.
         free: (3, 3) what is estimated, besides the component itself.
-        nearest: (3, 3) variances found last, to begin with.
+        nearest: (3, 3) the last variances, from which the next search starts.
         least: the deviance of the fit.
     """
 
-    stack: Stack
-    free: BoolArray
-    nearest: FloatArray
-    least: float
-
-    @classmethod
-    def of(cls, fit: Fit) -> Self:
-        """Of a fit, begun at its variances."""
-        stack = Stack.of([fit.problem] * len(COMPONENTS))
-        free = np.isin(COMPONENTS, fit.free) & ~np.eye(len(COMPONENTS), dtype=bool)
-        at = np.square([fit.sd] * len(COMPONENTS))
-        return cls(stack, free, at, float(stack.likelihood(at).deviance[0]))
+    def __init__(self, fit: Fit) -> None:
+        self.stack = Stack.of([fit.problem] * len(COMPONENTS))
+        self.free = np.isin(COMPONENTS, fit.free) & ~np.eye(len(COMPONENTS), dtype=bool)
+        self.nearest = np.square([fit.sd] * len(COMPONENTS))
+        self.least = float(self.stack.likelihood(self.nearest).deviance[0])
 
     def excess(
         self, sd: FloatArray, place: IntArray, tolerance: float = PROFILE_TOLERANCE
@@ -312,7 +299,7 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit | No
         for some in (numbers[i : i + at_once] for i in range(0, len(numbers), at_once)):
             stack = Stack.of([problems[i] for i in some])
             variances, settled = _most_likely(stack, free)
-            white = Whitened.of(stack, variances)
+            white = Whitened(stack, variances)
             for place, (i, sd) in enumerate(zip(some, np.sqrt(variances).tolist(), strict=True)):
                 at_rest = settled[place]
                 fits[i] = Fit(problems[i], free, tuple(sd), white, place) if at_rest else None

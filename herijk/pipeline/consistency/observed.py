@@ -76,21 +76,10 @@ def observe(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> Observed:
     """Join the warehouse's tables; tows whose runs determine no curve are left out."""
+    of_tow = ("tow_date", "altered", "weight_kg", "crew_weight_kg", "waterline_length_m", "beam_m")
     table = (
         curves.filter((pl.col("status") != "rejected") & pl.col("cw_kg_m").is_not_null())
-        .join(
-            tows.select(
-                "tow_id",
-                "tow_date",
-                "altered",
-                "weight_kg",
-                "crew_weight_kg",
-                "waterline_length_m",
-                "beam_m",
-            ),
-            on="tow_id",
-            maintain_order="left",
-        )
+        .join(tows.select("tow_id", *of_tow), on="tow_id", maintain_order="left")
         .join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left")
         .with_columns(
             pl.col("boat_type").fill_null(UNKNOWN_TYPE),
@@ -103,10 +92,10 @@ def observe(
     fitted = curve.fit(points)
     declared = table["declared_speed_m_s"].to_numpy()
     c0, q = curve.to_c0_q(fitted.a_kg_m, fitted.s_s2_m2, declared)
-    unit = curve.Scatter(c0 * c0, np.full(len(c0), np.inf))
     sound = fitted.converged & np.isfinite(c0) & (fitted.n_points >= FEWEST_POINTS)
     safe = np.where(sound, c0, 1.0)
-    errors = curve.covariance(points, fitted, curve.Scatter(safe * safe, unit.dof), declared)
+    unit = curve.Scatter(safe * safe, np.full(len(c0), np.inf))
+    errors = curve.covariance(points, fitted, unit, declared)
     sound &= np.isfinite(errors.q_variance)
     columns = {
         "s_s2_m2": fitted.s_s2_m2,
@@ -119,9 +108,9 @@ def observe(
         "run_dof": (fitted.n_points - 2).astype(np.float64),
     }
     rows = np.flatnonzero(sound)
-    observed = Observed(table.with_columns(**{k: pl.Series(v) for k, v in columns.items()}), points)
-    kept = observed.take(rows)
-    return Observed(kept.table.with_columns(_pooled_scatter()), kept.points)
+    numbers = (pl.Series(name, values) for name, values in columns.items())
+    fits = Observed(table.with_columns(*numbers), points).take(rows)
+    return Observed(fits.table.with_columns(_pooled_scatter()), fits.points)
 
 
 def _with_standard_speed(table: pl.DataFrame) -> pl.DataFrame:

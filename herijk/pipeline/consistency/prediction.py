@@ -47,7 +47,7 @@ def predicted_cw(observed: Observed) -> pl.DataFrame:
     speed = pl.col("declared_speed_m_s").median().over("method", "boat_type", "crew_class")
     boats = Observed(boats.table.with_columns(speed.alias("standard_speed_m_s")), boats.points)
     parts = [_predicted(fleet) for _, fleet in boats.groups("method")]
-    return pl.concat([PredictedCw.create_empty(), *parts])
+    return pl.concat([PredictedCw.create_empty(), *parts], how="diagonal")
 
 
 def _predicted(fleet: Observed) -> pl.DataFrame:
@@ -67,17 +67,16 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
         pl.Series("cw_sd_ratio", np.sqrt(variance)),
     )
     x = _columns(fleet)
-    n_boats = fleet.table["fsn_no"].n_unique()
-    enough = n_boats >= FEWEST_BOATS_PER_COLUMN * (x.shape[1] + 1)
-    numbers, reason = _nothing(len(cw)), "" if enough else "few_boats"
-    if enough:
-        try:
-            numbers = _second_opinion(fleet, x, cw, variance)
-        except mixed.NotSettledError:
-            reason = "not_settled"
+    if fleet.table["fsn_no"].n_unique() < FEWEST_BOATS_PER_COLUMN * (x.shape[1] + 1):
+        return rows.with_columns(reason=pl.lit("few_boats"))
+    try:
+        numbers = _second_opinion(fleet, x, cw, variance)
+    except mixed.NotSettledError:
+        return rows.with_columns(reason=pl.lit("not_settled"))
+    both = NORMAL_95 * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
     return rows.with_columns(
-        *(pl.Series(name, values, pl.Float64).fill_nan(None) for name, values in numbers.items())
-    ).with_columns(_disagrees(), pl.lit(reason).alias("reason"))
+        *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items())
+    ).with_columns(disagrees=pl.col("ln_ratio").abs() > both, reason=pl.lit(""))
 
 
 def _second_opinion(
@@ -99,16 +98,6 @@ def _second_opinion(
         "predicted_sd_ratio": sd,
         "ln_ratio": ratio,
     }
-
-
-def _nothing(rows: int) -> dict[str, FloatArray]:
-    names = ("cw_kg_m", "lo_kg_m", "hi_kg_m", "sd_ratio")
-    return {n: np.full(rows, np.nan) for n in (*(f"predicted_{n}" for n in names), "ln_ratio")}
-
-
-def _disagrees() -> pl.Expr:
-    both = NORMAL_95 * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
-    return (pl.col("ln_ratio").abs() > both).alias("disagrees")
 
 
 def _columns(fleet: Observed) -> FloatArray:

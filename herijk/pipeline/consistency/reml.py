@@ -7,7 +7,7 @@ cell. What a fitted model says about anything is in `mixed`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final, NamedTuple, Self
 
@@ -132,7 +132,7 @@ class Problem:
     """Data of a mixed model.
 
     Attributes:
-        design: what is known of the rows beforehand.
+        design: what is known of the rows before anything is measured.
         y: (n,) observations.
         variance: (n,) known variance of each observation.
     """
@@ -258,7 +258,7 @@ class Stack:
         Args:
             variances: of boat, other and cell, (m, 3).
         """
-        at = Whitened.of(self, variances)
+        at = Whitened(self, variances)
         own, of_boats = at.weigh(np.concatenate([at.q, at.rest], axis=-1))
         p_y, boats_p_y = own[..., -1:], of_boats[..., -1:]
         others_p_y, trace_of_others = at.felt_by_others()
@@ -289,7 +289,6 @@ def _squares(rows: FloatArray) -> FloatArray:
     return np.asarray((rows**2).sum(axis=(-2, -1)))
 
 
-@dataclass(frozen=True)
 class Whitened:
     """A stack at some variances: rows of unit covariance, known columns taken out.
 
@@ -300,7 +299,7 @@ class Whitened:
 
     Attributes:
         stack: the problems.
-        boat, other: the variances, (m,).
+        variances: those of boat, other and cell, (m, 3); boat, other: each, (m,).
         weight: (m, n) 1 / variance of error and cell; root: (m, n, 1) its root.
         precision: (m, boats) sum of the weights; inflation: 1 + boat's variance times that.
         others: (m, n, k) the other groups, whitened.
@@ -310,52 +309,28 @@ class Whitened:
         rest: (m, n, 1) what is left of it.
     """
 
-    stack: Stack
-    boat: FloatArray
-    other: FloatArray
-    weight: FloatArray
-    precision: FloatArray
-    inflation: FloatArray
-    others: FloatArray
-    q: FloatArray
-    of_others: FloatArray
-    r: FloatArray
-    along: FloatArray
-    rest: FloatArray
-
-    @classmethod
-    def of(cls, stack: Stack, variances: FloatArray) -> Self:
-        """A stack at its variances of boat, other and cell, (m, 3)."""
-        boat, other, cell = variances.T
-        weight = 1.0 / (stack.variance + cell[:, None])
-        precision = stack.by_boat(weight[..., None])[..., 0]
-        inflation = 1.0 + boat[:, None] * precision
-        none = np.zeros((0, 0, 0))
-        bare = cls(stack, boat, other, weight, precision, inflation, *(none,) * 6)
+    def __init__(self, stack: Stack, variances: FloatArray) -> None:
+        self.stack, self.variances = stack, variances
+        self.boat, self.other, cell = variances.T
+        self.weight: FloatArray = 1.0 / (stack.variance + cell[:, None])
+        self.root: FloatArray = np.sqrt(self.weight)[..., None]
+        self.precision = stack.by_boat(self.weight[..., None])[..., 0]
+        self.inflation: FloatArray = 1.0 + self.boat[:, None] * self.precision
         n, _, k, p = stack.size
-        white = bare.without_boats(bare.root * stack.columns)
-        others, y = white[..., :k], white[..., -1:]
+        white = self.without_boats(self.root * stack.columns)
+        self.others, y = white[..., :k], white[..., -1:]
         known = np.zeros((len(white), n + k, k + p))
-        known[:, :n, :k] = others * np.sqrt(other)[:, None, None]
+        known[:, :n, :k] = self.others * np.sqrt(self.other)[:, None, None]
         known[:, :n, k:] = white[..., k:-1]
         known[:, n:, :k] = np.eye(k)
-        q, r = np.linalg.qr(known)
-        along = q[:, :n].mT @ y
-        rest = y - q[:, :n] @ along
-        return replace(
-            bare, others=others, q=q[:, :n], of_others=q[:, n:], r=r, along=along, rest=rest
-        )
+        q, self.r = np.linalg.qr(known)
+        self.q, self.of_others = q[:, :n], q[:, n:]
+        self.along = self.q.mT @ y
+        self.rest = y - self.q @ self.along
 
     def of_one(self, place: int) -> Self:
         """One problem of the stack, as a stack of one."""
-        one = slice(place, place + 1)
-        arrays = {f.name: getattr(self, f.name)[one] for f in fields(self) if f.name != "stack"}
-        return type(self)(stack=self.stack.take(np.array([place])), **arrays)
-
-    @cached_property
-    def root(self) -> FloatArray:
-        """Root of the weights, (m, n, 1)."""
-        return np.sqrt(self.weight)[..., None]
+        return type(self)(self.stack.take(np.array([place])), self.variances[[place]])
 
     def felt_by_others(self) -> tuple[FloatArray, FloatArray]:
         """Y as it weighs on the other groups, (m, k, 1), and the trace of P times their part."""
@@ -399,7 +374,7 @@ class Whitened:
 def search(
     stack: Stack, free: BoolArray, start: FloatArray, tolerance: float = TOLERANCE
 ) -> tuple[FloatArray, Likelihood, BoolArray]:
-    """Least deviance of each problem over some of the variances, the others held.
+    """Least deviance of each problem over some of the variances, the others fixed.
 
     Newton's method with the average information, on variances that are not negative: one that is 0
     and would fall is left at exactly 0. The slope, not the deviance, says when it is done: the

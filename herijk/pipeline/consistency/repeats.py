@@ -14,7 +14,7 @@ from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.components import DISTINCT, WITHIN_TYPE
 from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.consistency.observed import Observed, bend_of_curve
-from herijk.tables.consistency import Reproducibility
+from herijk.tables.consistency import RepeatPairs, Reproducibility
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 
@@ -22,17 +22,12 @@ LEVEL: Final = 0.95
 ALL_PAIRS: Final = "all"
 
 
-PAIR_COLUMNS: Final = (
-    *("tow_id", "tow_id_before", "season", "season_before", "cw_ratio", "ln_ratio", "e_n"),
-)
-
-
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Consecutive tows of one boat and crew without an alteration between them.
 
     The two are compared at the older tow's declared speed, where the older curve was measured, each
-    with its log and load cell as the other boats show them. A boat that has part in its own
-    correction would agree with itself too well. E_n is their difference in units of both 95 %
+    with its log and load cell as the other boats show them. A boat that took part in its
+    own correction would agree with itself too well. E_n is their difference in units of both 95 %
     intervals (ISO 13528): above 1 they disagree.
 
     Returns:
@@ -64,7 +59,7 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
             - pl.col("by_others_before")
         )
         .with_columns(_e_n(), cw_ratio=pl.col("ln_ratio").exp())
-        .select(*line, *PAIR_COLUMNS)
+        .select(RepeatPairs.column_names())
     )
 
 
@@ -138,10 +133,7 @@ def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
     if n == 0:
         return {"n_pairs": 0}
     total = float((difference**2).sum())
-    low, high = (
-        float(scipy.special.chdtri(n, 0.5 - LEVEL / 2)),
-        float(scipy.special.chdtri(n, 0.5 + LEVEL / 2)),
-    )
+    low, high = (float(scipy.special.chdtri(n, 0.5 + end * LEVEL / 2)) for end in (-1, 1))
     e_n = pairs["e_n"].drop_nulls().to_numpy()
     return {
         "n_pairs": n,

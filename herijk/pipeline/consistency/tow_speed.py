@@ -82,13 +82,11 @@ def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
     rows: list[Row] = []
     to_fit: list[tuple[Row, Problem]] = []
     for (method,), fleet in boats.groups("method"):
-        parts = [
-            part for (boat_type,), part in fleet.groups("boat_type") if boat_type != UNKNOWN_TYPE
-        ]
-        named = [(str(part.table["boat_type"][0]), [part]) for part in parts]
-        for name, some in [*named, (ALL_TYPES, parts)]:
-            facts, problem = _trend(some)
-            rows.append({"method": method, "boat_type": name} | facts)
+        typed = {t: own for (t,), own in fleet.rows_by("boat_type") if t != UNKNOWN_TYPE}
+        every = np.concatenate([np.zeros(0, np.int64), *typed.values()])
+        for boat_type, own in [*typed.items(), (ALL_TYPES, every)]:
+            facts, problem = _trend(fleet.take(own))
+            rows.append({"method": method, "boat_type": boat_type} | facts)
             if problem is not None:
                 to_fit.append((rows[-1], problem))
     fits = mixed.fit_all([problem for _, problem in to_fit], (mixed.BOAT,))
@@ -101,33 +99,25 @@ def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
     return frame_of(SpeedTrend, rows)
 
 
-def _trend(parts: list[Observed]) -> tuple[Row, Problem | None]:
+def _trend(boats: Observed) -> tuple[Row, Problem | None]:
     """How many tows a trend is of, and its problem; without one, why."""
-    columns: list[tuple[FloatArray, ...]] = []
-    boat: list[str] = []
-    for number, part in enumerate(parts):
-        speed = float(np.median(part.column("declared_speed_m_s")))
-        q, unit = q_at(part, speed)
-        known = np.isfinite(q)
-        x = np.log(part.column("declared_speed_m_s") / speed)
-        variance = unit * part.column("run_sd_ratio") ** 2
-        place = np.full(len(q), float(number))
-        columns.append(tuple(v[known] for v in (q, x, variance, place)))
-        boat += part.table["fsn_no"].filter(pl.Series(known)).to_list()
-    if not columns:
-        return {"n": 0, "n_boats": 0, "reason": "few_boats"}, None
-    q, x, variance, place = (np.concatenate(c) for c in zip(*columns, strict=True))
-    n_boats = len(set(boat))
-    counts = {"n": len(q), "n_boats": n_boats}
-    levels = np.unique(place)
-    if n_boats < max(FEWEST_BOATS, len(levels) + 2):
+    median = pl.col("declared_speed_m_s").median().over("boat_type")
+    speed = boats.table.select(median).to_series().to_numpy()
+    q, unit = q_at(boats, speed)
+    known = np.isfinite(q)
+    boat, boat_type = (boats.table[name].to_numpy()[known] for name in ("fsn_no", "boat_type"))
+    types = (boat_type[:, None] == np.unique(boat_type)).astype(np.float64)
+    n_boats = len(np.unique(boat))
+    counts = {"n": len(boat), "n_boats": n_boats}
+    if n_boats < max(FEWEST_BOATS, types.shape[1] + 2):
         return counts | {"reason": "few_boats"}, None
-    types = (place[:, None] == levels).astype(np.float64)
+    x = np.log(boats.column("declared_speed_m_s") / speed)[known]
     centred = x - types @ np.linalg.lstsq(types, x)[0]
     if np.abs(centred).max() < 1e-9:
         return counts | {"reason": "equal_values"}, None
+    variance = unit * boats.column("run_sd_ratio") ** 2
     design = Design.of(np.column_stack([types, centred]), boat)
-    return counts | {"reason": ""}, Problem.of(design, q, variance)
+    return counts | {"reason": ""}, Problem.of(design, q[known], variance[known])
 
 
 def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
@@ -182,7 +172,9 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     rowed, bend = _of_others(chosen, newest(tows.take(np.flatnonzero(~slow))))
     declared = chosen.column("declared_speed_m_s")
     raced_speed = chosen.column("raced_speed_m_s")
-    columns = {"rowed_speed_m_s": rowed, "raced_power_w": _raced_power(chosen, raced_speed)}
+    raced_cw = curve_anywhere(chosen, raced_speed)
+    raced_power = power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))
+    columns = {"rowed_speed_m_s": rowed, "raced_power_w": raced_power}
     speeds = (1.1 * declared, 1.2 * declared, rowed, raced_speed)
     for at, speed in zip(COMPARED_AT, speeds, strict=True):
         ends = _power_ratio(chosen, bend, speed)
@@ -230,12 +222,6 @@ def _text_says(case: list[str], raced_ratio: FloatArray) -> list[str | None]:
         pace = "faster" if ratio > fastest else "slower" if ratio < slowest else ""
         expected.append(TEXT_SAYS.get((one, pace)))
     return expected
-
-
-def _raced_power(tows: Observed, speed_m_s: FloatArray) -> FloatArray:
-    """Power per rower by the register's curve at a speed, shape (rows,)."""
-    cw = curve_anywhere(tows, speed_m_s)
-    return np.asarray(power_per_rower_w(cw, speed_m_s, tows.column("rowers")), dtype=np.float64)
 
 
 def _rowed_speed(crew_class: pl.Series, others: Observed) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What changes for a boat between two registers, in the terms in which it is felt, and why.
+"""What changes for a boat between two registers, in terms that crews notice, and why.
 
 Compared are lines of the same boat and crew, at the old declared speed: resistance, power at that
 speed, and time over a distance at equal power. Which registers are compared, and what is known

@@ -1,4 +1,4 @@
-"""The due list: until when each boat's tow counts, and at what speed to tow it next.
+"""The due list: until when each boat's tow counts, and at what speed to tow the boat next.
 
 The rule for the speed is the federation's (Sleepproef, R. Pot 2017, "Sleepsnelheid"): on the known
 curve it takes 70-90 W per rower (men) or 40-55 W (women). Belongs here: that rule with its
@@ -11,7 +11,7 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.assessment.checks import CHECKS
+from herijk.pipeline.assessment.checks import CHECK
 from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.races.power import curve_of_lines, speed_at_power
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
@@ -20,7 +20,7 @@ from herijk.pipeline.register.register import LINE
 CREW: Final = LINE[:-1]
 """A boat's crew, whichever thwart it leaves free: results of races seldom say."""
 
-_IN_RANGE: Final = next(check for check in CHECKS if check.code == "power_outside_range")
+_IN_RANGE: Final = CHECK["power_outside_range"]
 LOWEST_W: Final = {c: _IN_RANGE.limits(c)[0] for c in ("H", "D")}
 HIGHEST_W: Final = {c: _IN_RANGE.limits(c)[1] for c in ("H", "D")}
 """Power per rower at a realistic tow speed."""
@@ -44,8 +44,8 @@ def due_list(
     realistic, and brought down to the upper end where it takes more power. Where it takes less it
     is brought up to what the crew really rowed in the past year, if that was faster, but not beyond
     the upper end. A low speed that was really rowed stands, if the crew expects no more. Without a
-    race nobody can tell: the lower end is proposed. A boat without a curve gets the middle of like
-    boats. That a boat was altered since is a reason to depart from this, which no list knows.
+    race the lower end is proposed. A boat without a curve gets the median of like boats. An
+    alteration since then is a reason to depart from this, but no list records it.
 
     Args:
         register: lines of `pipeline.register.register.draft_register`; an expired curve is a known

@@ -148,7 +148,7 @@ def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _in_order(sound: pl.DataFrame, rule: RegisterRule, decisions: pl.DataFrame) -> pl.DataFrame:
-    """Tows that may count with their last day, the one that goes before the others last."""
+    """Tows that may count, with their last day; the one that takes precedence comes last."""
     allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
     preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
     return allowed.sort(preferred, "tow_date", "tow_id").with_columns(

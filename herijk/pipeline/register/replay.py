@@ -65,7 +65,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
 
     Args:
         lines: `LINE`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`, `a_kg_m`, `b_m_s`,
-            `cw_kg_m`; of all days, the one that goes before others last (`lines_of_all_days`).
+            `cw_kg_m`; of all days, those that take precedence last (`lines_of_all_days`).
         results: `race`, `race_date`, `LINE` (the thwart null where it is not given), `distance_m`,
             `rowing_time_s`, `stream_m`, `penalty_w` (watt per rower, taken off).
         rules: how they are computed.

@@ -10,7 +10,7 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.register.register import NO_EMPTY_THWART
-from herijk.tables.archive import TowFacts
+from herijk.tables.bases import TowFacts
 from herijk.tables.frames import limits
 from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, at_line

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
-from herijk.pipeline import consistency
-from herijk.pipeline.consistency.observed import of_trusted
+from herijk.pipeline.consistency import tables
+from herijk.pipeline.consistency.observed import observe, of_trusted
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 def line_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Lines through the boats of every type under every method."""
     curves, run_points = _of_trusted_tows(inputs)
-    return consistency.line_tables(curves, inputs["tows"], inputs["boats"], run_points)
+    return tables.line_tables(observe(curves, inputs["tows"], inputs["boats"], run_points))
 
 
 def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Are equal boats equal: the other statistics of every boat type under every method."""
     curves, run_points = _of_trusted_tows(inputs)
-    return consistency.consistency_tables(
+    return tables.consistency_tables(
         curves,
         inputs["tows"],
         inputs["boats"],

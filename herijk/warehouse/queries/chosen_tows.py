@@ -1,9 +1,9 @@
 """Which tows: all, the newest of each boat and crew, or those of some seasons; and what they say.
 
-The tables hold the newest tow of each boat and crew, and for lines and outliers all tows too. Here
-those of a connection are replaced, for that connection alone, by what the same functions make of
-the tows that were chosen: all of them, or those of some seasons. What treats repeats of a boat as
-such does so over all tows (lines, outliers); the others keep to the newest tow, of those chosen.
+The statistics of types in the tables are over the newest tow of each boat and crew, and those of
+lines and outliers over all tows too. Here, for one connection alone, they are replaced by what the
+same functions make of all tows, or of those of some seasons. Statistics that treat repeat tows of a
+boat as such (lines, outliers) are over all of these; the others are over the newest of them.
 """
 
 import re
@@ -14,10 +14,10 @@ import duckdb
 import numpy as np
 import polars as pl
 
-from herijk.pipeline import consistency
-from herijk.pipeline.consistency import Observed
 from herijk.pipeline.consistency.eras import season_ranges
-from herijk.pipeline.consistency.observed import newest, of_trusted
+from herijk.pipeline.consistency.lines import tow_outliers
+from herijk.pipeline.consistency.observed import Observed, newest, observe, of_trusted
+from herijk.pipeline.consistency.tables import line_tables, type_tables
 from herijk.pipeline.errors import MissingKnowledgeError
 
 ALL, NEWEST = "all", "newest"
@@ -48,7 +48,7 @@ def choose(db: duckdb.DuckDBPyConnection, tows: str, methods: Sequence[str]) -> 
     elif observed.table.is_empty():
         raise MissingKnowledgeError("no tow of {} has a curve that can be compared", tows)
     else:
-        made = _over(observed) | _of_seasons(db, _seasons(tows))
+        made = line_tables(observed) | type_tables(observed) | _of_seasons(db, _seasons(tows))
     for name, frame in made.items():
         db.register(f"made_{name}", frame)
         db.execute(f"CREATE TEMP TABLE {name} AS SELECT * FROM made_{name}")  # noqa: S608
@@ -80,11 +80,10 @@ def rows_of(tows: str) -> pl.Expr:
 def with_choices(tows: pl.DataFrame) -> pl.DataFrame:
     """With the choices that each tow, by its `season` and `newest`, belongs to: a list `tows`."""
     season = pl.col("season")
-    held = [(ALL, pl.lit(value=True)), (NEWEST, pl.col("newest"))]
-    held += [
-        (name, season.is_between(*ends)) for name, ends in season_ranges(tows["season"]).items()
-    ]
-    names = [pl.when(whether).then(pl.lit(name)) for name, whether in held]
+    belongs = {ALL: pl.lit(value=True), NEWEST: pl.col("newest")} | {
+        name: season.is_between(*ends) for name, ends in season_ranges(tows["season"]).items()
+    }
+    names = [pl.when(belonging).then(pl.lit(name)) for name, belonging in belongs.items()]
     return tows.with_columns(
         pl.concat_list(*names, season.cast(pl.String)).list.drop_nulls().alias("tows")
     )
@@ -119,32 +118,12 @@ def _observed(db: duckdb.DuckDBPyConnection, methods: Sequence[str]) -> Observed
         of_trusted(frame.filter(pl.col("method").is_in(methods)), tows)
         for frame in (curves, run_points)
     ]
-    return consistency.observe(own[0], tows, boats, own[1])
+    return observe(own[0], tows, boats, own[1])
 
 
 def _over_all(db: duckdb.DuckDBPyConnection, observed: Observed) -> dict[str, pl.DataFrame]:
     lines = db.sql("SELECT * EXCLUDE tows FROM type_lines WHERE tows = 'all'").pl()
-    return {"type_consistency": lines, "type_outliers": consistency.tow_outliers(observed)}
-
-
-def _over(observed: Observed) -> dict[str, pl.DataFrame]:
-    """Every statistic of a type, of these tows alone."""
-    compared = consistency.compared_tows(observed)
-    predicted = consistency.predicted_cw(observed)
-    lines, line_points = consistency.type_lines(observed)
-    return {
-        "type_lines": lines,
-        "type_line_points": line_points,
-        "compared_tows": compared,
-        "hull_speed": consistency.hull_speed_statistics(compared),
-        "type_consistency": consistency.type_consistency(observed),
-        "type_outliers": consistency.type_outliers(observed),
-        "type_homogeneity": consistency.type_homogeneity(observed),
-        "pooled_curves": consistency.pooled_curves(observed),
-        "speed_trend": consistency.speed_trend(observed),
-        "predicted_cw": predicted,
-        "prediction_error": consistency.prediction_error(predicted),
-    }
+    return {"type_consistency": lines, "type_outliers": tow_outliers(observed)}
 
 
 def _of_seasons(db: duckdb.DuckDBPyConnection, seasons: list[int]) -> dict[str, pl.DataFrame]:

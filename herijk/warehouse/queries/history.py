@@ -12,14 +12,9 @@ from typing import Final, Self
 import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import RunBlocks
-from herijk.pipeline.consistency import (
-    Observed,
-    observe,
-    repeat_pairs,
-    reproducibility,
-    type_homogeneity,
-)
-from herijk.pipeline.consistency.observed import of_trusted
+from herijk.pipeline.consistency.homogeneity import type_homogeneity
+from herijk.pipeline.consistency.observed import Observed, observe, of_trusted
+from herijk.pipeline.consistency.repeats import repeat_pairs, reproducibility
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.recompute.recompute import recompute

@@ -89,9 +89,12 @@ def _describe(connection: duckdb.DuckDBPyConnection, name: str) -> None:
     schema = (TABLES | ABOUT).get(name)
     if schema is None:
         return
-    connection.execute(f'COMMENT ON TABLE "{name}" IS {_quoted(_meaning(schema))}')
-    for column, text in _column_meanings(schema).items():
-        connection.execute(f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(text)}')
+    comments = [f'COMMENT ON TABLE "{name}" IS {_quoted(_meaning(schema))}']
+    comments += (
+        f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(text)}'
+        for column, text in _column_meanings(schema).items()
+    )
+    connection.execute(";".join(comments))  # one by one they take twice as long
 
 
 def _column_meanings(schema: "type[dy.Schema]") -> dict[str, str]:

@@ -15,7 +15,7 @@ SIZE = {"tows_per_season": 4, "rate_hz": 20}
 
 
 def world_with(**sizes):
-    return simulate_world(WorldSettings(defects=lambda s: replace(Defects.none(), **sizes), **SIZE))
+    return simulate_world(WorldSettings(defects=lambda s: replace(Defects(), **sizes), **SIZE))
 
 
 def curves_of(world):

@@ -27,7 +27,7 @@ def samples_with(rate_hz=20, number=0, season=SEASON, air=None, **sizes):
             seasons=(season,),
             tows_per_season=3,
             rate_hz=rate_hz,
-            defects=lambda s: replace(Defects.none(), **sizes),
+            defects=lambda s: replace(Defects(), **sizes),
             air=air or AirCoefficients(),
         )
     )
@@ -162,7 +162,7 @@ def test_a_random_defect_has_its_size(name, size, column, relative):
                 seasons=(SEASON,),
                 tows_per_season=10,
                 rate_hz=10,
-                defects=lambda s, chosen=chosen: replace(Defects.none(), **chosen),
+                defects=lambda s, chosen=chosen: replace(Defects(), **chosen),
             )
         )
         for chosen in ({}, sizes)

@@ -12,7 +12,7 @@ from herijk.simulate import Defects, WorldSettings, simulate_world
 
 
 def none(season):
-    return Defects.none()
+    return Defects()
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +98,7 @@ def test_without_defects_a_boat_never_changes():
 
 def test_ageing_alone_raises_cw_at_its_rate():
     aged = simulate_world(
-        WorldSettings(defects=lambda s: replace(Defects.none(), ageing_per_year=0.005))
+        WorldSettings(defects=lambda s: replace(Defects(), ageing_per_year=0.005))
     )
     fresh = simulate_world(WorldSettings(defects=none))
     for old, new in zip(aged.tows, fresh.tows, strict=True):
@@ -109,7 +109,7 @@ def test_ageing_alone_raises_cw_at_its_rate():
 
 
 def test_alterations_change_cw_and_about_half_is_reported():
-    defects = replace(Defects.none(), alteration_share=1.0, alteration_sd=0.08)
+    defects = replace(Defects(), alteration_share=1.0, alteration_sd=0.08)
     world = simulate_world(WorldSettings(defects=lambda s: replace(defects, unreported_share=0.5)))
     cw, changes = {}, []
     for tow in world.tows:
@@ -126,7 +126,7 @@ def test_alterations_change_cw_and_about_half_is_reported():
 
 def test_log_wander_moves_single_tows_about_the_season():
     world = simulate_world(
-        WorldSettings(defects=lambda s: replace(Defects.none(), log_tow_wander=0.012))
+        WorldSettings(defects=lambda s: replace(Defects(), log_tow_wander=0.012))
     )
     logs = np.log([t.truth.log_factor / t.truth.season_log_factor for t in world.tows])
     assert np.std(logs) == pytest.approx(0.012, rel=0.15)

@@ -14,7 +14,7 @@ from tests.worlds import run_rows, tow_rows
 
 RATE_HZ = 20
 BOATS = 3
-FAULTS = 330
+FAULTS = 160
 SPEEDS = ("log1_m_s", "log2_m_s", "gps_m_s")
 KINDS = ("dropout", "not a number", "spike", "push", "dead", "gust", "vane", "rows")
 

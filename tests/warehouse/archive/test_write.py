@@ -12,7 +12,6 @@ import pytest
 from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
 from herijk.simulate.archive_writer import (
-    LIST_COLUMNS,
     SPELLINGS,
     spelling_of,
     truth_path,
@@ -22,6 +21,13 @@ from herijk.simulate.papers import printed_register
 from herijk.simulate.practice import practices, printed_curve
 
 SETTINGS = WorldSettings(tows_per_season=2, rate_hz=20)
+
+LIST_COLUMNS = (
+    *("sleep_id", "datum", "fsn_nr", "meetfile", "meetfile2", "roeiers", "klasse"),
+    *("roeisnelheid [m/s]", "lengte [m]", "breedte [m]", "hoogte [m]", "gewicht [kg]"),
+    *("gewicht na [kg]", "bemanning [kg]", "watertemperatuur [C]", "correctie [%]"),
+    *("gebruik runs", "verbouwd", "meetfrequentie [Hz]", "opmerking"),
+)
 
 
 @pytest.fixture(scope="module")
