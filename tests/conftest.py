@@ -82,8 +82,9 @@ class _Directly:
 def directly() -> Iterator[None]:
     """Inside, rebuilds do their work without Dagster, and the site counts as made."""
 
-    def unrecorded(setup: Setup, other: object, work: Callable[[Any], None]) -> None:
+    def unrecorded(setup: Setup, other: object, work: Callable[[Any], None]) -> list[object]:
         work(_Directly(setup))
+        return []
 
     no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
     with no_site, in_one_process(), mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):

@@ -1,26 +1,24 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
 import datetime as dt
-from collections.abc import Iterator
+from typing import Final
 
 import dagster as dg
 import polars as pl
 
 from herijk.assets.partitions import seasons
-from herijk.assets.progress import Progress
 from herijk.assets.resources import Setup
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 from herijk.warehouse.store.store import Store
 
-LOOKED_AT = dg.FreshnessPolicy.time_window(
+LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
     warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
 )
 """Every rebuild looks through the archive, also when it finds no change."""
 
-
-OWNERS = ["team:archive"]
-SUBJECT = {"herijk/subject": "archive"}
+OWNERS: Final = ["team:archive"]
+SUBJECT: Final = {"herijk/subject": "archive"}
 
 
 @dg.asset(
@@ -34,45 +32,40 @@ SUBJECT = {"herijk/subject": "archive"}
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     intake.index(setup.store, setup.archive_root)
-    return dg.MaterializeResult(metadata=index_metadata(setup.store))
+    return index_result(setup.store)
 
 
-def index_metadata(store: Store) -> dict[str, int | bool]:
+def index_result(store: Store) -> dg.MaterializeResult:
     """What is shown of the lists of the archive."""
-    return {
-        "dagster/row_count": store.read("listed_tows").height,
-        "boats": store.read("listed_boats").height,
-        "files": store.read("listed_files").height,
-        "faults": store.read("list_faults").height,
-        "simulated": store.read("about_archive")["simulated"][0],
-    }
+    return dg.MaterializeResult(
+        asset_key="archive_index",
+        metadata={
+            "dagster/row_count": store.read("listed_tows").height,
+            "boats": store.read("listed_boats").height,
+            "files": store.read("listed_files").height,
+            "faults": store.read("list_faults").height,
+            "simulated": store.read("about_archive")["simulated"][0],
+        },
+    )
 
 
 @dg.asset(
     deps=[archive_index],
     partitions_def=seasons,
     code_version=code_hash(*READERS),
+    check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
     group_name="archive",
     kinds={"parquet"},
     owners=OWNERS,
     tags=SUBJECT,
-    check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
 )
-def samples(
-    context: dg.AssetExecutionContext, setup: Setup, progress: dg.ResourceParam[Progress]
-) -> dg.MaterializeResult:
+def samples(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
     """The samples of one season's tows, in Parquet; faulty tows are set aside."""
-    return read(setup, int(context.partition_key), progress)
+    season = int(context.partition_key)
+    return samples_result(intake.read_season(setup.store, setup.archive_root, season))
 
 
-def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
-    """Brings a season's samples into the lake."""
-    return read_result(
-        intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
-    )
-
-
-def read_result(season_index: pl.DataFrame) -> dg.MaterializeResult:
+def samples_result(season_index: pl.DataFrame) -> dg.MaterializeResult:
     """What is shown of a season that was read."""
     faulty = season_index.filter(pl.col("reason_code").is_not_null())
     reasons = faulty["reason_code"].value_counts(sort=True).rows()
@@ -106,20 +99,10 @@ def read_result(season_index: pl.DataFrame) -> dg.MaterializeResult:
 )
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
     """Sums over each second of each run of one season."""
-    return add_up(setup, int(context.partition_key))
-
-
-def add_up(setup: Setup, season: int) -> dg.MaterializeResult:
-    """Puts a season's blocks together in one table."""
-    return blocks_result(intake.collect_blocks(setup.store, season).height)
+    season_blocks = intake.collect_blocks(setup.store, int(context.partition_key))
+    return blocks_result(season_blocks.height)
 
 
 def blocks_result(rows: int) -> dg.MaterializeResult:
     """What is shown of a season's blocks."""
     return dg.MaterializeResult(asset_key="blocks", metadata={"dagster/row_count": rows})
-
-
-def read_whole(setup: Setup, season: int, progress: Progress) -> Iterator[dg.MaterializeResult]:
-    """Both: a season's samples and its blocks."""
-    yield read(setup, season, progress)
-    yield add_up(setup, season)

@@ -20,7 +20,7 @@ from herijk.pipeline.errors import (
     UnavailableError,
     unexpected,
 )
-from herijk.warehouse.intake.seasons import Listing, listing
+from herijk.warehouse.intake.seasons import listing
 from herijk.warehouse.store.store import fingerprint
 
 ONE_AT_A_TIME = {"herijk/rebuild": "data folder"}
@@ -40,11 +40,11 @@ class LogProgress:
         self._log = context.log
 
     def expect(self, tows: int) -> None:
-        """So many tows are going to be read."""
+        """How many tows will be read."""
         self._log.info(f"{tows} tows to read")
 
     def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        """Only what is set aside is worth a line."""
+        """A tow was read; only one set aside is worth a line."""
         if set_aside:
             self._log.warning(f"{tow_id} is set aside")
 
@@ -125,17 +125,17 @@ def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
 
 
 def archive_sensor(archive: Path) -> dg.SensorDefinition:
-    """The sensor that asks for a rebuild when files of the archive came, changed or went."""
+    """The sensor that asks for a rebuild when the files of the archive change."""
 
     def look(context: dg.SensorEvaluationContext) -> dg.SensorResult | dg.SkipReason:
-        try:
-            return _look(_digest(listing(archive)), context.cursor or "")
+        try:  # a digest of the listing, since a cursor is kept for every tick
+            return _look(fingerprint(listing(archive)), context.cursor or "")
         except MissingKnowledgeError as error:
             return dg.SkipReason(str(error))
 
     return dg.SensorDefinition(
         name="archive_changed",
-        description="Asks for a rebuild when files came, changed or went, and copying has ended.",
+        description="Asks for a rebuild when files changed and copying has ended.",
         evaluation_fn=look,
         job=rebuild_job,
         minimum_interval_seconds=60,
@@ -156,8 +156,3 @@ def _look(now: str, cursor: str) -> dg.SensorResult:
         skip = "files changed; waiting until the archive is left alone"
         return dg.SensorResult(skip_reason=skip, cursor=f"{asked} {now}")
     return dg.SensorResult(run_requests=[dg.RunRequest()], cursor=f"{now} {now}")
-
-
-def _digest(files: Listing) -> str:
-    """A listing in a few letters: a cursor is kept for every tick."""
-    return fingerprint(files)

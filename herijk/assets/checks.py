@@ -17,20 +17,13 @@ from herijk.warehouse.queries.change_report import change_report
 def _result(
     wrong: Sequence[object], severity: dg.AssetCheckSeverity = dg.AssetCheckSeverity.ERROR
 ) -> dg.AssetCheckResult:
-    """Passed where nothing is wrong; else with the first twenty of it."""
+    """Passed where nothing is wrong; else with the first twenty rows or sentences of it."""
+    lines = [" ".join(map(str, w)) if isinstance(w, tuple) else str(w) for w in wrong[:20]]
     return dg.AssetCheckResult(
         passed=not wrong,
         severity=severity,
-        metadata={
-            "number": len(wrong),
-            "first": dg.MetadataValue.json([_on_a_line(w) for w in wrong[:20]]),
-        },
+        metadata={"number": len(wrong), "first": dg.MetadataValue.json(lines)},
     )
-
-
-def _on_a_line(wrong: object) -> str:
-    """A row of a table, or a sentence."""
-    return " ".join(map(str, wrong)) if isinstance(wrong, tuple) else str(wrong)
 
 
 def tables_fit_their_schemas(setup: Setup) -> dg.AssetCheckResult:
@@ -97,11 +90,11 @@ def results(setup: Setup) -> Iterator[dg.AssetCheckResult]:
     """What all checks say."""
     for table, checks in CHECKS.items():
         for check in checks:
-            found = check(setup)
+            result = check(setup)
             yield dg.AssetCheckResult(
                 asset_key=table,
                 check_name=check.__name__,
-                passed=found.passed,
-                severity=found.severity,
-                metadata=found.metadata,
+                passed=result.passed,
+                severity=result.severity,
+                metadata=result.metadata,
             )

@@ -7,7 +7,6 @@ have to trust each other. How to start them is in docs/scale.md.
 
 import secrets
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +14,10 @@ import dagster as dg
 from dagster_dask import dask_executor
 from distributed.scheduler import KilledWorker, NoWorkerError
 
-from herijk.assets import archive
+from herijk.assets.archive import blocks_result, samples_result
 from herijk.assets.events import events_of
-from herijk.assets.progress import Quiet
-from herijk.assets.resources import QUIET_LOG, Setup
+from herijk.assets.resources import QUIET_LOG
+from herijk.assets.side_by_side import Reading
 from herijk.pipeline.errors import UnavailableError
 
 
@@ -33,8 +32,8 @@ class Season(dg.Config):
 @dg.op
 def read_season(context: dg.OpExecutionContext, config: Season) -> None:
     """The samples and blocks of one season; who asked for it holds the lock."""
-    setup = Setup(archive=config.archive, data=config.data)
-    for result in archive.read_whole(setup, config.season, Quiet()):
+    read = Reading(Path(config.archive), Path(config.data), config.season).do()
+    for result in (samples_result(read.index), blocks_result(read.blocks)):
         for event in events_of(result, str(config.season)):
             context.log_event(event)  # type: ignore[arg-type]  # it takes checks too
 
@@ -54,26 +53,13 @@ def _step(season: int) -> str:
     return f"season_{season}"
 
 
-@dataclass(frozen=True)
-class Read:
-    """What a cluster did.
-
-    Attributes:
-        checks: what the checks said.
-        failed: per season that a worker could not read, why.
-    """
-
-    checks: Sequence[dg.AssetCheckEvaluation]
-    failed: Mapping[int, str]
-
-
 def read_seasons(
     instance: dg.DagsterInstance,
     address: str,
     folders: tuple[Path, Path],
     seasons: Sequence[int],
     tags: Mapping[str, str],
-) -> Read:
+) -> tuple[Sequence[dg.AssetCheckEvaluation], dict[int, str]]:
     """Reads seasons on a cluster; a step whose worker is killed goes to another worker.
 
     Args:
@@ -82,6 +68,9 @@ def read_seasons(
         folders: archive and data folder, under the same paths on every worker.
         seasons: to read.
         tags: of the run.
+
+    Returns:
+        What the checks said, and why for each season that a worker could not read.
 
     Raises:
         UnavailableError: there is no scheduler there, it has been without workers for as long as
@@ -112,8 +101,7 @@ def read_seasons(
             address,
             error,
         ) from error
-    failed = {s: _reason(failures[_step(s)]) for s in seasons if _step(s) in failures}
-    return Read(checks, failed)
+    return checks, {s: _reason(failures[_step(s)]) for s in seasons if _step(s) in failures}
 
 
 def _reason(event: dg.DagsterEvent) -> str:

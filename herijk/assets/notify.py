@@ -47,7 +47,7 @@ class Notifier:
         data: the data folder; mails that are not sent are put into `outbox/` in it, one file each.
         mail_to, mail_from: addresses of the mail.
         smtp: mail server that sends it, as in the settings; without it nothing is sent from here.
-        smtp_password: of who is named in `smtp`.
+        smtp_password: of the user named in `smtp`.
         webhook: gets the message as JSON.
     """
 

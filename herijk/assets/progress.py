@@ -1,13 +1,13 @@
-"""Someone who is told how far a rebuild is."""
+"""How far a rebuild is, for whoever watches it."""
 
 from typing import Protocol
 
 
 class Progress(Protocol):
-    """Is told what happens; shows it or keeps quiet."""
+    """Shows how far a rebuild is, or nothing."""
 
     def expect(self, tows: int) -> None:
-        """So many tows are going to be read."""
+        """How many tows will be read."""
 
     def tow_read(self, tow_id: str, set_aside: bool) -> None:
         """A tow was read or set aside."""

@@ -8,6 +8,7 @@ import datetime as dt
 from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -66,7 +67,9 @@ def rebuild(
     with machine_faults_explained(data):
         settings = read_settings(data)
     with machine_faults_explained(data), only_writer(data):
-        work = _Rebuild(archive, Store(data), methods, progress, settings)
+        store = Store(data)
+        known = [KnownMethods.of(store).get(name) for name in methods]
+        work = _Rebuild(archive, store, known, progress, settings)
         return _mending(lambda: work.do(seasons))
 
 
@@ -88,26 +91,16 @@ def _mending(work: Callable[[], Report]) -> Report:
                 raise
 
 
+@dataclass
 class _Rebuild:
     """One rebuild: knows what it did so far, also when it begins again."""
 
-    def __init__(
-        self,
-        archive: Path,
-        store: Store,
-        methods: Sequence[str],
-        progress: Progress,
-        settings: Settings,
-    ) -> None:
-        self.archive, self.store, self.names = archive, store, methods
-        self.progress, self.settings = progress, settings
-        self.done = Done()
-
-    @property
-    def methods(self) -> list[Method]:
-        """The methods to apply."""
-        known = KnownMethods.of(self.store)
-        return [known.get(name) for name in self.names]
+    archive: Path
+    store: Store
+    methods: Sequence[Method]
+    progress: Progress
+    settings: Settings
+    done: Done = field(default_factory=Done)
 
     def do(self, seasons: Collection[int] | None) -> Report:
         """Everything that is stale, and the report."""
@@ -145,14 +138,8 @@ class _Rebuild:
         from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
         from herijk.assets.runs import in_one_run  # noqa: PLC0415
 
-        setup = Setup(
-            archive=str(self.archive),
-            data=str(self.store.root),
-            methods=list(self.names),
-            set_aside_share=self.settings.set_aside_share,
-            factor_jump=self.settings.factor_jump,
-        )
-        checks: list[dg.AssetCheckEvaluation] = []
+        names = [method.name for method in self.methods]
+        setup = Setup.of(self.archive, self.store.root, names, self.settings)
 
         def do(work: "Work") -> None:
             work.record_index()
@@ -165,10 +152,8 @@ class _Rebuild:
             if not is_reported(self.store):
                 self.progress.step("checking the tables")
                 work.check()
-            checks.extend(work.checks)
 
-        in_one_run(setup, other, do)
-        return checks
+        return in_one_run(setup, other, do)
 
     def _reading(
         self, seasons: Sequence[int], other: Executor
@@ -199,7 +184,7 @@ class _Rebuild:
         with self._reading(list(failed), work.other) as join:
             self._read(work, list(failed), join)
 
-    def _applied_by(self, step: Step) -> list[list[Method]]:
+    def _applied_by(self, step: Step) -> list[Sequence[Method]]:
         """The methods, one at a time where the step is made per method.
 
         Those that estimate take longest, so they begin: both processes are busy to the end.
@@ -220,7 +205,7 @@ class _Rebuild:
             tasks.append(Task(self.store.root, step.name, names))
             if step.per_method:
                 made = {*self.done.methods, *names}
-                self.done.methods = [name for name in self.names if name in made]
+                self.done.methods = [m.name for m in self.methods if m.name in made]
             self.done.database |= step is DATABASE
         work.build(tasks)
 

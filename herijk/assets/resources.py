@@ -1,9 +1,9 @@
-"""What assets are given: the folders, and someone to tell how far they are.
+"""What assets are given: the folders, and the methods to apply.
 
 Resources load nothing and compute nothing; they hand plain objects to `warehouse` and `pipeline`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -31,6 +31,17 @@ class Setup(dg.ConfigurableResource["Setup"]):
     methods: list[str] = Field(default_factory=lambda: list(shipped_methods()))
     set_aside_share: float = Settings().set_aside_share
     factor_jump: float = Settings().factor_jump
+
+    @classmethod
+    def of(cls, archive: Path, data: Path, methods: Sequence[str], settings: Settings) -> "Setup":
+        """The setup of a data folder with its settings."""
+        return cls(
+            archive=str(archive),
+            data=str(data),
+            methods=list(methods),
+            set_aside_share=settings.set_aside_share,
+            factor_jump=settings.factor_jump,
+        )
 
     @contextmanager
     def yield_for_execution(self, context: dg.InitResourceContext) -> Iterator["Setup"]:  # noqa: ARG002 - Dagster's signature
@@ -63,8 +74,8 @@ def fixed(setup: Setup) -> dg.ResourceDefinition:
     """The setup as a resource whose folders no run can name otherwise, also from Dagster's page."""
 
     @dg.resource(config_schema={})
-    def held(context: dg.InitResourceContext) -> Iterator[Setup]:
+    def resource(context: dg.InitResourceContext) -> Iterator[Setup]:
         with setup.yield_for_execution(context):
             yield setup
 
-    return held
+    return resource

@@ -12,9 +12,8 @@ import dagster as dg
 import yaml  # type: ignore[import-untyped]
 
 from herijk.assets import checks, partitions
-from herijk.assets.archive import blocks_result, index_metadata, read_result
+from herijk.assets.archive import blocks_result, index_result, samples_result
 from herijk.assets.events import Result, events_of
-from herijk.assets.jobs import NAMES, READ
 from herijk.assets.resources import QUIET_LOG, Setup
 from herijk.assets.side_by_side import Read, Task, side_by_side
 from herijk.assets.site import make_site
@@ -33,6 +32,9 @@ STEP_TAG: Final = "herijk/step"
 WORK: Final = "make_what_is_stale"
 """The run in which a rebuild does its work."""
 
+READ: Final = "read_season"
+"""The run in which a Dask cluster reads seasons for it."""
+
 
 class Work:
     """The pieces of a rebuild, each recorded in the rebuild's run as its asset would be.
@@ -49,16 +51,13 @@ class Work:
 
     def record_index(self) -> None:
         """Notes that the archive was looked through."""
-        seen: dg.MaterializeResult = dg.MaterializeResult(
-            asset_key="archive_index", metadata=index_metadata(self.setup.store)
-        )
-        self._record(seen)
+        self._record(index_result(self.setup.store))
 
-    def record_seasons(self, seasons: Sequence[int], found: Sequence[Read]) -> None:
+    def record_seasons(self, seasons: Sequence[int], readings: Sequence[Read]) -> None:
         """Notes what reading seasons gave."""
         self._add_partition(partitions.seasons, *map(str, seasons))
-        for season, read in zip(seasons, found, strict=True):
-            self._record(read_result(read.index), str(season))
+        for season, read in zip(seasons, readings, strict=True):
+            self._record(samples_result(read.index), str(season))
             self._record(blocks_result(read.blocks), str(season))
 
     def build(self, tasks: Sequence[Task]) -> None:
@@ -83,7 +82,7 @@ class Work:
     def read_on_dask(
         self, address: str, folders: tuple[Path, Path], seasons: Sequence[int]
     ) -> Mapping[int, str]:
-        """Has a cluster read seasons from archive to data; gives why, for those it could not."""
+        """Has a cluster read seasons from archive to data; why, for each that it could not."""
         try:
             from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - needs the extra dask
         except ImportError as error:
@@ -92,9 +91,10 @@ class Work:
                 "with: pip install 'herijk[dask]'",
                 address,
             ) from error
-        read = read_seasons(self.run.instance, address, folders, seasons, {STEP_TAG: READ})
-        self.checks += read.checks
-        return read.failed
+        tags = {STEP_TAG: READ}
+        checked, failed = read_seasons(self.run.instance, address, folders, seasons, tags)
+        self.checks += checked
+        return failed
 
     def _add_partition(self, kind: dg.DynamicPartitionsDefinition, *names: str) -> None:
         self.run.instance.add_dynamic_partitions(str(kind.name), names)
@@ -107,16 +107,22 @@ class Work:
                 self.checks.append(event)
 
     def wait_for_records(self) -> None:
-        """Waits until everything is written; an error in writing comes out."""
+        """Waits until everything is written; raises what went wrong in writing."""
         for record in self.records:
             record.result()
 
 
-def in_one_run(setup: Setup, other: Executor, work: Callable[[Work], None]) -> None:
-    """Has work done in a run of Dagster, by whoever holds the lock; an error comes out as raised.
+def in_one_run(
+    setup: Setup, other: Executor, work: Callable[[Work], None]
+) -> list[dg.AssetCheckEvaluation]:
+    """Does work in a run of Dagster; the caller holds the lock, and an error is raised as it is.
 
     A run costs a second and more, so a rebuild is one and not one for each of its thirty pieces.
+
+    Returns:
+        What the checks said.
     """
+    checked: list[dg.AssetCheckEvaluation] = []
 
     @dg.op(name=WORK)
     def whole(context: dg.OpExecutionContext) -> None:
@@ -124,6 +130,7 @@ def in_one_run(setup: Setup, other: Executor, work: Callable[[Work], None]) -> N
             pieces = Work(setup, context, other, clerk)
             work(pieces)
             pieces.wait_for_records()
+            checked.extend(pieces.checks)
 
     @dg.job(name=WORK)
     def job() -> None:
@@ -132,13 +139,14 @@ def in_one_run(setup: Setup, other: Executor, work: Callable[[Work], None]) -> N
     with instance_of(setup.store) as instance:
         _end_lost_runs(instance)
         job.execute_in_process(instance=instance, run_config=QUIET_LOG, tags={STEP_TAG: WORK})
+    return checked
 
 
 def taking_over(store: Store) -> Iterator[str]:
     """Ends the runs of a server that was stopped or killed: later ones would wait for them.
 
     Returns:
-        A sentence for anyone who starts the new server, about each kind of run that was found.
+        A sentence for anyone who starts the new server, about each kind of run.
     """
     if not nobody_writes(store.root):
         yield "A rebuild is at work; scheduled ones wait for it."
@@ -164,7 +172,7 @@ _BEGUN: Final = (
 def _end_lost_runs(instance: dg.DagsterInstance) -> None:
     """Records runs of killed rebuilds as failed; only the holder of the lock can tell."""
     unfinished = dg.RunsFilter(
-        tags={STEP_TAG: [WORK, *NAMES]}, statuses=[dg.DagsterRunStatus.STARTED]
+        tags={STEP_TAG: [WORK, READ]}, statuses=[dg.DagsterRunStatus.STARTED]
     )
     for run in instance.get_runs(unfinished):
         instance.report_run_failed(run, "The rebuild it was part of was killed.")

@@ -28,17 +28,17 @@ class Settings(BaseModel):
             `outbox/` without it.
         smtp: mail server: `smtp://user@host:587`, encrypted by STARTTLS but on this machine, or
             `smtps://user@host:465`; an @ in the user is written %40.
-        smtp_password_file: a file with its password; `HERIJK_SMTP_PASSWORD` in the environment goes
-            before it.
+        smtp_password_file: a file with its password; `HERIJK_SMTP_PASSWORD` in the environment
+            takes precedence.
         webhook: an address to which each report is posted as JSON; `HERIJK_WEBHOOK` in the
-            environment goes before it. It may hold a secret and is shown nowhere.
+            environment takes precedence. It may hold a secret and is shown nowhere.
         set_aside_share: more of the tows set aside gives a warning.
         factor_jump: a log factor that moves more gives a warning; a ratio minus 1.
         dask: scheduler of the Dask cluster that reads the seasons: `tcp://host:8786`; without it
             they are read in the process of the rebuild.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
 
     methods: tuple[str, ...] = ()
     nightly: str = "0 3 * * *"

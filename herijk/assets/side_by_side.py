@@ -1,4 +1,4 @@
-"""Seasons and steps that do not wait for each other in two processes: this one and a helper.
+"""Seasons and steps that do not depend on each other, in two processes: this one and a helper.
 
 Samples are read and tables made by code that holds Python's lock most of the time, so threads would
 not do. Which process does it changes nothing in what is made.
@@ -177,10 +177,11 @@ def side_by_side(tasks: Sequence[T], other: Executor, do: Callable[[T], M]) -> l
 
 def stages(steps: Sequence[Step]) -> list[list[Step]]:
     """The steps in their order, together where none reads what another of them makes."""
-    found: list[list[Step]] = []
+    in_order: list[list[Step]] = []
     for step in steps:
-        if found and not any(set(step.inputs) & set(other.outputs) for other in found[-1]):
-            found[-1].append(step)
+        last = in_order[-1] if in_order else []
+        if last and not any(set(step.inputs) & set(other.outputs) for other in last):
+            last.append(step)
         else:
-            found.append([step])
-    return found
+            in_order.append([step])
+    return in_order

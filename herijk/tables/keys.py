@@ -1,6 +1,9 @@
-"""Keys that more than one table has; here so that naming them imports nothing."""
+"""Columns that more than one table has; here so that naming them imports nothing."""
 
 from typing import Final
 
 LINE: Final = ("fsn_no", "rowers", "crew_class")
 """What names a line of the register: a boat and one of its crews."""
+
+SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
+"""What the register says of a boat on the day of its tow (Sleepproef 2017, "Opmetingen")."""

@@ -1,4 +1,4 @@
-"""What a table is, where it lies, what comes in from the archive and what an edition is.
+"""What comes in from the archive, how tables are made, kept and asked, and what an edition is.
 
-No measuring method here (that is `pipeline`) and no Dagster (that is `assets`).
+The measuring method is in `pipeline`, Dagster in `assets`.
 """

@@ -168,9 +168,11 @@ ERRORS: Final[dict[str, str]] = {
     "{}: not valid TOML: {}": "{}: geen geldige TOML: {}",
     "{} is not valid TOML: {}": "{} is geen geldige TOML: {}",
     "{}: {}: {}; it may hold {}": "{}: {}: {}; er mag in staan: {}",
-    "{}: {}: {}; a decision has sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
-        "{}: {}: {}; een besluit heeft sleep_id, oordeel (uitsluiten of voorkeur), reden, "
-        "wie en datum"
+    "[[besluit]], each with sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
+        "[[besluit]], elk met sleep_id, oordeel (uitsluiten of voorkeur), reden, wie en datum"
+    ),
+    "lake and editions, each as 's3://bucket/prefix' without a name or password": (
+        "lake en editions, elk als 's3://bucket/prefix' zonder naam of wachtwoord"
     ),
     "{}: more than one decision about {}": "{}: meer dan een besluit over {}",
     # TOML that people write
@@ -367,17 +369,14 @@ ERRORS: Final[dict[str, str]] = {
     "there is no edition {}; published: {}": "er is geen editie {}; uitgegeven: {}",
     "there is no edition {!r}; there are {}": "er is geen editie {!r}; er zijn {}",
     "the last rebuild has no edition {}; {}. One published since is there after herijk rebuild": (
-        "de laatste herbouw heeft geen editie {}; {}. Een die daarna is uitgegeven, staat er na "
-        "herijk rebuild"
+        "de laatste herberekening heeft geen editie {}; {}. Een die daarna is uitgegeven, staat er "
+        "na herijk rebuild"
     ),
     "none yet": "nog geen",
     "edition {} has no valid line of {}": "editie {} heeft geen geldige regel van {}",
     "any boat": "enige sloep",
     "boat {} is not in edition {}; its register.csv lists the boats": (
         "sloep {} staat niet in editie {}; register.csv noemt de sloepen"
-    ),
-    "a register as printed has no lineage": (
-        "van een register zoals gedrukt is geen herkomst bekend"
     ),
     "edition {} was recomputed; only lines of an edition as printed can be carried over": (
         "editie {} is herberekend; alleen regels van een editie zoals gedrukt kunnen "
@@ -420,6 +419,7 @@ ERRORS: Final[dict[str, str]] = {
     "edition {}: {} is missing or damaged ({}); put the folder back from a copy": (
         "editie {}: {} ontbreekt of is beschadigd ({}); zet de map terug uit een kopie"
     ),
+    "{}/{} names no file": "{}/{} noemt geen bestand",
     "edition {}: {}.parquet is missing or damaged; put the folder back from a copy": (
         "editie {}: {}.parquet ontbreekt of is beschadigd; zet de map terug uit een kopie"
     ),
@@ -482,7 +482,7 @@ ERRORS: Final[dict[str, str]] = {
     "and {} more places differ": "en nog {} plaatsen verschillen",
     "the archive is not where the last rebuild found it; run herijk rebuild --archive DIR": (
         "het archief is niet waar de laatste herberekening het vond; draai herijk rebuild "
-        "--archive DIR"
+        "--archive MAP"
     ),
     "{} is gone from the archive; put it back": "{} is weg uit het archief; zet het terug",
     "{} is not the file that the edition was made from": (

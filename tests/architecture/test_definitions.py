@@ -3,11 +3,9 @@
 import dagster as dg
 import polars as pl
 
-from herijk.assets.definitions import defs
-from herijk.assets.jobs import ASSETS as ASSETS_HELD
-from herijk.assets.jobs import job_defs
-from herijk.assets.progress import Quiet
-from herijk.assets.resources import Setup
+from herijk.assets.definitions import ASSETS as DEFINED
+from herijk.assets.definitions import build_defs, defs
+from herijk.assets.settings import Settings
 from herijk.assets.shown import PAGES, preview, with_site
 from herijk.tables.schemas import TABLES
 from tests.conftest import METHODS
@@ -118,11 +116,11 @@ def test_every_asset_says_what_it_is_and_whose():
 
 def test_one_table_can_be_made_alone(bench):
     before = {f.name: f.stat().st_mtime_ns for f in _tables(bench)}
-    setup = Setup(archive=str(bench.archive), data=str(bench.data), methods=list(METHODS))
+    location = build_defs(str(bench.archive), str(bench.data), Settings(methods=METHODS))
     alone = dg.AssetSelection.assets("season_ladder")
     job = dg.define_asset_job("alone", alone - alone.checks())
-    found = dg.Definitions.merge(job_defs(setup, Quiet()), dg.Definitions(jobs=[job]))
-    assert found.resolve_job_def("alone").execute_in_process().success
+    both = dg.Definitions.merge(location, dg.Definitions(jobs=[job]))
+    assert both.resolve_job_def("alone").execute_in_process().success
     changed = {f.name for f in _tables(bench) if f.stat().st_mtime_ns != before[f.name]}
     assert changed == {"season_ladder.parquet"}
     assert not bench.rebuild().done.database  # what was made alone is what a rebuild makes
@@ -133,7 +131,7 @@ def _tables(bench):
 
 
 def test_assets_link_to_their_page_where_the_site_is_served():
-    specs = [s for a in with_site(ASSETS_HELD, "http://127.0.0.1:3001/site") for s in a.specs]
+    specs = [s for a in with_site(DEFINED, "http://127.0.0.1:3001/site") for s in a.specs]
     pages = {s.key.to_user_string(): s.metadata["page"].url for s in specs if "page" in s.metadata}
     assert pages.keys() == PAGES.keys()
     assert pages["register"] == "http://127.0.0.1:3001/site/register.html"

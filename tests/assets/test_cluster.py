@@ -106,9 +106,10 @@ def test_a_season_that_a_worker_cannot_read_is_told(built, remote):
 
     elsewhere = remote.data / "without-settings"  # so the worker looks for a lake in it
     with runs.instance_of(remote.store) as instance, dask_here(remote, 1) as address:
-        read = read_seasons(instance, address, (built.archive, elsewhere), [2009], {})
-    assert list(read.failed) == [2009]
-    assert "without-settings/lake/tables/listed_tows.parquet" in read.failed[2009]
+        folders = built.archive, elsewhere
+        _, failed = read_seasons(instance, address, folders, [2009], {})
+    assert list(failed) == [2009]
+    assert "without-settings/lake/tables/listed_tows.parquet" in failed[2009]
 
 
 def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote):

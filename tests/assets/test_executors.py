@@ -3,10 +3,11 @@
 import dagster as dg
 import pytest
 
-from herijk.assets.jobs import BUILD_JOBS, INDEX, READ, SITE, job_defs
-from herijk.assets.progress import Quiet
-from herijk.assets.resources import Setup
+from herijk.assets import checks
+from herijk.assets.definitions import build_defs
 from herijk.assets.runs import prepare_home
+from herijk.assets.settings import Settings
+from herijk.warehouse.build.graph import STEPS
 from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 
@@ -22,14 +23,12 @@ FORKED = {
 """Each step in a process forked from one that has imported everything: no import per step."""
 
 
-def repository_of(archive: str, data: str) -> dg.Definitions:
-    """The jobs for two folders; loaded again in every process."""
-    return job_defs(Setup(archive=archive, data=data, methods=list(METHODS)), Quiet())
-
-
-def job_of(archive: str, data: str, name: str) -> dg.JobDefinition:
-    """One of the jobs."""
-    return repository_of(archive, data).resolve_job_def(name)
+def job_of(archive: str, data: str, *assets: str) -> dg.JobDefinition:
+    """A job of some assets of two folders; loaded again in every process."""
+    selection = dg.AssetSelection.assets(*assets) - dg.AssetSelection.checks(*checks.ALL)
+    job = dg.Definitions(jobs=[dg.define_asset_job("some", selection)])
+    defs = build_defs(archive, data, Settings(methods=METHODS))
+    return dg.Definitions.merge(defs, job).resolve_job_def("some")
 
 
 @pytest.mark.slow
@@ -38,21 +37,23 @@ def test_the_multiprocess_executor_gives_identical_tables(built, tmp_path, monke
     home = prepare_home(bench.store)
     monkeypatch.setenv("DAGSTER_HOME", str(home))
     steps = [
-        (INDEX, None),
-        *((READ, str(season)) for season in SMALL.seasons),
+        (("archive_index",), None),
+        *((("samples", "blocks"), str(season)) for season in SMALL.seasons),
         *(
-            (job, partition)
-            for step, job in BUILD_JOBS.items()
+            (step.outputs, partition)
+            for step in STEPS
             for partition in (METHODS if step.per_method else (None,))
         ),
-        (SITE, None),
+        (("site",), None),
     ]
     with dg.DagsterInstance.from_config(str(home)) as instance:
         instance.add_dynamic_partitions("season", [str(season) for season in SMALL.seasons])
         instance.add_dynamic_partitions("method", list(METHODS))
-        for name, partition in steps:
+        for assets, partition in steps:
             job = dg.build_reconstructable_job(
-                "tests.assets.test_executors", "job_of", (str(bench.archive), str(bench.data), name)
+                "tests.assets.test_executors",
+                "job_of",
+                (str(bench.archive), str(bench.data), *assets),
             )
             tags = {} if partition is None else {"dagster/partition": partition}
             result = dg.execute_job(job, instance, run_config=FORKED, tags=tags)

@@ -14,7 +14,7 @@ import herijk.pipeline.studies.ladder
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.register.replay import RaceRules
 from herijk.tables.keys import LINE
-from herijk.warehouse.editions.compare import diff, race_effects, report
+from herijk.warehouse.editions.compare import compare, diff, report, report_with_races
 from herijk.warehouse.editions.publish import publish_printed
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.decisions import FILE_NAME
@@ -227,19 +227,18 @@ def test_races_are_replayed_under_both(bench_of_editions):
     folder = empty_races(bench)
     (folder / "proefrace_2014.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
     intake.index(bench.store, bench.archive)
-    old, new = (read_edition(bench.store, name) for name in "ab")
-    found = race_effects(bench.store, old, new, RaceRules())
-    assert found is not None
-    assert found.results.height == 6
-    assert found.results["old_power_w"].null_count() == 0
-    assert found.winners["change_probability"].is_between(0, 1).all()
+    replayed = report_with_races(bench.store, diff(bench.store, "a", "b"), RaceRules())
+    assert len(replayed.races) == 6
+    assert None not in [result["old_power_w"] for result in replayed.races]
+    assert all(0 <= winner["change_probability"] <= 1 for winner in replayed.winners)
 
 
 def test_without_races_there_is_no_effect(published_copy):
     empty_races(published_copy)
     intake.index(published_copy.store, published_copy.archive)
     edition = read_edition(published_copy.store, "2014-1")
-    assert race_effects(published_copy.store, edition, edition, RaceRules()) is None
+    alone = compare(published_copy.store, edition, edition)
+    assert report_with_races(published_copy.store, alone, RaceRules()).races is None
 
 
 def empty_races(bench):

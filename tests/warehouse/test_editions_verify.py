@@ -14,8 +14,7 @@ import herijk.pipeline.recompute.recompute
 import herijk.warehouse.editions.verify
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.tables.schemas import conform
-from herijk.warehouse.build.published import lineage_rows
+from herijk.warehouse.build.published import published_tables
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
 from herijk.warehouse.editions.lineage import lineage
@@ -305,7 +304,7 @@ def test_lineage_leads_to_files_runs_and_seconds(published):
 
 def test_lineage_rows_are_those_of_the_warehouse(published):
     edition = read_edition(published.store, "2014-1")
-    rows = conform("lineage", lineage_rows(edition))
+    rows = published_tables(published.store)["lineage"].filter(edition="2014-1")
     assert rows.height == edition.register.drop_nulls("tow_id").height
     assert set(rows["method_hash"]) == {read_about(folder(published)).method_hash}
 
@@ -374,6 +373,15 @@ def test_a_changed_printed_register_is_named_and_so_is_its_line(carrying):
     assert wrong
     assert {f.kind for f in findings} == {"swapped", "differs"}
     assert any("the printed register in the archive says so now" in f.message for f in findings)
+
+
+def test_a_printed_edition_that_names_no_file_any_more_cannot_be_made_again(carrying):
+    (folder(carrying, "printed") / "inputs.csv").write_text("bestand;soort;sha256\n")
+    findings, wrong = found(carrying, edition="printed")
+    assert wrong
+    assert [f.message for f in findings if f.kind == "unchecked"] == [
+        "it cannot be made again: printed/inputs.csv names no file"
+    ]
 
 
 def test_an_edition_whose_printed_source_is_gone_cannot_be_made_again(carrying):

@@ -1,6 +1,6 @@
 """What a process found of the runs is used again as long as the runs are what they were."""
 
-from herijk.warehouse.build.method_tables import RUNS, found_before
+from herijk.warehouse.build.method_tables import RUNS, run_cache
 
 
 class Runs:
@@ -15,9 +15,9 @@ class Runs:
 
 
 def test_what_was_found_lasts_as_long_as_the_runs_are_the_same():
-    with found_before(Runs("these")) as first, found_before(Runs("these")) as again:
+    with run_cache(Runs("these")) as first, run_cache(Runs("these")) as again:
         assert again is first
-    with found_before(Runs("others")) as other:
+    with run_cache(Runs("others")) as other:
         assert other is not first
-    with found_before(Runs("these")) as later:
+    with run_cache(Runs("these")) as later:
         assert later is not first

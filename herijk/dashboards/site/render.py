@@ -7,7 +7,6 @@ its charts, and the rows of its tables that are not shown at first, once, as a s
 import base64
 import datetime as dt
 import shutil
-import tempfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
@@ -36,7 +35,7 @@ from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.site.still import Stills, first_chart, stills
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
+from herijk.warehouse.store.files import folder_written_beside
 from herijk.warehouse.store.store import Store
 from herijk.words import LANGUAGES
 from herijk.words.catalogue import WORDS, speaker
@@ -98,20 +97,14 @@ def build_pages(
     store: Store, target: Path, as_of: dt.date | None = None, other: Executor | None = None
 ) -> dict[str, int]:
     """The same in another folder, and as of a day; what stood in the folder is replaced."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=target.parent))
-    try:
+    with folder_written_beside(target) as beside:
         with Views(store, as_of) as views:
             _write_pages(views, beside, other)
             _write_shared(views, beside)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
-        size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
-        beside.chmod(0o755)
-        put_in_place(beside, target)
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
-    return size
+        size = sum(f.stat().st_size for f in written)
+    return {"files": len(written), "bytes": size}
 
 
 def _write_shared(views: Views, folder: Path) -> None:

@@ -3,7 +3,7 @@
 import dataclasses
 import datetime as dt
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -20,8 +20,6 @@ from herijk.words import say
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
-
-_LISTED_AT: Final = ["list_path", "list_line"]
 
 
 class NothingSoundError(MissingKnowledgeError):
@@ -45,7 +43,9 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     index = inputs["season_index"]
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     contents = inputs.blocks("tow_id", "run", "second", *CONTENT)
-    present = _present_runs(contents)
+    present = contents.group_by("tow_id", "run", maintain_order=True).agg(
+        seconds=pl.col("second").max() + 1
+    )
     listed = _with_what_was_read(inputs["season_tows"].join(sound, on="tow_id", how="semi"), index)
     runs_read = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
     tows, contradicted = judged_tows(
@@ -65,9 +65,7 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         "seasons": _seasons(inputs["season_tows"], sound, losses),
         "tows": _with_lost_runs(tows, losses),
         "tow_runs": _with_lost_seconds(runs, losses),
-        "hand_windows": windows.join(
-            beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
-        ),
+        "hand_windows": windows.join(beyond, on=["path", "line"], how="anti"),
         "quarantine": _dated(set_aside, inputs.earlier("quarantine"), inputs.today),
     }
     if tables["tows"].is_empty():
@@ -83,13 +81,6 @@ def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame
         tows.join(read, on="tow_id", how="left", maintain_order="left")
         .with_columns(wind_measured=has_wind)
         .drop("wind_read")
-    )
-
-
-def _present_runs(blocks: pl.DataFrame) -> pl.DataFrame:
-    """The runs that the samples of sound tows hold, with their length in whole `seconds`."""
-    return blocks.group_by("tow_id", "run", maintain_order=True).agg(
-        (pl.col("second").max() + 1).alias("seconds")
     )
 
 

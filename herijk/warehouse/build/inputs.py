@@ -1,11 +1,11 @@
 """What a step may read: the tables of the lake, published editions and decisions of people.
 
-Of each kind of input two things are said: how it is read, and what of it is in the fingerprint
+Of each kind of input, `_read` says how it is read, and `made_from` what of it is in the fingerprint
 of what is made from it.
 """
 
 import datetime as dt
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
@@ -78,7 +78,7 @@ class Inputs:
         if name not in self.names:
             raise KeyError(f"{name} is not a declared input: {', '.join(self.names)}")
         if name not in self._read:
-            self._read[name] = _kind(name).read(self, name)
+            self._read[name] = _read(self, name)
         return self._read[name]
 
     def made_from(self, *names: str) -> str:
@@ -118,15 +118,38 @@ class Inputs:
         return published_tables(self.store)
 
 
+def _read(inputs: Inputs, name: str) -> pl.DataFrame:
+    store = inputs.store
+    if name in METHOD_TABLES:
+        return store.read_all(name, [method.name for method in inputs.methods])
+    if name in PUBLISHED:
+        return inputs.published[name.removeprefix("published_")]
+    if name == DECISIONS:
+        return _decisions(store)
+    if name == BLOCKS:
+        return intake.all_blocks(store)
+    if name in intake.INDEXED:
+        return _listed(store, name)
+    return _of_seasons(store, name) if name in SEASON_TABLES else store.read(name)
+
+
 def made_from(store: Store, name: str, methods: Sequence[Method]) -> object:
     """What of an input is in a fingerprint."""
-    return _kind(name).made_from(store, name, methods)
+    if name in METHOD_TABLES:
+        return {method.name: store.made_from(name, method.name) for method in methods}
+    if name in PUBLISHED:
+        return published_made_from(store)
+    if name == DECISIONS:
+        return table_digest(_decisions(store))
+    if name in intake.INDEXED:  # made again whenever a file was touched, so its content counts
+        return table_digest(_listed(store, name))
+    if name == BLOCKS or name in SEASON_TABLES:
+        return {season: store.made_from(name, season) for season in store.partitions(name)}
+    return store.made_from(name)
 
 
-@dataclass(frozen=True)
-class _Kind:
-    read: Callable[[Inputs, str], pl.DataFrame]
-    made_from: Callable[[Store, str, Sequence[Method]], object]
+def _of_seasons(store: Store, name: str) -> pl.DataFrame:
+    return store.read_all(name) if store.partitions(name) else SEASON_TABLES[name].create_empty()
 
 
 def _listed(store: Store, name: str) -> pl.DataFrame:
@@ -137,51 +160,3 @@ def _listed(store: Store, name: str) -> pl.DataFrame:
 def _decisions(store: Store) -> pl.DataFrame:
     decided = decisions.read_decisions(store.root / decisions.FILE_NAME)
     return decisions.decision_table(decided)
-
-
-def _of_seasons(inputs: Inputs, name: str) -> pl.DataFrame:
-    if not inputs.store.partitions(name):
-        return SEASON_TABLES[name].create_empty()
-    return inputs.store.read_all(name)
-
-
-def _seasons_made_from(store: Store, name: str, _: Sequence[Method]) -> dict[str, str | None]:
-    return {season: store.made_from(name, season) for season in store.partitions(name)}
-
-
-_WHOLE: Final = _Kind(
-    lambda inputs, name: inputs.store.read(name), lambda store, name, _: store.made_from(name)
-)
-_KINDS: Final[dict[str, _Kind]] = {
-    BLOCKS: _Kind(lambda inputs, _: intake.all_blocks(inputs.store), _seasons_made_from),
-    DECISIONS: _Kind(
-        lambda inputs, _: _decisions(inputs.store),
-        lambda store, *_: table_digest(_decisions(store)),
-    ),
-    **dict.fromkeys(SEASON_TABLES, _Kind(_of_seasons, _seasons_made_from)),
-    **dict.fromkeys(  # made again whenever a file was touched, so their content is what counts
-        intake.INDEXED,
-        _Kind(
-            lambda inputs, name: _listed(inputs.store, name),
-            lambda store, name, _: table_digest(_listed(store, name)),
-        ),
-    ),
-    **dict.fromkeys(
-        PUBLISHED,
-        _Kind(
-            lambda inputs, name: inputs.published[name.removeprefix("published_")],
-            lambda store, *_: published_made_from(store),
-        ),
-    ),
-    **dict.fromkeys(
-        METHOD_TABLES,
-        _Kind(
-            lambda inputs, name: inputs.store.read_all(name, [m.name for m in inputs.methods]),
-            lambda store, name, methods: {m.name: store.made_from(name, m.name) for m in methods},
-        ),
-    ),
-}
-
-
-def _kind(name: str) -> _Kind:
-    return _KINDS.get(name, _WHOLE)

@@ -17,22 +17,22 @@ if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
 
 RUNS: Final = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
-"""What tells of the tows all that a method is applied to."""
+"""The tables that a method is applied to."""
 
 
 def method_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Run points, curves, log factors, assessments and members of all tows under one method."""
     (method,) = inputs.methods
     tows = with_boats(inputs["tows"], inputs["boats"])
-    with found_before(inputs) as cache:
+    with run_cache(inputs) as cache:
         made = recompute(method, tows, blocks_of(inputs), cache)
     members = tow_ensemble(method.name, made.curves, made.uncertainty_budget, made.factors)
     return {**vars(made), "ensemble": members}
 
 
 @contextmanager
-def found_before(inputs: "Inputs") -> Iterator[RunCache]:
-    """What this process found of the runs, as long as they are what they were."""
+def run_cache(inputs: "Inputs") -> Iterator[RunCache]:
+    """What this process has computed of the runs, as long as these do not change."""
     cache = _cache_of(inputs.made_from(*RUNS))
     try:
         yield cache

@@ -1,15 +1,15 @@
 """Tows that the rest of the archive rules out: set aside, or doubted.
 
 What is judged, and how, is in `pipeline.assessment.plausibility`. A wrong unit costs the tow,
-or the season, as any fault of a file does. A smaller shift keeps its tow, which then needs a look.
-Where it is of single tows or of a day, these take no part in what tows share. What a whole season
-or archive has in common is for the joint model to say (`pipeline.season_log`), which knows such
+or the season, as any fault of a file does. A tow with a smaller shift is kept and needs a look.
+Where single tows or a day are shifted, they take no part in what tows share. A shift that a whole
+season or archive has in common is left to the joint model (`pipeline.season_log`), which knows such
 faults and needs these tows for it.
 """
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import reduce
 from typing import Final
 
@@ -24,26 +24,17 @@ from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
 from herijk.words import say
 
-_UNUSUAL: Final = {
-    "force": "force_unusual",
-    "zero": "force_unusual",
-    "wind": "wind_unusual",
-    "vane": "wind_unusual",
-    "speed": "speed_unusual",
-}
-"""Check of a tow that is only unusual."""
-
 _SINGLED_OUT: Final = ("tow", "day")
-"""Kinds of shifts that cost their tows the part in what tows share."""
+"""Kinds of shifts that exclude their tows from what tows share."""
 
-_CODES: Final = {
-    "force": "force_not_plausible",
-    "zero": "force_not_plausible",
-    "wind": "wind_not_plausible",
-    "vane": "wind_not_plausible",
-    "speed": "speed_not_plausible",
+_SENSOR: Final = {
+    "force": "force",
+    "zero": "force",
+    "wind": "wind",
+    "vane": "wind",
+    "speed": "speed",
 }
-"""Reason code of a tow set aside, and check of one that is doubted."""
+"""Per quantity that can be shifted, what its reason code and its checks are named after."""
 
 
 def judge(tows: pl.DataFrame, blocks: RunBlocks) -> Plausibility:
@@ -61,7 +52,7 @@ def judge(tows: pl.DataFrame, blocks: RunBlocks) -> Plausibility:
 def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:
     """A fault of every tow that a wrong unit, column or file costs, each once."""
     sentences = {
-        tow: (_CODES[shift.quantity], _sentence(shift))
+        tow: (f"{_SENSOR[shift.quantity]}_not_plausible", _sentence(shift))
         for shift in reversed(shifts)
         if shift.is_gross
         for tow in shift.tows
@@ -77,18 +68,19 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Fa
 def with_doubts(tows: pl.DataFrame, judged: Plausibility) -> pl.DataFrame:
     """The tows with `doubts`, `unusual` and `unseen_force_ratio`: what all others say of them."""
 
-    def named(codes: Mapping[str, str], doubted: bool) -> pl.Series:
-        mine = [s for s in judged.shifts if (s.clear and s.kind in _SINGLED_OUT) is doubted]
-        found = [
-            sorted({codes[s.quantity] for s in mine if tow in s.tows}) for tow in tows["tow_id"]
+    def checks(verdict: str, doubted: bool) -> pl.Series:
+        shifts = [s for s in judged.shifts if (s.clear and s.kind in _SINGLED_OUT) is doubted]
+        codes = [
+            sorted({f"{_SENSOR[s.quantity]}_{verdict}" for s in shifts if tow in s.tows})
+            for tow in tows["tow_id"]
         ]
-        return pl.Series(found, dtype=pl.List(pl.String))
+        return pl.Series(codes, dtype=pl.List(pl.String))
 
     # To a thousandth, as no processor gives the last bits of a solved system like another.
     seen_from = {tow: round(ratio, 3) for tow, ratio in judged.force_seen_from.items()}
     return tows.with_columns(
-        named(_CODES, doubted=True).alias("doubts"),
-        named(_UNUSUAL, doubted=False).alias("unusual"),
+        checks("not_plausible", doubted=True).alias("doubts"),
+        checks("unusual", doubted=False).alias("unusual"),
         pl.Series("unseen_force_ratio", map(seen_from.get, tows["tow_id"]), pl.Float64),
     )
 

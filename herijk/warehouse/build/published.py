@@ -3,10 +3,11 @@
 Editions are read as they lie; nothing is compared or computed again.
 """
 
+from collections.abc import Mapping
+
 import polars as pl
 from pydantic import TypeAdapter
 
-from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import samples_files
 from herijk.pipeline.register.register import CURVE_COLUMNS, LINE, lines_of_all_days
 from herijk.tables.schemas import TABLES, conform
@@ -44,8 +45,10 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
         rows["register_history"].append(lines_in_time(store, edition))
         if CHANGES in edition.tables:
             rows[CHANGES].append(edition.tables[CHANGES])
-        if edition.about.kind == "recomputed":
-            rows["lineage"].append(lineage_rows(edition))
+        if edition.method is not None:
+            hashes = {edition.method.name: edition.about.method_hash}
+            tows, code_version = edition.tables["tows"], edition.about.code_version
+            rows["lineage"].append(lineage_rows(edition.register, tows, hashes, code_version))
     return {
         table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
         for table, frames in rows.items()
@@ -95,14 +98,19 @@ def _edition_row(edition: Edition) -> pl.DataFrame:
     )
 
 
-def lineage_rows(edition: Edition) -> pl.DataFrame:
-    """Rows of the table `lineage` of an edition: one per line and samples file."""
-    if edition.about.kind == "as_printed":
-        raise MissingKnowledgeError("a register as printed has no lineage")
-    lines = edition.register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
-    return lines.join(
-        samples_files(edition.tables["tows"]), on="tow_id", maintain_order="left"
-    ).with_columns(
-        pl.lit(edition.about.method_hash).alias("method_hash"),
-        pl.lit(edition.about.code_version).alias("code_version"),
+def lineage_rows(
+    register: pl.DataFrame, tows: pl.DataFrame, hashes: Mapping[str, str | None], code_version: str
+) -> pl.DataFrame:
+    """Rows of the table `lineage`: one per line that has a tow and samples file of it.
+
+    Args:
+        register: rows of `register`.
+        tows: the tows behind them.
+        hashes: content hash of each method.
+        code_version: of the code that made the lines.
+    """
+    lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
+    return lines.join(samples_files(tows), on="tow_id", maintain_order="left").with_columns(
+        method_hash=pl.col("method").replace_strict(hashes, return_dtype=pl.String),
+        code_version=pl.lit(code_version),
     )

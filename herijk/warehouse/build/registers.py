@@ -1,28 +1,24 @@
 """Registers: a draft per method, what changes between them, and the published editions."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import polars as pl
 
 from herijk.pipeline.method.definition import Method
-from herijk.pipeline.recompute.facts import samples_files
 from herijk.pipeline.register.changes import register_changes
 from herijk.pipeline.register.due import due_list
 from herijk.pipeline.register.register import (
-    LINE,
     draft_name,
     draft_register,
     lines_of_all_days,
 )
 from herijk.tables.editions import Editions
+from herijk.tables.keys import SIZES
 from herijk.tables.register import RegisterChanges
 from herijk.tables.schemas import conform
-from herijk.warehouse.build.published import history_rows
+from herijk.warehouse.build.published import history_rows, lineage_rows
 from herijk.warehouse.build.version import code_version
-
-SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
-"""What the register says of a boat on the day of its tow (Sleepproef 2017, "Opmetingen")."""
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -40,11 +36,12 @@ def register_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     histories = [_history(method, inputs) for method in methods]
     register = pl.concat(drafts)
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
+    hashes = {method.name: method.content_hash for method in methods}
     made = {
         "register": register,
         "register_history": pl.concat(histories),
         "register_changes": pl.concat(changes) if changes else RegisterChanges.create_empty(),
-        "lineage": _lineage(register, inputs["tows"], methods),
+        "lineage": lineage_rows(register, inputs["tows"], hashes, code_version()),
         "editions": Editions.create_empty(),
     }
     with_editions = {
@@ -71,19 +68,6 @@ def _history(method: Method, inputs: "Inputs") -> pl.DataFrame:
     curves = inputs["curves"].filter(pl.col("method") == method.name)
     lines = lines_of_all_days(curves, inputs["tows"], method.validity)
     return history_rows(lines, draft_name(method.name), method.name)
-
-
-def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:
-    """The files behind every line that has a tow."""
-    hashes = pl.DataFrame(
-        {"method": [m.name for m in methods], "method_hash": [m.content_hash for m in methods]}
-    )
-    lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
-    return (
-        lines.join(samples_files(tows), on="tow_id", maintain_order="left")
-        .join(hashes, on="method", maintain_order="left")
-        .with_columns(pl.lit(code_version()).alias("code_version"))
-    )
 
 
 def _due_list(inputs: "Inputs") -> pl.DataFrame:

@@ -1,11 +1,11 @@
 """Samples that were measured once and are in the archive twice.
 
-A file that was packed again, saved with other line ends or in another format has another hash and
-the same content: a run whose sums are equal to the last bit was measured once. One that was written
-with fewer decimals or in another unit has nearly the same sums; two such runs of one tow, both like
-runs of the same other tow, are no chance either. Whose it is nobody can know, so between boats or
-crews it costs all of them; of one boat and crew the first tow keeps it. Files equal byte by byte
-are found before, in `warehouse.archive.index`.
+A file that was packed again, or saved with other line ends or in another format, has another hash
+and the same content: runs whose sums are equal to the last bit are one measurement. A file written
+with fewer decimals or in another unit has nearly the same sums. One such run may be chance; two
+runs of a tow that are both like runs of one other tow are not. Nobody can know whose samples they
+are, so tows of different boats or crews all lose them; of one boat and crew the first tow keeps
+them. Files equal byte by byte are told earlier, in `warehouse.archive.index`.
 """
 
 import dataclasses
@@ -60,7 +60,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
 
 
 def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
-    """The runs with `content`, a number that runs which were measured once have in common."""
+    """The runs with `content`, a number that runs of one measurement have in common."""
     sums = runs.select(CONTENT).to_numpy()
     means = sums[:, 1:] / np.maximum(sums[:, :1], 1.0)
     one, other = _near(means)

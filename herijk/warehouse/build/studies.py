@@ -1,4 +1,4 @@
-"""What the steps of a method change, one after the other, and how much choices of it matter."""
+"""What the steps of a method change, one after the other, and how much its options matter."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
@@ -10,7 +10,7 @@ from herijk.pipeline.studies.ladder import ladder
 from herijk.pipeline.studies.options import beside_uncertainty, option_effects
 from herijk.pipeline.studies.tool_options import option_curves, tick_effects
 from herijk.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
-from herijk.warehouse.build.method_tables import blocks_of, found_before
+from herijk.warehouse.build.method_tables import blocks_of, run_cache
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -38,7 +38,7 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """The ladder from the first method to each other, and the studies of options."""
     blocks, tows, (first, *others) = blocks_of(inputs), inputs["tows"], inputs.methods
     links = {m.name: _of(m, inputs["tow_instruments"]) for m in inputs.methods}
-    with found_before(inputs) as cache:
+    with run_cache(inputs) as cache:
         ladders = [
             ladder(old, new, tows, blocks, (links[old.name], links[new.name]), cache).with_columns(
                 pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
@@ -59,7 +59,7 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
             ),
         ]
         cache.clear()  # no later step applies a method
-    found = [
+    all_effects = [
         beside_uncertainty(frame, _of(m, inputs["curves"])).with_columns(
             pl.lit(m.name).alias("method"), pl.lit(study).alias("study")
         )
@@ -69,7 +69,7 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     return {
         "correction_steps": pl.concat(ladders) if ladders else CorrectionSteps.create_empty(),
         "option_effects": (
-            pl.concat(found, how="diagonal") if found else OptionEffects.create_empty()
+            pl.concat(all_effects, how="diagonal") if all_effects else OptionEffects.create_empty()
         ),
         "option_curves": pl.concat(curves) if curves else OptionCurves.create_empty(),
     }

@@ -1,9 +1,10 @@
 """Two editions side by side: every line with its causes, and what it does to races.
 
 The numbers come from `pipeline.register.changes`, `pipeline.studies.ladder` and
-`pipeline.register.replay`; here it is found out what two editions do not share: tow, files, method,
-code. The steps of the method are computed with the code and blocks of the day; what they leave is
-one factor, named after what else differs. An edition holds its comparison with the one before it.
+`pipeline.register.replay`. Here is decided what two editions do not share: tow, files, method,
+code. The steps of the method are computed with the code and blocks of today; what they leave
+unexplained is one factor, named after what else differs. An edition holds its comparison with the
+one before.
 """
 
 import json
@@ -32,19 +33,6 @@ from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
 from herijk.warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
 from herijk.warehouse.store.store import Store, archive_root
-
-PRINTED: Final = "printed"
-PRINTED_AND_TOW: Final = "printed_and_tow"
-CLOSED_FORM: Final = "closed_form"
-TOW: Final = "tow"
-INPUT: Final = "input"
-OTHER_INPUT: Final = "other_input"
-CODE: Final = "code"
-INPUT_AND_CODE: Final = "input_and_code"
-CODE_OR_OTHER_INPUT: Final = "code_or_other_input"
-METHOD: Final = "method"
-UNSEPARATED: Final = "unseparated"
-UNEXPLAINED: Final = "unexplained"
 
 STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
 NO_STEPS: Final = pl.DataFrame(schema={n: dtypes(CorrectionSteps)[n] for n in STEP_COLUMNS})
@@ -112,40 +100,6 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     return Comparison(old, new, lines)
 
 
-@dataclass(frozen=True)
-class RaceEffects:
-    """What two editions make of the races in the archive.
-
-    Attributes:
-        results: rows of `pipeline.register.replay.race_changes`.
-        winners: rows of `pipeline.register.replay.winner_changes`.
-    """
-
-    results: pl.DataFrame
-    winners: pl.DataFrame
-
-
-def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> RaceEffects | None:
-    """Power, rank, podium and winner of every race in the archive under both editions.
-
-    Returns:
-        The effects; None where the archive is not there or has no races.
-
-    Raises:
-        MissingKnowledgeError: the rules ask for what is not known.
-    """
-    if archive_root(store) is None:
-        return None
-    results = store.read("listed_races")
-    if results.is_empty():
-        return None
-    before, after = (
-        replay(lines_in_time(store, edition), results, rules) for edition in (old, new)
-    )
-    members = new.tables.get("ensemble", pl.DataFrame())
-    return RaceEffects(race_changes(before, after), winner_changes(before, after, members))
-
-
 def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """What the code alone changed: the old edition made again by the code of the new one.
 
@@ -160,11 +114,17 @@ def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     from herijk.warehouse.editions.lines import made_again  # noqa: PLC0415 - much, and seldom needed
 
     again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
-    return register_changes(old.register, again).select(
+    changes = register_changes(old.register, again)
+    return _parts("code", changes.with_columns(pl.col("cw_ratio").fill_null(1.0)))
+
+
+def _parts(cause: str, changes: pl.DataFrame) -> pl.DataFrame:
+    """All of what changed as the work of one cause."""
+    return changes.select(
         *LINE,
-        pl.lit(CODE).alias("cause"),
+        pl.lit(cause).alias("cause"),
         pl.lit(None, pl.String).alias("step"),
-        pl.col("cw_ratio").fill_null(1.0).alias("factor"),
+        pl.col("cw_ratio").alias("factor"),
     )
 
 
@@ -187,16 +147,7 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
     moved = same_tow.join(new.register, on="tow_id", how="anti")
     if moved.is_empty():
         return NO_PARTS
-    return (
-        register_changes(old.register, moved)
-        .drop_nulls("cw_ratio")
-        .select(
-            *LINE,
-            pl.lit(PRINTED).alias("cause"),
-            pl.lit(None, pl.String).alias("step"),
-            pl.col("cw_ratio").alias("factor"),
-        )
-    )
+    return _parts("printed", register_changes(old.register, moved).drop_nulls("cw_ratio"))
 
 
 def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
@@ -214,14 +165,9 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     from herijk.pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
 
     blocks = stack_blocks(intake.all_blocks(store), runs)
-    return ladder(old.method, new.method, tows, blocks, _links(old, new))
-
-
-def _links(old: Edition, new: Edition) -> tuple[pl.DataFrame, pl.DataFrame] | None:
-    """The log factors with which both editions were made; None where one does not have them."""
-    instruments = [edition.tables.get("tow_instruments") for edition in (old, new)]
-    before, after = instruments
-    return None if before is None or after is None else (before, after)
+    before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
+    links = None if before is None or after is None else (before, after)
+    return ladder(old.method, new.method, tows, blocks, links)
 
 
 def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:
@@ -255,7 +201,7 @@ def _ground(
     if same is None or {line["basis"], line["basis_new"]} != {MEASURED}:
         return _ground_of_printed(line, separated)
     if line["tow_id"] != line["tow_id_new"]:
-        return TOW
+        return "tow"
     own = line["tow_id"] not in same
     others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
     method = old.about.method_hash != new.about.method_hash
@@ -265,21 +211,21 @@ def _ground(
 def ground_of(own: bool, others: bool, method: bool, code: bool) -> str:
     """The name of what differs: the tow's own input, that of others, the method, the code."""
     if method:
-        return UNSEPARATED if own or code else METHOD
+        return "unseparated" if own or code else "method"
     if own:
-        return INPUT_AND_CODE if code else INPUT
+        return "input_and_code" if code else "input"
     if others:
-        return CODE_OR_OTHER_INPUT if code else OTHER_INPUT
-    return CODE if code else UNEXPLAINED
+        return "code_or_other_input" if code else "other_input"
+    return "code" if code else "unexplained"
 
 
 def _ground_of_printed(line: Row, separated: set[object]) -> str:
     if line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]:
-        return CLOSED_FORM
+        return "closed_form"
     if tuple(line[name] for name in LINE) in separated:
-        return TOW
+        return "tow"
     days = {line["tow_date"], line["tow_date_new"]}
-    return PRINTED if len(days) == 1 or None in days else PRINTED_AND_TOW
+    return "printed" if len(days) == 1 or None in days else "printed_and_tow"
 
 
 # Summary
@@ -342,7 +288,8 @@ class DiffReport:
         largest: the lines that changed most.
         rows: all lines: rows of `register_changes` with the causes that moved each.
         race_rules: how races are worked out, where that was asked.
-        races, winners: as in `RaceEffects`; None where not asked, or without results.
+        races, winners: results of the archive's races under both, and who wins; None where not
+            asked, or where the archive is not there or has no races.
     """
 
     from_edition: str
@@ -370,6 +317,8 @@ def report(comparison: Comparison) -> DiffReport:
     moved = compared.filter(pl.col("change") == "changed")
     gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
     loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
+    size = pl.col("cw_ratio").log().abs()
+    by_size = moved.sort(size, "fsn_no", descending=[True, False])
     editions = (comparison.old, comparison.new)
     return DiffReport(
         from_edition=comparison.old.about.edition,
@@ -387,19 +336,28 @@ def report(comparison: Comparison) -> DiffReport:
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
         causes=_causes(compared),
-        largest=_rows(_by_size(moved).head(LARGEST)),
+        largest=_rows(by_size.head(LARGEST)),
         rows=_rows(lines),
     )
 
 
 def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) -> DiffReport:
-    """The same with what it does to the races in the archive; errors as `race_effects`."""
-    effects = race_effects(store, comparison.old, comparison.new, rules)
+    """The same with power, rank, podium and winner of every race in the archive under both.
+
+    Raises:
+        MissingKnowledgeError: the rules ask for what is not known.
+    """
+    without_races = replace(report(comparison), race_rules=rules)
+    results = pl.DataFrame() if archive_root(store) is None else store.read("listed_races")
+    if results.is_empty():
+        return without_races
+    editions = (comparison.old, comparison.new)
+    before, after = (replay(lines_in_time(store, one), results, rules) for one in editions)
+    members = comparison.new.tables.get("ensemble", pl.DataFrame())
     return replace(
-        report(comparison),
-        race_rules=rules,
-        races=None if effects is None else effects.results.to_dicts(),
-        winners=None if effects is None else effects.winners.to_dicts(),
+        without_races,
+        races=race_changes(before, after).to_dicts(),
+        winners=winner_changes(before, after, members).to_dicts(),
     )
 
 
@@ -416,10 +374,6 @@ def _group(lines: pl.DataFrame) -> Group:
 def _median(values: pl.Series) -> float | None:
     median = values.median()
     return median if isinstance(median, float) else None
-
-
-def _by_size(lines: pl.DataFrame) -> pl.DataFrame:
-    return lines.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
 
 
 def _causes(lines: pl.DataFrame) -> list[CauseSummary]:

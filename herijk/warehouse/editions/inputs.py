@@ -1,7 +1,7 @@
 """What went into an edition: tows with their files, each tow's own hash, and one for all together.
 
-A number depends on its own tow, and under some methods on all tows at once (a coefficient found for
-the whole archive); so both hashes are kept. Which files still are what they were is `verify`'s.
+A number depends on its own tow, and under some methods on all tows at once (a coefficient of the
+whole archive), so both hashes are kept. Which files still are what they were is `verify`'s.
 """
 
 from collections import defaultdict

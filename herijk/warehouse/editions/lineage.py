@@ -82,19 +82,16 @@ def _line(edition: Edition, row: Row) -> LineLineage:
     line = LineLineage(row, printed, row[CODE_FIELD.column])
     if row["tow_id"] is None or "tows" not in edition.tables:
         return line
-    of_tow = {
-        name: edition.tables[name].filter(pl.col("tow_id") == row["tow_id"]).to_dicts()
+    tows, curves, run_points = (
+        edition.tables[name].filter(tow_id=row["tow_id"])
         for name in ("tows", "curves", "run_points")
-    }
-    tow = of_tow["tows"][0]
-    files = [
-        (tow["samples_path"], tow["samples_sha256"]),
-        (tow["second_path"], tow["second_sha256"]),
-    ]
+    )
+    tow = tows.row(0, named=True)
+    files = [(tow[f"{which}_path"], tow[f"{which}_sha256"]) for which in ("samples", "second")]
     return replace(
         line,
         tow=tow,
         files=[{"path": path, "sha256": sha256} for path, sha256 in files if path],
-        runs=of_tow["run_points"],
-        curve=of_tow["curves"][0],
+        runs=run_points.to_dicts(),
+        curve=curves.row(0, named=True),
     )

@@ -12,11 +12,12 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import RegisterRule
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.register.register import LINE, draft_register
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
+from herijk.tables.keys import SIZES
 from herijk.warehouse.build.published import decisions_of
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import INPUTS_HASH, JUDGED, tows_of_today
@@ -38,7 +39,6 @@ Other processors leave other last bits, which come to no more in any table (docs
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
 NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-TOW_FACTS: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", INPUTS_HASH)
 
 MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
 """What a method makes of the tows, and an edition keeps."""
@@ -57,7 +57,7 @@ def method_lines(
     )
     valid = pl.col("status") == "valid"
     return draft.join(
-        of_method["tows"].select("tow_id", *TOW_FACTS),
+        of_method["tows"].select("tow_id", *SIZES, INPUTS_HASH),
         on="tow_id",
         how="left",
         maintain_order="left",
@@ -89,12 +89,17 @@ def made_again(store: Store, edition: Edition) -> Again:
 
     Raises:
         MissingKnowledgeError: there is no warehouse, or the archive is not there.
-        BrokenPromiseError: the printed edition that lines were carried over from is damaged.
+        BrokenPromiseError: the printed edition that lines were carried over from is damaged, or
+            the list of what a printed one was made from.
     """
     if store.made_from("tows") is None:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
     if edition.method is None:
-        return Again(printed_lines(store, _printed_file(store, edition)), {})
+        path = edition_path(store, edition.about.edition)
+        files = sheets.read_inputs(path)
+        if not files:
+            raise BrokenPromiseError("{}/{} names no file", path.name, INPUTS)
+        return Again(printed_lines(store, files[0][0]), {})
     known = [name for name in JUDGED if name in edition.tables["tows"].columns]
     judged = edition.tables["tows"].select("tow_id", *known)
     today = tows_of_today(store)
@@ -124,9 +129,3 @@ def made_again(store: Store, edition: Edition) -> Again:
     }
     tables["ensemble"] = members.join(edition.tables["ensemble"], on="tow_id", how="semi")
     return Again(lines, tables)
-
-
-def _printed_file(store: Store, edition: Edition) -> str:
-    """The file that a register as printed was read from."""
-    listed = (edition_path(store, edition.about.edition) / INPUTS).read_bytes()
-    return str(sheets.read_csv_cells(listed)[1][0])

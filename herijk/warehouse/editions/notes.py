@@ -22,7 +22,15 @@ from herijk.warehouse.editions.compare import (
     report,
 )
 from herijk.warehouse.editions.printed import REBASED
-from herijk.warehouse.editions.words import DUTCH, ENGLISH, Language, table
+from herijk.warehouse.editions.words import (
+    CHANGES,
+    CREWS,
+    DUTCH,
+    ENGLISH,
+    STATUSES,
+    Language,
+    table,
+)
 from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
 
 TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}
@@ -31,18 +39,27 @@ TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLI
 MOST_CAUSES: Final = 5
 """Causes that a notice names; the release notes name all."""
 
-HEADS: Final = {
-    "nl": (
-        ("oorzaak", "regels", "mediaan", "laagst", "hoogst"),
-        ("sloep", "naam", "ploeg", "Cw oud [kg/m]", "Cw nieuw [kg/m]", "vermogen", "in twee uur"),
-        "oorzaken",
-    ),
-    "en": (
-        ("cause", "lines", "median", "lowest", "highest"),
-        ("boat", "name", "crew", "Cw old [kg/m]", "Cw new [kg/m]", "power", "in two hours"),
-        "causes",
-    ),
-}
+CAUSE_HEAD: Final = (
+    ("oorzaak", "cause"),
+    ("regels", "lines"),
+    ("mediaan", "median"),
+    ("laagst", "lowest"),
+    ("hoogst", "highest"),
+)
+LARGEST_HEAD: Final = (
+    ("sloep", "boat"),
+    ("naam", "name"),
+    ("ploeg", "crew"),
+    ("Cw oud [kg/m]", "Cw old [kg/m]"),
+    ("Cw nieuw [kg/m]", "Cw new [kg/m]"),
+    ("vermogen", "power"),
+    ("in twee uur", "in two hours"),
+)
+WHY_HEAD: Final = ("oorzaken", "causes")
+UNKNOWN_METHOD: Final = (
+    "zoals destijds gedrukt; welke methode is niet vastgelegd",
+    "as printed at the time; which one is not recorded",
+)
 
 
 def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
@@ -90,7 +107,7 @@ def _facts(edition: Edition, language: Language) -> dict[str, object]:
         "code_version": about.code_version,
         "method": _method(edition, language),
         "statuses": ", ".join(
-            f"{count} {language.statuses[status]}" for status, count in counts.rows()
+            f"{count} {language.word(STATUSES, status)}" for status, count in counts.rows()
         ),
         "carried": language.count(carried) if carried else None,
         "carried_from": about.carried_from,
@@ -105,55 +122,59 @@ def _facts(edition: Edition, language: Language) -> dict[str, object]:
 
 def _method(edition: Edition, language: Language) -> str:
     if edition.method is None:
-        return {
-            "nl": "zoals destijds gedrukt; welke methode is niet vastgelegd",
-            "en": "as printed at the time; which one is not recorded",
-        }[language.code]
+        return language.one_of(UNKNOWN_METHOD)
     method = edition.method
     return f"{method.titled(language.code)} ({method.name}, {method.content_hash[:12]})"
 
 
-def _changes(found: DiffReport | None, language: Language) -> dict[str, object]:
-    if found is None:
+def _changes(difference: DiffReport | None, language: Language) -> dict[str, object]:
+    if difference is None:
         return {"changes": False}
-    cause_head, largest_head, causes = HEADS[language.code]
-    largest = [_largest(line, language) for line in found.largest]
-    named = [_cause(cause, language) for cause in found.causes]
+    cause_head, largest_head, with_causes_head = (
+        tuple(map(language.one_of, head))
+        for head in (CAUSE_HEAD, LARGEST_HEAD, (*LARGEST_HEAD, WHY_HEAD))
+    )
+    unknown = difference.interval_unknown
+    largest = [_largest(line, language) for line in difference.largest]
+    named = [_cause(cause, language) for cause in difference.causes]
     whys = [
         "; ".join(
             f"{language.cause(c['cause'], c.get('step'))} {language.per_cent(c['factor'])}"
             for c in line["causes"]
         )
-        for line in found.largest
+        for line in difference.largest
     ]
     with_causes = [(*row, why) for row, why in zip(largest, whys, strict=True)]
     return {
         "changes": True,
-        "previous": found.from_edition,
+        "previous": difference.from_edition,
         "change_counts": ", ".join(
-            f"{language.count(n)} {language.changes[c]}" for c, n in found.changes.items()
+            f"{language.count(number)} {language.word(CHANGES, change)}"
+            for change, number in difference.changes.items()
         ),
         "causes": "; ".join(
             f"{cause[0]} ({language.count(int(cause[1]))}, {cause[2]})"
             for cause in named[:MOST_CAUSES]
         ),
         "cause_table": table(cause_head, named) if named else "",
-        "gain": _group(found.gain, language),
-        "loss": _group(found.loss, language),
-        "exceeding": language.count(found.exceeds_interval),
-        "unknown": language.count(found.interval_unknown) if found.interval_unknown else "",
-        "runs_alone": found.runs_alone,
+        "gain": _group(difference.gain, language),
+        "loss": _group(difference.loss, language),
+        "exceeding": language.count(difference.exceeds_interval),
+        "unknown": language.count(unknown) if unknown else "",
+        "runs_alone": difference.runs_alone,
         "largest": table(largest_head, largest) if largest else "",
         "largest_count": len(largest),
-        "largest_with_causes": table((*largest_head, causes), with_causes) if largest else "",
+        "largest_with_causes": table(with_causes_head, with_causes) if largest else "",
     }
 
 
 def _group(group: Group, language: Language) -> str:
     if not group.lines:
         return language.count(0)
-    of_class = ", ".join(f"{words} {group.of_class[c]}" for c, words in language.crews.items())
-    median = {"nl": "mediaan", "en": "median"}[language.code]
+    of_class = ", ".join(
+        f"{language.word(CREWS, crew)} {number}" for crew, number in group.of_class.items()
+    )
+    median = language.one_of(("mediaan", "median"))
     return (
         f"{language.count(group.lines)} ({of_class}; {median} "
         f"{language.per_cent(group.median_power_ratio)}, "

@@ -52,7 +52,18 @@ def printed_lines(store: Store, path: str) -> pl.DataFrame:
         MissingKnowledgeError: the archive is not there, or names a line twice.
     """
     printed = _registers(store)[0].filter(pl.col("path") == path)
-    _refuse_doubles(printed)
+    double = printed.filter(pl.struct(LINE).is_duplicated())
+    if double.height:
+        row = double.row(0, named=True)
+        raise MissingKnowledgeError(
+            "{}, line {}: {} is listed twice for {}{}; take one of the lines out",
+            row["path"],
+            row["line"],
+            row["fsn_no"],
+            row["rowers"],
+            row["crew_class"],
+        )
+    hashes = [fingerprint(row) for row in printed.drop("path", "line").rows()]
     return printed.select(
         *LINE,
         *("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"),
@@ -61,7 +72,7 @@ def printed_lines(store: Store, path: str) -> pl.DataFrame:
         .otherwise(pl.lit(NO_VALID_CURVE))
         .alias("status"),
         pl.when("has_valid_curve").then(pl.lit(AS_PRINTED)).alias("basis"),
-        _row_hashes(printed),
+        pl.Series(INPUTS_HASH, hashes, pl.String),
     )
 
 
@@ -97,25 +108,6 @@ def _registers(store: Store) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
             "the archive is not where it was at the last rebuild; rebuild with --archive DIR"
         )
     return read_published_registers(root)
-
-
-def _refuse_doubles(printed: pl.DataFrame) -> None:
-    double = printed.filter(pl.struct(LINE).is_duplicated())
-    if double.height:
-        row = double.row(0, named=True)
-        raise MissingKnowledgeError(
-            "{}, line {}: {} is listed twice for {}{}; take one of the lines out",
-            row["path"],
-            row["line"],
-            row["fsn_no"],
-            row["rowers"],
-            row["crew_class"],
-        )
-
-
-def _row_hashes(lines: pl.DataFrame) -> pl.Series:
-    values = lines.drop("path", "line")
-    return pl.Series(INPUTS_HASH, [fingerprint(row) for row in values.rows()], pl.String)
 
 
 def _carried(printed: Edition, log_factors: pl.DataFrame, method: Method) -> pl.DataFrame:

@@ -1,8 +1,8 @@
 """Publishing: from the tables of a method, or from a printed register, to a frozen edition.
 
 Which tow counts is decided in `pipeline.register.register`, how sheets look in `sheets`, how a
-folder appears whole or not at all in `folder`. Only a person publishes: the name, the day from
-which it counts and the decision are handed in, and so is the day of publication.
+folder appears whole or not at all in `warehouse.store.editions`. Only a person publishes, who gives
+the name, the day from which it counts, the decision and the day of publication.
 """
 
 import datetime as dt
@@ -14,7 +14,6 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
@@ -46,7 +45,7 @@ from herijk.warehouse.editions.lines import (
 )
 from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
 from herijk.warehouse.editions.sheets import CODE_FIELD
-from herijk.warehouse.intake.seasons import all_blocks, runs_with_windows, typed_tows
+from herijk.warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
 from herijk.warehouse.store import decisions as decided
 from herijk.warehouse.store.editions import (
     ABOUT,
@@ -116,8 +115,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
         BrokenPromiseError: the name is taken, or the folder could not be written.
         MissingKnowledgeError: the tables are not up to date, a name or decision cannot be used.
     """
-    check_new_name(store, terms.edition)
-    _check_decision(terms)
+    _check_terms(store, terms)
     edition = recomputed_edition(store, method, terms, carry)
     decisions = _decisions(store, terms)
     texts = {
@@ -135,8 +133,7 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Place:
         MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
             of it cannot be read.
     """
-    check_new_name(store, terms.edition)
-    _check_decision(terms)
+    _check_terms(store, terms)
     path = printed_path(store, season)
     files = store.read("listed_files").filter(pl.col("path") == path)
     files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
@@ -182,8 +179,7 @@ def recomputed_edition(
 
 def _check_made(store: Store, method: Method, curves: pl.DataFrame) -> None:
     """Refuses curves that are not those that the method makes of the blocks."""
-    blocks = stack_blocks(all_blocks(store), runs_with_windows(store))
-    made = recompute(method, typed_tows(store), blocks, with_bands=False).curves
+    made = recompute(method, typed_tows(store), run_blocks(store), with_bands=False).curves
     pairs = curves.join(made, on="tow_id", how="full", suffix="_made", maintain_order="left_right")
     same = [
         (pl.col(name) / pl.col(f"{name}_made") - 1.0).abs().fill_null(0.0) < SAME_NUMBER
@@ -244,7 +240,8 @@ def lines_to_look_at(edition: Edition) -> list[Row]:
     return lines.select(*LINE, "status", "tow_id", "flags").to_dicts()
 
 
-def _check_decision(terms: Terms) -> None:
+def _check_terms(store: Store, terms: Terms) -> None:
+    check_new_name(store, terms.edition)
     if not terms.decision.strip():
         raise MissingKnowledgeError(
             "an edition needs a decision: say who decided it and where, with --decision"

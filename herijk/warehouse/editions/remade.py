@@ -25,14 +25,14 @@ from herijk.words import say
 NEVER_TOWED: Final = "never_towed"
 
 FLAGS: Final = "flags"
-"""Follow from what is known of other tows, which grows."""
+"""They follow from what is known of other tows, which grows."""
 
 UNSEEN_ERROR: Final = "unseen_error_ratio"
 """Follows from all tows, so it moves a little when one of them is gone. Editions of before do not
 have it: it is empty there in all rows."""
 
 _OWN: Final = ("edition", "method", "verification_code", "inputs_sha256")
-"""Columns of a line that others check."""
+"""Columns of a line that are checked elsewhere."""
 
 
 class Counts(NamedTuple):

@@ -21,7 +21,7 @@ import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 from xlsxwriter.utility import xl_rowcol_to_cell  # type: ignore[import-untyped,unused-ignore]
 
 from herijk.pipeline.register.register import NO_EMPTY_THWART
-from herijk.warehouse.editions.words import DUTCH
+from herijk.warehouse.editions.words import STATUSES
 from herijk.warehouse.store.editions import CSV, INPUTS, About
 from herijk.warehouse.store.package import Rights
 from herijk.warehouse.store.storage import Place
@@ -237,7 +237,7 @@ def _field(field: Field) -> dict[str, Any]:
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
     """Codes in the words that people read."""
     words = {
-        "status": DUTCH.statuses,
+        "status": {code: dutch for code, (dutch, _) in STATUSES.items()},
         "basis": BASIS_WORDS,
         "empty_thwart": {NO_EMPTY_THWART: "geen"},
     }

@@ -191,7 +191,7 @@ def _sheets(path: Place, about: About, intact: set[str]) -> Iterator[Finding]:
 def _texts(store: Store, path: Place, about: About, intact: set[str]) -> Iterator[Finding]:
     """Notices and lists that do not say what the tables say, though their hashes were made to fit.
 
-    Code of another version may say the same in other words; texts of its are not looked at.
+    Code of another version may say the same in other words, so its texts are not looked at.
     """
     try:
         edition = read_edition(store, path.name)
@@ -282,11 +282,11 @@ def _xlsx_cells(path: Place, about: About) -> list[tuple[str, str]]:
     return _not_too_many(XLSX, problems)
 
 
-def _not_too_many(file: str, found: list[tuple[str, str]]) -> list[tuple[str, str]]:
-    if len(found) <= MOST_CELLS:
-        return found
-    more = len(found) - MOST_CELLS
-    return [*found[:MOST_CELLS], (file, say("and {} more places differ", more))]
+def _not_too_many(file: str, places: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    more = len(places) - MOST_CELLS
+    if more <= 0:
+        return places
+    return [*places[:MOST_CELLS], (file, say("and {} more places differ", more))]
 
 
 # Are the archive's files those it was made from?

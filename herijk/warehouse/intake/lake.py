@@ -2,8 +2,8 @@
 
 An archive file that did not change is not read again. A tow's samples are named by the hashes of
 its files, the way to read them and the code that reads; its blocks by the samples and the code that
-adds them up. A fault found in the samples is remembered the same way. What the files look like is
-known to `warehouse.archive`; which sums there are, to `pipeline.blocks.run_blocks`.
+adds them up. A fault in the samples is remembered the same way. What the files look like is known
+to `warehouse.archive`, and which sums there are to `pipeline.blocks.run_blocks`.
 """
 
 import dataclasses
@@ -38,8 +38,8 @@ LAKE_FORM: Final = {
 }
 """How samples and blocks are packed: measured in docs/decisions/0004."""
 
-FOUND: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
-"""What is found in the samples of a tow that can be used."""
+SAMPLE_FACTS: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
+"""What the index says of the samples of a tow that can be used."""
 
 Tow = Row
 Report = Callable[[str, bool], None]
@@ -93,7 +93,7 @@ def read_season(
     with ThreadPoolExecutor(workers) as pool:
         rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
     index = frame_of(SeasonIndex, rows)
-    _remove_unlisted(store, profile.season, index)
+    keep_only(store, profile.season, index)
     return index
 
 
@@ -124,20 +124,20 @@ def _bring_in(
 ) -> Row:
     """Index row of a tow after its samples and blocks are in the lake, or with its fault.
 
-    Its samples are read again also where only what was found in them (`known`) is lost.
+    Its samples are read again also where only the facts about them (in `known`) are lost.
     """
-    found = None if known is None else {name: known[name] for name in FOUND}
+    facts = None if known is None else {name: known[name] for name in SAMPLE_FACTS}
     row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
     path = store.samples_path(profile.season, key)
     blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDERS))
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
         samples = None
-        if found is None or not path.exists():
+        if facts is None or not path.exists():
             whole = read_tow_samples(root, tow, profile)
             judged = judge_in_files(whole, tow, runs, root, profile)
             samples = judged.samples
-            found = {
+            facts = {
                 "losses": [dataclasses.asdict(fault) for fault in judged.faults],
                 "wind_read": samples["wind_speed_m_s"].null_count() == 0,
                 **steps_of(samples),
@@ -147,14 +147,15 @@ def _bring_in(
         if not blocks_path.exists():
             from herijk.pipeline.blocks.sums import block_sums  # noqa: PLC0415 - compiles on import
 
-            held = read_parquet(path, use_threads=False) if samples is None else samples
-            sums = block_sums(held, tow["sample_rate_hz"])
+            if samples is None:
+                samples = read_parquet(path, use_threads=False)
+            sums = block_sums(samples, tow["sample_rate_hz"])
             write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:
         _check_unchanged(root, tow, hashes)
         fault = dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
         return row | {name: fault[name] for name in row.keys() & fault.keys()}
-    return row | found | {"blocks_key": blocks_key, "samples": count_rows(path)}
+    return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}
 
 
 class ArchiveChangedError(UnavailableError):
@@ -183,11 +184,6 @@ def _sha256(root: Path, path: str, hashes: FileHashes) -> str | None:
         return None
 
 
-def forget_season(store: Store, season: int) -> None:
-    """Removes the samples and blocks of a season that the archive no longer lists."""
-    _remove_unlisted(store, season, SeasonIndex.create_empty())
-
-
 def _known_tows(store: Store, season: int) -> dict[str, Row]:
     """What was found of the season's tows at its last reading, by samples key."""
     if str(season) not in store.partitions("season_index"):
@@ -204,8 +200,8 @@ def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
     return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READERS))
 
 
-def _remove_unlisted(store: Store, season: int, index: pl.DataFrame) -> None:
-    """Removes samples and blocks of tows that are no longer listed or were mended."""
+def keep_only(store: Store, season: int, index: pl.DataFrame) -> None:
+    """Removes samples and blocks of a season that its index does not name (any more)."""
     kept = {
         *(store.samples_path(season, k) for k in index["samples_key"].drop_nulls()),
         *(store.blocks_path(season, k) for k in index["blocks_key"].drop_nulls()),

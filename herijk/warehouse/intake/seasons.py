@@ -11,7 +11,7 @@ import time
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from stat import S_ISLNK
+from stat import S_ISDIR, S_ISLNK
 from typing import Final
 
 import polars as pl
@@ -21,7 +21,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.tables.archive import TraceSeconds
 from herijk.tables.frames import frame_of
-from herijk.tables.lake import AboutArchive, Faults
+from herijk.tables.lake import AboutArchive, Faults, SeasonIndex
 from herijk.warehouse.archive import (
     FileHashes,
     Profiles,
@@ -106,7 +106,7 @@ def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:
 
 
 Listing = dict[str, list[int]]
-"""Size in bytes and time of change in ns of every file, by path within the archive."""
+"""Size in bytes and time of the last change in ns of every file, by path within the archive."""
 
 
 def listing(root: Path) -> Listing:
@@ -115,17 +115,14 @@ def listing(root: Path) -> Listing:
     Raises:
         MissingKnowledgeError: there is no such folder, or nothing in it: a disk not mounted.
     """
-    found: Listing = {}
-    for folder, inner, files in os.walk(root):
-        inner[:] = [name for name in inner if not name.startswith(".")]
-        for name in (name for name in files if not name.startswith(".")):
-            path = Path(folder) / name
-            with suppress(FileNotFoundError):
-                stat = path.lstat()
-                found[path.relative_to(root).as_posix()] = [stat.st_size, stat.st_mtime_ns]
-    if not found:
+    files = {
+        path: [stat.st_size, stat.st_mtime_ns]
+        for path, stat in _stats(root)
+        if not S_ISDIR(stat.st_mode) and not path.startswith(".") and "/." not in path
+    }
+    if not files:
         raise MissingKnowledgeError("there is no file at {}: is its disk there?", root)
-    return dict(sorted(found.items()))
+    return files
 
 
 def listed_seasons(store: Store) -> list[int]:
@@ -140,13 +137,13 @@ def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = Non
     return [
         season
         for season in listed_seasons(store)
-        if (wanted is None or season in wanted)
-        and not _is_up_to_date(store, season, _fingerprint(store, profiles, season))
+        if (wanted is None or season in wanted) and _is_stale(store, profiles, season)
     ]
 
 
-def _is_up_to_date(store: Store, season: int, made_from: str) -> bool:
-    return all(store.made_from(t, str(season)) == made_from for t in SEASON_TABLES)
+def _is_stale(store: Store, profiles: Profiles, season: int) -> bool:
+    made_from = lake.season_fingerprint(*_listed(store, season), profiles.for_season(season))
+    return any(store.made_from(table, str(season)) != made_from for table in SEASON_TABLES)
 
 
 def forget_unlisted_seasons(store: Store) -> list[int]:
@@ -154,13 +151,15 @@ def forget_unlisted_seasons(store: Store) -> list[int]:
     listed = set(listed_seasons(store))
     gone = [int(s) for s in store.partitions("blocks") if int(s) not in listed]
     for season in gone:
-        lake.forget_season(store, season)
+        lake.keep_only(store, season, SeasonIndex.create_empty())
         for table in SEASON_TABLES:
             store.remove(table, str(season))
     return gone
 
 
-def read_season(store: Store, root: Path, season: int, report: lake.Report) -> pl.DataFrame:
+def read_season(
+    store: Store, root: Path, season: int, report: lake.Report = lambda *_: None
+) -> pl.DataFrame:
     """Brings one season's samples into the lake; keeps its index and the list it was read by.
 
     Returns:
@@ -211,11 +210,6 @@ def _listed(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
     tows = store.read("listed_tows").filter(pl.col("season") == season).sort("tow_id")
     runs = store.read("listed_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
     return tows, runs.sort("tow_id", "run")
-
-
-def _fingerprint(store: Store, profiles: Profiles, season: int) -> str:
-    tows, runs = _listed(store, season)
-    return lake.season_fingerprint(tows, runs, profiles.for_season(season))
 
 
 def count_listed(store: Store, seasons: Collection[int]) -> int:

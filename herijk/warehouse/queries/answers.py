@@ -141,7 +141,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         "method", "season", log_factor="factor", log_lo="lo", log_hi="hi", log_source="source"
     )
     seasons = views.table("tows").select("tow_id", "season")
-    found = (
+    joined = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .join(known, on="method", how="left", maintain_order="left")
         .join(seasons, on="tow_id", how="left", maintain_order="left")
@@ -149,7 +149,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         .join(_best_estimates(views), on=["method", "tow_id"], how="left", maintain_order="left")
         .join(logs, on=["method", "season"], how="left", maintain_order="left")
     )
-    return _with_places(found)
+    return _with_places(joined)
 
 
 def _best_estimates(views: Views) -> pl.DataFrame:
@@ -184,10 +184,10 @@ def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     Returns:
         Rows of `season_diagnosis` that a person should look at.
     """
-    found: dict[tuple[str, int], list[Row]] = defaultdict(list)
+    faults: dict[tuple[str, int], list[Row]] = defaultdict(list)
     for row in views.table("season_diagnosis").filter("alarm").to_dicts():
-        found[row["method"], row["season"]].append(row)
-    return found
+        faults[row["method"], row["season"]].append(row)
+    return faults
 
 
 def _with_places(lines: pl.DataFrame) -> pl.DataFrame:

@@ -13,10 +13,10 @@ import polars as pl
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.due import due_list
 from herijk.pipeline.register.register import CURVE_COLUMNS, LINE, draft_name
+from herijk.tables.keys import SIZES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.store.store import Store
 
-SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
 NOT_YET: Final = "never_towed"
 
 
@@ -44,10 +44,9 @@ def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
         "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
     }
     for name, frame in made.items():
-        held = frame.select(TABLES[name].column_names()).to_arrow()
-        db.register("held", held)
-        db.execute(f'CREATE TEMP TABLE "{name}" AS SELECT * FROM held')  # noqa: S608
-        db.unregister("held")
+        db.register("frame", frame.select(TABLES[name].column_names()).to_arrow())
+        db.execute(f'CREATE TEMP TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
+        db.unregister("frame")
 
 
 def register_on(
@@ -92,9 +91,9 @@ def _due(
 ) -> pl.DataFrame:
     """Rows of `due_list` of every method, as of a day."""
     results = store.read("listed_races")
-    found = []
+    lists = []
     for name in methods["method"]:
         lines = register.filter(pl.col("edition") == draft_name(name))
         due = due_list(lines, boats, results, day)
-        found.append(due.select(pl.lit(name).alias("method"), pl.all()))
-    return pl.concat(found)
+        lists.append(due.select(pl.lit(name).alias("method"), pl.all()))
+    return pl.concat(lists)

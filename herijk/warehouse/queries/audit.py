@@ -80,7 +80,8 @@ def audit(
     """
     with open_results(store.database) as db:
         methods = _methods(db, method)
-        chosen = methods if method else _usual(methods)
+        usual: list[str] = [name for name in TYPE_METHODS if name in methods]
+        chosen = methods if method or not usual else usual
         boat = _boat_named(db, names[0]) if len(names) == 1 else None
         choose(db, tows, methods if boat else chosen)
         if boat:
@@ -98,10 +99,6 @@ def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
             "the tables hold no method {!r}; they hold {}", method, ", ".join(known)
         )
     return [method]
-
-
-def _usual(methods: list[str]) -> list[str]:
-    return [name for name in TYPE_METHODS if name in methods] or methods
 
 
 def _boat_named(db: duckdb.DuckDBPyConnection, name: str) -> Row | None:
@@ -190,10 +187,10 @@ def _tows(db: duckdb.DuckDBPyConnection, fsn_no: str, methods: list[str]) -> lis
     ]
 
 
-def _by(found: list[Row], *names: str) -> defaultdict[tuple[object, ...], list[Row]]:
+def _by(listed: list[Row], *names: str) -> defaultdict[tuple[object, ...], list[Row]]:
     """Rows by the values of some columns, in their order."""
     grouped = defaultdict(list)
-    for row in found:
+    for row in listed:
         grouped[tuple(row[name] for name in names)].append(row)
     return grouped
 

@@ -1,7 +1,7 @@
-"""Everything behind one or two types of boat, as plain data: figures, and verdicts they bear.
+"""Everything behind one or two types of boat, as plain data: figures, and verdicts on them.
 
-A verdict is true, false, or None where the figures do not decide. Does not belong here: finding out
-what was asked for, and a boat's own page (`warehouse.queries.audit`).
+A verdict is true, false, or None where the figures do not decide. What was asked for, and a boat's
+own page, are `warehouse.queries.audit`'s.
 """
 
 from dataclasses import dataclass
@@ -138,7 +138,7 @@ def types_audit(
     db: duckdb.DuckDBPyConnection, types: list[str], methods: list[str], tows: str
 ) -> TypesAudit:
     """Facts and figures of the types under each method, what holds for all, and what differs."""
-    found = [
+    audited = [
         OneType(**vars(type_facts(db, name)), under={m: _type_under(db, name, m) for m in methods})
         for name in types
     ]
@@ -146,8 +146,8 @@ def types_audit(
         simulated=is_simulated(db),
         statistics_over=tows,
         methods=methods,
-        types=found,
-        differences={m: differences(*(one.under[m] for one in found)) for m in methods},
+        types=audited,
+        differences={m: differences(*(one.under[m] for one in audited)) for m in methods},
         fleet={method: _fleet(db, method) for method in methods},
     )
 
@@ -178,18 +178,31 @@ def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> T
         closest=closest(lines),
         all_tows=[_judged_line(line) for line in rows(db, _ALL_TOWS, *own)],
         hull_speed=rows(db, _HULL_SPEED, *own),
-        tows_outside=rows(db, _TOWS_OUTSIDE, *own),
+        tows_outside=_named(db, "compared_tows", "outside", _FURTHEST, *own),
         bends=_bends(_one(db, "type_homogeneity", *own)),
         speed_trend=_trend(_one(db, "speed_trend", *own)),
         shared=rows(db, _SHARED, *own),
         judged=rows(db, _JUDGED, *own),
-        outside=rows(db, _OUTSIDE, *own),
-        slow_tows=rows(db, _SLOW, *own),
+        outside=_named(db, "type_outliers", "outside", _FURTHEST, *own),
+        slow_tows=_named(db, "slow_tows", "slow", "power_w", *own),
         repeats=_repeats(rows(db, _PAIRS, *own)),
         eras=[_era(db, *own, era.name) for era in ERAS[:-1]],
         prediction=rows(db, _PREDICTION, *own)[0],
-        disagreeing=rows(db, _DISAGREEING, *own),
+        disagreeing=_named(db, "predicted_cw", "disagrees", "abs(ln_ratio) DESC", *own),
     )
+
+
+_FURTHEST: Final = "abs(deviation_sd) DESC"
+
+
+def _named(
+    db: duckdb.DuckDBPyConnection, table: str, which: str, order: str, method: str, boat_type: str
+) -> list[Row]:
+    """Rows of a method and type for which a column says yes, with the boat's name."""
+    query = f"""
+        SELECT t.*, b.name FROM {table} AS t LEFT JOIN boats AS b USING (fsn_no)
+        WHERE t.method = ? AND t.boat_type = ? AND t.{which} ORDER BY {order}, tow_id"""  # noqa: S608
+    return rows(db, query, method, boat_type)
 
 
 def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str) -> Row:
@@ -212,19 +225,17 @@ def closest(lines: list[Row]) -> Closest:
     `cw_closest` is None where the variances differ no more than an F test at 5 % lets them. The
     three come from the same runs, so the test is on the safe side.
     """
-    by_quantity = {line["quantity"]: line for line in lines if line["explaining"] == "weight_kg"}
-    three = [by_quantity.get(name) for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s")]
+    on_weight = {line["quantity"]: line for line in lines if line["explaining"] == "weight_kg"}
+    unknown = {"n": 0, "reason": "no_curves"}
+    three = [on_weight.get(name, unknown) for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s")]
     for line in three:
-        if line is None or line["reason"]:
-            n = 0 if line is None else line["n"]
-            reason = "no_curves" if line is None else line["reason"]
-            return Closest(n, None, reason)
-    cw, a, b = ((line["n_boats"] - 2, line["residual_sd_ratio"] ** 2) for line in three if line)
+        if line["reason"]:
+            return Closest(line["n"], None, line["reason"])
+    cw, a, b = ((line["n_boats"] - 2, line["residual_sd_ratio"] ** 2) for line in three)
     closer = all(_larger(other, cw) for other in (a, b))
     further = any(_larger(cw, other) for other in (a, b))
-    n = min(line["n"] for line in three if line)
     verdict = False if further else True if closer else None
-    return Closest(n, verdict, "")
+    return Closest(min(line["n"] for line in three), verdict, "")
 
 
 def _larger(one: tuple[int, float], other: tuple[int, float]) -> bool:
@@ -336,11 +347,6 @@ WHERE method = ? AND boat_type = ? AND tows = 'all' AND explaining = 'weight_kg'
 
 _HULL_SPEED = "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'"
 
-_TOWS_OUTSIDE = """
-SELECT c.*, b.name FROM compared_tows AS c LEFT JOIN boats AS b USING (fsn_no)
-WHERE c.method = ? AND c.boat_type = ? AND c.outside ORDER BY abs(deviation_sd) DESC, tow_id
-"""
-
 _SHARED = """
 SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
        count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
@@ -357,16 +363,6 @@ _JUDGED = """
 SELECT quantity, count(*) AS n, count(DISTINCT fsn_no) AS n_boats,
        any_value(standard_speed_m_s) AS standard_speed_m_s
 FROM type_outliers WHERE method = ? AND boat_type = ? GROUP BY quantity ORDER BY quantity
-"""
-
-_OUTSIDE = """
-SELECT o.*, b.name FROM type_outliers AS o LEFT JOIN boats AS b USING (fsn_no)
-WHERE o.method = ? AND o.boat_type = ? AND o.outside ORDER BY abs(deviation_sd) DESC, tow_id
-"""
-
-_SLOW = """
-SELECT s.*, b.name FROM slow_tows AS s LEFT JOIN boats AS b USING (fsn_no)
-WHERE s.method = ? AND s.boat_type = ? AND s.slow ORDER BY power_w, tow_id
 """
 
 _PAIRS = f"""
@@ -386,9 +382,4 @@ SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
        sqrt(avg(cw_sd_ratio * cw_sd_ratio)) AS tow_sd_ratio,
        count(*) FILTER (WHERE disagrees) AS n_disagree
 FROM predicted_cw WHERE method = ? AND boat_type = ?
-"""
-
-_DISAGREEING = """
-SELECT p.*, b.name FROM predicted_cw AS p LEFT JOIN boats AS b USING (fsn_no)
-WHERE p.method = ? AND p.boat_type = ? AND p.disagrees ORDER BY abs(ln_ratio) DESC, tow_id
 """

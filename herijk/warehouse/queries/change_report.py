@@ -19,10 +19,10 @@ import polars as pl
 from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by_side
-from herijk.pipeline.register.register import LINE, with_empty_thwart
+from herijk.pipeline.register.register import LINE, draft_name, with_empty_thwart
 from herijk.tables.row import Row
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.editions.compare import TOW, ground_of
+from herijk.warehouse.editions.compare import ground_of
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, with_input_hashes
 from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.files import file_sha256, written_beside
@@ -52,7 +52,7 @@ class ChangeReport:
         tows: `tow_id`, `fsn_no`, `season`, `what`: new, samples (its files changed), list (its row
             in a list changed) or gone.
         seasons_gone: seasons that had tows, and have none now.
-        set_aside: the faults that came (`what` is new) and went (mended).
+        set_aside: new faults (`what` is new) and those that are gone (mended).
         factors: log factors that moved: `method`, `season`, `old_factor`, `new_factor`, `ratio`.
         lines: lines of draft registers that changed, with the columns of `register_changes` and of
             `pipeline.register.changes.side_by_side`, and the boat's `name`.
@@ -114,7 +114,7 @@ def change_report(store: Store) -> ChangeReport:
 
 @lru_cache(maxsize=1)
 def _between(reported: Path, database: Path, _: tuple[str, str]) -> ChangeReport:
-    """What changed from one database to another; kept by their hashes, as many ask."""
+    """What changed from one database to another; kept by their hashes, as several ask."""
     now, was = _tables(database), _reported(reported)
     before = was or {name: frame.clear() for name, frame in now.items()}
     return ChangeReport(
@@ -258,7 +258,8 @@ def _no_lines() -> pl.DataFrame:
 
 def _draft_lines(was: Tables, now: Tables, method: str, inputs: Inputs) -> pl.DataFrame | None:
     """Lines of a method's draft that changed; None where one of the two has no such draft."""
-    old, new = (_draft(tables["register"], method) for tables in (was, now))
+    edition = draft_name(method)
+    old, new = (tables["register"].filter(edition=edition) for tables in (was, now))
     if old.is_empty() or new.is_empty():
         return None
     grounds = _grounds(
@@ -274,30 +275,23 @@ def _draft_lines(was: Tables, now: Tables, method: str, inputs: Inputs) -> pl.Da
     )
 
 
-def _draft(register: pl.DataFrame, method: str) -> pl.DataFrame:
-    is_draft = pl.col("edition").str.starts_with("concept-")
-    return register.filter(is_draft & (pl.col("method") == method))
-
-
 def _grounds(
     was: Tables, now: Tables, method: str, inputs: Inputs, pairs: pl.DataFrame
 ) -> pl.DataFrame:
     """Per line why it can have changed: another tow, its input, other tows, method or code."""
-    hashes = [_method_hash(tables, method) for tables in (was, now)]
+    hashes = [
+        tables["methods"].filter(method=method)["content_hash"].to_list() for tables in (was, now)
+    ]
     versions = [dict(tables["about"].rows())["code_version"] for tables in (was, now)]
     others = inputs[0] != inputs[1]
     redefined, new_code = hashes[0] != hashes[1], versions[0] != versions[1]
     grounds = [
         ground_of(inputs[0].get(new) != inputs[1].get(new), others, redefined, new_code)
         if old == new
-        else TOW
+        else "tow"
         for old, new in pairs.select("tow_id", "tow_id_new").rows()
     ]
     return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
-
-
-def _method_hash(tables: Tables, method: str) -> list[str]:
-    return tables["methods"].filter(method=method)["content_hash"].to_list()
 
 
 def _input_hashes(tables: Tables) -> dict[str, str]:

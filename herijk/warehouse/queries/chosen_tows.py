@@ -1,9 +1,9 @@
 """Which tows: all, the newest of each boat and crew, or those of some seasons; and what they say.
 
-The tables hold the newest tow of each boat and crew, and for lines and outliers all tows too. Here
-those of a connection are replaced, for that connection alone, by what the same functions make of
-the tows that were chosen: all of them, or those of some seasons. What treats repeats of a boat as
-such does so over all tows (lines, outliers); the others keep to the newest tow, of those chosen.
+The statistics of types in the tables are over the newest tow of each boat and crew, and those of
+lines and outliers over all tows too. Here, for one connection alone, they are replaced by what the
+same functions make of all tows, or of those of some seasons. Statistics that treat repeat tows of a
+boat as such (lines, outliers) are over all of these; the others are over the newest of them.
 """
 
 import re
@@ -80,11 +80,10 @@ def rows_of(tows: str) -> pl.Expr:
 def with_choices(tows: pl.DataFrame) -> pl.DataFrame:
     """With the choices that each tow, by its `season` and `newest`, belongs to: a list `tows`."""
     season = pl.col("season")
-    held = [(ALL, pl.lit(value=True)), (NEWEST, pl.col("newest"))]
-    held += [
-        (name, season.is_between(*ends)) for name, ends in season_ranges(tows["season"]).items()
-    ]
-    names = [pl.when(whether).then(pl.lit(name)) for name, whether in held]
+    belongs = {ALL: pl.lit(value=True), NEWEST: pl.col("newest")} | {
+        name: season.is_between(*ends) for name, ends in season_ranges(tows["season"]).items()
+    }
+    names = [pl.when(belonging).then(pl.lit(name)) for name, belonging in belongs.items()]
     return tows.with_columns(
         pl.concat_list(*names, season.cast(pl.String)).list.drop_nulls().alias("tows")
     )

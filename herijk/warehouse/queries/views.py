@@ -37,6 +37,15 @@ class Views:
         """Rows of a query with these values for its parameters, as a frame."""
         return pl.DataFrame(self._db.sql(query, params=values or None).pl())
 
+    def _named(
+        self, table: str, order: str, where: str = "true", columns: str = "t.*"
+    ) -> pl.DataFrame:
+        """Rows of a table, called t, with the boat's name."""
+        return self.frame(
+            f"SELECT {columns}, b.name FROM {table} AS t LEFT JOIN boats AS b USING (fsn_no) "  # noqa: S608
+            f"WHERE {where} ORDER BY {order}"
+        )
+
     def has(self, table: str) -> bool:
         """Whether the table is there and holds rows."""
         return self.row_counts().get(table, 0) > 0
@@ -67,10 +76,6 @@ class Views:
         """Lines of every edition with the boat's name and type."""
         return self.frame(_REGISTER)
 
-    def changes(self) -> pl.DataFrame:
-        """Changes between editions with the boat's name; without the unchanged lines."""
-        return self.frame(_CHANGES)
-
     def curves(self) -> pl.DataFrame:
         """Curves with the day, name and what was on board."""
         return self.frame(_CURVES)
@@ -99,17 +104,13 @@ class Views:
 
     def compared_tows(self) -> pl.DataFrame:
         """Every tow next to its type under every method, with the boat's name."""
-        return self.frame(
-            "SELECT c.*, coalesce(b.name, c.fsn_no) AS name FROM compared_tows AS c "
-            "LEFT JOIN boats AS b USING (fsn_no) ORDER BY method, tow_id"
-        )
+        tows = self._named("compared_tows", "method, tow_id")
+        return tows.with_columns(pl.coalesce("name", "fsn_no"))
 
     def slow_tows(self) -> pl.DataFrame:
         """Tows made with little power or raced off their curve, with the boat's name."""
-        return self.frame(
-            "SELECT s.*, coalesce(b.name, s.fsn_no) AS name FROM slow_tows AS s "
-            "LEFT JOIN boats AS b USING (fsn_no) ORDER BY method, tow_id"
-        )
+        tows = self._named("slow_tows", "method, tow_id")
+        return tows.with_columns(pl.coalesce("name", "fsn_no"))
 
     def curve_points_of(self, fsn_no: str) -> pl.DataFrame:
         """The curves of all tows of a boat under every method, with season and crew."""
@@ -139,23 +140,17 @@ class Views:
 
     def repeat_pairs(self) -> pl.DataFrame:
         """Repeat tows with the boat's name."""
-        return self.frame(
-            "SELECT r.* EXCLUDE ln_ratio, b.name FROM repeat_pairs AS r "
-            "LEFT JOIN boats AS b USING (fsn_no) "
-            "ORDER BY method, tow_id"
-        )
+        return self._named("repeat_pairs", "method, tow_id", columns="t.* EXCLUDE ln_ratio")
 
     def predicted(self) -> pl.DataFrame:
         """Predicted Cw next to the tow's, with the boat's name."""
-        return self.frame(
-            "SELECT p.* EXCLUDE ln_ratio, b.name FROM predicted_cw AS p "
-            "LEFT JOIN boats AS b USING (fsn_no) "
-            "WHERE predicted_cw_kg_m IS NOT NULL ORDER BY method, tow_id"
-        )
+        known, columns = "predicted_cw_kg_m IS NOT NULL", "t.* EXCLUDE ln_ratio"
+        return self._named("predicted_cw", "method, tow_id", known, columns)
 
     def outliers(self) -> pl.DataFrame:
         """Boats that differ from their type, furthest first; Cw itself instead of its logarithm."""
-        return self.frame(_OUTLIERS)
+        order = "method, abs(deviation_sd) DESC, tow_id, t.quantity"
+        return self._named("type_outliers", order, "outside", _WITHOUT_LOGARITHMS)
 
     def counts(self, kind: str) -> pl.DataFrame:
         """Counts of one kind over all seasons: `method, code, number`."""
@@ -176,7 +171,7 @@ class Views:
         return self.frame('SELECT * FROM check_counts ORDER BY method, beyond DESC, "check"')
 
     def due_list(self) -> pl.DataFrame:
-        """Every boat and crew under every method, whose tow expires first on top."""
+        """Every boat and crew under every method, the tow that expires first on top."""
         return self.frame(_DUE)
 
     def retow_choice(self) -> pl.DataFrame:
@@ -199,7 +194,8 @@ class Views:
 
     def races(self) -> pl.DataFrame:
         """Rows of `race_changes`, with the boat's name."""
-        return self.frame(_RACES)
+        place = "race_date, race, crew_class, new_rank NULLS LAST, fsn_no"
+        return self._named("race_changes", f"from_edition, to_edition, {place}")
 
     def season_steps(self) -> pl.DataFrame:
         """Steps of seasons in per cent instead of logarithms."""
@@ -210,20 +206,12 @@ class Views:
         return self.frame(_SEASON_DIAGNOSIS)
 
 
-_RACES = """
-SELECT r.*, b.name FROM race_changes AS r LEFT JOIN boats AS b USING (fsn_no)
-ORDER BY from_edition, to_edition, race_date, race, crew_class, new_rank NULLS LAST, fsn_no
-"""
-
-_OUTLIERS = """
-SELECT o.* REPLACE (
+_WITHOUT_LOGARITHMS = """
+t.* REPLACE (
   CASE quantity WHEN 'ln_cw_standard' THEN exp("value") ELSE "value" END AS "value",
   CASE quantity WHEN 'ln_cw_standard' THEN exp(expected) ELSE expected END AS expected,
   replace(quantity, 'ln_cw_standard', 'cw_standard_kg_m') AS quantity
-), b.name
-FROM type_outliers AS o LEFT JOIN boats AS b USING (fsn_no)
-WHERE outside ORDER BY method, abs(deviation_sd) DESC, tow_id, o.quantity
-"""
+)"""
 
 _SEASON_STEPS = """
 SELECT *, 100 * (exp(level_step) - 1) AS level_step_percent, 100 * level_step_sd
@@ -252,14 +240,6 @@ ORDER BY edition, lower(b.name), fsn_no, rowers, crew_class
 _DUE = """
 SELECT d.*, b.name, b.boat_type FROM due_list AS d LEFT JOIN boats AS b USING (fsn_no)
 ORDER BY d.method, d.valid_until NULLS LAST, lower(b.name), d.fsn_no, d.rowers, d.crew_class
-"""
-
-_CHANGES = """
-SELECT c.from_edition, c.to_edition, c.fsn_no, b.name, b.boat_type, c.rowers, c.crew_class,
-       c.change, c.cw_ratio, c.power_ratio, c.time_ratio, c.causes
-FROM register_changes AS c LEFT JOIN boats AS b USING (fsn_no)
-WHERE c.change != 'same'
-ORDER BY from_edition, to_edition, lower(b.name), fsn_no, rowers, crew_class
 """
 
 _CURVES = """

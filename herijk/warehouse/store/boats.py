@@ -29,17 +29,20 @@ def the_boat(boats: pl.DataFrame, name: str) -> str:
     Raises:
         MissingKnowledgeError: there is none, or there are several of that name.
     """
-    found = boats_named(boats, name)
-    if len(found) == 1:
-        return found[0]
-    if found:
+    numbers = boats_named(boats, name)
+    if len(numbers) == 1:
+        return numbers[0]
+    if numbers:
         raise MissingKnowledgeError(
-            "{} boats are called {!r}: {}; give the FSN number", len(found), name, ", ".join(found)
+            "{} boats are called {!r}: {}; give the FSN number",
+            len(numbers),
+            name,
+            ", ".join(numbers),
         )
-    number, called = boats.sort("fsn_no").select("fsn_no", "name").row(0)
+    number, example = boats.sort("fsn_no").select("fsn_no", "name").row(0)
     raise MissingKnowledgeError(
         "there is no boat {!r}; boats go by FSN number or name, for example {} or {}",
         name,
         number,
-        called,
+        example,
     )

@@ -101,7 +101,9 @@ class Sources:
         key = hashlib.sha256(source).hexdigest()
         if key not in self.known:
             tree = ast.parse(source)
-            self.known[key] = (_tree_hash(tree), sorted(_imports(tree)))
+            text = "\x1f".join(_canonical(tree))
+            tree_hash = hashlib.sha256(text.encode()).hexdigest()
+            self.known[key] = (tree_hash, sorted(_imports(tree)))
         return self.known[key]
 
     def _keep(self) -> None:
@@ -112,10 +114,6 @@ class Sources:
 
 def _cache_file() -> Path:
     return Path(importlib.util.cache_from_source(__file__)).with_suffix(".json")
-
-
-def _tree_hash(tree: ast.Module) -> str:
-    return hashlib.sha256("\x1f".join(_canonical(tree)).encode()).hexdigest()
 
 
 def _canonical(node: object) -> Iterator[str]:

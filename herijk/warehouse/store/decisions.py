@@ -1,24 +1,28 @@
 """Decisions of people about tows: a dated file that only a person writes.
 
-`besluiten.toml` lies in the data folder. It says which tow is not to count, or counts although a
-newer one exists, with reason, who decided and when. A published edition keeps its own copy. What a
-verdict does to a register is in `pipeline.register.register`.
+`besluiten.toml` is in the data folder. It says which tow does not count, or counts although there
+is a newer one, with the reason, who decided and when. A published edition keeps its own copy. What
+a verdict does to a register is in `pipeline.register.register`.
 """
 
 import datetime as dt
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, Literal
 
 import polars as pl
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.register import DECISION_SCHEMA, EXCLUDE, PREFER
-from herijk.pipeline.toml_text import decoded, parse_toml, problem_in_words
+from herijk.warehouse.store.settings_file import read_settings_file
 
 FILE_NAME: Final = "besluiten.toml"
 VERDICTS: Final = {"uitsluiten": EXCLUDE, "voorkeur": PREFER}
+_MAY_HOLD: Final = (
+    "[[besluit]], each with sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum"
+)
 
 
 class Decision(BaseModel):
@@ -45,24 +49,9 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
     Raises:
         MissingKnowledgeError: the file cannot be understood, or decides twice about one tow.
     """
-    if not path.exists():
-        return ()
-    try:
-        decisions = _File.model_validate(parse_toml(decoded(path.read_bytes()))).besluit
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = f"'{'.'.join(map(str, first['loc']))}'"  # quoted: a key is never translated
-        raise MissingKnowledgeError(
-            "{}: {}: {}; a decision has sleep_id, oordeel (uitsluiten or voorkeur), "
-            "reden, wie and datum",
-            path,
-            where,
-            problem_in_words(first),
-        ) from error
-    except ValueError as error:
-        raise MissingKnowledgeError("{}: not valid TOML: {}", path, error) from error
-    tows = [decision.sleep_id for decision in decisions]
-    twice = sorted({tow for tow in tows if tows.count(tow) > 1})
+    decisions = read_settings_file(path, _File, _MAY_HOLD).besluit
+    tows = Counter(decision.sleep_id for decision in decisions)
+    twice = sorted(tow for tow, number in tows.items() if number > 1)
     if twice:
         raise MissingKnowledgeError("{}: more than one decision about {}", path, ", ".join(twice))
     return tuple(sorted(decisions, key=lambda decision: (decision.datum, decision.sleep_id)))

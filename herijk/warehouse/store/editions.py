@@ -143,7 +143,7 @@ class Edition:
 
 
 def edition_names(store: Store) -> list[str]:
-    """The published editions, sorted; what is still being written is none."""
+    """The published editions, sorted, without any that is still being written."""
     return sorted(f.name for f in store.editions.glob("[!.]*") if _is_published(f))
 
 
@@ -331,7 +331,7 @@ def _write_beside(path: Path, contents: Mapping[str, bytes]) -> None:
 
 @contextmanager
 def _one_at_a_time(root: Path) -> Iterator[None]:
-    """Keeps other publications out, so that anything half-written is a dead one's."""
+    """Keeps other publications out, so that anything half-written was left by a dead one."""
     with FileLock(root / _LOCK):
         for left in root.glob(f"{TEMPORARY_PREFIX}*"):
             if left.is_dir():

@@ -3,6 +3,7 @@
 import ctypes
 import hashlib
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,11 +19,18 @@ AT_FDCWD, RENAME_EXCHANGE = -100, 2
 
 
 @contextmanager
-def written_beside(path: Path) -> Iterator[Path]:
+def written_beside(path: Path, replace: bool = True) -> Iterator[Path]:
     """Gives a temporary path in the same folder and, if all went well, renames it to `path`.
 
     The content is synced before the rename, and the rename replaces an older file at once; after
     an error or a kill the older file is still there, whole.
+
+    Args:
+        path: the file.
+        replace: whether it may be there already.
+
+    Raises:
+        FileExistsError: it is there and may not be replaced.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(prefix=TEMPORARY_PREFIX, suffix=path.suffix, dir=path.parent)
@@ -32,10 +40,26 @@ def written_beside(path: Path) -> Iterator[Path]:
         yield beside
         sync(beside)
         beside.chmod(0o644)
-        beside.replace(path)
+        if replace:
+            beside.replace(path)
+        else:
+            path.hardlink_to(beside)
         sync(path.parent)
     finally:
         beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def folder_written_beside(target: Path) -> Iterator[Path]:
+    """Gives a temporary folder and, if all went well, puts it in the place of `target` at once."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=target.parent))
+    try:
+        yield beside
+        beside.chmod(0o755)
+        put_in_place(beside, target)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
 
 
 def file_sha256(path: Path) -> str:
@@ -50,29 +74,19 @@ def write_new(path: Path, text: str) -> None:
     Raises:
         FileExistsError: there is one already; it is left as it is.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=TEMPORARY_PREFIX, dir=path.parent)
-    beside = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(text.encode())
-        sync(beside)
-        beside.chmod(0o644)
-        path.hardlink_to(beside)
-    finally:
-        beside.unlink(missing_ok=True)
-    sync(path.parent)
+    with written_beside(path, replace=False) as beside:
+        beside.write_bytes(text.encode())
 
 
 def put_in_place(beside: Path, target: Path) -> None:
     """Puts a folder under the name of another at once; the older one is `beside` after that.
 
-    All files are synced before. Linux exchanges two names in one step, so that a reader finds the
-    old folder or the new one, never none. Where that is not known, the older folder is set aside
-    first, and for a moment there is none.
+    All files are synced first. Linux exchanges two names in one step, so that a reader finds the
+    old folder or the new one, never none. Elsewhere the older folder is renamed first, and for a
+    moment there is none.
     """
-    for file in beside.rglob("*"):
-        sync(file)
+    for path in (beside, *beside.rglob("*")):
+        sync(path)
     if not target.exists():
         beside.rename(target)
     elif not _exchange(beside, target):

@@ -1,7 +1,7 @@
 """What the machine can put in the way of a rebuild, each as a sentence with the way out.
 
-Libraries wrap the system's errors in their own; found are the system's error number, anywhere in
-the chain of causes, and the few words by which SQLite, DuckDB and Polars pass one on.
+Libraries wrap the system's errors in their own. What tells them is the system's error number,
+anywhere in the chain of causes, or the few words by which SQLite, DuckDB and Polars pass one on.
 """
 
 import errno
@@ -101,16 +101,16 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
         raise UnavailableError("{}. {}", said, REASSURANCE) from error
 
 
-def _said(found: str, error: BaseException, root: Path) -> str:
+def _said(fault: str, error: BaseException, root: Path) -> str:
     """The sentence about a fault of the machine, with the path that it is about."""
-    if found == _FORBIDDEN:
+    if fault == _FORBIDDEN:
         names = (str(e.filename) for e in _causes(error) if isinstance(e, OSError) and e.filename)
         path = next(names, None)
         if path is not None and not Path(path).absolute().is_relative_to(root.absolute()):
             return say(_ELSEWHERE, path=path)
-    if found == _BROKEN_DISK and _is_full(root):
-        found = _FULL
-    return say(found, root=root)
+    if fault == _BROKEN_DISK and _is_full(root):
+        fault = _FULL
+    return say(fault, root=root)
 
 
 def _is_full(root: Path) -> bool:

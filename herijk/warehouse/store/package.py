@@ -1,15 +1,13 @@
 """The tables as files that any program opens: Parquet, described as a data package and for DCAT.
 
-`tables/` in the data folder can be copied and handed on as it is: one Parquet file per table. A
+`tables/` in the data folder can be copied and passed on as it is: one Parquet file per table.
 `datapackage.json` (Frictionless Data Package, version 2) gives columns, keys, licence, sources and
-hashes; `dcat.jsonld` (DCAT 3) says the same to catalogues. The folder is swapped in whole.
+hashes; `dcat.jsonld` (DCAT 3) says the same to catalogues. The folder is replaced at once.
 """
 
 import hashlib
 import io
 import json
-import shutil
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import polars as pl
 
-from herijk.warehouse.store.files import TEMPORARY_PREFIX, file_sha256, put_in_place
+from herijk.warehouse.store.files import file_sha256, folder_written_beside
 from herijk.warehouse.store.store import Store
 
 if TYPE_CHECKING:
@@ -52,13 +50,13 @@ class Rights:
     @property
     def described(self) -> dict[str, object]:
         """The same as the fields of a data package."""
-        found: dict[str, object] = {}
+        fields: dict[str, object] = {}
         if self.publisher:
-            found["contributors"] = [{"title": self.publisher, "roles": ["publisher"]}]
+            fields["contributors"] = [{"title": self.publisher, "roles": ["publisher"]}]
         if self.licence:
             key = "path" if "://" in self.licence else "name"
-            found["licenses"] = [{key: self.licence}]
-        return found
+            fields["licenses"] = [{key: self.licence}]
+        return fields
 
 
 @dataclass(frozen=True)
@@ -93,9 +91,7 @@ def write_package(
         origin: where they come from.
     """
     target = root / FOLDER
-    beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=root))
-    try:
-        beside.chmod(0o755)
+    with folder_written_beside(target) as beside:
         resources = [
             _resource(beside, target, name, frame, schemas[name])
             for name, frame in sorted(tables.items())
@@ -105,9 +101,6 @@ def write_package(
         for name, text in ((DESCRIPTOR, package), (CATALOGUE, catalogue)):
             json_text = json.dumps(text, indent=1, ensure_ascii=False)
             (beside / name).write_text(json_text, encoding="utf-8")
-        put_in_place(beside, target)
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
 
 
 def package_is_whole(root: Path) -> bool:

@@ -12,14 +12,13 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
-    """The settings in a file; the model's own where there is no file.
-
-    No value is repeated in a message: it could be a password.
+    """The settings in a file; the model's defaults where there is no file.
 
     Args:
         path: the file.
-        model: what it can say.
-        may_hold: the same in words, for anyone who made a mistake.
+        model: what it can say. Where it hides its input in errors, as a value could be a password,
+            no message repeats one.
+        may_hold: what the file can say in words, for anyone who made a mistake.
 
     Raises:
         MissingKnowledgeError: the file cannot be understood.
@@ -29,7 +28,8 @@ def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
     try:
         return model.model_validate(parse_toml(decoded(path.read_bytes())))
     except ValidationError as error:
-        first = error.errors(include_input=False)[0]
+        shown = not model.model_config.get("hide_input_in_errors")
+        first = error.errors(include_input=shown)[0]
         where = f"'{'.'.join(map(str, first['loc']))}'"  # quoted: a key is never translated
         raise MissingKnowledgeError(
             "{}: {}: {}; it may hold {}", path, where, problem_in_words(first), may_hold

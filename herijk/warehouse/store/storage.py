@@ -1,7 +1,7 @@
 """Where the lake and the editions lie: in folders of this machine, or in a bucket of S3 storage.
 
-`opslag.toml` in the data folder says so; without it both lie in the data folder. How a bucket is
-spoken to is in `warehouse.store.bucket`, which needs the extra `s3`.
+`opslag.toml` in the data folder says where; without it both lie in the data folder. How a bucket is
+reached is in `warehouse.store.bucket`, which needs the extra `s3`.
 """
 
 import io
