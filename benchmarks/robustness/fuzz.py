@@ -35,8 +35,8 @@ from herijk.pipeline.errors import DefectiveInputError, HerijkError
 from herijk.pipeline.method.definition import parse_method, shipped_methods, shipped_text
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.tables.lake import ListedTows
 from herijk.warehouse.archive import FileHashes, index_archive, tows
+from herijk.warehouse.archive.kinds import TOWS
 from herijk.warehouse.archive.lists import Wording, read_list
 from herijk.warehouse.archive.profile import Profiles, read_profiles
 from herijk.warehouse.archive.samples import read_samples
@@ -292,8 +292,8 @@ def _xlsx(tow_list: Path) -> bytes:
     return content.getvalue()
 
 
-def _read_list(path: Path, data: bytes) -> None:
-    for row in read_list(data, tows.COLUMNS, "bad_list_row", path.name, Wording(), ListedTows):
+def _read_list(path: Path, _: bytes) -> None:
+    for row in read_list(path.parent, TOWS, path.name, Wording()):
         with suppress(DefectiveInputError):  # of a row: it is set aside
             tows.read_tow(row, 2009, 20)
 

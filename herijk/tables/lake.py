@@ -56,8 +56,10 @@ class ListedRuns(RunList):
 class ListedWindows(HandWindows):
     """Windows given by hand, before anybody knows how long the runs are."""
 
-    list_path = column.text("list of windows, relative to the archive")
-    list_line = dy.Int64(description="line in it", min=2)
+    tow_id = column.tow_id()
+    run = column.run()
+    path = column.text("list of windows, relative to the archive")
+    line = dy.Int64(description="line in it", min=2)
 
 
 class ListedFiles(dy.Schema):

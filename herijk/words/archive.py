@@ -10,11 +10,8 @@ ARCHIVE: Final[dict[str, str]] = {
     "The name of '{name}' has letters that cannot be read; give it another name.": (
         "De naam van '{name}' heeft letters die niet te lezen zijn; geef het een andere naam."
     ),
-    "{boat} {crew} is listed twice for {race}; the rows are equal and the first counts.": (
-        "{boat} {crew} staat twee keer bij {race}; de rijen zijn gelijk en de eerste telt."
-    ),
-    "{boat} {crew} is listed twice for {race}; the rows differ, so neither counts.": (
-        "{boat} {crew} staat twee keer bij {race}; de rijen verschillen, dus geen van beide telt."
+    "{boat} {crew} is listed twice for {race}; {ending}": (
+        "{boat} {crew} staat twee keer bij {race}; {ending}"
     ),
     "there is no list of boats: {path} is expected.": (
         "er is geen lijst van sloepen: {path} wordt verwacht."
@@ -89,7 +86,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "kolom '{column}' heeft '{part}'; runs zijn 1 tot {last}, of b1 tot b{last} voor het "
         "tweede bestand, met komma's ertussen. Voor meer runs is een [[plan]] nodig."
     ),
-    "Nobody knows column {names}. Correct it, name it under [headers] in archief.toml, or put it "
+    "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or put it "
     "there under ignore.": (
         "Kolom {names} is onbekend. Verbeter de kop, noem hem onder [headers] in archief.toml, of "
         "zet hem daar bij ignore."
@@ -105,9 +102,6 @@ ARCHIVE: Final[dict[str, str]] = {
     ),
     "the date {day} is not in {season}, the year of the list.": (
         "de datum {day} valt niet in {season}, het jaar van de lijst."
-    ),
-    "the date {day} is not in {season}, the year of the file.": (
-        "de datum {day} valt niet in {season}, het jaar van het bestand."
     ),
     "{day} is set aside in archief.toml: {reason}.": (
         "{day} is terzijde gelegd in archief.toml: {reason}."
@@ -137,13 +131,16 @@ ARCHIVE: Final[dict[str, str]] = {
     "only '{text}' stands in this row. A heading or a remark may begin with #.": (
         "alleen '{text}' staat in deze rij. Een kopje of opmerking mag met # beginnen."
     ),
+    "a speed and a force must be above zero.": (
+        "een snelheid en een kracht moeten boven nul liggen."
+    ),
     # Rows compared with each other
     "the rows of the runs of one tow differ in column '{column}': '{one}' and '{other}'.": (
-        "de rijen van de runs van één sleep verschillen in kolom '{column}': '{one}' en '{other}'."
+        "de rijen van de runs van één proef verschillen in kolom '{column}': '{one}' en '{other}'."
     ),
     "the rows of one tow are for runs {numbers}; each run has one row, and where each has a file "
     "of its own they are 1, 2, 3 and on.": (
-        "de rijen van één sleep zijn voor de runs {numbers}; elke run heeft één rij, en waar elke "
+        "de rijen van één proef zijn voor de runs {numbers}; elke run heeft één rij, en waar elke "
         "run een eigen bestand heeft zijn ze 1, 2, 3 en verder."
     ),
     "boat {boat} is in the list twice and the rows differ in {key} ({one} and {other}).": (
@@ -154,7 +151,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "sloep {boat} is niet te gebruiken, zie {path}: {why}"
     ),
     "boat {boat} is not in the boat list.": "sloep {boat} staat niet in de lijst van sloepen.",
-    "sleep_id {tow} stands also on {where}; {ending}": (
+    "sleep_id {tow} is also on {where}; {ending}": (
         "sleep_id {tow} staat ook op {where}; {ending}"
     ),
     "the rows are equal and the first counts.": "de rijen zijn gelijk en de eerste telt.",
@@ -185,7 +182,7 @@ ARCHIVE: Final[dict[str, str]] = {
     ),
     # Files
     "there is no file '{name}' in {folder}.": "er is geen bestand '{name}' in {folder}.",
-    "'{name}' can be any of {found}.": "'{name}' kan elk zijn van {found}.",
+    "'{name}' can be any of {found}.": "'{name}' kan elk van deze zijn: {found}.",
     "'{name}' is a path; only the name of a file in {folder} can stand here.": (
         "'{name}' is een pad; hier kan alleen de naam staan van een bestand in {folder}."
     ),
@@ -196,13 +193,12 @@ ARCHIVE: Final[dict[str, str]] = {
     "'{path}' is not read: samples are read from text. Save the sheet as CSV.": (
         "'{path}' wordt niet gelezen: metingen worden uit tekst gelezen. Bewaar het blad als CSV."
     ),
-    "'{path}' is not read, as nobody knows what it is.": (
-        "'{path}' wordt niet gelezen: het is onbekend wat het is."
+    "'{path}' is not read: it is not recognised.": (
+        "'{path}' wordt niet gelezen: het is niet herkend."
     ),
     "'{path}' leads outside the archive, where nothing is read.": (
         "'{path}' leidt naar buiten het archief; daar wordt niets gelezen."
     ),
-    "'{path}' cannot be read: {error}.": "'{path}' is niet te lezen: {error}.",
     "'{name}' cannot be read or unpacked: {error}.": (
         "'{name}' is niet te lezen of uit te pakken: {error}."
     ),
@@ -210,9 +206,8 @@ ARCHIVE: Final[dict[str, str]] = {
     "'{name}' holds more than {limit:.0f} MB, unpacked; a samples file is about 12 MB.": (
         "'{name}' bevat uitgepakt meer dan {limit:.0f} MB; een meetbestand is ongeveer 12 MB."
     ),
-    "'{name}' is not a whole TDMS file: {error}.": "'{name}' is geen heel TDMS-bestand: {error}.",
-    "'{name}' is not a whole Parquet file: {error}.": (
-        "'{name}' is geen heel Parquet-bestand: {error}."
+    "'{name}' is not a whole {kind} file: {error}.": (
+        "'{name}' is geen heel {kind}-bestand: {error}."
     ),
     "The file is not a spreadsheet that can be read: {error}.": (
         "Het bestand is geen leesbaar rekenblad: {error}."
@@ -228,7 +223,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "Het bestand is geen tekst in UTF-8, UTF-16 of Windows-1252: het kan beschadigd zijn."
     ),
     "The header is no row of a table: {error}.": "De kop is geen rij van een tabel: {error}.",
-    "This LabVIEW file has no header of a segment.": "Dit LabVIEW-bestand heeft geen kop.",
+    "This LabVIEW file has no segment header.": "Dit LabVIEW-bestand heeft geen kop.",
     # Columns and samples
     "Not found in the header: {names}. Found: {found}.": (
         "Niet gevonden in de kop: {names}. Wel: {found}."
@@ -243,7 +238,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "Kolommen '{first}' en '{second}' zijn dezelfde; een van de twee moet weg."
     ),
     "Column '{column}' holds {kind}, not numbers.": "Kolom '{column}' bevat {kind}, geen getallen.",
-    "Nobody knows column '{name}', and there is no 'gps'. Name it under columns of the season's "
+    "Column '{name}' is not known, and there is no 'gps'. Name it under columns of the season's "
     "profile in archief.toml, or put it there under ignore.": (
         "Kolom '{name}' is onbekend, en er is geen 'gps'. Noem hem bij columns in het profiel van "
         "dit seizoen in archief.toml, of zet hem daar bij ignore."
@@ -270,7 +265,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "the time does not increase within the run.": "de tijd loopt niet op binnen de run.",
     "By its times it has {own:g} samples per second, other than the first tow of its season: "
     "write that into the tow list, in a column 'meetfrequentie [Hz]'.": (
-        "Volgens de tijden heeft hij {own:g} metingen per seconde, anders dan de eerste sleep "
+        "Volgens de tijden heeft hij {own:g} metingen per seconde, anders dan de eerste proef "
         "van het seizoen: schrijf dat in de sleeplijst, in een kolom 'meetfrequentie [Hz]'."
     ),
     "Run {run}: by its times it has {observed:g} samples per second, by the list or the profile "
@@ -325,7 +320,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "valt af."
     ),
     "column '{column}' {} in all runs, which is no wind; the tow goes on without wind.": (
-        "kolom '{column}' {} in alle runs, en dat is geen wind; de sleep gaat verder zonder wind."
+        "kolom '{column}' {} in alle runs, en dat is geen wind; de proef gaat verder zonder wind."
     ),
     "{}: rows do not have their fields, {:.3g} s in all; {}.": (
         "{}: rijen hebben niet al hun velden, samen {:.3g} s; {}."

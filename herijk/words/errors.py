@@ -369,8 +369,8 @@ ERRORS: Final[dict[str, str]] = {
     "there is no edition {}; published: {}": "er is geen editie {}; uitgegeven: {}",
     "there is no edition {!r}; there are {}": "er is geen editie {!r}; er zijn {}",
     "the last rebuild has no edition {}; {}. One published since is there after herijk rebuild": (
-        "de laatste herbouw heeft geen editie {}; {}. Een die daarna is uitgegeven, staat er na "
-        "herijk rebuild"
+        "de laatste herberekening heeft geen editie {}; {}. Een die daarna is uitgegeven, staat er "
+        "na herijk rebuild"
     ),
     "none yet": "nog geen",
     "edition {} has no valid line of {}": "editie {} heeft geen geldige regel van {}",
@@ -482,7 +482,7 @@ ERRORS: Final[dict[str, str]] = {
     "and {} more places differ": "en nog {} plaatsen verschillen",
     "the archive is not where the last rebuild found it; run herijk rebuild --archive DIR": (
         "het archief is niet waar de laatste herberekening het vond; draai herijk rebuild "
-        "--archive DIR"
+        "--archive MAP"
     ),
     "{} is gone from the archive; put it back": "{} is weg uit het archief; zet het terug",
     "{} is not the file that the edition was made from": (

@@ -17,7 +17,7 @@ from herijk.words import LANGUAGE, dutch, say, spoken, tell
 
 DUTCH = dutch()
 ROOT = Path(str(herijk.__file__)).parent
-SPEAKERS = {"say", "tell", "wrong", "MethodFileError"} | {
+SPEAKERS = {"say", "tell", "wrong", "fault", "MethodFileError"} | {
     n for n in dir(errors) if n.endswith("Error")
 }
 OF_LIBRARY = {

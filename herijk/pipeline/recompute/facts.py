@@ -36,9 +36,8 @@ def with_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
 
 def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tow_runs` with the windows that were given by hand (`hand_windows`)."""
-    return runs.join(
-        windows.rename(HAND_COLUMNS), on=["tow_id", "run"], how="left", maintain_order="left"
-    )
+    given = windows.select("tow_id", "run", *HAND_COLUMNS).rename(HAND_COLUMNS)
+    return runs.join(given, on=["tow_id", "run"], how="left", maintain_order="left")
 
 
 def samples_files(tows: pl.DataFrame) -> pl.DataFrame:

@@ -1,8 +1,8 @@
 """The boats of the archive: `sloependata.csv`."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from pathlib import Path
 from typing import Final
 
 import polars as pl
@@ -12,24 +12,12 @@ from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedBoats
 from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, fault_from
-from herijk.warehouse.archive.files import BOATS_FILE
-from herijk.warehouse.archive.lists import ListRow, Wording, all_of, others_of, read_list
-from herijk.warehouse.archive.text import Column, fold_word
+from herijk.warehouse.archive.kinds import BOATS
+from herijk.warehouse.archive.lists import ListRow, Wording, others_of, read_list
+from herijk.warehouse.archive.text import fold_word
 from herijk.warehouse.archive.words import NO_TYPE
 from herijk.words import say
 
-COLUMNS: Final = (
-    Column("fsn_no", "fsn_nr"),
-    Column("ht_no", "ht_nr", required=False),
-    Column("name", "sloep"),
-    Column("boat_type", "type", required=False),
-    Column("waterline_length_m", "lengte", "length", "m", required=False),
-    Column("beam_m", "breedte", "length", "m", required=False),
-    Column("bow_height_m", "hoogte", "length", "m", required=False),
-    Column("weight_kg", "gewicht", "mass", "kg", required=False),
-    Column("rowers", "roeiers", required=False),
-    Column("crew_class", "klasse", required=False),
-)
 OF_THE_BOAT: Final = (
     *("ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
 )
@@ -75,7 +63,7 @@ def _crew_of(boat: Row) -> Row:
     return {"rowers": boat["rowers"], "crew_class": boat["crew_class"]}
 
 
-def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = None) -> Boats:
+def read_boats(root: Path, path: str, wording: Wording) -> Boats:
     """Read the boat list; a defective row or an ambiguous boat becomes a fault.
 
     A boat may have a row for each of its names and crews. Dimensions, weight and crew may be empty.
@@ -88,7 +76,7 @@ def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = No
     bad: dict[str, Fault] = {}
     faults: list[Fault] = []
     more: list[Fault] = []
-    for row in read_list(data, COLUMNS, "bad_boat_row", path, wording or Wording(), ListedBoats):
+    for row in read_list(root, BOATS, path, wording):
         try:
             boat = _boat(row)
             merged = _merged(row, boat, good.get(boat["fsn_no"]))
@@ -108,31 +96,9 @@ def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = No
 
 def _boat(row: ListRow) -> Row:
     row.check_whole()
-    return all_of({key: partial(reader, row, key) for key, reader in _READERS.items()})
-
-
-def _optional_type(row: ListRow, key: str) -> str | None:
-    boat_type = row.optional_text(key)
-    return None if boat_type is None or fold_word(boat_type) in NO_TYPE else boat_type
-
-
-def _optional_class(row: ListRow, key: str) -> str | None:
-    return row.crew_class(key) if row.optional_text(key) else None
-
-
-_READERS: Final[Mapping[str, Callable[[ListRow, str], object]]] = {
-    "fsn_no": ListRow.boat,
-    "ht_no": ListRow.optional_text,
-    "name": ListRow.text,
-    "boat_type": _optional_type,
-    "waterline_length_m": ListRow.optional_number,
-    "beam_m": ListRow.optional_number,
-    "bow_height_m": ListRow.optional_number,
-    "weight_kg": ListRow.optional_number,
-    "rowers": ListRow.optional_integer,
-    "crew_class": _optional_class,
-}
-"""How the values of a boat are read."""
+    boat = row.values(BOATS.columns)
+    has_no_type = fold_word(boat["boat_type"] or "") in NO_TYPE
+    return boat | {"boat_type": None} if has_no_type else boat
 
 
 def _merged(row: ListRow, boat: Row, before: Row | None) -> Row:

@@ -135,7 +135,7 @@ def check_archive(root: Path) -> Checked:
     """
     written = profile_text(root)
     text = written
-    seen: dict[tuple[object, ...], tuple[Fault, tuple[Proposal, ...]]] = {}
+    seen: dict[Fault, tuple[Proposal, ...]] = {}
     proposals: dict[Proposal, None] = {}
     for _ in range(ROUNDS):
         profiles = parse_profiles(text)
@@ -143,8 +143,7 @@ def check_archive(root: Path) -> Checked:
         new: dict[Proposal, None] = {}
         for fault in faults:
             offered = propose(fault, profiles.wording.files, index.seasons if index else {})
-            key = (fault.path, fault.line, fault.tow_id, fault.reason_code, fault.message)
-            seen[key] = (fault, seen.get(key, (fault, ()))[1] or offered)
+            seen[fault] = seen.get(fault) or offered
             new |= dict.fromkeys(p for p in offered if p not in proposals)
         if not new:
             break
@@ -152,27 +151,24 @@ def check_archive(root: Path) -> Checked:
         text = merged(written, (replace(p, is_active=True) for p in proposals))
     tows = index.tows if index else frame_of(ListedTows, [])
     profile = merged(written, _doubted(proposals, seen.values(), tows)) if proposals else None
-    return Checked(tows.height, _grouped(seen.values()), profile)
+    return Checked(tows.height, _grouped(seen), profile)
 
 
 def _doubted(
     proposals: Mapping[Proposal, None],
-    seen: Iterable[tuple[Fault, Sequence[Proposal]]],
+    seen: Iterable[Sequence[Proposal]],
     listed: pl.DataFrame,
 ) -> Iterator[Proposal]:
     """Give the proposals; what only some files of a season lack is not to be declared absent.
 
     A rate that the files say themselves leaves no question about it.
     """
-    lacking = Counter(p for _, offered in seen for p in offered if p.section == "absent")
+    lacking = Counter(p for offered in seen for p in offered if p.section == "absent")
     named = {split_header(p.key)[0] for p in proposals if p.section == "headers"}
     known = {p.season for p in proposals if p.section == "sample_rate_hz" and p.is_active}
     for proposal in proposals:
-        if (
-            proposal.section == "sample_rate_hz"
-            and not proposal.is_active
-            and proposal.season in known
-        ):
+        is_rate = proposal.section == "sample_rate_hz"
+        if is_rate and not proposal.is_active and proposal.season in known:
             continue
         if proposal.section == "ignore" and split_header(proposal.value)[0] in named:
             continue  # another list has it
@@ -251,8 +247,8 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
         try:
             samples = read_tow_samples(root, tow, profile)
             others = (_other_rate(samples, tow, index), _other_plan(samples, tow, index))
-            found = [fault for fault in others if fault is not None]
-            yield from found or judge_in_files(samples, tow, index.runs, root, profile).faults
+            of_all = [fault for fault in others if fault is not None]
+            yield from of_all or judge_in_files(samples, tow, index.runs, root, profile).faults
         except DefectiveInputError as error:
             fault = fault_from(error, tow["samples_path"], tow["tow_id"])
             yield _with_columns_of_runs(fault, root, profile)
@@ -283,9 +279,9 @@ def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> 
         yield _with_columns_of_runs(fault_from(error, file.path), root, profile)
         return
     planned = list(profiles.plan_of("", season).runs)
-    found = _mean_speeds(samples)
-    if season and named is None and found["run"].to_list() != planned:
-        yield _not_planned(file.path, found, planned, found["log1_m_s"].mean())
+    in_file = _mean_speeds(samples)
+    if season and named is None and in_file["run"].to_list() != planned:
+        yield _not_planned(file.path, in_file, planned, in_file["log1_m_s"].mean())
 
 
 def _differ(one: float, other: float) -> bool:
@@ -335,17 +331,17 @@ def _other_rate(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault |
 
 def _other_plan(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault | None:
     """Return that the file has other runs than are planned, with what their targets can be."""
-    found = _mean_speeds(samples)
+    in_file = _mean_speeds(samples)
     runs = index.runs.filter(tow_id=tow["tow_id"])
-    present = set(found["run"])
+    present = set(in_file["run"])
     lacking = set(runs.filter("selected")["run"]) - present
     if not (lacking or present - set(runs["run"])):
         return None
     first = pl.col("run") < SECOND_FILE_OFFSET
     planned, speed = runs.filter(first)["run"], tow["declared_speed_m_s"]
     in_two = tow["second_path"] is not None
-    lasts = float(found["rows"].min() or 0) / tow["sample_rate_hz"]  # type: ignore[arg-type]
-    return _not_planned(tow["samples_path"], found.filter(first), planned, speed, in_two, lasts)
+    lasts = float(in_file["rows"].min() or 0) / tow["sample_rate_hz"]  # type: ignore[arg-type]
+    return _not_planned(tow["samples_path"], in_file.filter(first), planned, speed, in_two, lasts)
 
 
 def _mean_speeds(samples: pl.DataFrame) -> pl.DataFrame:
@@ -358,7 +354,7 @@ def _mean_speeds(samples: pl.DataFrame) -> pl.DataFrame:
 
 def _not_planned(
     path: str,
-    found: pl.DataFrame,
+    in_file: pl.DataFrame,
     planned: Iterable[int],
     speed: object,
     in_two: bool = False,
@@ -368,14 +364,14 @@ def _not_planned(
 
     Args:
         path: the file.
-        found: its runs and their speeds.
+        in_file: its runs and their speeds.
         planned: runs of one file.
         speed: that of a target of 1.
         in_two: the tow has a second file.
         lasts: seconds of the shortest run.
     """
-    present = found["run"].to_list()
-    ratios = found["log1_m_s"] / speed
+    present = in_file["run"].to_list()
+    ratios = in_file["log1_m_s"] / speed
     said = say(
         "Runs {present} are in the file and runs {planned} are planned. Give the targets and "
         "directions of all runs under [[plan]] in archief.toml.",
@@ -393,19 +389,15 @@ def is_plan(runs: Sequence[int]) -> bool:
     return FEWEST_RUNS <= len(runs) <= MOST_RUNS and list(runs) == list(range(1, len(runs) + 1))
 
 
-def _grouped(seen: Iterable[tuple[Fault, Sequence[Proposal]]]) -> tuple[Cause, ...]:
+def _grouped(seen: Mapping[Fault, Sequence[Proposal]]) -> tuple[Cause, ...]:
     """Return the faults by cause, those with most first."""
-    groups: dict[tuple[str, str], list[tuple[Fault, Sequence[Proposal]]]] = {}
-    for fault, offered in seen:
-        groups.setdefault((fault.reason_code, fault.cause), []).append((fault, offered))
-    causes = [
-        Cause(
-            group[0][0].reason_code,
-            tuple(fault for fault, _ in group),
-            tuple(dict.fromkeys(p for _, offered in group for p in offered)),
-        )
-        for group in groups.values()
-    ]
+    by_cause: dict[tuple[str, str], list[Fault]] = {}
+    for fault in seen:
+        by_cause.setdefault((fault.reason_code, fault.cause), []).append(fault)
+    causes = (
+        Cause(code, tuple(faults), tuple(dict.fromkeys(p for f in faults for p in seen[f])))
+        for (code, _), faults in by_cause.items()
+    )
     return tuple(sorted(causes, key=lambda cause: -len(cause.faults)))
 
 

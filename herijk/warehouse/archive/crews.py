@@ -32,12 +32,12 @@ def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
     if len(names) < len(CREW):
         return sheet
     optional = [replace(column, required=False) for column in wanted]
-    found = find_columns(sheet.header, optional, sheet.line)
-    if names.keys() <= found.keys():
-        rowers, crew_class = (found[key].index for key in ("rowers", "crew_class"))
+    places = find_columns(sheet.header, optional, sheet.line)
+    if names.keys() <= places.keys():
+        rowers, crew_class = (places[key].index for key in ("rowers", "crew_class"))
         rows = [replace(r, fields=_filled(r.fields, rowers, crew_class)) for r in sheet.rows]
         return replace(sheet, rows=rows)
-    known = {column.index for key, column in found.items() if key not in names}
+    known = {column.index for key, column in places.items() if key not in names}
     place = next((k for k in range(len(sheet.header)) if k not in known and _crews(sheet, k)), None)
     if place is None:
         return sheet

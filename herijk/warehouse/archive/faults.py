@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final, Literal
 
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.words import cause_of, spoken
+from herijk.words import Sentence, cause_of, say, spoken
 
 Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
 """What a fault costs: seconds of one channel of a run, a run, a tow, or a file; or a row of a list
@@ -66,6 +66,11 @@ class DefectiveFileError(DefectiveInputError):
     def __init__(self, reason_code: str, message: str, line: int | None, path: str) -> None:
         super().__init__(reason_code, message, line)
         self.path = path
+
+
+def at_line(line: int, what: str) -> Sentence:
+    """Return a sentence with the line that it is about."""
+    return say("Line {line}: {what}", line=line, what=what)
 
 
 def fault_from(error: DefectiveInputError, path: str, tow_id: str | None = None) -> Fault:

@@ -15,7 +15,8 @@ import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
-from herijk.warehouse.archive.limits import check_rows
+from herijk.warehouse.archive.kinds import BOATS, LIST_KINDS, ListKind
+from herijk.warehouse.archive.limits import MOST_ROWS, too_many_rows
 from herijk.warehouse.archive.sheets import split_sheet
 from herijk.warehouse.archive.text import fold_word
 from herijk.words import say
@@ -24,35 +25,9 @@ BOATS_FILE: Final = "sloepregister/sloependata.csv"
 LIST_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm", ".xls", ".ods")
 
 
-@dataclass(frozen=True)
-class ListKind:
-    """A kind of list: where it lies, and what its name is without suffix.
-
-    Attributes:
-        folder: its folder.
-        pattern: its name there; group 1 is the season, where the name tells it.
-        stands_for: its name under `[files]` of `archief.toml`, without the year.
-    """
-
-    folder: str
-    pattern: str
-    stands_for: str
-
-
-BOAT_LIST: Final = ListKind("sloepregister", r"sloependata()", "sloependata")
-TOW_LISTS: Final = ListKind("sleeplijsten", r"sleeplijst(?:[ _-]*([0-9]{4}))?", "sleeplijst")
-WINDOWS: Final = ListKind("sleeplijsten", r"vensters[ _-]*([0-9]{4})", "vensters")
-FORCE_CHECKS: Final = ListKind("sleeplijsten", r"krachtijkingen[ _-]*([0-9]{4})", "krachtijkingen")
-LAMPS: Final = ListKind("sleeplijsten", r"lampjes[ _-]*([0-9]{4})", "lampjes")
-REGISTERS: Final = ListKind("sloepregister", r"sloepregister[ _-]*([0-9]{4})", "sloepregister")
-RACES: Final = ListKind("wedstrijden", r".+?(?:[ _-]*([0-9]{4}))?", "wedstrijden")
-LIST_KINDS: Final = (
-    *(BOAT_LIST, TOW_LISTS, WINDOWS, FORCE_CHECKS, LAMPS),
-    *(REGISTERS, RACES),
-)
 SAMPLES: Final = "meetdata"
 STANDS_FOR: Final = re.compile(
-    rf"({'|'.join(kind.stands_for for kind in LIST_KINDS)}|{SAMPLES})(?:_([0-9]{{4}}))?"
+    rf"({'|'.join(kind.name for kind in LIST_KINDS)}|{SAMPLES})(?:_([0-9]{{4}}))?"
 )
 """What a file or folder can be said to be under `[files]`: `sleeplijst_2014`, `meetdata_2014`."""
 TEXT_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm")
@@ -112,7 +87,7 @@ def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[Arc
     ]
     for path, name, season in _named(named):
         file = root / split_sheet(path)[0]
-        if name == kind.stands_for and file.is_file():
+        if name == kind.name and file.is_file():
             files.append(replace(_archive_file(root, file, season), path=path))
     return sorted(files, key=lambda file: file.path)
 
@@ -181,7 +156,7 @@ def _path_in(root: Path, entry: Path) -> str:
 
 def find_boats_file(root: Path, named: Mapping[str, str]) -> str | None:
     """Return the path of the boat list, whatever kind of file it is; None when there is none."""
-    lists = list_files(root, BOAT_LIST, named)
+    lists = list_files(root, BOATS, named)
     return lists[0].path if lists else None
 
 
@@ -234,13 +209,13 @@ def _can_be_written(name: str) -> bool:
 
 def list_misnamed(root: Path) -> list[str]:
     """Return files and folders whose names are no text, which are not read, with `?` for that."""
-    found = (
+    misnamed = (
         Path(folder, name)
         for folder, folders, files in os.walk(root)
         for name in (*folders, *files)
         if not _can_be_written(name)
     )
-    return sorted(os.fsencode(_path_in(root, path)).decode(errors="replace") for path in found)
+    return sorted(os.fsencode(_path_in(root, path)).decode(errors="replace") for path in misnamed)
 
 
 def _archive_file(root: Path, entry: Path, season: int) -> ArchiveFile:
@@ -313,28 +288,15 @@ def outside_archive(relative: str) -> DefectiveFileError:
 def read_bytes(path: Path, max_bytes: int) -> bytes:
     """Return the content of a file, unpacked when it is `.gz` or `.zst`.
 
-    It is unpacked in pieces and never beyond `max_bytes`, so a small file that unpacks to
-    gigabytes does no harm.
-
     Raises:
         DefectiveInputError: `too_large`, `samples_missing` or `unreadable_file`.
     """
-    compression = _COMPRESSION.get(path.suffix.casefold())
-    try:
-        with path.open("rb") as raw:
-            if compression is None:
-                content = raw.read(min(os.fstat(raw.fileno()).st_size, max_bytes) + 1)
-            else:
-                content = _unpack(raw, compression, max_bytes)
-    except FileNotFoundError as error:
-        said = say("'{name}' is not there any more.", name=path.name)
-        raise DefectiveInputError("samples_missing", said) from error
-    except (OSError, pa.ArrowException) as error:
-        said = say("'{name}' cannot be read or unpacked: {error}.", name=path.name, error=error)
-        raise DefectiveInputError("unreadable_file", said) from error
+    content = _first_bytes(path, max_bytes + 1)
     if len(content) > max_bytes:
         raise too_large(path, max_bytes)
-    check_rows(content)
+    rows = content.count(b"\n")
+    if rows > MOST_ROWS:
+        raise too_many_rows(rows)
     return content
 
 
@@ -342,25 +304,43 @@ def read_start(path: Path, most: int) -> bytes:
     """Return the first bytes of a file, unpacked, up to a whole line where there is one.
 
     Raises:
-        DefectiveInputError: `unreadable_file`.
+        DefectiveInputError: `samples_missing` or `unreadable_file`.
     """
+    content = _first_bytes(path, most)
+    is_utf16 = b"\x00" in content[:100]
+    return content if is_utf16 else content[: content.rfind(b"\n") + 1] or content
+
+
+def _first_bytes(path: Path, most: int) -> bytes:
+    """Return a file, unpacked, but not more of it: a small one can unpack to gigabytes."""
     compression = _COMPRESSION.get(path.suffix.casefold())
     try:
         with path.open("rb") as raw:
             if compression is None:
-                content = raw.read(most)
-            else:
-                with pa.CompressedInputStream(pa.PythonFile(raw, mode="r"), compression) as stream:
-                    content = stream.read(most)
+                return raw.read(min(os.fstat(raw.fileno()).st_size, most))
+            return _unpack(raw, compression, most)
+    except FileNotFoundError as error:
+        said = say("'{name}' is not there any more.", name=path.name)
+        raise DefectiveInputError("samples_missing", said) from error
     except (OSError, pa.ArrowException) as error:
         said = say("'{name}' cannot be read or unpacked: {error}.", name=path.name, error=error)
         raise DefectiveInputError("unreadable_file", said) from error
-    is_utf16 = b"\x00" in content[:100]
-    return bytes(content if is_utf16 else content[: content.rfind(b"\n") + 1] or content)
+
+
+def _unpack(raw: IO[bytes], compression: str, most: int) -> bytes:
+    pieces: list[bytes] = []
+    left = most
+    with pa.CompressedInputStream(pa.PythonFile(raw, mode="r"), compression) as stream:
+        while left and (piece := stream.read(min(_CHUNK_BYTES, left))):
+            pieces.append(piece)
+            left -= len(piece)
+    return b"".join(pieces)
 
 
 def hash_of_parts(hashes: list[str]) -> str:
-    """Return one hash of several files from theirs, in their order."""
+    """Return one hash of several files from theirs, in their order; that of a single one is it."""
+    if len(hashes) == 1:
+        return hashes[0]
     return hashlib.sha256("\n".join(hashes).encode()).hexdigest()
 
 
@@ -372,14 +352,12 @@ def kind_of(path: Path) -> str:
     return name[name.rfind(".") :]
 
 
-def _unpack(raw: IO[bytes], compression: str, max_bytes: int) -> bytes:
-    pieces: list[bytes] = []
-    size = 0
-    with pa.CompressedInputStream(pa.PythonFile(raw, mode="r"), compression) as stream:
-        while size <= max_bytes and (piece := stream.read(_CHUNK_BYTES)):
-            pieces.append(piece)
-            size += len(piece)
-    return b"".join(pieces)
+def not_whole(path: Path, kind: str, error: Exception) -> DefectiveInputError:
+    """Return the error for a file of another program that is damaged or cut off."""
+    said = say(
+        "'{name}' is not a whole {kind} file: {error}.", name=path.name, kind=kind, error=error
+    )
+    return DefectiveInputError("unreadable_file", said)
 
 
 def too_large(path: Path, max_bytes: int) -> DefectiveInputError:

@@ -56,8 +56,7 @@ class FileHashes:
         Raises:
             OSError: a file cannot be read.
         """
-        hashes = [self.hash_file(root / part) for part in path.split(PARTS)]
-        return hashes[0] if len(hashes) == 1 else hash_of_parts(hashes)
+        return hash_of_parts([self.hash_file(root / part) for part in path.split(PARTS)])
 
     def hash_file(self, path: Path) -> str:
         """Return the SHA-256 of a file's content, as hexadecimal text.

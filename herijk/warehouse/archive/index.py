@@ -1,7 +1,7 @@
 """What is in an archive: its boats, its tows with their files, and what is set aside.
 
 Reads the lists and hashes the files; reading samples belongs to `samples`. Rows, boats and files
-are compared with each other here, one question after the other; a tow falls out at the first.
+are compared with each other here, one check after the other; a tow falls out at the first.
 """
 
 import datetime as dt
@@ -17,25 +17,17 @@ from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
-from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows, ListedWindows
+from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows
 from herijk.tables.row import Row
-from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list
-from herijk.warehouse.archive import windows as window_list
-from herijk.warehouse.archive.boats import Boats
+from herijk.warehouse.archive.boats import Boats, read_boats
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from herijk.warehouse.archive.files import (
     BOATS_FILE,
-    FORCE_CHECKS,
-    LAMPS,
     PACKED,
     PARTS,
     PROFILE_FILE,
-    RACES,
-    REGISTERS,
     SAMPLES,
-    TOW_LISTS,
-    WINDOWS,
     ArchiveFile,
     as_one_run,
     can_hold_data,
@@ -47,8 +39,6 @@ from herijk.warehouse.archive.files import (
     list_strangers,
     match_key,
     outside_archive,
-    path_inside,
-    read_bytes,
 )
 from herijk.warehouse.archive.instruments import (
     lamp_seconds,
@@ -56,10 +46,13 @@ from herijk.warehouse.archive.instruments import (
     read_force_checks,
     read_lamps,
 )
-from herijk.warehouse.archive.limits import LIST_MAX_BYTES
+from herijk.warehouse.archive.kinds import LIST_KINDS, TOWS
 from herijk.warehouse.archive.lists import (
+    ROWS_ARE_EQUAL,
+    ROWS_DIFFER,
     DefectiveRowError,
     ListRow,
+    Wording,
     all_of,
     others_of,
     read_list,
@@ -69,6 +62,7 @@ from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.recognise import guessed, recognised
 from herijk.warehouse.archive.sheets import SPREADSHEETS
 from herijk.warehouse.archive.text import fold, fold_word, shorten
+from herijk.warehouse.archive.windows import read_windows
 from herijk.words import say
 
 _FilesByName = dict[tuple[int, str], list["SamplesFile"]]
@@ -83,8 +77,8 @@ class ArchiveIndex:
         boats: one row per boat (`ListedBoats`).
         tows: one row per tow that can be read.
         runs: one row per run of those tows; runs of a second file are 21 and on.
-        windows: windows given by hand for those runs, of which nobody knows yet whether they lie in
-            their run.
+        windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
+            whether they lie in their run.
         faults: what is set aside, and why.
         files: every file that was looked at.
         profiles: `archief.toml`.
@@ -95,7 +89,7 @@ class ArchiveIndex:
     boats: pl.DataFrame
     tows: dy.DataFrame[ListedTows]
     runs: dy.DataFrame[ListedRuns]
-    windows: dy.DataFrame[ListedWindows]
+    windows: pl.DataFrame
     faults: tuple[Fault, ...]
     files: dy.DataFrame[ListedFiles]
     profiles: Profiles
@@ -144,9 +138,6 @@ class _Entry:
     def where(self) -> str:
         return say("line {line} of {path}", line=self.row.line, path=self.list_path)
 
-    def fault(self, reason_code: str, message: str) -> DefectiveInputError:
-        return self.row.fault(message, reason_code)
-
 
 class _Hashes:
     """The hashes of the files looked at, each file once."""
@@ -167,7 +158,11 @@ class _Hashes:
             except OSError as error:
                 raise DefectiveFileError(
                     "unreadable_file",
-                    say("'{path}' cannot be read: {error}.", path=path, error=error.strerror),
+                    say(
+                        "'{name}' cannot be read or unpacked: {error}.",
+                        name=path,
+                        error=error.strerror,
+                    ),
                     None,
                     path,
                 ) from error
@@ -175,12 +170,8 @@ class _Hashes:
 
     def add_samples(self, file: SamplesFile) -> str:
         """Return the hash of samples, of several files one of their hashes."""
-        hashes = [self.add(part.path, part.full_path) for part in file.parts]
-        if len(hashes) == 1:
-            return hashes[0]
-        size = sum(self.rows[part.path][1] for part in file.parts)
-        sha256 = hash_of_parts(hashes)
-        self.rows[file.path] = (sha256, size)
+        sha256 = hash_of_parts([self.add(part.path, part.full_path) for part in file.parts])
+        self.rows[file.path] = (sha256, sum(self.rows[part.path][1] for part in file.parts))
         return sha256
 
     def frame(self) -> dy.DataFrame[ListedFiles]:
@@ -209,12 +200,13 @@ def index_archive(
     named = profiles.wording.files
     hashes = _Hashes(hash_file)
     faults: list[Fault] = []
-    _hash_others(root, named, hashes, faults)
+    unhashed = _hash_lists(root, named, hashes)
     faults += strangers(root, profiles)
-    boats = _read_boats(root, profiles, hashes, faults)
-    entries, unread_seasons = _read_tow_lists(root, profiles, hashes, faults)
+    boats = _read_boats(root, profiles.wording)
+    faults += boats.faults
+    entries, unread_seasons = _read_tow_lists(root, profiles, faults)
     sample_files = list_sample_files(root, named)
-    _hash_files(sample_files, hashes, faults)
+    faults += _hash_files(sample_files, hashes)
     by_name = _by_name(sample_files, entries)
     faults += _not_listed(entries, sample_files, unread_seasons, by_name)
     faults += [] if unread_seasons else _idle(profiles, entries)
@@ -232,12 +224,17 @@ def index_archive(
     faults += [fault for entry in good for fault in _lost_cells(entry)]
     _add_instruments(root, profiles, entries, good, faults)
     runs = [run for entry in good for run in _runs(entry)]
-    windows = _read_windows(root, profiles, hashes, entries, runs, faults)
+    runs_of = {(entry.season, entry.tow_id): set[int]() for entry in entries}
+    runs_of |= {(e.season, e.tow_id): {run["run"] for run in _runs(e)} for e in good}
+    windows, faulty = read_windows(root, profiles.wording, runs_of)
+    faults += faulty
+    told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
+    faults += [fault for fault in unhashed if fault.path not in told]
     return ArchiveIndex(
         boats=boats.frame(),
         tows=frame_of(ListedTows, [entry.tow for entry in good]),
         runs=frame_of(ListedRuns, runs),
-        windows=frame_of(ListedWindows, windows),
+        windows=windows,
         faults=tuple(sorted(faults, key=_fault_order)),
         files=hashes.frame(),
         profiles=profiles,
@@ -283,7 +280,7 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
         lacking.append(
             (BOATS_FILE, say("there is no list of boats: {path} is expected.", path=BOATS_FILE))
         )
-    if not list_files(root, TOW_LISTS, named):
+    if not list_files(root, TOWS, named):
         path = "sleeplijsten/sleeplijst_<jaar>.csv"
         lacking.append((path, say("there is no list of tows: {path} is expected.", path=path)))
     return [Fault(path, None, None, "missing_list", said) for path, said in lacking]
@@ -292,20 +289,12 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
 # Lists
 
 
-def _read_list(root: Path, path: str, hashes: _Hashes) -> bytes:
-    full_path = path_inside(root, path)
-    hashes.add(path, full_path)
-    return read_bytes(full_path, LIST_MAX_BYTES)
-
-
-def _read_boats(root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fault]) -> Boats:
-    path = find_boats_file(root, profiles.wording.files) or BOATS_FILE
+def _read_boats(root: Path, wording: Wording) -> Boats:
+    path = find_boats_file(root, wording.files) or BOATS_FILE
     try:
-        boats = boat_list.read_boats(_read_list(root, path, hashes), path, profiles.wording)
+        return read_boats(root, path, wording)
     except DefectiveInputError as error:
-        boats = Boats({}, (), {}, (fault_from(error, path),))
-    faults += boats.faults
-    return boats
+        return Boats({}, (), {}, (fault_from(error, path),))
 
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
@@ -335,7 +324,7 @@ def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
     if not can_be:
         guesses = tuple(sorted(guessed(root, path)))
         return say(
-            "'{path}' is not read, as nobody knows what it is.",
+            "'{path}' is not read: it is not recognised.",
             path=path,
             guesses=guesses,
             is_other=not guesses
@@ -351,17 +340,14 @@ def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
 
 
 def _read_tow_lists(
-    root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fault]
+    root: Path, profiles: Profiles, faults: list[Fault]
 ) -> tuple[list[_Entry], set[int]]:
     """Return the rows of all tow lists, and the seasons of lists that cannot be read."""
     entries: list[_Entry] = []
     unread_seasons: set[int] = set()
-    for file in list_files(root, TOW_LISTS, profiles.wording.files):
+    for file in list_files(root, TOWS, profiles.wording.files):
         try:
-            data = _read_list(root, file.path, hashes)
-            rows = read_list(
-                data, tow_list.COLUMNS, "bad_list_row", file.path, profiles.wording, ListedTows
-            )
+            rows = read_list(root, TOWS, file.path, profiles.wording)
         except DefectiveInputError as error:
             faults.append(fault_from(error, file.path))
             unread_seasons.add(file.season)
@@ -398,7 +384,7 @@ def _idle(profiles: Profiles, entries: list[_Entry]) -> list[Fault]:
             for one in profiles.log_replaced
             if one.date.year not in seasons
         ),
-        *(("plan", tow) for plan in profiles.plans for tow in plan.tows if tow not in tows),
+        *(("plan", tow) for plan in profiles.plan for tow in plan.tows if tow not in tows),
         *(
             (name, f"{first}:{last}")
             for name, (first, last) in profiles.season_ranges
@@ -410,33 +396,6 @@ def _idle(profiles: Profiles, entries: list[_Entry]) -> list[Fault]:
         Fault(PROFILE_FILE, None, None, "idle_setting", say(message, table=table, what=what))
         for table, what in idle
     ]
-
-
-def _read_windows(
-    root: Path,
-    profiles: Profiles,
-    hashes: _Hashes,
-    entries: list[_Entry],
-    runs: list[Row],
-    faults: list[Fault],
-) -> list[window_list.Window]:
-    """Return the windows given by hand, of all years."""
-    windows: list[window_list.Window] = []
-    runs_of: dict[str, set[int]] = defaultdict(set)
-    for run in runs:
-        runs_of[run["tow_id"]].add(run["run"])
-    for file in list_files(root, WINDOWS, profiles.wording.files):
-        tow_ids = {e.tow_id for e in entries if e.season == file.season and e.tow_id is not None}
-        listed = window_list.Listed(tow_ids, runs_of)
-        try:
-            data = _read_list(root, file.path, hashes)
-            found, faulty = window_list.read_windows(data, file.path, listed, profiles.wording)
-        except DefectiveInputError as error:
-            faults.append(fault_from(error, file.path))
-            continue
-        windows += found
-        faults += faulty
-    return windows
 
 
 def _add_instruments(
@@ -461,24 +420,22 @@ def _add_instruments(
 # Files
 
 
-def _hash_others(
-    root: Path, named: Mapping[str, str], hashes: _Hashes, faults: list[Fault]
-) -> None:
-    """Hash what is read from elsewhere: profile, published registers, races, instruments."""
+def _hash_lists(root: Path, named: Mapping[str, str], hashes: _Hashes) -> list[Fault]:
+    """Hash the profile and every list; return a fault for each that cannot be read."""
     if (root / PROFILE_FILE).is_file():
         hashes.add(PROFILE_FILE, root / PROFILE_FILE)
-    others = (REGISTERS, RACES, FORCE_CHECKS, LAMPS)
-    _hash_files((f for kind in others for f in list_files(root, kind, named)), hashes, faults)
+    lists = (file for kind in LIST_KINDS for file in list_files(root, kind, named))
+    return list(_hash_files(lists, hashes))
 
 
-def _hash_files(files: Iterable[ArchiveFile], hashes: _Hashes, faults: list[Fault]) -> None:
-    """Hash the files that lie inside the archive."""
+def _hash_files(files: Iterable[ArchiveFile], hashes: _Hashes) -> Iterator[Fault]:
+    """Hash the files that lie inside the archive; give a fault for each that cannot be read."""
     for file in files:
         try:
             if file.inside:
                 hashes.add(file.path, file.full_path)
         except DefectiveInputError as error:
-            faults.append(fault_from(error, file.path))
+            yield fault_from(error, file.path)
 
 
 def _names(entry: _Entry) -> list[str]:
@@ -567,16 +524,16 @@ def _not_listed(
 
 
 def _keep(
-    question: Callable[[_Entry], None],
+    check: Callable[[_Entry], None],
     entries: list[_Entry],
     faults: list[Fault],
     more: list[Fault] | None = None,
 ) -> list[_Entry]:
-    """Return the entries that pass a question; the others leave a fault, and `more` of a row."""
+    """Return the entries that pass a check; the others leave a fault, and `more` of a row."""
     passed = []
     for entry in entries:
         try:
-            question(entry)
+            check(entry)
         except DefectiveInputError as error:
             faults.append(fault_from(error, entry.list_path, entry.tow_id))
             if more is not None:
@@ -587,13 +544,13 @@ def _keep(
 
 
 def _unique_ids(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
-    """Return the question whether a row's `sleep_id` is its own."""
+    """Return the check that a row's `sleep_id` is its own."""
     by_id: dict[str, list[_Entry]] = defaultdict(list)
     for entry in entries:
         if entry.tow_id is not None:
             by_id[entry.tow_id].append(entry)
 
-    def question(entry: _Entry) -> None:
+    def check(entry: _Entry) -> None:
         same = by_id[entry.tow_id] if entry.tow_id is not None else [entry]
         if len(same) == 1:
             return
@@ -601,20 +558,15 @@ def _unique_ids(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
         if identical and entry is same[0]:
             return
         other = next(other for other in same if other is not entry)
-        ending = (
-            say("the rows are equal and the first counts.")
-            if identical
-            else say("the rows differ, so neither counts.")
-        )
         message = say(
-            "sleep_id {tow} stands also on {where}; {ending}",
+            "sleep_id {tow} is also on {where}; {ending}",
             tow=shorten(entry.tow_id or ""),
             where=other.where,
-            ending=ending,
+            ending=ROWS_ARE_EQUAL if identical else ROWS_DIFFER,
         )
-        raise entry.fault("duplicate_tow_id", message)
+        raise entry.row.fault(message, "duplicate_tow_id")
 
-    return question
+    return check
 
 
 def _read_values(entry: _Entry, profiles: Profiles) -> None:
@@ -629,9 +581,7 @@ def _read_values(entry: _Entry, profiles: Profiles) -> None:
     )
     (entry.tow, entry.lost_cells), entry.selection = read["tow"], read["selection"]
     day = entry.tow["tow_date"]
-    if day.year != entry.season:
-        message = "the date {day} is not in {season}, the year of the list."
-        raise entry.fault("date_outside_season", say(message, day=day, season=entry.season))
+    entry.row.check_year(day, entry.season, "date_outside_season")
 
 
 def _lost_cells(entry: _Entry) -> Iterator[Fault]:
@@ -657,23 +607,23 @@ def _find_files(entry: _Entry, by_name: _FilesByName, hashes: _Hashes) -> None:
 
 def _find_files_of(entry: _Entry, names: str, by_name: _FilesByName) -> SamplesFile:
     """Return the samples of a cell: of one name, or of one for each run."""
-    found = [_find_file(entry, name, by_name) for name in names.split(PARTS)]
-    return SamplesFile(tuple(part for file in found for part in file.parts))
+    files = [_find_file(entry, name, by_name) for name in names.split(PARTS)]
+    return SamplesFile(tuple(part for file in files for part in file.parts))
 
 
 def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> SamplesFile:
     values = {"name": shorten(name), "folder": f"meetdata_{entry.season}/"}
     if "/" in name or "\\" in name or name.startswith(".."):
         message = "'{name}' is a path; only the name of a file in {folder} can stand here."
-        raise entry.fault("path_outside_archive", say(message, **values))
+        raise entry.row.fault(say(message, **values), "path_outside_archive")
     candidates = _candidates(name, entry.season, by_name)
     if not candidates:
         message = say("there is no file '{name}' in {folder}.", **values)
-        raise entry.fault("samples_missing", message)
+        raise entry.row.fault(message, "samples_missing")
     if len(candidates) > 1:
         names = ", ".join(f"'{file.parts[0].full_path.name}'" for file in candidates)
         message = say("'{name}' can be any of {found}.", name=shorten(name), found=names)
-        raise entry.fault("ambiguous_file", message)
+        raise entry.row.fault(message, "ambiguous_file")
     outside = [part for part in candidates[0].parts if not part.inside]
     if outside:
         raise outside_archive(outside[0].path)
@@ -681,19 +631,19 @@ def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> SamplesFile:
 
 
 def _fits_table(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
-    """Return the question whether a tow lies within the limits of the table `tows`."""
+    """Return the check that a tow lies within the limits of the table `tows`."""
     frame = frame_of(ListedTows, [entry.tow for entry in entries])
     why = {row["tow_id"]: sentence for row, sentence in misfits(ListedTows, frame)}
 
-    def question(entry: _Entry) -> None:
+    def check(entry: _Entry) -> None:
         if entry.tow_id in why:
-            raise entry.fault("bad_list_row", why[entry.tow_id])
+            raise entry.row.fault(why[entry.tow_id], "bad_list_row")
 
-    return question
+    return check
 
 
 def _unique_samples(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
-    """Return the question whether a row's samples are its own, by content.
+    """Return the check that a row's samples are its own, by content.
 
     A first file may be the second file of another tow of the same boat: that is how two tows are
     combined.
@@ -705,11 +655,11 @@ def _unique_samples(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
         for sha256 in _contents(entry):
             users[sha256].append(entry)
 
-    def question(entry: _Entry) -> None:
+    def check(entry: _Entry) -> None:
         sha256 = entry.tow["samples_sha256"]
         if sha256 == entry.tow["second_sha256"]:
             message = say("meetfile and meetfile2 hold the same samples.")
-            raise entry.fault("samples_listed_twice", message)
+            raise entry.row.fault(message, "samples_listed_twice")
         boat, crew = entry.tow["fsn_no"], _crew(entry)
         strangers = [
             other
@@ -727,9 +677,9 @@ def _unique_samples(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
                 where=earliest.where,
                 boat=boat,
             )
-            raise entry.fault("duplicate_tow", message)
+            raise entry.row.fault(message, "duplicate_tow")
 
-    return question
+    return check
 
 
 def _contents(entry: _Entry) -> list[str]:
@@ -749,7 +699,7 @@ def _listed_twice(entry: _Entry, other: _Entry) -> DefectiveInputError:
         crew=crew,
         where=other.where,
     )
-    return entry.fault("samples_listed_twice", message)
+    return entry.row.fault(message, "samples_listed_twice")
 
 
 def _join_boat(entry: _Entry, boats: Boats) -> None:
@@ -762,11 +712,11 @@ def _join_boat(entry: _Entry, boats: Boats) -> None:
             path=why.path,
             why=why.message,
         )
-        raise entry.fault(why.reason_code, message)
+        raise entry.row.fault(message, why.reason_code)
     boat = boats.find(fsn_no)
     if boat is None:
         message = say("boat {boat} is not in the boat list.", boat=shorten(fsn_no))
-        raise entry.fault("unknown_boat", message)
+        raise entry.row.fault(message, "unknown_boat")
     apart = tow_list.unlike_boat(entry.tow, boat, entry.row)
     weight = [apart.pop(key) for key in ("weight_kg",) if key in apart]
     if apart:
@@ -784,7 +734,7 @@ def _place_day(entry: _Entry, profiles: Profiles) -> None:
     reason = profiles.reason_set_aside(day)
     if reason is not None:
         message = say("{day} is set aside in archief.toml: {reason}.", day=day, reason=reason)
-        raise entry.fault("day_set_aside", message)
+        raise entry.row.fault(message, "day_set_aside")
     absent = profiles.for_season(entry.season).absent
     entry.tow |= {f"{channel}_measured": channel not in absent for channel in ("wind", "log2")}
     for log in ("log1", "log2"):

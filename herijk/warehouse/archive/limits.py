@@ -20,17 +20,6 @@ LONGEST_HEADER: Final = 20_000
 MOST_COLUMNS: Final = 500
 
 
-def check_rows(data: bytes) -> None:
-    """Refuses a text with too many lines, before they are taken apart.
-
-    Raises:
-        DefectiveInputError: `too_large`.
-    """
-    rows = data.count(b"\n")
-    if rows > MOST_ROWS:
-        raise too_many_rows(rows)
-
-
 def too_many_rows(rows: int) -> DefectiveInputError:
     """The error for a file with more rows than a tow can have."""
     return DefectiveInputError(

@@ -10,13 +10,23 @@ import unicodedata
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 from typing import Any, Final, TypeVar
 
+import polars as pl
+
+from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.declare import dy
-from herijk.tables.frames import limits
+from herijk.tables.frames import frame_of, limits
+from herijk.tables.row import Row
 from herijk.warehouse.archive.crews import CREW, with_crews_apart
+from herijk.warehouse.archive.faults import Fault, at_line, fault_from
+from herijk.warehouse.archive.files import list_files, path_inside, read_bytes
+from herijk.warehouse.archive.kinds import ListKind
+from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.meaning import Meaning, meanings
+from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.sheets import Sheet, read_sheets, split_sheet
 from herijk.warehouse.archive.text import (
     Column,
@@ -33,6 +43,10 @@ from herijk.warehouse.archive.words import ALL_RUNS, CLASSES, HEADERS, NO, NOTHI
 from herijk.words import say
 
 T = TypeVar("T")
+
+ROWS_ARE_EQUAL: Final = "the rows are equal and the first counts."
+ROWS_DIFFER: Final = "the rows differ, so neither counts."
+"""What becomes of rows that are about the same thing."""
 
 _ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
 _DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")
@@ -65,6 +79,7 @@ _DECIMAL: Final = re.compile(r"[+-]?[0-9]*([.,])([0-9]{1,2}|[0-9]{4,})")
 _BOAT: Final = re.compile(
     r"(?:fsn)?[\s._-]*(?:(?:nr|no|nummer|number|n°|nº)[\s.:_-]*)?([0-9]{1,6}[a-z]?)", re.IGNORECASE
 )
+_RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
 
 
 def ungrouped(cell: str) -> str:
@@ -108,9 +123,6 @@ class Wording:
         return (*HEADERS.get(column.key, ()), *own)
 
 
-Limits = Callable[[str], tuple[float, float]]
-
-
 @dataclass(frozen=True)
 class Reading:
     """What the rows of one list share.
@@ -122,7 +134,7 @@ class Reading:
         date_order: `dmy` or `mdy` where dates with slashes are settled, else empty.
         decimal: the decimal marks that this list surely uses, comma, point, or both.
         is_told: `archief.toml` says which mark that is.
-        limits: the lowest and highest value of a column that can be right.
+        table: declares the type and the limits of each value.
         sheet: the sheet, where a workbook has several.
     """
 
@@ -131,7 +143,7 @@ class Reading:
     words: Mapping[str, str]
     date_order: str
     decimal: str
-    limits: Limits
+    table: type[dy.Schema]
     sheet: str = ""
     is_told: bool = False
 
@@ -164,7 +176,7 @@ class ListRow:
         """Return the error for this row."""
         if self.reading.sheet:
             message = say("sheet '{sheet}': {what}", sheet=self.reading.sheet, what=message)
-        said = say("Line {line}: {what}", line=self.line, what=message)
+        said = at_line(self.line, message)
         return DefectiveInputError(reason_code or self.reading.reason_code, said, self.line)
 
     def wrong(
@@ -201,7 +213,7 @@ class ListRow:
             return None
         digits, scale = self._digits_and_scale(key, cell)
         value = scale.to_si(parse_number(digits))
-        lowest, highest = self.reading.limits(key)
+        lowest, highest = limits(self.reading.table, key)
         if _THOUSAND.fullmatch(digits):
             thousands = scale.to_si(1000 * parse_number(digits))
             if lowest <= thousands <= highest:
@@ -232,27 +244,25 @@ class ListRow:
 
         Raises where both can be right and this list writes its decimals with the other mark.
         """
-        lowest, highest = self.reading.limits(key)
+        lowest, highest = limits(self.reading.table, key)
         if not lowest <= value <= highest:
             return False
-        mark = _THOUSAND.fullmatch(cell)
-        if mark and self.reading.decimal not in {"", mark[1]}:
-            if self.reading.is_told:
-                return False
-            other = self.reading.decimal.replace(mark[1], "")
-            raise self.fault(
-                say(
-                    "column '{column}' is {cell}, while other numbers of this list have their "
-                    "decimals behind a '{mark}'; write {whole} or {decimal}.",
-                    column=self.named(key),
-                    cell=cell,
-                    mark=other,
-                    whole=cell.replace(mark[1], ""),
-                    decimal=cell.replace(mark[1], other),
-                ),
-                "ambiguous_number",
-            )
-        return True
+        mark = "," if "," in cell else "."
+        if self.reading.decimal in {"", mark}:
+            return True
+        if self.reading.is_told:
+            return False
+        other = self.reading.decimal.replace(mark, "")
+        said = say(
+            "column '{column}' is {cell}, while other numbers of this list have their decimals "
+            "behind a '{mark}'; write {whole} or {decimal}.",
+            column=self.named(key),
+            cell=cell,
+            mark=other,
+            whole=cell.replace(mark, ""),
+            decimal=cell.replace(mark, other),
+        )
+        raise self.fault(said, "ambiguous_number")
 
     def number(self, key: str) -> float:
         """Return a number that must be there."""
@@ -266,10 +276,6 @@ class ListRow:
         if value != int(value):
             raise self.wrong("column '{column}' is {cell}; it must be a whole number.", key)
         return int(value)
-
-    def integer(self, key: str) -> int:
-        """Return a whole number that must be there."""
-        return self._there(key, self.optional_integer(key))
 
     def optional_date(self, key: str) -> dt.date | None:
         """Return a date, None when the cell is empty."""
@@ -289,11 +295,21 @@ class ListRow:
         """Return a date that must be there."""
         return self._there(key, self.optional_date(key))
 
-    def crew_class(self, key: str) -> str:
-        """Return `H` or `D`."""
-        cell = self.text(key)
-        value = CLASSES.get(fold_word(cell))
-        if value is None:
+    def check_year(self, day: dt.date, year: int, reason_code: str | None = None) -> None:
+        """Raise where a day is not in the year of the list."""
+        if day.year != year:
+            message = "the date {day} is not in {season}, the year of the list."
+            raise self.fault(say(message, day=day, season=year), reason_code)
+
+    def run(self, key: str) -> int:
+        """Return the number of a run: 1 to 20, or 21 to 40 for b1 to b20."""
+        return run_number(self.text(key), self, key, range(1, MOST_RUNS + 1))
+
+    def optional_crew_class(self, key: str) -> str | None:
+        """Return `H` or `D`, None when the cell is empty."""
+        cell = self.optional_text(key)
+        value = CLASSES.get(fold_word(cell or ""))
+        if cell is not None and value is None:
             message = "column '{column}' is '{cell}'; H or D is expected."
             raise self.wrong(message, key, expected="HD")
         return value
@@ -311,10 +327,40 @@ class ListRow:
         number = _BOAT.fullmatch(cell.strip())
         return f"FSN{number[1].upper()}" if number else cell
 
+    def value(self, column: Column) -> Any:
+        """Return the value of a cell, of the type that the table of the list declares.
+
+        It is None where the cell is empty, which it may be if the table or the header can do
+        without the column.
+        """
+        declared = self.reading.table.columns()[column.key]
+        read = _READERS_BY_KEY.get(column.key) or _READERS[declared.dtype.base_type()]
+        value = read(self, column.key)
+        may_be_empty = declared.nullable or not column.required
+        return value if may_be_empty else self._there(column.key, value)
+
+    def values(self, columns: Iterable[Column]) -> dict[str, Any]:
+        """Return the values of cells; one that cannot be read does not hide the others."""
+        return all_of({column.key: partial(self.value, column) for column in columns})
+
     def named(self, key: str) -> str:
         """Return what the file calls a column."""
         place = self.columns.get(key)
         return place.header if place else key
+
+
+_READERS_BY_KEY: Final[Mapping[str, Callable[[ListRow, str], object]]] = {
+    "fsn_no": ListRow.boat,
+    "crew_class": ListRow.optional_crew_class,
+    "run": ListRow.run,
+}
+_READERS: Final[Mapping[type[pl.DataType], Callable[[ListRow, str], object]]] = {
+    pl.String: ListRow.optional_text,
+    pl.Float64: ListRow.optional_number,
+    **dict.fromkeys((pl.Int8, pl.Int16, pl.Int32), ListRow.optional_integer),
+    pl.Date: ListRow.optional_date,
+    pl.Boolean: ListRow.yes_or_no,
+}
 
 
 class DefectiveRowError(DefectiveInputError):
@@ -342,6 +388,26 @@ def all_of(readings: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:
     if faults:
         raise DefectiveRowError(faults)
     return values
+
+
+def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -> int:
+    """Return the number of a run as written in a list: 1 and on, or 21 and on for b1 and on.
+
+    Raises:
+        DefectiveInputError: it is none, with the row's reason code and line.
+    """
+    match = _RUN.fullmatch(part)
+    if match is None or int(match[2]) not in planned:
+        raise row.fault(
+            say(
+                "column '{column}' has '{part}'; runs are 1 to {last}, or b1 to b{last} for the "
+                "second file, with commas between them. Runs beyond these need a [[plan]].",
+                column=header,
+                part=shorten(part),
+                last=max(planned),
+            )
+        )
+    return int(match[2]) + (SECOND_FILE_OFFSET if match[1] else 0)
 
 
 def others_of(error: DefectiveInputError) -> tuple[DefectiveInputError, ...]:
@@ -401,49 +467,39 @@ def read_rows(
     data: bytes,
     columns: Sequence[Column],
     reason_code: str,
-    limits: Limits,
-    suffix: str = ".csv",
+    table: type[dy.Schema],
 ) -> list[ListRow]:
-    """Return the rows of a table that anybody made; columns nobody asked for are ignored.
+    """Return the rows of a table of text that anybody made; other columns are ignored.
 
     Args:
         data: content of the file.
         columns: the columns to look for.
         reason_code: what a bad value in this table is called.
-        limits: the lowest and highest value of a column that can be right.
-        suffix: kind of file.
+        table: declares the type and the limits of each value.
 
     Raises:
         DefectiveInputError: the table as a whole cannot be read.
     """
-    sheet = read_sheets(data, columns, suffix)[0]
+    sheet = read_sheets(data, columns)[0]
     places = find_columns(sheet.header, columns, sheet.line)
-    return _rows(sheet, Reading(places, reason_code, {}, "", "", limits))
+    return _rows(sheet, Reading(places, reason_code, {}, "", "", table))
 
 
-def read_list(
-    data: bytes,
-    columns: Sequence[Column],
-    reason_code: str,
-    path: str,
-    wording: Wording,
-    table: type[dy.Schema],
-) -> list[ListRow]:
+def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[ListRow]:
     """Return the rows of a list of the archive; empty ones are left out.
 
     Args:
-        data: content of the file.
-        columns: the columns to look for.
-        reason_code: what a bad value in this list is called.
+        root: folder of the archive.
+        kind: which list.
         path: the list, relative to the archive.
         wording: how the lists of this archive are worded.
-        table: declares the limits of each column.
 
     Raises:
         DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
             it can be a misspelt one, and left out in silence would change numbers.
     """
-    wanted = wording.with_names(columns)
+    data = read_bytes(path_inside(root, path), LIST_MAX_BYTES)
+    wanted = wording.with_names(kind.columns)
     file, sheet = split_sheet(path)
     suffix = file[file.rfind(".") :].casefold()
     sheets = [with_crews_apart(s, wanted) for s in read_sheets(data, wanted, suffix, sheet)]
@@ -456,17 +512,54 @@ def read_list(
         for row in _rows(
             sheet,
             Reading(
-                _columns_of(sheet, wanted, wording, table),
-                reason_code,
+                _columns_of(sheet, wanted, wording, kind.table),
+                kind.reason_code,
                 wording.words,
                 order,
                 told or _decimal_mark(cells),
-                partial(limits, table),
+                kind.table,
                 sheet.name,
                 bool(told),
             ),
         )
     ]
+
+
+def read_lists(
+    root: Path,
+    kind: ListKind,
+    wording: Wording,
+    read_row: Callable[[ListRow, int], Row],
+) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+    """Read the lists of a kind: rows of its table, and a fault for each that cannot be read.
+
+    Args:
+        root: folder of the archive.
+        kind: which lists; its table has `path` and `line` too.
+        wording: how the lists are worded.
+        read_row: from a row and the year in the file's name to the other values.
+    """
+    good: list[Row] = []
+    faults: list[Fault] = []
+    for file in list_files(root, kind, wording.files):
+        try:
+            rows = read_list(root, kind, file.path, wording)
+        except DefectiveInputError as error:
+            faults.append(fault_from(error, file.path))
+            continue
+        for row in rows:
+            try:
+                row.check_whole()
+                values = read_row(row, file.season)
+            except DefectiveInputError as error:
+                faults.append(fault_from(error, file.path))
+            else:
+                good.append({**values, "path": file.path, "line": row.line})
+    frame = frame_of(kind.table, good)
+    for misfit, why in misfits(kind.table, frame):
+        place, said = (misfit["path"], None, misfit["line"]), at_line(misfit["line"], why)
+        faults.append(Fault(*place, kind.reason_code, said))
+    return kind.table.filter(frame).result, tuple(faults)
 
 
 def _columns_of(
@@ -482,11 +575,11 @@ def _columns_of(
         raise DefectiveInputError(
             "unknown_column", _strange(_meanings(strange, free, sheet, table)), sheet.line
         )
-    found = find_columns(sheet.header, wanted, sheet.line)
+    columns = find_columns(sheet.header, wanted, sheet.line)
     if not sheet.crews:
-        return found
-    of_crews = {key: replace(found[key], header=sheet.crews) for key in CREW if key in found}
-    return found | of_crews
+        return columns
+    of_crews = {key: replace(columns[key], header=sheet.crews) for key in CREW if key in columns}
+    return columns | of_crews
 
 
 def _check_named(sheet: Sheet, known: Collection[int]) -> None:
@@ -495,13 +588,13 @@ def _check_named(sheet: Sheet, known: Collection[int]) -> None:
         if place in known or fold(header):
             continue
         cells = (row.fields[place].strip() for row in sheet.rows if place < len(row.fields))
-        held = next((cell for cell in cells if cell and fold_word(cell) not in NOTHING), None)
-        if held is not None:
+        content = next((cell for cell in cells if cell and fold_word(cell) not in NOTHING), None)
+        if content is not None:
             said = say(
                 "Column {number} has no name and holds '{cell}'. Give it its name; one that is not "
                 "needed can be put under ignore in archief.toml.",
                 number=place + 1,
-                cell=shorten(held),
+                cell=shorten(content),
             )
             raise DefectiveInputError("unknown_column", said, sheet.line)
 
@@ -595,17 +688,17 @@ _LOOKS: Final[Mapping[str, Callable[[str], bool]]] = {
 """What cells of text look like, of columns that not every text can stand in."""
 
 
-def _strange(found: Sequence[Meaning]) -> str:
+def _strange(unknown: Sequence[Meaning]) -> str:
     """Return the sentence about columns that nobody knows, with the likely known ones."""
     return say(
-        "Nobody knows column {names}. Correct it, name it under [headers] in archief.toml, or put "
+        "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or put "
         "it there under ignore.",
         names=", ".join(
             f"'{shorten(meaning.header)}'"
             + (f" ({meaning.column.named}?)" if meaning.column else "")
-            for meaning in found
+            for meaning in unknown
         ),
-        meant=tuple((m.header, m.column.header if m.column else "", m.is_sure) for m in found),
+        meant=tuple((m.header, m.column.header if m.column else "", m.is_sure) for m in unknown),
     )
 
 

@@ -8,6 +8,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 from herijk.warehouse.archive.text import Column, split_header
@@ -40,6 +41,8 @@ _NUMBER_SIGN: Final = re.compile(
 _SHORTEST_START: Final = 3
 """Letters of an abbreviation: `opm.` is `opmerking`."""
 
+Cells = Mapping[str, Sequence[str]]
+"""The cells under each header that nobody knows."""
 Fits = Callable[[Column, str], bool]
 """Whether a cell can stand in a column."""
 
@@ -59,37 +62,34 @@ class Meaning:
     is_sure: bool = True
 
 
-def meanings(
-    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
-) -> tuple[Meaning, ...]:
+def meanings(strange: Cells, free: Sequence[Column], fits: Fits) -> tuple[Meaning, ...]:
     """Return what each of the headers can mean, every column at most once.
 
     Args:
         strange: the cells under each header that nobody knows.
-        free: the columns that were not found.
+        free: the columns that no header has.
         fits: whether a cell can stand in a column.
     """
-    found: dict[str, Meaning] = {}
+    meant: dict[str, Meaning] = {}
     needed = [column for column in free if column.required]
     by_content = [column for column in free if column.key in _BY_CONTENT]
+    usual = [column for column in free if column.key not in _SELDOM]
     for guess, columns in (
         (_by_name, needed),
         (_by_content, needed),
         (_by_name, free),
         (_by_content, by_content),
         (_by_unit, free),
-        (_by_shared_unit, free),
+        (partial(_by_unit, is_shared=True), usual),
         (_by_name_alone, free),
     ):
-        taken = {meaning.column for meaning in found.values()}
-        left = {header: cells for header, cells in strange.items() if header not in found}
-        found |= guess(left, [column for column in columns if column not in taken], fits)
-    return tuple(found.get(header, Meaning(header, None)) for header in strange)
+        taken = {meaning.column for meaning in meant.values()}
+        left = {header: cells for header, cells in strange.items() if header not in meant}
+        meant |= guess(left, [column for column in columns if column not in taken], fits)
+    return tuple(meant.get(header, Meaning(header, None)) for header in strange)
 
 
-def _by_name(
-    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
-) -> dict[str, Meaning]:
+def _by_name(strange: Cells, free: Sequence[Column], fits: Fits) -> dict[str, Meaning]:
     """Return the headers that are like the name of a column that can hold their cells."""
     pairs = [
         (likeness(header, column), header, column)
@@ -99,65 +99,50 @@ def _by_name(
         and _share(column, cells, fits) >= FITS
         and (column.key not in _DISTINCT or _differ(cells))
     ]
-    found: dict[str, Meaning] = {}
+    meant: dict[str, Meaning] = {}
     taken: set[str] = set()
     for like, header, column in sorted(pairs, key=lambda pair: -pair[0]):
-        if like > 0 and header not in found and column.key not in taken:
-            found[header] = Meaning(header, column)
+        if like > 0 and header not in meant and column.key not in taken:
+            meant[header] = Meaning(header, column)
             taken.add(column.key)
-    return found
+    return meant
 
 
-def _by_name_alone(
-    strange: Mapping[str, Sequence[str]], free: Sequence[Column], _: Fits
-) -> dict[str, Meaning]:
+def _by_name_alone(strange: Cells, free: Sequence[Column], _: Fits) -> dict[str, Meaning]:
     """Return the headers that are like a name, whatever stands under them: only a person knows."""
     named = _by_name(dict.fromkeys(strange, ()), free, lambda *_: True)
     return {header: replace(meaning, is_sure=False) for header, meaning in named.items()}
 
 
-def _by_content(
-    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
-) -> dict[str, Meaning]:
+def _by_content(strange: Cells, free: Sequence[Column], fits: Fits) -> dict[str, Meaning]:
     """Return the headers whose cells are what a column holds."""
-    found: dict[str, Meaning] = {}
+    meant: dict[str, Meaning] = {}
     for column in free:
         for header, cells in strange.items():
             is_it = any(cells) and _share(column, cells, fits) == 1 and _may_hold(column, header)
-            if is_it and header not in found and (column.key not in _DISTINCT or _differ(cells)):
-                found[header] = Meaning(header, column, is_sure=False)
+            if is_it and header not in meant and (column.key not in _DISTINCT or _differ(cells)):
+                meant[header] = Meaning(header, column, is_sure=False)
                 break
-    return found
+    return meant
 
 
 def _by_unit(
-    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
+    strange: Cells, free: Sequence[Column], fits: Fits, is_shared: bool = False
 ) -> dict[str, Meaning]:
-    """Return the headers with a unit that only one column can have."""
-    found: dict[str, Meaning] = {}
-    for header, cells in strange.items():
-        if split_header(header)[1] is None:
-            continue
-        can_be = [c for c in free if _may_hold(c, header) and _share(c, cells, fits) >= FITS]
-        if len(can_be) == 1:
-            found[header] = Meaning(header, can_be[0], is_sure=False)
-    return found
+    """Return the headers with a unit that only one column can have.
 
-
-def _by_shared_unit(
-    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
-) -> dict[str, Meaning]:
-    """Return the headers with a unit that several columns can have, in the order of both."""
-    found: dict[str, Meaning] = {}
-    left = [column for column in free if column.key not in _SELDOM]
+    Where `is_shared`, several can have it: headers and columns are then paired in their order.
+    """
+    meant: dict[str, Meaning] = {}
+    left = list(free)
     for header, cells in strange.items():
         if split_header(header)[1] is None:
             continue
         can_be = [c for c in left if _may_hold(c, header) and _share(c, cells, fits) >= FITS]
-        if can_be:
-            found[header] = Meaning(header, can_be[0], is_sure=False)
+        if len(can_be) == 1 or (can_be and is_shared):
+            meant[header] = Meaning(header, can_be[0], is_sure=False)
             left.remove(can_be[0])
-    return found
+    return meant
 
 
 def _differ(cells: Sequence[str]) -> bool:

@@ -9,7 +9,7 @@ agreement of out and back) is measuring method and belongs to `pipeline`.
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Final
 
@@ -86,9 +86,17 @@ _WORDS: Final = {
 
 @dataclass(frozen=True)
 class _Run:
-    """One selected run: its channels, and where its first row is in the file."""
+    """One selected run.
 
+    Attributes:
+        number: 21 and on are those of the second file.
+        path: its file, or the files that are a run each.
+        first_line: of its first row, counted over the rows of that file.
+    """
+
+    tow_id: str
     number: int
+    path: str
     first_line: int
     rate_hz: int
     intended_m_s: float
@@ -104,6 +112,19 @@ class _Run:
         if self.number > SECOND_FILE_OFFSET:
             return say("Run b{}", self.number - SECOND_FILE_OFFSET)
         return say("Run {}", self.number)
+
+    def fault(
+        self, reason_code: str, message: str, row: int, lost: Lost, lost_s: float | None = None
+    ) -> Fault:
+        """What is lost of this run; `row` counts from its start."""
+        line = self.first_line + row
+        lost_s = self.seconds if lost_s is None else lost_s
+        return Fault(self.path, self.tow_id, line, reason_code, message, lost, self.number, lost_s)
+
+    def without(self, *keys: str) -> "_Run":
+        """The run with NaN for all samples of some channels."""
+        gone = {key: np.full_like(self.channels[key], np.nan) for key in keys}
+        return replace(self, channels={**self.channels, **gone})
 
 
 @dataclass(frozen=True)
@@ -143,8 +164,7 @@ def judge_in_files(
     def place(path: str, line: int | None) -> tuple[str, int | None]:
         if line is None:
             return path, None
-        row = line - FIRST_ROW
-        return place_in_file(root, tow, profile, samples["run"], path, row)
+        return place_in_file(root, tow, profile, samples["run"], path, line - FIRST_ROW)
 
     try:
         judged = judge_samples(samples, tow, runs)
@@ -156,6 +176,7 @@ def judge_in_files(
     return replace(judged, faults=faults)
 
 
+HEADER: Final = 1
 FIRST_ROW: Final = 2
 """Line of the first row of a tow's samples where nothing but a header stands above it."""
 
@@ -174,42 +195,32 @@ def judge_samples(samples: pl.DataFrame, tow: Row, runs: pl.DataFrame) -> Judged
     Raises:
         DefectiveFileError: the tow is lost: the most specific cause comes first.
     """
-    found, faults = _selected_runs(samples, tow, runs)
-    selected = len(found) + len(faults)
-    whole = []
-    for run in found:
-        short = _short(run, tow)
-        faults += short
-        if not any(fault.lost == "run" for fault in short):
-            whole.append(run)
-    faults += _long(whole, tow)
-    whole, copies = _without_copies(whole, tow)
-    faults += copies
-    _check_left(whole, selected, faults)
-    samples, whole, found, no_wind = _without_no_wind(samples, whole, found, tow)
-    faults += no_wind
-    _check_mix_ups(whole, tow)
-    _check_log2_and_gps(whole, tow)
-    _check_speed_unit(whole, tow)
-    whole, gone, in_other_units = _without_other_units(whole, tow)
-    faults += in_other_units
-    kept: list[_Run] = []
+    faults: list[Fault] = []
+    selected = _selected_runs(samples, tow, runs, faults)
+    number = len(selected) + len(faults)
+    whole = [run for run in selected if _lasts(run, faults)]
+    faults += _long(whole)
+    whole = _without_copies(whole, faults)
+    _check_left(whole, number, faults)
+    if all(map(_is_no_wind, whole)):
+        faults.append(_no_wind(whole))
+        nothing = (pl.lit(None, pl.Float32).alias(_CHANNELS[key]) for key in _WIND)
+        samples, whole = samples.with_columns(nothing), [_without_wind(run) for run in whole]
+    _check_mix_ups(whole)
+    _check_log2_and_gps(whole)
+    _check_speed_unit(whole)
+    whole, gone = _without_other_units(whole, faults)
     usual_kg_m = _usual_resistance_kg_m(whole)
-    for run in whole:
-        mended, of_run = _judge_run(run, tow, usual_kg_m, gone)
-        faults += of_run
-        kept += [] if mended is None else [mended]
-    mended_gps, of_gps = _without_stuck_gps(kept, tow)
-    faults += of_gps
-    _check_left(mended_gps, selected, faults)
-    lost = [fault.run for fault in faults if fault.lost == "run" and fault.run is not None]
-    return Judged(_with_changes(samples, lost, found, mended_gps), tuple(faults))
+    judged = [_judge_run(run, usual_kg_m, gone) for run in whole]
+    faults += [fault for _, of_run in judged for fault in of_run]
+    kept = _without_stuck_gps([run for run, _ in judged if run is not None], faults)
+    _check_left(kept, number, faults)
+    return Judged(_with_changes(samples, kept, faults), tuple(faults))
 
 
-def _without_copies(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[Fault]]:
+def _without_copies(runs: list[_Run], faults: list[Fault]) -> list[_Run]:
     """Of runs with the very same samples, the one at its intended speed is what was measured."""
     kept: dict[bytes, _Run] = {}
-    faults = []
     for run in sorted(runs, key=_off_target):
         both = [run.channels[key] for key in ("log1", "force")]
         unread = not any(np.isfinite(channel).any() for channel in both)
@@ -219,46 +230,43 @@ def _without_copies(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[Fault]
             message = say(
                 "{} has the very samples of {}; the run is left out.", run.name, other.name.lower()
             )
-            faults.append(_cost("samples_listed_twice", message, run, tow, 0, "run", run.seconds))
-    return sorted(kept.values(), key=lambda run: run.number), faults
+            faults.append(run.fault("samples_listed_twice", message, 0, "run"))
+    return sorted(kept.values(), key=lambda run: run.number)
 
 
-def _without_no_wind(
-    samples: pl.DataFrame, runs: list[_Run], found: list[_Run], tow: Row
-) -> tuple[pl.DataFrame, list[_Run], list[_Run], list[Fault]]:
-    """Samples and runs without the wind, where in every run it is empty or one impossible value.
+def _no_wind(runs: list[_Run]) -> Fault:
+    """The fault of a wind that in every run is empty or one impossible value.
 
     So people write that there was no anemometer: 999 throughout. The tow goes on as one without.
     """
-    if "wind_speed" not in runs[0].channels or not all(map(_is_no_wind, runs)):
-        return samples, runs, found, []
     message = say(
         "column '{column}' {} in all runs, which is no wind; the tow goes on without wind.",
         _seen(runs[0].channels["wind_speed"][0]),
         column=_WORDS["wind_speed"],
     )
-    seconds = sum(run.seconds for run in runs)
-    fault = replace(
-        _cost("implausible_value", message, runs[0], tow, 0, "seconds", seconds), run=None
-    )
-    calm = {run.number: _without_wind(run) for run in found}
-    columns = [_CHANNELS[key] for key in _WIND]
-    nothing = samples.with_columns(pl.lit(None, pl.Float32).alias(name) for name in columns)
-    return nothing, [calm[run.number] for run in runs], list(calm.values()), [fault]
+    return _of_all(runs, "implausible_value", message, runs[0].first_line)
 
 
 _WIND: Final = ("wind_speed", "wind_angle")
 
 
 def _is_no_wind(run: _Run) -> bool:
-    values = run.channels["wind_speed"]
-    if np.isnan(values).all():
-        return True
-    return bool((values == values[0]).all() and not _within(values[0], WIND_SPEED_M_S))
+    values = run.channels.get("wind_speed")
+    if values is None:
+        return False
+    is_one_value = (values == values[0]).all() and not _within(values[0], WIND_SPEED_M_S)
+    return bool(np.isnan(values).all() or is_one_value)
 
 
 def _without_wind(run: _Run) -> _Run:
     return replace(run, channels={k: v for k, v in run.channels.items() if k not in _WIND})
+
+
+def _of_all(runs: list[_Run], reason_code: str, message: str, line: int) -> Fault:
+    """The fault of a channel that all runs of the tow lose."""
+    lost_s = sum(run.seconds for run in runs)
+    first = runs[0]
+    return Fault(first.path, first.tow_id, line, reason_code, message, "seconds", None, lost_s)
 
 
 def _off_target(run: _Run) -> tuple[float, int]:
@@ -274,113 +282,76 @@ def _check_left(kept: list[_Run], selected: int, faults: list[Fault]) -> None:
     raise DefectiveFileError(first.reason_code, first.message, first.line, first.path)
 
 
-def _with_changes(
-    samples: pl.DataFrame, lost: list[int], before: list[_Run], after: list[_Run]
-) -> pl.DataFrame:
+def _with_changes(samples: pl.DataFrame, kept: list[_Run], faults: list[Fault]) -> pl.DataFrame:
     """The samples without lost runs, with NaN where a sample of the others was left out."""
-    if not lost and all(one is other for one, other in zip(before, after, strict=True)):
+    if not faults:
         return samples
     number = samples["run"].to_numpy()
-    changed = {}
-    for key, name in _CHANNELS.items():
-        if samples[name].null_count() == 0:
-            values = samples[name].to_numpy().copy()
-            for run in after:
-                values[number == run.number] = run.channels[key]
-            changed[name] = values
-    return samples.with_columns(pl.Series(n, v) for n, v in changed.items()).filter(
-        ~pl.col("run").is_in(lost)
-    )
+    changed = []
+    for key, name in _measured(samples).items():
+        values = samples[name].to_numpy().copy()
+        for run in kept:
+            values[number == run.number] = run.channels[key]
+        changed.append(pl.Series(name, values))
+    lost = [fault.run for fault in faults if fault.lost == "run"]
+    return samples.with_columns(changed).filter(~pl.col("run").is_in(lost))
+
+
+def _measured(samples: pl.DataFrame) -> dict[str, str]:
+    """The channels that were measured, with the names of their columns."""
+    return {key: name for key, name in _CHANNELS.items() if samples[name].null_count() == 0}
 
 
 def _selected_runs(
-    samples: pl.DataFrame, tow: Row, runs: pl.DataFrame
-) -> tuple[list[_Run], list[Fault]]:
-    """The selected runs that are there, and a fault for each that is not."""
+    samples: pl.DataFrame, tow: Row, runs: pl.DataFrame, faults: list[Fault]
+) -> list[_Run]:
+    """The selected runs that are there; each that is not leaves a fault."""
     number = samples["run"].to_numpy()
-    starts = run_starts(number)
-    bounds = dict(
-        zip(
-            number[starts].tolist(),
-            zip(starts, [*starts[1:], len(number)], strict=True),
-            strict=True,
-        )
-    )
-    second = next(
-        (int(starts[i]) for i, n in enumerate(number[starts]) if n > SECOND_FILE_OFFSET), 0
-    )
-    channels = {
-        key: samples[name].to_numpy()
-        for key, name in _CHANNELS.items()
-        if samples[name].null_count() == 0
-    }
+    bounds = [*run_starts(number).tolist(), len(number)]
+    rows = {int(number[start]): (start, end) for start, end in pairwise(bounds)}
+    second_file = int(np.argmax(number > SECOND_FILE_OFFSET))
+    channels = {key: samples[name].to_numpy() for key, name in _measured(samples).items()}
     wanted = runs.filter((pl.col("tow_id") == tow["tow_id"]) & pl.col("selected"))
-    selected, missing = [], []
+    selected = []
     for row in wanted.sort("run").iter_rows(named=True):
-        if row["run"] not in bounds:
-            missing.append(_missing_run(row["run"], tow, sorted(bounds)))
+        if row["run"] not in rows:
+            faults.append(_missing_run(row["run"], tow, sorted(rows)))
             continue
-        start, end = bounds[row["run"]]
-        offset = second if row["run"] > SECOND_FILE_OFFSET else 0
+        start, end = rows[row["run"]]
+        in_second = row["run"] > SECOND_FILE_OFFSET
         selected.append(
             _Run(
+                tow["tow_id"],
                 row["run"],
-                int(start) - offset + FIRST_ROW,
+                tow["second_path"] if in_second else tow["samples_path"],
+                start - (second_file if in_second else 0) + FIRST_ROW,
                 tow["sample_rate_hz"],
                 tow["declared_speed_m_s"] * row["target_speed_ratio"],
                 row["planned_s"],
                 {key: values[start:end] for key, values in channels.items()},
             )
         )
-    return selected, missing
+    return selected
 
 
 def _missing_run(run: int, tow: Row, present: list[int]) -> Fault:
     in_second = run > SECOND_FILE_OFFSET
     offset = SECOND_FILE_OFFSET if in_second else 0
     there = [str(n - offset) for n in present if (n > SECOND_FILE_OFFSET) == in_second]
-    return Fault(
-        tow["second_path"] if in_second else tow["samples_path"],
-        tow["tow_id"],
-        None,
-        "missing_run",
-        say(
-            "Run {} is to be used but is not in the file; it holds runs {}.",
-            run - offset,
-            ", ".join(there),
-        ),
-        "run",
-        run,
+    message = say(
+        "Run {} is to be used but is not in the file; it holds runs {}.",
+        run - offset,
+        ", ".join(there),
     )
+    path = tow["second_path"] if in_second else tow["samples_path"]
+    return Fault(path, tow["tow_id"], None, "missing_run", message, "run", run)
 
 
-def _fault(
-    reason_code: str, message: str, run: _Run, tow: Row, row: int | None = None
-) -> DefectiveFileError:
-    """Return the error for a fault that costs the tow; `row` counts from the start of the run."""
-    fault = _cost(reason_code, message, run, tow, row)
-    return DefectiveFileError(reason_code, message, fault.line, fault.path)
-
-
-def _cost(
-    reason_code: str,
-    message: str,
-    run: _Run,
-    tow: Row,
-    row: int | None,
-    lost: Lost = "run",
-    lost_s: float | None = None,
-) -> Fault:
-    """The fault of a run; `row` counts from the start of the run."""
-    path = tow["second_path"] if run.number > SECOND_FILE_OFFSET else tow["samples_path"]
-    line = None if row is None else run.first_line + row
-    return Fault(path, tow["tow_id"], line, reason_code, message, lost, run.number, lost_s)
-
-
-def _short(run: _Run, tow: Row) -> list[Fault]:
-    if run.seconds >= SHORTEST_RUN_RATIO * run.planned_s:
-        return []
+def _lasts(run: _Run, faults: list[Fault]) -> bool:
+    """Whether a run is long enough; one that is too short leaves a fault."""
     missing_s = run.planned_s - run.seconds
+    if run.seconds >= SHORTEST_RUN_RATIO * run.planned_s:
+        return True
     lost: Lost = "run" if missing_s > LEFT_OUT_S else "seconds"
     message = say(
         "{} lasts {:.2f} s at {} samples per second, {:.2f} s too short; {}.",
@@ -390,10 +361,11 @@ def _short(run: _Run, tow: Row) -> list[Fault]:
         missing_s,
         _what_then(lost),
     )
-    return [_cost("short_run", message, run, tow, 0, lost, missing_s)]
+    faults.append(run.fault("short_run", message, 0, lost, missing_s))
+    return lost == "seconds"
 
 
-def _long(runs: list[_Run], tow: Row) -> list[Fault]:
+def _long(runs: list[_Run]) -> list[Fault]:
     """A fault that costs nothing where all runs last far longer than planned, as by a wrong rate.
 
     Windows, averages and what accelerated the boat are then taken over another time than is meant.
@@ -409,7 +381,7 @@ def _long(runs: list[_Run], tow: Row) -> list[Fault]:
         first.planned_s,
         first.rate_hz * first.seconds / first.planned_s,
     )
-    return [replace(_cost("long_run", message, first, tow, 0, "seconds", 0.0), run=None)]
+    return [replace(first.fault("long_run", message, 0, "seconds", 0.0), run=None)]
 
 
 def _what_then(lost: Lost) -> str:
@@ -480,7 +452,7 @@ def _within(value: float, limits: tuple[float, float], unit: float = 1.0) -> boo
     return limits[0] * unit <= value <= limits[1] * unit
 
 
-def _check_mix_ups(runs: list[_Run], tow: Row) -> None:
+def _check_mix_ups(runs: list[_Run]) -> None:
     """A force that is right but for its sign is a sign error; after that come swapped columns."""
     typical = _typical(runs)
     intended = float(np.median([run.intended_m_s for run in runs]))
@@ -490,33 +462,24 @@ def _check_mix_ups(runs: list[_Run], tow: Row) -> None:
     force = typical["force"].median
     turned = {**typical, "force": _Typical(-force, 0, 0)}
     if force < 0 and not _implausible(turned, intended):
-        raise _fault(
-            "negative_force",
-            say("The force is {:.0f} N in a typical run; it must be positive.", force, turned=True),
-            runs[0],
-            tow,
-            0,
-        )
-    follows = {key for key in ("log2", "gps") if key in typical and _follows_log(runs, key)}
+        message = "The force is {:.0f} N in a typical run; it must be positive."
+        said = say(message, force, turned=True)
+        raise DefectiveFileError("negative_force", said, runs[0].first_line, runs[0].path)
+    follows = {key for key in SPARE if key in typical and _follows_log(runs, key)}
     for one, other in combinations(typical, 2):
         if other == "wind_speed" and one in follows:  # in another unit: no wind follows the boat
             continue
         exchanged = {**typical, one: typical[other], other: typical[one]}
         if (one in wrong or other in wrong) and not _implausible(exchanged, intended):
-            raise _fault(
-                "swapped_columns",
-                say(
-                    "Columns '{}' and '{}' seem to be exchanged: typically they hold "
-                    "{:.4g} and {:.4g}, and only the other way round can that be right.",
-                    _WORDS[one],
-                    _WORDS[other],
-                    typical[one].median,
-                    typical[other].median,
-                ),
-                runs[0],
-                tow,
-                1 - runs[0].first_line,
+            said = say(
+                "Columns '{}' and '{}' seem to be exchanged: typically they hold {:.4g} and "
+                "{:.4g}, and only the other way round can that be right.",
+                _WORDS[one],
+                _WORDS[other],
+                typical[one].median,
+                typical[other].median,
             )
+            raise DefectiveFileError("swapped_columns", said, HEADER, runs[0].path)
 
 
 def _follows_log(runs: list[_Run], key: str) -> bool:
@@ -525,81 +488,65 @@ def _follows_log(runs: list[_Run], key: str) -> bool:
     return bool(np.ptp(ratio) <= FOLLOWS_RATIO * abs(np.median(ratio)))
 
 
-def _check_log2_and_gps(runs: list[_Run], tow: Row) -> None:
+def _check_log2_and_gps(runs: list[_Run]) -> None:
     """A receiver gives a fix a second, held in between; a log moves as log 1 does."""
-    if not {"log2", "gps"} <= set(runs[0].channels):
+    if not {*SPARE} <= set(runs[0].channels):
         return
     log1, log2, gps = (
         np.median([np.count_nonzero(np.diff(run.channels[key])) / run.seconds for run in runs])
-        for key in ("log1", "log2", "gps")
+        for key in _SPEEDS
     )
     if min(log1, gps) > MOVES_AS_A_LOG_HZ and 0.1 < log2 < HELD_AS_A_FIX_HZ:
-        raise _fault(
-            "swapped_columns",
-            say(
-                "Columns '{}' and '{}' seem to be exchanged: the second moves {:.0f} times a "
-                "second, as log1 does, and the first {:.1f} times, as a receiver does.",
-                _WORDS["log2"],
-                _WORDS["gps"],
-                gps,
-                log2,
-            ),
-            runs[0],
-            tow,
-            1 - runs[0].first_line,
+        said = say(
+            "Columns '{}' and '{}' seem to be exchanged: the second moves {:.0f} times a second, "
+            "as log1 does, and the first {:.1f} times, as a receiver does.",
+            _WORDS["log2"],
+            _WORDS["gps"],
+            gps,
+            log2,
         )
+        raise DefectiveFileError("swapped_columns", said, HEADER, runs[0].path)
 
 
-def _speed_ratio(runs: list[_Run]) -> float:
+def _check_speed_unit(runs: list[_Run]) -> None:
     means = [_known(_mean, run.channels["log1"]) / run.intended_m_s for run in runs]
-    return float(np.median(means))
-
-
-def _check_speed_unit(runs: list[_Run], tow: Row) -> None:
-    ratio = _speed_ratio(runs)
+    ratio = float(np.median(means))
     if _within(ratio, KM_H_RATIO):
-        raise _fault(
-            "speed_unit",
-            say(
-                "The speed by log1 is {:.2f} times the intended one; between {:g} and "
-                "{:g} times it looks like km/h under another header.",
-                ratio,
-                KM_H_RATIO[0],
-                KM_H_RATIO[1],
-            ),
-            runs[0],
-            tow,
-            1 - runs[0].first_line,
+        said = say(
+            "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
+            "looks like km/h under another header.",
+            ratio,
+            *KM_H_RATIO,
         )
+        raise DefectiveFileError("speed_unit", said, HEADER, runs[0].path)
 
 
-def _without_other_units(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[str], list[Fault]]:
-    """A log 2 or GPS in another unit of speed: one fault, and the runs go on without it."""
+def _without_other_units(
+    runs: list[_Run], faults: list[Fault]
+) -> tuple[list[_Run], Collection[str]]:
+    """The runs without a log 2 or GPS in another unit of speed, and which of the two that is."""
+    typical = {
+        key: float(np.median([_median(run.channels[key]) for run in runs]))
+        for key in _SPEEDS
+        if key in runs[0].channels
+    }
     gone = []
-    faults, header = [], 1 - runs[0].first_line
     for key in SPARE:
-        if key not in runs[0].channels:
-            continue
-        seen, log1 = (
-            float(np.median([_median(run.channels[k]) for run in runs])) for k in (key, "log1")
-        )
-        units = [u for u, ratio in _SPEED_UNITS.items() if 0.9 < seen / (ratio * log1) < 1.1]
+        ratio = typical.get(key, np.nan) / typical["log1"]
+        units = [unit for unit, usual in _SPEED_UNITS.items() if 0.9 < ratio / usual < 1.1]
         if not units:
             continue
         message = say(
             "column '{column}' holds {:.3g} in a typical run and log1 {:.3g}, so it looks like "
             "{unit}; the tow goes on without this column.",
-            seen,
-            log1,
+            typical[key],
+            typical["log1"],
             column=_WORDS[key],
             unit=units[0],
         )
-        seconds = sum(run.seconds for run in runs)
-        lost = _cost("implausible_value", message, runs[0], tow, header, "seconds", seconds)
-        faults.append(replace(lost, run=None))
-        runs = [_without(run, key) for run in runs]
+        faults.append(_of_all(runs, "implausible_value", message, HEADER))
         gone.append(key)
-    return runs, gone, faults
+    return [run.without(*gone) for run in runs], gone
 
 
 _SPEED_UNITS: Final = {"km/h": 3.6, "kn": 1.9438}
@@ -615,7 +562,7 @@ def _usual_resistance_kg_m(runs: list[_Run]) -> float:
 
 
 def _judge_run(
-    run: _Run, tow: Row, usual_kg_m: float, gone: Collection[str]
+    run: _Run, usual_kg_m: float, gone: Collection[str]
 ) -> tuple[_Run | None, list[Fault]]:
     """The run without the samples that cannot be, or None where too much or all of it is wrong.
 
@@ -625,24 +572,20 @@ def _judge_run(
     wrong = {key: mask for key, mask in wrong.items() if key not in gone}
     no_row = np.logical_and.reduce([~np.isfinite(values) for values in run.channels.values()])
     needed = np.logical_or.reduce([mask for key, mask in wrong.items() if key not in SPARE])
-    lost: Lost = "run" if needed.sum() > LEFT_OUT_S * run.rate_hz else "seconds"
-    faults = [_of_rows(run, tow, no_row, lost)] if no_row.any() else []
+    most = LEFT_OUT_S * run.rate_hz
+    lost: Lost = "run" if needed.sum() > most else "seconds"
+    faults = [_of_rows(run, no_row, lost)] if no_row.any() else []
     wrong = {key: mask & ~no_row for key, mask in wrong.items() if (mask & ~no_row).any()}
     channels = dict(run.channels)
     for key, mask in wrong.items():
-        if key not in SPARE:
-            faults.append(_of_samples(run, tow, key, mask, lost, _what_then(lost)))
-            channels[key] = np.where(mask, np.float32(np.nan), channels[key])
-        elif mask.sum() > LEFT_OUT_S * run.rate_hz:
-            faults.append(_of_samples(run, tow, key, mask, "seconds", _NOT_IN_THIS_RUN))
-            channels[key] = np.full_like(channels[key], np.nan)
-        else:
-            faults.append(_of_samples(run, tow, key, mask, "seconds", _what_then("seconds")))
-            channels[key] = np.where(mask, np.float32(np.nan), channels[key])
+        cost = "seconds" if key in SPARE else lost
+        is_gone = key in SPARE and mask.sum() > most
+        then = _NOT_IN_THIS_RUN if is_gone else _what_then(cost)
+        faults.append(_of_samples(run, key, mask, cost, then))
+        channels[key] = np.where(mask | is_gone, np.float32(np.nan), channels[key])
     if lost == "run":
         return None, [fault for fault in faults if fault.lost == "run"]
-    mended = replace(run, channels=channels) if wrong else run
-    return _judge_whole(mended, tow, faults)
+    return _judge_whole(replace(run, channels=channels), faults)
 
 
 SPARE: Final = ("log2", "gps")
@@ -651,7 +594,7 @@ SPARE: Final = ("log2", "gps")
 _NOT_IN_THIS_RUN: Final = say("over {:g} s, so the run goes on without this column", LEFT_OUT_S)
 
 
-def _of_rows(run: _Run, tow: Row, mask: BoolArray, lost: Lost) -> Fault:
+def _of_rows(run: _Run, mask: BoolArray, lost: Lost) -> Fault:
     """The fault of rows of which nothing can be read."""
     seconds = float(mask.sum()) / run.rate_hz
     message = say(
@@ -666,30 +609,22 @@ def _of_rows(run: _Run, tow: Row, mask: BoolArray, lost: Lost) -> Fault:
             "out.",
             run.name,
         )
-    return _cost("broken_row", message, run, tow, int(mask.argmax()), lost, seconds)
+    return run.fault("broken_row", message, int(mask.argmax()), lost, seconds)
 
 
-def _of_samples(
-    run: _Run,
-    tow: Row,
-    key: str,
-    mask: BoolArray,
-    lost: Lost,
-    then: str,
-) -> Fault:
+def _of_samples(run: _Run, key: str, mask: BoolArray, lost: Lost, then: str) -> Fault:
     """The fault of samples of one channel, named by the first of them."""
     row = int(mask.argmax())
-    value = run.channels[key][row]
     seconds = float(mask.sum()) / run.rate_hz
     message = say(
         "{}: column '{column}' {} and is wrong for {:.3g} s in all; {}.",
         run.name,
-        _seen(value),
+        _seen(run.channels[key][row]),
         seconds,
         then,
         column=_WORDS[key],
     )
-    return _cost(_reason(run, key, row), message, run, tow, row, lost, seconds)
+    return run.fault(_reason(run, key, row), message, row, lost, seconds)
 
 
 def _seen(value: float) -> str:
@@ -771,16 +706,21 @@ def _wrong_force(values: Array, usual_n: float, rate_hz: int) -> BoolArray:
 
 def _dead(values: Array, most: float, samples: int) -> BoolArray:
     """Stretches of at least so many equal samples near zero."""
-    starts = np.concatenate(([0], np.flatnonzero(values[1:] != values[:-1]) + 1))
-    lengths = np.diff(starts, append=len(values))
+    starts, lengths = _stretches(values[1:] != values[:-1])
     dead = (lengths >= samples) & (np.abs(values[starts]) <= most)
     return np.asarray(np.repeat(dead, lengths))
+
+
+def _stretches(changes: BoolArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """First rows and lengths of stretches, given whether each sample differs from that before."""
+    starts = np.concatenate(([0], np.flatnonzero(changes) + 1))
+    return starts, np.diff(starts, append=len(changes) + 1)
 
 
 # What is wrong for longer
 
 
-def _judge_whole(run: _Run, tow: Row, faults: list[Fault]) -> tuple[_Run | None, list[Fault]]:
+def _judge_whole(run: _Run, faults: list[Fault]) -> tuple[_Run | None, list[Fault]]:
     """Stuck instruments and means that cannot be: they cost the run, or a spare channel in it."""
     for judge in (_stuck, _unlikely_mean, _saturated):
         for key in tuple(run.channels):
@@ -792,29 +732,21 @@ def _judge_whole(run: _Run, tow: Row, faults: list[Fault]) -> tuple[_Run | None,
             reason_code, what, row = said
             if key not in SPARE:
                 message = say("{}: {what}; the run is left out.", run.name, what=what)
-                return None, [_cost(reason_code, message, run, tow, row, "run", run.seconds)]
+                return None, [run.fault(reason_code, message, row, "run")]
             message = say("{}: {what}; the run goes on without this column.", run.name, what=what)
-            faults.append(_cost(reason_code, message, run, tow, row, "seconds", run.seconds))
-            run = _without(run, key)
+            faults.append(run.fault(reason_code, message, row, "seconds"))
+            run = run.without(key)
     return run, faults
 
 
-def _without(run: _Run, key: str) -> _Run:
-    gone = np.full_like(run.channels[key], np.nan)
-    return replace(run, channels={**run.channels, key: gone})
-
-
-def _longest_hold(values: Array, counts: NDArray[np.bool_] | None = None) -> tuple[int, int]:
+def _longest_hold(values: Array, counts: BoolArray | None = None) -> tuple[int, int]:
     """Return (first row, length) of the longest stretch of one value in which `counts` holds."""
-    change = values[1:] != values[:-1]
-    if counts is not None:
-        change |= counts[1:] != counts[:-1]
-    starts = np.concatenate(([0], np.flatnonzero(change) + 1))
-    lengths = np.diff(starts, append=len(values))
-    if counts is not None:
-        lengths = lengths * counts[starts]
-    longest = int(lengths.argmax())
-    return int(starts[longest]), int(lengths[longest])
+    if counts is None:
+        counts = np.ones(len(values), dtype=bool)
+    starts, lengths = _stretches((values[1:] != values[:-1]) | (counts[1:] != counts[:-1]))
+    counted = lengths * counts[starts]
+    longest = int(counted.argmax())
+    return int(starts[longest]), int(counted[longest])
 
 
 def _may_hold(values: Array, samples: int) -> bool:
@@ -824,9 +756,7 @@ def _may_hold(values: Array, samples: int) -> bool:
 
 
 _STUCK_LIMIT_S: Final = {
-    "log1": STUCK_S,
-    "log2": STUCK_S,
-    "force": STUCK_S,
+    **dict.fromkeys(("log1", "log2", "force"), STUCK_S),
     "wind_speed": STUCK_WIND_SPEED_S,
     "wind_angle": STUCK_VANE_S,
 }
@@ -842,7 +772,7 @@ def _stuck(run: _Run, key: str) -> Said | None:
     if limit_s is None or not _may_hold(values, int(limit_s * run.rate_hz)):
         return None
     counts = None
-    if key in ("wind_speed", "wind_angle"):  # cups may stand still, and a vane needs wind
+    if key in _WIND:  # cups may stand still, and a vane needs wind
         wind = run.channels["wind_speed"]
         counts = wind > (0.0 if key == "wind_speed" else VANE_TURNS_M_S)
     row, length = _longest_hold(values, counts)
@@ -862,7 +792,7 @@ def _unlikely_mean(run: _Run, key: str) -> Said | None:
     """A mean that cannot be; of the vane there is none."""
     if key == "wind_angle":
         return None
-    mean, log1 = (float(np.nanmean(run.channels[k], dtype=np.float64)) for k in (key, "log1"))
+    mean, log1 = (_mean(run.channels[k]) for k in (key, "log1"))
     if key == "log1":
         low, high = (ratio * run.intended_m_s for ratio in SPEED_RATIO)
         reason_code = "implausible_speed"
@@ -908,28 +838,24 @@ def _saturated(run: _Run, key: str) -> Said | None:
     return "saturated_force", what, int(at_end.argmax())
 
 
-def _without_stuck_gps(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[Fault]]:
+def _without_stuck_gps(runs: list[_Run], faults: list[Fault]) -> list[_Run]:
     """GPS has one fix a second in steps of 0.01 m/s, so a steady boat may well hold one value."""
-    held: dict[float, list[_Run]] = {}
+    by_value: dict[float, list[_Run]] = {}
     for run in runs:
         gps = run.channels.get("gps")
         if gps is not None and gps.min() == gps.max():  # NaN differs from itself
-            held.setdefault(float(gps[0]), []).append(run)
-    why = {run.number: said for value in held.values() for run, said in _stuck_gps(value)}
-    kept, faults = [], []
+            by_value.setdefault(float(gps[0]), []).append(run)
+    why = {run.number: said for alike in by_value.values() for run, said in _stuck_gps(alike)}
     for run in runs:
-        if run.number not in why:
-            kept.append(run)
-            continue
-        message = say(
-            "{}: gps holds {:.6g} throughout, {}; the run goes on without this column.",
-            run.name,
-            run.channels["gps"][0],
-            why[run.number],
-        )
-        faults.append(_cost("stuck_channel", message, run, tow, 0, "seconds", run.seconds))
-        kept.append(_without(run, "gps"))
-    return kept, faults
+        if run.number in why:
+            message = say(
+                "{}: gps holds {:.6g} throughout, {}; the run goes on without this column.",
+                run.name,
+                run.channels["gps"][0],
+                why[run.number],
+            )
+            faults.append(run.fault("stuck_channel", message, 0, "seconds"))
+    return [run.without("gps") if run.number in why else run for run in runs]
 
 
 def _stuck_gps(runs: list[_Run]) -> Iterator[tuple[_Run, str]]:

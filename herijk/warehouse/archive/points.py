@@ -6,6 +6,8 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables import column
+from herijk.tables.declare import dy
 from herijk.warehouse.archive.lists import ListRow, read_rows
 from herijk.warehouse.archive.text import (
     Column,
@@ -23,6 +25,14 @@ KNOWN: Final = {
 }
 LARGEST: Final = 1e9
 """A speed, force or coefficient above it is a slip of the keyboard."""
+
+
+class _Points(dy.Schema):
+    """A table that anybody made."""
+
+    speed = column.number("m/s", "speed", min=0, max=LARGEST)
+    force = column.number("N", "force", min=0, max=LARGEST)
+    cw = column.number("kg/m", "force / speed squared", min=0, max=LARGEST)
 
 
 def read_points(path: Path, speed: str | None, force: str | None) -> pl.DataFrame:
@@ -47,7 +57,7 @@ def read_points(path: Path, speed: str | None, force: str | None) -> pl.DataFram
         other = Column("cw", KNOWN["cw"][0])
     else:
         other = Column("force", force or _first(names, "force", header), "force", "N")
-    rows = read_rows(data, (speed_column, other), "bad_point", lambda _: (0.0, LARGEST))
+    rows = read_rows(data, (speed_column, other), "bad_point", _Points)
     return pl.DataFrame(
         [_point(row, other.key) for row in rows],
         schema={"line": pl.Int64, "speed_m_s": pl.Float64, "cw_kg_m": pl.Float64},
@@ -72,6 +82,6 @@ def _point(row: ListRow, key: str) -> dict[str, float]:
     speed = row.number("speed")
     value = row.number(key)
     if not speed or not value:
-        raise row.fault("a speed and a force must be above zero.")
+        raise row.fault(say("a speed and a force must be above zero."))
     cw = value / speed**2 if key == "force" else value
     return {"line": row.line, "speed_m_s": speed, "cw_kg_m": cw}

@@ -6,11 +6,11 @@ Reading the samples with it belongs to `samples`.
 """
 
 import datetime as dt
-from dataclasses import dataclass, field, replace
-from functools import reduce
+from dataclasses import dataclass, replace
+from functools import cached_property, reduce
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
@@ -142,7 +142,7 @@ class _ProfileTable(_Strict):
     directions: _Directions | None = None
 
     @model_validator(mode="after")
-    def _names_and_units_are_known(self) -> "_ProfileTable":
+    def _names_and_units_are_known(self) -> Self:
         for channel, name in self.columns.items():
             if "[" in name:
                 raise ValueError(f"columns.{channel}: '{name}' has a unit; put it under units")
@@ -165,7 +165,7 @@ class _PlanTable(_Strict):
     seconds: Annotated[float, Field(ge=5, le=600)] = RUN_SECONDS
 
     @model_validator(mode="after")
-    def _is_whole(self) -> "_PlanTable":
+    def _is_whole(self) -> Self:
         if (self.seasons is None) == (not self.tows):
             raise ValueError("a plan is for seasons or for tows: give one of the two")
         second = self.second_directions or self.directions
@@ -186,29 +186,6 @@ class Publication(_Strict):
 
     publisher: Annotated[str, Field(min_length=1)] | None = None
     licence: Annotated[str, Field(pattern=r"^([A-Za-z0-9.+-]+|https?://\S+)$")] | None = None
-
-
-class _File(_Strict):
-    simulated: bool = False
-    publication: Publication = Publication()
-    profile: list[_ProfileTable] = []
-    plan: list[_PlanTable] = []
-    words: dict[str, str] = {}
-    headers: dict[str, str] = {}
-    ignore: list[str] = []
-    dates: dict[str, Literal["dmy", "mdy"]] = {}
-    decimals: dict[str, Literal[".", ","]] = {}
-    files: dict[str, Annotated[str, Field(pattern=f"^{STANDS_FOR.pattern}$")]] = {}
-    set_aside: list[SetAside] = []
-    log_replaced: list[LogReplaced] = []
-
-    @model_validator(mode="after")
-    def _one_profile_per_season(self) -> "_File":
-        ranges = sorted(table.seasons for table in self.profile)
-        for (_, last), (first, _) in pairwise(ranges):
-            if first <= last:
-                raise ValueError(f"season {first} has two profiles")
-        return self
 
 
 @dataclass(frozen=True)
@@ -234,33 +211,55 @@ class SeasonProfile:
     ignore: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class Profiles:
-    """`archief.toml`, read and checked; all defaults when there is none.
+class Profiles(_Strict):
+    """`archief.toml`, checked; all defaults when there is none.
 
     Attributes:
         simulated: the archive says of itself that it was made by a simulator.
         publication: publisher and licence of what is made from it.
-        tables: the season ranges that differ.
+        profile: the season ranges that differ.
+        plan: the runs of seasons and tows that differ from the standard.
+        words, headers, ignore, dates, decimals, files: see `Wording`, here as they are written.
         set_aside: days whose tows are not used.
         log_replaced: days from which another log was on board.
-        plans: the runs of seasons and tows that differ from the standard.
-        wording: how the lists of this archive are worded.
     """
 
     simulated: bool = False
-    publication: Publication = field(default_factory=Publication)
-    tables: tuple[_ProfileTable, ...] = ()
-    plans: tuple[_PlanTable, ...] = ()
-    wording: Wording = field(default_factory=Wording)
-    set_aside: tuple[SetAside, ...] = ()
-    log_replaced: tuple[LogReplaced, ...] = ()
+    publication: Publication = Publication()
+    profile: list[_ProfileTable] = []
+    plan: list[_PlanTable] = []
+    words: dict[str, str] = {}
+    headers: dict[str, str] = {}
+    ignore: list[str] = []
+    dates: dict[str, Literal["dmy", "mdy"]] = {}
+    decimals: dict[str, Literal[".", ","]] = {}
+    files: dict[str, Annotated[str, Field(pattern=f"^{STANDS_FOR.pattern}$")]] = {}
+    set_aside: list[SetAside] = []
+    log_replaced: list[LogReplaced] = []
+
+    @model_validator(mode="after")
+    def _one_profile_per_season(self) -> Self:
+        ranges = sorted(table.seasons for table in self.profile)
+        for (_, last), (first, _) in pairwise(ranges):
+            if first <= last:
+                raise ValueError(f"season {first} has two profiles")
+        return self
+
+    @cached_property
+    def wording(self) -> Wording:
+        """How the lists of this archive are worded."""
+        return Wording(
+            words={fold_word(word): value for word, value in self.words.items()},
+            headers={split_header(name)[0]: key for name, key in self.headers.items()},
+            ignore=tuple(fold(name) for name in self.ignore),
+            dates=self.dates,
+            decimals=self.decimals,
+            files=self.files,
+        )
 
     def for_season(self, season: int) -> SeasonProfile:
         """Return the profile of a season; the project's default where none is given."""
         table = self._table(season)
-        if table is None:
-            return SeasonProfile(season=season, columns=self._columns(None))
         return SeasonProfile(
             season=season,
             columns=self._columns(table),
@@ -273,31 +272,29 @@ class Profiles:
 
     def plan_of(self, tow_id: str, season: int) -> Plan:
         """Return the plan of a tow: its own, that of its season, or the standard."""
-        for table in self.plans:
+        for table in self.plan:
             if tow_id in table.tows:
                 return table.plan
-        for table in self.plans:
+        for table in self.plan:
             if table.seasons and table.seasons[0] <= season <= table.seasons[1]:
                 return table.plan
-        profile = self._table(season)
-        if profile is None or profile.directions is None:
+        directions = self._table(season).directions
+        if directions is None:
             return STANDARD
-        ways = _ways(profile.directions)
+        ways = _ways(directions)
         return Plan(tuple(TARGET_SPEED_RATIOS[i % 3] for i in range(len(ways))), ways)
 
     @property
     def season_ranges(self) -> list[tuple[str, tuple[int, int]]]:
         """Return the seasons of every profile and plan, by the name of their table."""
-        plans = [("plan", plan.seasons) for plan in self.plans if plan.seasons is not None]
-        return [("profile", table.seasons) for table in self.tables] + plans
+        plans = [("plan", plan.seasons) for plan in self.plan if plan.seasons is not None]
+        return [("profile", table.seasons) for table in self.profile] + plans
 
-    def _table(self, season: int) -> _ProfileTable | None:
-        return next((t for t in self.tables if t.seasons[0] <= season <= t.seasons[1]), None)
+    def _table(self, season: int) -> _ProfileTable:
+        given = (t for t in self.profile if t.seasons[0] <= season <= t.seasons[1])
+        return next(given, None) or _ProfileTable.model_validate({"seasons": str(season)})
 
-    def _columns(self, table: _ProfileTable | None) -> tuple[Column, ...]:
-        known = self.wording.with_names(SAMPLE_COLUMNS)
-        if table is None:
-            return known
+    def _columns(self, table: _ProfileTable) -> tuple[Column, ...]:
         absent = {channel for name in table.absent for channel in MAY_BE_ABSENT[name]}
         return tuple(
             replace(
@@ -307,7 +304,7 @@ class Profiles:
                 unit=table.units.get(column.key, column.unit),  # type: ignore[call-overload]
                 reversed=column.key in table.reversed,
             )
-            for column in known
+            for column in self.wording.with_names(SAMPLE_COLUMNS)
             if column.key not in absent
         )
 
@@ -353,27 +350,11 @@ def parse_profiles(text: str) -> Profiles:
         MissingKnowledgeError: it cannot be understood; the message names the key.
     """
     try:
-        parsed = _File.model_validate(parse_toml(text))
+        return Profiles.model_validate(parse_toml(text))
     except ValidationError as error:
         raise MissingKnowledgeError("{}: {}", PROFILE_FILE, _explain(error)) from error
     except ValueError as error:
         raise MissingKnowledgeError("{} is not valid TOML: {}", PROFILE_FILE, error) from error
-    return Profiles(
-        simulated=parsed.simulated,
-        publication=parsed.publication,
-        tables=tuple(parsed.profile),
-        set_aside=tuple(parsed.set_aside),
-        log_replaced=tuple(parsed.log_replaced),
-        plans=tuple(parsed.plan),
-        wording=Wording(
-            words={fold_word(word): value for word, value in parsed.words.items()},
-            headers={split_header(name)[0]: key for name, key in parsed.headers.items()},
-            ignore=tuple(fold(name) for name in parsed.ignore),
-            dates=dict(parsed.dates),
-            decimals=dict(parsed.decimals),
-            files=dict(parsed.files),
-        ),
-    )
 
 
 def _profile_path(root: Path) -> Path | None:

@@ -29,9 +29,11 @@ _SHORTEST_STEM: Final = 4
 _ONE_WORD: Final = 30
 """A cell longer than that is no word that stands for something."""
 
-
 _OF_NAMES: Final = frozenset({"ignore", "absent", "reversed"})
 """Keys of `archief.toml` that hold a list of names."""
+
+_CLASS_OF_LETTER: Final = {"h": "H", "m": "H", "d": "D", "v": "D", "w": "D", "f": "D"}
+"""The class that a word most likely means, by its first letter."""
 
 
 @dataclass(frozen=True)
@@ -54,30 +56,27 @@ class Proposal:
     is_active: bool = True
 
     @property
-    def question(self) -> str:
-        """The line of a profile that a person has to choose."""
+    def assignment(self) -> str:
+        """Key and value as they stand in their table."""
+        if self.section in _OF_NAMES:
+            return f'{self.section} = ["{self.value}"]'
         if self.section == "sample_rate_hz":
             return f"sample_rate_hz = {self.value}"
-        key = f"columns.{self.key}" if self.section == "columns" else self.section
-        value = f'["{self.value}"]' if self.section in _OF_NAMES else f'"{self.value}"'
-        return f"{key} = {value}"
+        key = f"columns.{self.key}" if self.section == "columns" else f'"{self.key}"'
+        return f'{key} = "{self.value}"'
 
     @property
     def line(self) -> str:
-        """The line as it is in the file, its section first."""
+        """Key and value on one line, with their table before them."""
         if self.section == "plan":
             directions = self.value.replace("\n", ", ")
             plan = f"targets = {self.key}, directions = {directions}"
             return f'[[plan]] seasons = "{self.season}": {plan}'
-        if self.section in _OF_NAMES:
-            body = f'{self.section} = ["{self.value}"]'
-        elif self.section == "sample_rate_hz":
-            body = f"sample_rate_hz = {self.value}"
-        elif self.section == "columns":
-            body = f'columns = {{ {self.key} = "{self.value}" }}'
-        else:
-            body = f'[{self.section}] "{self.key}" = "{self.value}"'
-        return f'[[profile]] seasons = "{self.season}": {body}' if self.season else body
+        if self.season:
+            return f'[[profile]] seasons = "{self.season}": {self.assignment}'
+        return (
+            self.assignment if self.section == "ignore" else f"[{self.section}] {self.assignment}"
+        )
 
 
 def propose(
@@ -98,8 +97,13 @@ def propose(
     return () if rule is None else tuple(rule(fault.path, what.values, season))
 
 
-def _of_headers(_: str, values: Any, __: int) -> Iterator[Proposal]:
-    """A header that nobody knows: the nearest that is not there yet, else to be ignored."""
+def _of_headers(_: str, values: Any, season: int) -> Iterator[Proposal]:
+    """A header that nobody knows: the nearest that is not there yet, else to be ignored.
+
+    One of a samples file can be the GPS.
+    """
+    if "name" in values and season:
+        yield Proposal("columns", "gps", _without_unit(str(values["name"])), season)
     for header, nearest, is_sure in values.get("meant", ()):
         if nearest:
             is_active = is_sure and not _has_other_brackets(header)
@@ -117,14 +121,7 @@ def _of_value(_: str, values: Any, __: int) -> Iterator[Proposal]:
     if "choice" in values:
         yield Proposal("words", word, str(values["choice"]), is_active=False)
     elif "expected" in values:
-        meant = next(
-            (
-                v
-                for k, v in {"h": "H", "m": "H", "d": "D", "v": "D", "w": "D", "f": "D"}.items()
-                if word.startswith(k)
-            ),
-            "",
-        )
+        meant = _CLASS_OF_LETTER.get(word[:1], "")
         sure = bool(meant) and len(word) > 1 and not word.startswith("mi")  # mixed, mixte
         yield Proposal("words", word, meant or "H", is_active=sure)
     else:
@@ -249,15 +246,6 @@ def _of_stranger(path: str, values: Any, _: int) -> Iterator[Proposal]:
         yield Proposal("ignore", "", path)
 
 
-def _of_unknown_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
-    if "name" in values and season:
-        yield Proposal("columns", "gps", _without_unit(str(values["name"])), season)
-
-
-def _of_strange_headers(path: str, values: Any, season: int) -> Iterator[Proposal]:
-    return (_of_headers if "meant" in values else _of_unknown_samples)(path, values, season)
-
-
 def _is_like(cell: str, column: Column) -> bool:
     """Whether a header's name is like a column's, or begins with it: `Windgeschw.`."""
     name = split_header(cell)[0]
@@ -300,7 +288,7 @@ def _season(path: str, named: Mapping[str, str]) -> int:
 
 
 _RULES: Final = {
-    "unknown_column": _of_strange_headers,
+    "unknown_column": _of_headers,
     "missing_column": _of_samples,
     "ambiguous_date": _of_date,
     "ambiguous_number": _of_decimals,
@@ -333,16 +321,11 @@ def merged(text: str, proposals: Iterable[Proposal]) -> str:
 
 
 def _add_plan(document: Any, proposal: Proposal) -> None:
-    lines = (
-        "[[plan]]",
-        f'seasons = "{proposal.season}"',
-        f"targets = {proposal.key}",
-        *f"directions = {proposal.value}".split("\n"),
-    )
+    plan = f'seasons = "{proposal.season}"\ntargets = {proposal.key}\ndirections = {proposal.value}'
     if proposal.is_active:
-        document.setdefault("plan", tomlkit.aot()).append(tomlkit.parse("\n".join(lines[1:])))
+        document.setdefault("plan", tomlkit.aot()).append(tomlkit.parse(plan))
         return
-    for line in lines:
+    for line in ("[[plan]]", *plan.split("\n")):
         document.add(tomlkit.comment(line))
 
 
@@ -351,7 +334,7 @@ def _in_section(document: Any, proposal: Proposal) -> None:
     if proposal.is_active:
         section.setdefault(proposal.key, proposal.value)
     else:
-        section.add(tomlkit.comment(f'"{proposal.key}" = "{proposal.value}"'))
+        section.add(tomlkit.comment(proposal.assignment))
 
 
 def _add(table: Any, key: str, value: str) -> None:
@@ -382,7 +365,7 @@ def _in_profile(document: Any, proposal: Proposal) -> None:
         mine = profiles[-1]
     if not proposal.is_active:
         _loosen(mine)
-        mine.add(tomlkit.comment(proposal.question))
+        mine.add(tomlkit.comment(proposal.assignment))
     elif proposal.section in _OF_NAMES:
         _add(mine, proposal.section, proposal.value)
     elif proposal.section == "sample_rate_hz":

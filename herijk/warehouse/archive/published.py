@@ -4,33 +4,25 @@ Both are optional in an archive. Computing with them belongs elsewhere.
 """
 
 import re
-from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.errors import DefectiveInputError
 from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.tables.bases import TowFacts
-from herijk.tables.declare import dy
-from herijk.tables.frames import frame_of, limits
-from herijk.tables.lake import ListedRaces, PrintedLines
+from herijk.tables.frames import limits
 from herijk.tables.row import Row
-from herijk.warehouse.archive.faults import Fault, fault_from
-from herijk.warehouse.archive.files import (
-    RACES,
-    REGISTERS,
-    ListKind,
-    list_files,
-    path_inside,
-    read_bytes,
+from herijk.warehouse.archive.faults import Fault, at_line
+from herijk.warehouse.archive.kinds import RACES, REGISTERS
+from herijk.warehouse.archive.lists import (
+    ROWS_ARE_EQUAL,
+    ROWS_DIFFER,
+    ListRow,
+    Wording,
+    read_lists,
 )
-from herijk.warehouse.archive.limits import LIST_MAX_BYTES
-from herijk.warehouse.archive.lists import ListRow, Wording, read_list
-from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import read_profiles
-from herijk.warehouse.archive.text import Column
 from herijk.words import say
 
 NEVER_TOWED_CW: Final = (0.995, 1.005)
@@ -41,34 +33,9 @@ CW_AS_PRINTED: Final = 0.01
 result was sometimes rounded too."""
 _BELOW_ONE: Final = 0.999
 
-REGISTER_COLUMNS: Final = (
-    Column("fsn_no", "fsn_nr"),
-    Column("rowers", "roeiers"),
-    Column("crew_class", "klasse"),
-    Column("a_kg_m", "A"),
-    Column("b_m_s", "B", "speed", "m/s"),
-    Column("cw_kg_m", "Cw"),
-    Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
-    Column("tow_date", "sleepdatum"),
-    Column("empty_thwart", "lege doft", required=False),
-)
-RACE_COLUMNS: Final = (
-    Column("race", "wedstrijd"),
-    Column("race_date", "datum"),
-    Column("distance_m", "afstand", "length", "km"),
-    Column("fsn_no", "fsn_nr"),
-    Column("rowers", "roeiers"),
-    Column("crew_class", "klasse"),
-    Column("rowing_time_s", "roeitijd"),
-    Column("stream_m", "stroom", "length", "km", required=False),
-    Column("penalty_w", "straf", "power", "W", required=False),
-    Column("empty_thwart", "lege doft", required=False),
-)
 _ROWING_TIME: Final = re.compile(
     r"([0-9]{1,2})(?::|\.|[uh]\s*)([0-5]?[0-9])(?::|\.|['m]\s*)([0-5]?[0-9])(?:[.,]0*|[\"s])?"
 )
-
-_ReadRow = Callable[[ListRow, int], Row]
 
 
 def read_published_registers(
@@ -81,9 +48,7 @@ def read_published_registers(
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
     wording = wording or read_profiles(root).wording
-    return read_lists(
-        root, REGISTERS, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _fitting_line, wording
-    )
+    return read_lists(root, REGISTERS, wording, _fitting_line)
 
 
 def read_races(
@@ -96,18 +61,13 @@ def read_races(
         that cannot be read.
     """
     wording = wording or read_profiles(root).wording
-    found, faults = read_lists(
-        root, RACES, RACE_COLUMNS, "bad_race_row", ListedRaces, _possible_result, wording
-    )
-    kept, twice = _once(found)
+    results, faults = read_lists(root, RACES, wording, _possible_result)
+    kept, twice = _once(results)
     return kept, (*faults, *twice)
 
 
 _RESULT: Final = ("race", "race_date", "fsn_no", "rowers", "crew_class")
 """What a crew has one result of."""
-
-_EQUAL: Final = "{boat} {crew} is listed twice for {race}; the rows are equal and the first counts."
-_DIFFER: Final = "{boat} {crew} is listed twice for {race}; the rows differ, so neither counts."
 
 
 def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
@@ -117,80 +77,31 @@ def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
     one = results.filter(is_again.not_())
     differ = one.filter(pl.struct(_RESULT).is_duplicated())
     faults = [
-        _again(row, message)
-        for rows, message in ((results.filter(is_again), _EQUAL), (differ, _DIFFER))
+        _again(row, ending)
+        for rows, ending in ((results.filter(is_again), ROWS_ARE_EQUAL), (differ, ROWS_DIFFER))
         for row in rows.iter_rows(named=True)
     ]
     return one.filter(pl.struct(_RESULT).is_unique()), faults
 
 
-def _again(row: Row, message: str) -> Fault:
-    crew = f"{row['rowers']}{row['crew_class']}"
-    what = say(message, boat=row["fsn_no"], crew=crew, race=row["race"])
-    said = say("Line {line}: {what}", line=row["line"], what=what)
-    return Fault(row["path"], None, row["line"], "bad_race_row", said)
-
-
-def read_lists(
-    root: Path,
-    kind: ListKind,
-    columns: Sequence[Column],
-    reason_code: str,
-    table: type[dy.Schema],
-    read_row: _ReadRow,
-    wording: Wording,
-) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Read lists of one kind: rows of `table`, and a fault for each that cannot be read.
-
-    Args:
-        root: folder of the archive.
-        kind: which lists.
-        columns: of their rows.
-        reason_code: of a row that cannot be read.
-        table: declares the limits of each value; has `path` and `line` too.
-        read_row: from a row and the year in the file's name to the other values.
-        wording: how the lists are worded.
-    """
-    good: list[Row] = []
-    faults: list[Fault] = []
-    for file in list_files(root, kind, wording.files):
-        try:
-            data = read_bytes(path_inside(root, file.path), LIST_MAX_BYTES)
-            rows = read_list(data, columns, reason_code, file.path, wording, table)
-        except DefectiveInputError as error:
-            faults.append(fault_from(error, file.path))
-            continue
-        for row in rows:
-            try:
-                row.check_whole()
-                values = read_row(row, file.season)
-            except DefectiveInputError as error:
-                faults.append(fault_from(error, file.path))
-            else:
-                good.append({**values, "path": file.path, "line": row.line})
-    frame = frame_of(table, good)
-    for misfit, why in misfits(table, frame):
-        said = say("Line {line}: {what}", line=misfit["line"], what=why)
-        faults.append(Fault(misfit["path"], None, misfit["line"], reason_code, said))
-    return table.filter(frame).result, tuple(faults)
+def _again(row: Row, ending: str) -> Fault:
+    what = say(
+        "{boat} {crew} is listed twice for {race}; {ending}",
+        boat=row["fsn_no"],
+        crew=f"{row['rowers']}{row['crew_class']}",
+        race=row["race"],
+        ending=ending,
+    )
+    return Fault(row["path"], None, row["line"], "bad_race_row", at_line(row["line"], what))
 
 
 def _register_line(row: ListRow, season: int) -> Row:
     cw = row.number("cw_kg_m")
-    valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
-    return {
-        "season": season,
-        "fsn_no": row.boat("fsn_no"),
-        "rowers": row.integer("rowers"),
-        "crew_class": row.crew_class("crew_class"),
-        "has_valid_curve": valid,
-        "a_kg_m": row.number("a_kg_m") if valid else None,
-        "b_m_s": row.number("b_m_s") if valid else None,
-        "cw_kg_m": cw if valid else None,
-        "declared_speed_m_s": row.optional_number("declared_speed_m_s"),
-        "tow_date": row.optional_date("tow_date"),
-        "empty_thwart": row.optional_text("empty_thwart") or NO_EMPTY_THWART,
-    }
+    is_valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
+    curve = {key: row.number(key) if is_valid else None for key in ("a_kg_m", "b_m_s", "cw_kg_m")}
+    line = row.values(column for column in REGISTERS.columns if column.key not in curve)
+    thwart = line["empty_thwart"] or NO_EMPTY_THWART
+    return line | curve | {"season": season, "has_valid_curve": is_valid, "empty_thwart": thwart}
 
 
 def _fitting_line(row: ListRow, season: int) -> Row:
@@ -236,23 +147,11 @@ def _half_unit(cell: str) -> float:
 
 
 def _race_result(row: ListRow, season: int) -> Row:
-    day = row.date("race_date")
-    if season and day.year != season:
-        message = "the date {day} is not in {season}, the year of the file."
-        raise row.fault(say(message, day=day, season=season))
-    return {
-        "season": day.year,
-        "race": row.text("race"),
-        "race_date": day,
-        "distance_m": row.number("distance_m"),
-        "fsn_no": row.boat("fsn_no"),
-        "rowers": row.integer("rowers"),
-        "crew_class": row.crew_class("crew_class"),
-        "rowing_time_s": _rowing_time(row),
-        "stream_m": row.optional_number("stream_m"),
-        "penalty_w": row.optional_number("penalty_w"),
-        "empty_thwart": row.optional_text("empty_thwart"),
-    }
+    result = row.values(column for column in RACES.columns if column.key != "rowing_time_s")
+    day = result["race_date"]
+    if season:
+        row.check_year(day, season)
+    return result | {"season": day.year, "rowing_time_s": _rowing_time(row)}
 
 
 def _possible_result(row: ListRow, season: int) -> Row:
@@ -266,8 +165,8 @@ def _possible_result(row: ListRow, season: int) -> Row:
             "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
             "{high:g} can be right."
         )
-        values = {"cell": row.text("rowing_time_s"), "km": through_water_m / 1000, "speed": speed}
-        raise row.fault(say(message, **values, low=lowest, high=highest))
+        km = through_water_m / 1000
+        raise row.wrong(message, "rowing_time_s", km=km, speed=speed, low=lowest, high=highest)
     return result
 
 

@@ -11,21 +11,15 @@ from pathlib import Path
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive import boats, published, tows, windows
 from herijk.warehouse.archive.files import (
-    BOAT_LIST,
     LIST_SUFFIXES,
-    RACES,
-    REGISTERS,
     SAMPLES,
-    TOW_LISTS,
-    WINDOWS,
-    ListKind,
     kind_of,
     read_bytes,
     read_start,
     sample_suffix,
 )
+from herijk.warehouse.archive.kinds import BOATS, LIST_KINDS, TOWS
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import Wording, is_like_a_date, is_number
 from herijk.warehouse.archive.meaning import FITS, likeness
@@ -43,13 +37,6 @@ FEWEST_COLUMNS: Final = 3
 FEWEST_SAMPLES: Final = 50
 """So many rows of numbers must be at the start of a file for it to hold samples."""
 
-_KINDS: Final[tuple[tuple[ListKind, Sequence[Column]], ...]] = (
-    (TOW_LISTS, tows.COLUMNS),
-    (BOAT_LIST, boats.COLUMNS),
-    (WINDOWS, windows.COLUMNS),
-    (REGISTERS, published.REGISTER_COLUMNS),
-    (RACES, published.RACE_COLUMNS),
-)
 _YEAR: Final = re.compile(r"(?<![0-9])((?:19|20)[0-9]{2})(?![0-9])")
 
 
@@ -73,7 +60,7 @@ def guessed(root: Path, path: str) -> Iterator[tuple[str, str]]:
         root: the archive.
         path: a file or folder in it.
     """
-    return _stand_for(root, path, lambda file: dict(_guessed_kinds(file)))
+    return _stand_for(root, path, _guessed_kinds)
 
 
 def _stand_for(
@@ -99,27 +86,49 @@ def _stand_for(
 
 def _recognised_kinds(file: Path) -> Mapping[str, str]:
     """Return the kind of each sheet; that of the file, without a name, where they are alike."""
-    sheets = _kinds_of_sheets(file)
-    if len(set(sheets.values())) > 1:
-        return sheets
-    what = next(iter(sheets.values()), None) or _kind(file)
-    return {"": what} if what else {}
+    if kind_of(file) in {".tdms", ".lvm", ".parquet"} or _is_labview(file):
+        return {"": SAMPLES}
+    is_list, is_samples = file.suffix.casefold() in LIST_SUFFIXES, bool(sample_suffix(file.name))
+    columns_of = {kind.name: kind.columns for kind in LIST_KINDS if is_list}
+    columns_of |= {SAMPLES: SAMPLE_COLUMNS} if is_samples else {}
+    best: dict[str, tuple[int, str]] = {}
+    for kind, columns in columns_of.items():
+        wanted = Wording().with_names(columns)
+        for sheet in _sheets_of(file, wanted):
+            score = _named(tuple(sheet.header), wanted)
+            if score > best.get(sheet.name, (0, ""))[0]:
+                best[sheet.name] = score, kind
+    kinds = {sheet: kind for sheet, (_, kind) in best.items()}
+    different = set(kinds.values())
+    return {"": different.pop()} if len(different) == 1 else kinds
 
 
-def _guessed_kinds(file: Path) -> Iterator[tuple[str, str]]:
+def _guessed_kinds(file: Path) -> Mapping[str, str]:
+    """Return the kind of each sheet by its content."""
+    kinds = {sheet.name: _kind_by_content(sheet) for sheet in _sheets_of(file, TOWS.columns)}
+    return {sheet: kind for sheet, kind in kinds.items() if kind is not None}
+
+
+def _is_labview(file: Path) -> bool:
+    if not sample_suffix(file.name):
+        return False
+    try:
+        return is_labview(read_start(file, 1 << 14)[:200].decode(errors="replace"))
+    except DefectiveInputError:
+        return False
+
+
+def _sheets_of(file: Path, columns: Sequence[Column]) -> list[Sheet]:
+    """Return the sheets of a workbook, or the start of a text as one; none of what is neither."""
     suffix = file.suffix.casefold()
-    if suffix not in LIST_SUFFIXES and not sample_suffix(file.name):
-        return
     try:
         if suffix in SPREADSHEETS:
-            sheets = list(sheets_of_workbook(read_bytes(file, LIST_MAX_BYTES), tows.COLUMNS))
-        else:
-            sheets = read_sheets(read_start(file, 1 << 14), tows.COLUMNS)
+            return list(sheets_of_workbook(read_bytes(file, LIST_MAX_BYTES), columns))
+        if suffix in LIST_SUFFIXES or sample_suffix(file.name):
+            return read_sheets(read_start(file, 1 << 14), columns)
     except DefectiveInputError:
-        return
-    for sheet in sheets:
-        if kind := _kind_by_content(sheet):
-            yield sheet.name, kind
+        return []
+    return []
 
 
 def _kind_by_content(sheet: Sheet) -> str | None:
@@ -131,7 +140,7 @@ def _kind_by_content(sheet: Sheet) -> str | None:
     if len(sheet.rows) >= FEWEST_SAMPLES and len(others) <= 1:
         return SAMPLES
     has_dates = any(_mostly(is_like_a_date, cells) for cells in columns)
-    return (TOW_LISTS if has_dates else BOAT_LIST).stands_for if others else None
+    return (TOWS if has_dates else BOATS).name if others else None
 
 
 def _mostly(is_one: Callable[[str], bool], cells: Sequence[str]) -> bool:
@@ -158,7 +167,7 @@ def _folder_of_season(top: Path, file: Path) -> Path:
 
 def _list_of_year(kind: str, *names: str) -> str:
     """Return a kind of list with the year in the first of these names that has one."""
-    if kind == BOAT_LIST.stands_for:
+    if kind == BOATS.name:
         return kind
     dated = (_with_year(kind, name) for name in names)
     return next((name for name in dated if name != kind), kind)
@@ -169,67 +178,9 @@ def _with_year(kind: str, name: str) -> str:
     return f"{kind}_{years.pop()}" if len(years) == 1 else kind
 
 
-def _kind(file: Path) -> str | None:
-    """Return what a file can be: a kind of list, samples, or nothing known."""
-    if kind_of(file) in {".tdms", ".lvm", ".parquet"}:
-        return SAMPLES
-    suffix = file.suffix.casefold()
-    try:
-        if suffix in SPREADSHEETS:
-            return None  # looked at sheet by sheet
-        if suffix in LIST_SUFFIXES and (list_kind := _list_kind(file)):
-            return list_kind
-        if sample_suffix(file.name) and _is_samples(read_start(file, 1 << 14)):
-            return SAMPLES
-    except DefectiveInputError:
-        return None
-    return None
-
-
-def _kinds_of_sheets(file: Path) -> dict[str, str]:
-    """Return what each sheet of a workbook can be, for the sheets that can be a list."""
-    if file.suffix.casefold() not in SPREADSHEETS:
-        return {}
-    best: dict[str, tuple[int, str]] = {}
-    try:
-        data = read_bytes(file, LIST_MAX_BYTES)
-        for kind, columns in _KINDS:
-            wanted = Wording().with_names(columns)
-            for sheet in sheets_of_workbook(data, wanted):
-                score = _named(sheet.header, wanted)
-                if score > best.get(sheet.name, (0, ""))[0]:
-                    best[sheet.name] = score, kind.stands_for
-    except DefectiveInputError:
-        return {}
-    return {sheet: kind for sheet, (_, kind) in best.items()}
-
-
-def _is_samples(start: bytes) -> bool:
-    if is_labview(start[:200].decode(errors="replace")):
-        return True
-    sheet = read_sheets(start, SAMPLE_COLUMNS)[0]
-    return _named(sheet.header, Wording().with_names(SAMPLE_COLUMNS)) > 0
-
-
-def _list_kind(file: Path) -> str | None:
-    """Return the kind of list whose columns a text has most of, if it has enough."""
-    data = read_start(file, 1 << 14)
-    kinds = {kind.stands_for: columns for kind, columns in _KINDS} | {SAMPLES: SAMPLE_COLUMNS}
-    scores = {}
-    for kind, columns in kinds.items():
-        wanted = Wording().with_names(columns)
-        scores[kind] = _named(read_sheets(data, wanted)[0].header, wanted)
-    best = max(scores, key=lambda name: scores[name])
-    return best if scores[best] > 0 else None
-
-
-def _named(header: Sequence[str], columns: Sequence[Column]) -> int:
-    """Return how many cells of a header are names of columns, less the columns it lacks."""
-    return _named_once(tuple(header), tuple(columns))
-
-
 @lru_cache(1000)
-def _named_once(header: tuple[str, ...], columns: tuple[Column, ...]) -> int:
+def _named(header: tuple[str, ...], columns: tuple[Column, ...]) -> int:
+    """Return how many cells of a header are names of columns, less the columns it lacks."""
     cells = [cell for cell in header if cell.strip()]
     named = sum(any(likeness(cell, column) > 0 for column in columns) for cell in cells)
     lacking = [c for c in columns if c.required and not any(likeness(x, c) > 0 for x in cells)]

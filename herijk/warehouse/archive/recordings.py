@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.files import not_whole
 from herijk.warehouse.archive.limits import MOST_ROWS, too_many_rows
 from herijk.words import say
 
@@ -45,7 +46,7 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
     separator = _SEPARATORS.get(about.get("separator", "tab").casefold(), "\t")
     starts = [i for i, line in enumerate(lines) if line.strip().startswith(_END_OF_HEADER)]
     if len(starts) < 2:
-        said = say("This LabVIEW file has no header of a segment.")
+        said = say("This LabVIEW file has no segment header.")
         raise DefectiveInputError("unreadable_file", said)
     rows: list[str] = []
     places: list[int] = []
@@ -90,7 +91,7 @@ def _segment_header(lines: list[str], start: int, separator: str) -> tuple[list[
             units = [cell.strip() for cell in cells]
     kept = [i for i, name in enumerate(names) if name and name.casefold() != "comment"]
     if not kept:
-        said = say("This LabVIEW file has no header of a segment.")
+        said = say("This LabVIEW file has no segment header.")
         raise DefectiveInputError("unreadable_file", said, start + 1)
     return [
         _with_unit(name, units[i] if i < len(units) else "") for i, name in enumerate(names)
@@ -133,8 +134,7 @@ def read_tdms(path: Path, max_bytes: int, most_rows: int | None = None) -> pl.Da
     except DefectiveInputError:
         raise
     except Exception as error:  # npTDMS raises whatever a damaged file makes Python raise
-        said = say("'{name}' is not a whole TDMS file: {error}.", name=path.name, error=error)
-        raise DefectiveInputError("unreadable_file", said) from error
+        raise not_whole(path, "TDMS", error) from error
     if not frames:
         raise DefectiveInputError("unreadable_file", say("There are no samples in the file."))
     return pl.concat(frames, how="diagonal_relaxed")

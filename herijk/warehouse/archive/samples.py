@@ -21,11 +21,12 @@ from numpy.typing import NDArray
 from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.row import Row
-from herijk.warehouse.archive.faults import DefectiveFileError
+from herijk.warehouse.archive.faults import DefectiveFileError, at_line
 from herijk.warehouse.archive.files import (
     PARTS,
     as_one_run,
     kind_of,
+    not_whole,
     path_inside,
     read_bytes,
     read_start,
@@ -67,8 +68,8 @@ _FOR_A_RATE: Final = 500
 """Samples from which the rate is seen."""
 PAUSE_S: Final = 10.0
 """After so long without a sample a new run begins, where nothing else says so."""
+_BINARY: Final = (".parquet", ".tdms")
 _BLANKS: Final = " \t"
-_ROW: Final = re.compile(rb"[^\r\n]")
 _BLANKS_OUTSIDE: Final = re.compile(rb"^[ \t]+|[ \t]+(?=\r?$)", re.MULTILINE)
 _BLANKS_WITHIN: Final = re.compile(rb"[ \t]+")
 _CLOCK: Final = (
@@ -84,10 +85,9 @@ _QUOTED_DECIMAL_COMMA: Final = r'"([ \t]*[+-]?[0-9]*),([0-9][0-9eE+ \t-]*)"'
 
 @dataclass(frozen=True)
 class _Body:
-    """The text below the header, which ends at `start`; not copied, as it may be large.
+    """The text below the header, and what the header says of it.
 
     Attributes:
-        above: lines of the data above it.
         header_line: line in the file of the header.
         first_line: that of the first row.
         places: lines of the rows where they do not follow each other, else empty.
@@ -95,11 +95,9 @@ class _Body:
     """
 
     data: bytes
-    start: int
     delimiter: str
     header: Sequence[str]
     columns: Mapping[str, FoundColumn]
-    above: int
     header_line: int
     first_line: int
     places: Sequence[int] = ()
@@ -142,11 +140,8 @@ def read_samples(
     Raises:
         DefectiveInputError: the first fault that costs the whole file, with its line.
     """
-    kind = kind_of(path)
-    if kind == ".parquet":
-        raw, line_of = _from_table(_read_parquet(path, profile, max_bytes), profile), _next_line
-    elif kind == ".tdms":
-        raw, line_of = _from_table(read_tdms(path, max_bytes), profile), _next_line
+    if kind_of(path) in _BINARY:
+        raw, line_of = _read_binary(path, profile, max_bytes), _next_line
     else:
         body = _split_header(read_bytes(path, max_bytes), profile)
         raw, line_of = _read_text(body), body.line
@@ -191,7 +186,7 @@ def place_in_file(
         begun = int(np.searchsorted(starts, max(row, 0), "right")) - 1
         file, row = files[begun], row - int(starts[begun])
     full = path_inside(root, file)
-    if kind_of(full) in {".parquet", ".tdms"}:
+    if kind_of(full) in _BINARY:
         return file, _next_line(row)
     return file, _split_header(read_bytes(full, SAMPLES_MAX_BYTES), profile).line(row)
 
@@ -213,7 +208,7 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
             with pq.ParquetFile(path) as file:
                 return list(file.schema_arrow.names)
         except (OSError, pa.ArrowException) as error:
-            raise _not_parquet(path, error) from error
+            raise not_whole(path, "Parquet", error) from error
     if kind == ".tdms":
         return read_tdms(path, SAMPLES_MAX_BYTES, most_rows=0).columns
     return _split_header(read_start(path, _HEAD_BYTES), profile).header
@@ -221,12 +216,9 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
 
 def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
     """Return the samples per second at the start of a file; None where it has no times to say."""
-    kind = kind_of(path)
     try:
-        if kind == ".parquet":
-            frame = _from_table(_read_parquet(path, profile, SAMPLES_MAX_BYTES), profile)
-        elif kind == ".tdms":
-            frame = _from_table(read_tdms(path, SAMPLES_MAX_BYTES, _FOR_A_RATE), profile)
+        if kind_of(path) in _BINARY:
+            frame = _read_binary(path, profile, SAMPLES_MAX_BYTES, _FOR_A_RATE)
         else:
             body = _split_header(read_start(path, _HEAD_BYTES), profile)
             if "time" not in body.columns:
@@ -357,34 +349,23 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
     header = split_line(header_line, find_delimiter(header_line))
     if units := with_units(header, _cells_of_line(lines, below, delimiter)):
         header, below = units, below + 1
-    columns = find_columns(header, profile.columns, places[0] if places else place + 1)
+    line = places[0] if places else place + 1
+    columns = find_columns(header, profile.columns, line)
     _check_nothing_misspelt(header, columns, profile)
-    above, start = below, _start_of_line(data, below)
-    if not _ROW.search(data, start):
+    data = data[_start_of_line(data, below) :]
+    if not data.strip(b"\r\n"):
         said = say("There are no samples below the header.")
         raise DefectiveInputError("unreadable_file", said)
     if delimiter == " ":
-        data, delimiter = _tabs_for_blanks(data[start:]), "\t"
-        above = start = 0
+        data, delimiter = _BLANKS_WITHIN.sub(b"\t", _BLANKS_OUTSIDE.sub(b"", data)), "\t"
     first_line, rows = below + 1, places[1:]
     says_runs = rows or {"run", "time"} & columns.keys()
-    if not says_runs and (parted := _parted_by_blank_lines(data[start:], delimiter)):
+    if not says_runs and (parted := _parted_by_blank_lines(data, delimiter)):
         data, rows = parted[0], [first_line + row for row in parted[1]]
         header = [*header, "run"]
         columns = {**columns, "run": FoundColumn(len(header) - 1, "run", Scale())}
-        above = start = 0
-    return _Body(
-        data,
-        start,
-        delimiter,
-        header,
-        columns,
-        above,
-        places[0] if places else place + 1,
-        first_line,
-        rows,
-        _is_clock(data, start, delimiter, columns.get("time")),
-    )
+    clock = _is_clock(data, delimiter, columns.get("time"))
+    return _Body(data, delimiter, header, columns, line, first_line, rows, clock)
 
 
 def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int]] | None:
@@ -408,11 +389,6 @@ def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int
     return b"\n".join(rows) + b"\n", places.tolist()
 
 
-def _tabs_for_blanks(data: bytes) -> bytes:
-    """Return text in columns of blanks with a tab between the columns."""
-    return _BLANKS_WITHIN.sub(b"\t", _BLANKS_OUTSIDE.sub(b"", data))
-
-
 def _cells_of_line(lines: Sequence[str], number: int, delimiter: str) -> list[str]:
     """Return the cells of a line that may be no row of samples; none where there is no line."""
     if number >= len(lines) or any(map(str.isdigit, lines[number])):
@@ -428,27 +404,26 @@ def _start_of_line(data: bytes, number: int) -> int:
     return start
 
 
-def _is_clock(data: bytes, start: int, delimiter: str, time: FoundColumn | None) -> bool:
+def _is_clock(data: bytes, delimiter: str, time: FoundColumn | None) -> bool:
     if time is None:
         return False
-    end = data.find(b"\n", start)
-    cells = data[start : end if end >= 0 else len(data)].split(delimiter.encode())
+    cells = data.partition(b"\n")[0].split(delimiter.encode())
     return time.index < len(cells) and b":" in cells[time.index]
 
 
 def _check_nothing_misspelt(
-    header: Sequence[str], found: Mapping[str, FoundColumn], profile: SeasonProfile
+    header: Sequence[str], columns: Mapping[str, FoundColumn], profile: SeasonProfile
 ) -> None:
     """Raise where there is no GPS, but a column that can be one: left out, it changes numbers."""
     gps = [column for column in profile.columns if column.key == "gps"]
-    if "gps" in found or not gps:
+    if "gps" in columns or not gps:
         return
-    for cell in unknown_headers(header, found):
+    for cell in unknown_headers(header, columns):
         name, unit = split_header(cell)
         is_speed = unit is not None and find_scale("speed", unit) is not None
         if name not in map(fold, profile.ignore) and (is_speed or nearest_column(cell, gps)):
             said = say(
-                "Nobody knows column '{name}', and there is no 'gps'. Name it under columns of the "
+                "Column '{name}' is not known, and there is no 'gps'. Name it under columns of the "
                 "season's profile in archief.toml, or put it there under ignore.",
                 name=shorten(cell),
             )
@@ -461,11 +436,11 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
     That is also where a carriage return stands within a line: Polars takes it for a blank. And
     where there are commas and points: Polars takes either for the decimal mark.
     """
-    mixed = all(body.data.find(mark, body.start) >= 0 for mark in (b",", b"."))
+    mixed = b"," in body.data and b"." in body.data
     if _has_stray_return(body.data) or (mixed and body.delimiter != ","):
         return None
-    quoted = body.data.find(b'"', body.start) >= 0
-    wanted = {found.index: key for key, found in body.columns.items()}
+    quoted = b'"' in body.data
+    wanted = {column.index: key for key, column in body.columns.items()}
     number = pl.String() if quoted else pl.Float64()
     schema = {
         wanted.get(index, f"ignored {index}"): number
@@ -477,7 +452,6 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
         frame = pl.read_csv(
             body.data,
             has_header=False,
-            skip_lines=body.above,
             separator=body.delimiter,
             quote_char='"' if quoted else None,
             decimal_comma=body.delimiter != ",",
@@ -519,15 +493,15 @@ def _all_finite(numbers: pl.Series) -> bool:
 
 def _read_carefully(body: _Body) -> pl.DataFrame:
     """Return the same columns, NaN where a cell is no number or its row has not all its fields."""
-    text = body.data[body.start :].rstrip(b"\r\n").decode()
+    text = body.data.rstrip(b"\r\n").decode()
     lines = pl.Series("line", text.split("\n")).str.strip_suffix("\r")
     if body.delimiter == ",":
         lines = lines.str.replace_all(_QUOTED_DECIMAL_COMMA, '"$1.$2"')
     fields = lines.str.split(body.delimiter)
     whole = fields.list.len() == body.width
     columns: dict[str, pl.Series] = {}
-    for key, found in body.columns.items():
-        cells = fields.list.get(found.index, null_on_oob=True)
+    for key, column in body.columns.items():
+        cells = fields.list.get(column.index, null_on_oob=True)
         cells = cells.str.strip_chars(_BLANKS).str.replace(r'^"([^"]*)"$', "$1")
         cells = cells.str.strip_chars(_BLANKS)
         if key == "gps" and (cells == "").all():
@@ -573,19 +547,15 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
             columns = find_columns(names, profile.columns)
             _check_nothing_misspelt(names, columns, profile)
             _check_parquet_size(path, file, len(columns), max_bytes)
-            wanted = [names[found.index] for found in columns.values()]
-            table = pa.Table.from_batches(_batches(file, wanted), _schema(file, wanted))
+            wanted = [names[column.index] for column in columns.values()]
+            schema = pa.schema([file.schema_arrow.field(name) for name in wanted])
+            table = pa.Table.from_batches(_batches(file, wanted), schema)
         return pl.DataFrame(pl.from_arrow(table))
     except FileNotFoundError as error:
         said = say("'{name}' is not there any more.", name=path.name)
         raise DefectiveInputError("samples_missing", said) from error
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
-        raise _not_parquet(path, error) from error
-
-
-def _not_parquet(path: Path, error: Exception) -> DefectiveInputError:
-    said = say("'{name}' is not a whole Parquet file: {error}.", name=path.name, error=error)
-    return DefectiveInputError("unreadable_file", said)
+        raise not_whole(path, "Parquet", error) from error
 
 
 def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]:
@@ -598,10 +568,6 @@ def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]
         yield batch
 
 
-def _schema(file: pq.ParquetFile, names: list[str]) -> pa.Schema:
-    return pa.schema([file.schema_arrow.field(name) for name in names])
-
-
 def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes: int) -> None:
     metadata = file.metadata
     groups = (metadata.row_group(index) for index in range(metadata.num_row_groups))
@@ -610,20 +576,26 @@ def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes:
         raise too_large(path, max_bytes)
 
 
-def _from_table(frame: pl.DataFrame, profile: SeasonProfile) -> pl.DataFrame:
-    """Return the wanted columns of a table as Float64, as `_read_text` does."""
+def _read_binary(
+    path: Path, profile: SeasonProfile, max_bytes: int, most_rows: int | None = None
+) -> pl.DataFrame:
+    """Return the wanted columns of a Parquet or TDMS file as Float64, as `_read_text` does."""
+    if kind_of(path) == ".tdms":
+        frame = read_tdms(path, max_bytes, most_rows)
+    else:
+        frame = _read_parquet(path, profile, max_bytes)
     if frame.is_empty():
         raise DefectiveInputError("unreadable_file", say("There are no samples in the file."))
     columns = find_columns(frame.columns, profile.columns)
     _check_nothing_misspelt(frame.columns, columns, profile)
     numbers: dict[str, pl.Series] = {}
-    for key, found in columns.items():
-        cells = frame.to_series(found.index)
+    for key, column in columns.items():
+        cells = frame.to_series(column.index)
         if key == "gps" and cells.null_count() == len(cells):
             continue
         if key == "time" and not cells.dtype.is_numeric():
             cells = _as_seconds(cells)
-        numbers[key] = _only_numbers(cells, found)
+        numbers[key] = _only_numbers(cells, column)
     return _to_si(pl.DataFrame(numbers), columns)
 
 
@@ -635,10 +607,10 @@ def _as_seconds(cells: pl.Series) -> pl.Series:
     return _seconds_of_clock(cells) if cells.dtype == pl.String() else cells
 
 
-def _only_numbers(cells: pl.Series, found: FoundColumn) -> pl.Series:
+def _only_numbers(cells: pl.Series, column: FoundColumn) -> pl.Series:
     if not cells.dtype.is_numeric():
         said = say(
-            "Column '{column}' holds {kind}, not numbers.", column=found.header, kind=cells.dtype
+            "Column '{column}' holds {kind}, not numbers.", column=column.header, kind=cells.dtype
         )
         raise DefectiveInputError("bad_number", said)
     return cells.cast(pl.Float64()).fill_null(float("nan"))
@@ -697,9 +669,11 @@ def _check_run_numbers(run: pl.Series, line_of: LineOf) -> None:
             run=run[row],
             last=MOST_RUNS,
         )
-        line = line_of(row)
-        said = say("Line {line}: {what}", line=line, what=what)
-        raise DefectiveInputError("unknown_run", said, line=line)
+        raise _at(line_of(row), "unknown_run", what)
+
+
+def _at(line: int, reason_code: str, what: str) -> DefectiveInputError:
+    return DefectiveInputError(reason_code, at_line(line, what), line)
 
 
 def _check_runs(run: pl.Series, line_of: LineOf) -> None:
@@ -708,10 +682,8 @@ def _check_runs(run: pl.Series, line_of: LineOf) -> None:
     numbers = run.to_numpy()[starts]
     for position, number in enumerate(numbers):
         if number in numbers[:position]:
-            line = line_of(int(starts[position]))
             what = say("run {run} begins again; its rows must stand together.", run=int(number))
-            said = say("Line {line}: {what}", line=line, what=what)
-            raise DefectiveInputError("split_run", said, line=line)
+            raise _at(line_of(int(starts[position])), "split_run", what)
 
 
 def run_starts(run: NDArray[np.int8]) -> NDArray[np.intp]:
@@ -753,10 +725,8 @@ def _check_time(
     step[starts[1:] - 1] = np.inf
     step[np.isin(run.to_numpy()[1:], turned)] = np.inf
     if (step <= 0).any():
-        line = line_of(int(np.argmax(step <= 0)) + 1)
         what = say("the time does not increase within the run.")
-        said = say("Line {line}: {what}", line=line, what=what)
-        raise DefectiveInputError("bad_time", said, line=line)
+        raise _at(line_of(int(np.argmax(step <= 0)) + 1), "bad_time", what)
     if rate_hz is None:
         return
     for start, end in zip(starts, ends, strict=True):

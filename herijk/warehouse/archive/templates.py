@@ -1,15 +1,12 @@
 """An empty archive to begin with: folders, spreadsheets that check what is filled in, a page."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.tables.declare import dy
-from herijk.tables.lake import ListedBoats, ListedTows
-from herijk.warehouse.archive import boats as boat_list
-from herijk.warehouse.archive import tows as tow_list
 from herijk.warehouse.archive.files import PROFILE_FILE
+from herijk.warehouse.archive.kinds import BOATS, TOWS, ListKind
 from herijk.warehouse.archive.text import Column
 
 FOLDERS: Final = ("sloepregister", "sleeplijsten", "meetdata_2025", "wedstrijden")
@@ -86,17 +83,11 @@ def write_templates(root: Path) -> None:
         (root / folder).mkdir(parents=True, exist_ok=True)
     (root / "LEESMIJ.md").write_text(README, encoding="utf-8")
     (root / PROFILE_FILE).write_text(PROFILE, encoding="utf-8")
-    _write_list(
-        root / "sloepregister/sloependata.xlsx", boat_list.COLUMNS, ListedBoats, EXAMPLE_BOAT
-    )
-    _write_list(
-        root / "sleeplijsten/sleeplijst_2025.xlsx", tow_list.COLUMNS, ListedTows, EXAMPLE_TOW
-    )
+    _write_list(root / "sloepregister/sloependata.xlsx", BOATS, EXAMPLE_BOAT)
+    _write_list(root / "sleeplijsten/sleeplijst_2025.xlsx", TOWS, EXAMPLE_TOW)
 
 
-def _write_list(
-    path: Path, columns: Sequence[Column], table: type[dy.Schema], example: dict[str, object]
-) -> None:
+def _write_list(path: Path, kind: ListKind, example: dict[str, object]) -> None:
     """Write a spreadsheet with a header, an example, and a check on each column with limits."""
     import xlsxwriter  # type: ignore[import-untyped]  # noqa: PLC0415 - only here
 
@@ -104,11 +95,11 @@ def _write_list(
         sheet = book.add_worksheet("lijst")
         bold = book.add_format({"bold": True, "bottom": 1})
         sheet.freeze_panes(1, 0)
-        for place, column in enumerate(columns):
+        for place, column in enumerate(kind.columns):
             sheet.set_column(place, place, max(10, len(column.named) + 2))
             sheet.write(0, place, column.named, bold)
             sheet.write(1, place, example.get(column.key, ""))
-            rule = _rule(column, table)
+            rule = _rule(column, kind.table)
             if rule is not None:
                 sheet.data_validation(1, place, MOST_ROWS, place, rule)
 

@@ -267,14 +267,15 @@ def find_columns(
     return places
 
 
-def _is_own(column: Column, found: Mapping[str, FoundColumn]) -> bool:
+def _is_own(column: Column, places: Mapping[str, FoundColumn]) -> bool:
     """Whether a column was found by its own name."""
-    return column.key in found and split_header(found[column.key].header)[0] == fold(column.header)
+    place = places.get(column.key)
+    return place is not None and split_header(place.header)[0] == fold(column.header)
 
 
-def unknown_headers(header: Sequence[str], found: Mapping[str, FoundColumn]) -> list[str]:
+def unknown_headers(header: Sequence[str], places: Mapping[str, FoundColumn]) -> list[str]:
     """Return the headers of no column that was found; empty ones do not count."""
-    taken = {column.index for column in found.values()}
+    taken = {column.index for column in places.values()}
     return [cell.strip() for i, cell in enumerate(header) if i not in taken and fold(cell)]
 
 
@@ -297,7 +298,7 @@ def _names_of(columns: tuple[Column, ...]) -> frozenset[str]:
 
 
 def _choose(
-    namesakes: list[Column], unit: str | None, cell: str, found: dict[str, FoundColumn], line: int
+    namesakes: list[Column], unit: str | None, cell: str, places: dict[str, FoundColumn], line: int
 ) -> Column:
     """Return the one column a header cell stands for."""
     fitting = [c for c in namesakes if unit is None or find_scale(c.dimension, unit) is not None]
@@ -318,11 +319,11 @@ def _choose(
             known=_in_brackets(known) or "-",
         )
         raise DefectiveInputError("unknown_unit", said, line)
-    free = [column for column in fitting if column.key not in found]
+    free = [column for column in fitting if column.key not in places]
     if not free:
         said = say(
             "Columns '{first}' and '{second}' are the same; one of them has to go.",
-            first=found[fitting[0].key].header,
+            first=places[fitting[0].key].header,
             second=cell.strip(),
         )
         raise DefectiveInputError("duplicate_column", said, line)
@@ -337,14 +338,14 @@ def _choose(
 
 
 def _missing_message(
-    missing: list[Column], header: Sequence[str], found: Mapping[str, FoundColumn]
+    missing: list[Column], header: Sequence[str], places: Mapping[str, FoundColumn]
 ) -> str:
     return say(
         "Not found in the header: {names}. Found: {found}.",
         names=", ".join(f"'{column.named}'" for column in missing),
         found=", ".join(f"'{shorten(cell.strip())}'" for cell in header[:30]),
         keys=tuple(column.key for column in missing),
-        header=tuple(unknown_headers(header, found)),
+        header=tuple(unknown_headers(header, places)),
     )
 
 

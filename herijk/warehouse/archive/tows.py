@@ -5,7 +5,7 @@ One row at a time: text to values. What rows, boats and files say about each oth
 """
 
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -13,82 +13,35 @@ from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.row import Row
 from herijk.warehouse.archive.files import PARTS
-from herijk.warehouse.archive.lists import DefectiveRowError, ListRow
+from herijk.warehouse.archive.kinds import TOWS
+from herijk.warehouse.archive.lists import DefectiveRowError, ListRow, run_number
 from herijk.warehouse.archive.profile import Plan
-from herijk.warehouse.archive.text import Column, fold_word, shorten
+from herijk.warehouse.archive.text import fold_word, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
 from herijk.words import say
 
-COLUMNS: Final = (
-    Column("tow_id", "sleep_id", required=False),
-    Column("tow_date", "datum"),
-    Column("fsn_no", "fsn_nr"),
-    Column("name", "sloep", required=False),
-    Column("file", "meetfile"),
-    Column("second_file", "meetfile2", required=False),
-    Column("rowers", "roeiers"),
-    Column("crew_class", "klasse"),
-    Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
-    Column("waterline_length_m", "lengte", "length", "m", required=False),
-    Column("beam_m", "breedte", "length", "m", required=False),
-    Column("bow_height_m", "hoogte", "length", "m", required=False),
-    Column("weight_kg", "gewicht", "mass", "kg", required=False),
-    Column("weight_after_kg", "gewicht na", "mass", "kg", required=False),
-    Column("crew_weight_kg", "bemanning", "mass", "kg", required=False),
-    Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
-    Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
-    Column("run", "run", required=False),
-    Column("use_runs", "gebruik runs", required=False),
-    Column("altered", "verbouwd", required=False),
-    Column("sample_rate_hz", "meetfrequentie", "rate", "Hz", required=False),
-    Column("empty_thwart", "lege doft", required=False),
-    Column("freeboard_lowest_m", "vrijboord laagst", "length", "m", required=False),
-    Column("freeboard_bow_m", "vrijboord boeg", "length", "m", required=False),
-    Column("freeboard_stern_m", "vrijboord achter", "length", "m", required=False),
-    Column("remark", "opmerking", required=False),
-)
 TWICE: Final = 2.0
 """So many times what the boat list says cannot be right (inferred)."""
 _DIMENSIONS: Final = {
     column.key: column
-    for column in COLUMNS
+    for column in TOWS.columns
     if column.key in {"waterline_length_m", "beam_m", "bow_height_m"}
 }
 """What a tow or else its boat must have; the height of the bow only where wind was measured."""
-_READERS: Final[Mapping[str, Callable[[ListRow, str], object]]] = {
-    "tow_date": ListRow.date,
-    "fsn_no": ListRow.boat,
-    "rowers": ListRow.integer,
-    "crew_class": ListRow.crew_class,
-    "declared_speed_m_s": ListRow.number,
-    "waterline_length_m": ListRow.optional_number,
-    "beam_m": ListRow.optional_number,
-    "bow_height_m": ListRow.optional_number,
-    "weight_kg": ListRow.optional_number,
-    "weight_after_kg": ListRow.optional_number,
-    "crew_weight_kg": ListRow.optional_number,
-    "water_temperature_c": ListRow.optional_number,
-    "speed_correction_ratio": ListRow.optional_number,
-    "altered": ListRow.yes_or_no,
-    "sample_rate_hz": ListRow.optional_integer,
-    "empty_thwart": ListRow.optional_text,
-    "freeboard_lowest_m": ListRow.optional_number,
-    "freeboard_bow_m": ListRow.optional_number,
-    "freeboard_stern_m": ListRow.optional_number,
-    "remark": ListRow.optional_text,
-}
-"""How the values of a tow are read."""
+_VALUES: Final = tuple(
+    column
+    for column in TOWS.columns
+    if column.key != "tow_id" and column.key in TOWS.table.columns()
+)
+"""Columns whose cells are values of the tow as they stand."""
 _DECISIVE: Final = frozenset({"speed_correction_ratio", "sample_rate_hz", "altered"})
 """Optional, but where one cannot be read an empty cell would say something else: no alteration."""
 _DISPENSABLE: Final = frozenset(
-    column.key
-    for column in COLUMNS
-    if not column.required and column.key in _READERS and column.key not in _DECISIVE
+    column.key for column in _VALUES if not column.required and column.key not in _DECISIVE
 )
 """Values whose absence makes a tow less sure, and not wrong."""
 _OF_A_RUN: Final = frozenset({"run", "file", "use_runs", "remark"})
 """What may differ between the rows of one tow, in a list with a row for each run."""
-_RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
 _RANGE: Final = re.compile(r"(b?[0-9]+)\s*(?:-|\.\.|:|t/m|tm|tot en met|to|bis|à)\s*(b?[0-9]+)")
 _TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
 
@@ -176,13 +129,14 @@ def read_tow(
     if not _TOW_ID.fullmatch(tow_id):
         message = "'{tow}' cannot be a sleep_id: it is too long, or has a slash."
         raise row.fault(say(message, tow=shorten(tow_id)))
-    values: Row = dict.fromkeys(_READERS)
+    values: Row = {}
     wrong: dict[str, DefectiveInputError] = {}
-    for key, reader in _READERS.items():
+    for column in _VALUES:
         try:
-            values[key] = reader(row, key)
+            values[column.key] = row.value(column)
         except DefectiveInputError as error:
-            wrong[key] = error
+            values[column.key] = None
+            wrong[column.key] = error
     costly = [error for key, error in wrong.items() if key not in _DISPENSABLE]
     lost = [wrong[key] for key in sorted(wrong.keys() & _DISPENSABLE)]
     if costly:
@@ -268,23 +222,3 @@ def _spelled_out(cell: str) -> str:
         return ",".join(f"{letter}{run}" for run in range(first, min(last, first + MOST_RUNS) + 1))
 
     return _RANGE.sub(numbers, cell).replace(" en ", ",").replace(" and ", ",").replace(" et ", ",")
-
-
-def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -> int:
-    """Return the number of a run as written in a list: 1 and on, or 21 and on for b1 and on.
-
-    Raises:
-        DefectiveInputError: it is none, with the row's reason code and line.
-    """
-    match = _RUN.fullmatch(part)
-    if match is None or int(match[2]) not in planned:
-        raise row.fault(
-            say(
-                "column '{column}' has '{part}'; runs are 1 to {last}, or b1 to b{last} for the "
-                "second file, with commas between them. Runs beyond these need a [[plan]].",
-                column=header,
-                part=shorten(part),
-                last=max(planned),
-            )
-        )
-    return int(match[2]) + (SECOND_FILE_OFFSET if match[1] else 0)

@@ -3,7 +3,7 @@
 import dataclasses
 import datetime as dt
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -20,8 +20,6 @@ from herijk.words import say
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
-
-_LISTED_AT: Final = ["list_path", "list_line"]
 
 
 class NothingSoundError(MissingKnowledgeError):
@@ -67,9 +65,7 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         "seasons": _seasons(inputs["season_tows"], sound, losses),
         "tows": _with_lost_runs(tows, losses),
         "tow_runs": _with_lost_seconds(runs, losses),
-        "hand_windows": windows.join(
-            beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
-        ),
+        "hand_windows": windows.join(beyond, on=["path", "line"], how="anti"),
         "quarantine": _dated(set_aside, inputs.earlier("quarantine"), inputs.today),
     }
     if tables["tows"].is_empty():

@@ -160,3 +160,12 @@ def test_an_empty_archive_to_begin_with(tmp_path: Path) -> None:
     assert cause.reason_code == "samples_missing"  # of the example that is to be removed
     with pytest.raises(MissingKnowledgeError, match="not empty"):
         write_templates(root)
+
+
+def test_lamps_of_another_name_are_no_windows(archive):
+    (archive.root / "sleeplijsten/recht sturen 2014.csv").write_text(
+        "sleep_id;run;van [s];tot [s]\n2014-001;2;5;9\n"
+    )
+    (cause,) = check_archive(archive.root).causes
+    (proposal,) = cause.proposals
+    assert proposal.line == '[files] "sleeplijsten/recht sturen 2014.csv" = "lampjes_2014"'

@@ -3,18 +3,14 @@
 The limits are those of the declared tables; nothing here repeats one.
 """
 
+from functools import partial
+
 import pytest
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.frames import frame_of, limits
-from herijk.tables.lake import (
-    ListedBoats,
-    ListedRaces,
-    ListedTows,
-    ListedWindows,
-    PrintedLines,
-)
-from herijk.warehouse.archive import boats, published, tows, windows
+from herijk.tables.lake import ListedRaces
+from herijk.warehouse.archive import boats, instruments, kinds, published, tows, windows
 from herijk.warehouse.archive.lists import Wording, read_list
 from herijk.warehouse.archive.misfits import misfits
 
@@ -49,6 +45,8 @@ BOAT = {
     **{k: TOW[k] for k in ("lengte [m]", "breedte [m]", "hoogte [m]", "gewicht [kg]")},
 }
 WINDOW = {"sleep_id": "2014-001", "run": "1", "van [s]": "5", "tot [s]": "45", "reden": "zwaan"}
+CHECK = {"datum": "2014-03-08", "gewicht [kg]": "100", "aflezing [N]": "981"}
+LAMP = {key: WINDOW[key] for key in ("sleep_id", "run", "van [s]", "tot [s]")}
 RACE = {
     "wedstrijd": "a",
     "datum": "2014-06-01",
@@ -80,44 +78,46 @@ def tow_or_first_fault(row):
     return tow
 
 
+def of_2014(read):
+    return lambda row: read(row, 2014)
+
+
+window = of_2014(partial(windows._window, {(2014, "2014-001"): {1}}))
+lamp = of_2014(partial(instruments._lamp, {"2014-001"}))
 LISTS = {
-    "boats": (ListedBoats, boats.COLUMNS, BOAT, boats._boat),
-    "tows": (ListedTows, tows.COLUMNS, TOW, tow_or_first_fault),
-    "windows": (ListedWindows, windows.COLUMNS, WINDOW, windows._read_window),
-    "races": (
-        ListedRaces,
-        published.RACE_COLUMNS,
-        RACE,
-        lambda row: published._race_result(row, 2014),
-    ),
-    "registers": (
-        PrintedLines,
-        published.REGISTER_COLUMNS,
-        PRINTED,
-        lambda row: published._register_line(row, 2014),
-    ),
+    "boats": (kinds.BOATS, BOAT, boats._boat),
+    "tows": (kinds.TOWS, TOW, tow_or_first_fault),
+    "windows": (kinds.WINDOWS, WINDOW, window),
+    "checks": (kinds.FORCE_CHECKS, CHECK, of_2014(instruments._force_check)),
+    "lamps": (kinds.LAMPS, LAMP, lamp),
+    "races": (kinds.RACES, RACE, of_2014(published._race_result)),
+    "registers": (kinds.REGISTERS, PRINTED, of_2014(published._register_line)),
 }
 
 
-def values_of(name, cells):
+def test_every_kind_of_list_is_tried():
+    assert {kind.name for kind, _, _ in LISTS.values()} == {k.name for k in kinds.LIST_KINDS}
+
+
+def values_of(name, cells, folder):
     """What a list of one row is read as."""
-    table, columns, _, read = LISTS[name]
-    text = ";".join(cells) + "\n" + ";".join(cells.values()) + "\n"
-    (row,) = read_list(text.encode(), columns, "bad_row", "list.csv", Wording(), table)
+    kind, _, read = LISTS[name]
+    (folder / "list.csv").write_text(";".join(cells) + "\n" + ";".join(cells.values()) + "\n")
+    (row,) = read_list(folder, kind, "list.csv", Wording())
     return read(row)
 
 
 def limited():
     """Every limit of a column that a list has: list, column, header, sign and limit."""
-    for name, (table, columns, cells, _) in LISTS.items():
-        for column in columns:
+    for name, (kind, cells, _) in LISTS.items():
+        for column in kind.columns:
             header = next((h for h in cells if h.split(" [")[0] == column.header), None)
-            if header is None or column.key not in table.column_names():
+            if header is None or column.key not in kind.table.column_names():
                 continue
-            declared = table.columns()[column.key]
+            declared = kind.table.columns()[column.key]
             if not (declared.dtype.is_numeric() and column.key != "run"):
                 continue
-            for sign, limit in zip((-1, 1), limits(table, column.key), strict=True):
+            for sign, limit in zip((-1, 1), limits(kind.table, column.key), strict=True):
                 if limit is not None:
                     yield pytest.param(
                         name, column.key, header, sign, limit, id=f"{name}-{column.key}-{sign}"
@@ -129,28 +129,30 @@ def cell_of(header, value):
 
 
 @pytest.mark.parametrize(("name", "key", "header", "sign", "limit"), list(limited()))
-def test_one_step_outside_is_set_aside_and_inside_accepted(name, key, header, sign, limit):
-    table, _, cells, _ = LISTS[name]
-    whole = table.columns()[key].dtype.is_integer()
+def test_one_step_outside_is_set_aside_and_inside_accepted(
+    name, key, header, sign, limit, tmp_path
+):
+    kind, cells, _ = LISTS[name]
+    whole = kind.table.columns()[key].dtype.is_integer()
     step = 1 if whole else 1e-3 * max(1.0, abs(limit))
     others = dict(cells)
-    if name == "windows":  # a window ends after it begins
+    if key in ("start_s", "end_s"):  # a window ends after it begins
         others |= {"van [s]": "0"} if key == "end_s" else {"tot [s]": "600"}
     inside = limit if whole and name != "windows" else limit - sign * step
-    accepted = values_of(name, others | {header: cell_of(header, inside)})
+    accepted = values_of(name, others | {header: cell_of(header, inside)}, tmp_path)
     assert accepted[key] == pytest.approx(inside)
-    usual = values_of(name, others)
+    usual = values_of(name, others, tmp_path)
     assert {k: v for k, v in accepted.items() if k != key} == {
         k: v for k, v in usual.items() if k != key
     }
     with pytest.raises(DefectiveInputError, match="can be right") as fault:
-        values_of(name, others | {header: cell_of(header, limit + sign * step)})
-    assert (fault.value.reason_code, fault.value.line) == ("bad_row", 2)
+        values_of(name, others | {header: cell_of(header, limit + sign * step)}, tmp_path)
+    assert (fault.value.reason_code, fault.value.line) == (kind.reason_code, 2)
 
 
 @pytest.mark.parametrize(("season", "fits"), [(1989, False), (1990, True), (2100, True)])
-def test_a_season_outside_its_limits_is_set_aside_with_a_sentence(season, fits):
-    row = {**values_of("races", RACE), "season": season, "path": "a.csv", "line": 2}
+def test_a_season_outside_its_limits_is_set_aside_with_a_sentence(season, fits, tmp_path):
+    row = {**values_of("races", RACE, tmp_path), "season": season, "path": "a.csv", "line": 2}
     found = [why for _, why in misfits(ListedRaces, frame_of(ListedRaces, [row]))]
     sentence = f"column 'season' is {season}; 1990 to 2100 can be right."
     assert found == ([] if fits else [sentence])

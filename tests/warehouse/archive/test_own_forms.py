@@ -12,6 +12,8 @@ import pytest
 import xlsxwriter
 
 from herijk.warehouse.archive.check import Checked, check_archive, check_report
+from herijk.warehouse.archive.meaning import meanings
+from herijk.warehouse.archive.profile import parse_profiles
 from herijk.warehouse.archive.sheets import read_sheets
 from herijk.warehouse.archive.text import Column, split_header
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
@@ -626,3 +628,15 @@ def test_a_jump_of_the_gps_costs_its_seconds_and_one_of_a_log_counts(archive: Ar
 
 def faster(cell: str, _: int) -> str:
     return f"{1.2 * float(cell.replace(',', '.')):.3f}".replace(".", "," if "," in cell else ".")
+
+
+def test_two_headers_with_one_unit_are_not_the_same_column():
+    weight = Column("weight_kg", "gewicht", "mass", "kg")
+    cells = {"xyz [kg]": ["700"], "qrs [kg]": ["800"]}
+    assert [m.column for m in meanings(cells, [weight], lambda *_: True)] == [weight, None]
+
+
+@pytest.mark.parametrize("profile", ["", '[[profile]]\nseasons = "2014"\n'])
+def test_what_is_to_be_ignored_is_ignored_in_every_season(profile):
+    profiles = parse_profiles(f'ignore = ["Snelheid boeg"]\n{profile}')
+    assert profiles.for_season(2014).ignore == ("snelheidboeg",)

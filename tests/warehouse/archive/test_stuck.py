@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.plausibility import (
     _longest_hold,
     _may_hold,
@@ -27,15 +28,16 @@ def runs(*spoken: tuple[float, float]) -> list[_Run]:
     log, moving = np.full(500, 2.4, np.float32), np.linspace(2.3, 2.5, 500, dtype=np.float32)
     return [
         _Run(
-            number, 1, 10, intended, 50.0, {"log1": log, "gps": log * 0 + held if held else moving}
+            *("2015-001", number, "a.csv", 1, 10, intended, 50.0),
+            {"log1": log, "gps": log * 0 + held if held else moving},
         )
         for number, (intended, held) in enumerate(spoken, start=1)
     ]
 
 
 def without_gps(*spoken: tuple[float, float]) -> list[int]:
-    tow = {"tow_id": "2015-001", "samples_path": "a.csv", "second_samples_path": None}
-    kept, faults = _without_stuck_gps(runs(*spoken), tow)
+    faults: list[Fault] = []
+    kept = _without_stuck_gps(runs(*spoken), faults)
     lost = [run.number for run in kept if np.isnan(run.channels["gps"]).all()]
     assert len(faults) == len(lost)
     return lost
