@@ -37,7 +37,7 @@ class Defects:
     # Water and wind
     stream_m_s: float = 0.0  # sd along the course
     stream_drift_m_s: float = 0.0  # sd of the change in ten minutes
-    tide_m_s: float = 0.0  # amplitude of a tidal stream that turns during the tow
+    tide_m_s: float = 0.0  # amplitude of a tidal current that turns during the tow
     water_temperature_c: tuple[float, float] = (15.0, 15.0)  # range, drawn each day
     temperature_missing_share: float = 0.0  # of tows whose list does not give it
     wind_m_s: float = 0.0  # mean true wind speed
@@ -104,7 +104,7 @@ class Defects:
     def clean(cls, season: int) -> "Defects":
         """That season's instruments in a world where only the season's log factor needs finding.
 
-        Noise, wind, stream and disturbed runs stay; what cannot be known from one tow (wander
+        Noise, wind, current and disturbed runs stay; what cannot be known from one tow (wander
         between tows, boats that change, askew pulling) is gone.
         """
         return replace(

@@ -1,4 +1,4 @@
-"""The true motion of a boat in its runs, and the stream and wind around it.
+"""The true motion of a boat in its runs, and the current and wind around it.
 
 Drawn on a grid of 20 points per second, the same at every sampling rate, so that a tow at 20 Hz
 and at 1000 Hz is the same tow. What instruments make of it is in `instruments`.
@@ -77,7 +77,7 @@ class TrueRun:
 
 
 def true_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueRun]:
-    """The motion of a tow's six runs, with stream and wind, in the order towed."""
+    """The motion of a tow's six runs, with current and wind, in the order towed."""
     grid_s = np.arange(-LEAD_S, RUN_SECONDS + 1.0, 1.0 / SLOW_HZ)
     ratios = [*TARGET_SPEED_RATIOS[:-1], FAST_RUN_RATIO] if tow.fast_run else TARGET_SPEED_RATIOS
     stream_m_s, drift_m_s = streams[Component.STREAM].standard_normal(2)

@@ -43,7 +43,7 @@ class RegisterLine:
 
 @dataclass(frozen=True)
 class RaceLine:
-    """One crew's result; `stream_km` is None for crews that met no stream."""
+    """One crew's result; `stream_km` is None for crews that met no current."""
 
     tow: Tow
     seconds: int

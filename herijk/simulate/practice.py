@@ -134,7 +134,7 @@ def _run(samples: pl.DataFrame, run: RunTruth, practice: Practice) -> _Run:
 
 
 def _calibration(runs: Sequence[_Run]) -> float:
-    """GPS over log, as many runs out as back, so that the stream drops out."""
+    """GPS over log, as many runs out as back, so that the current drops out."""
     ways = [[run for run in runs if run.direction == way] for way in (1, -1)]
     gps, log = (
         np.mean([np.mean([getattr(run, name).mean() for run in way]) for way in ways])

@@ -83,7 +83,7 @@ class ListedRaces(dy.Schema):
     empty_thwart = column.text("thwart left free, where it is given", nullable=True)
     rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
     stream_m = column.number(
-        "m", "distance that the stream carried the boat", nullable=True, min=-500_000, max=500_000
+        "m", "distance that the current carried the boat", nullable=True, min=-500_000, max=500_000
     )
     penalty_w = column.number("W", "penalty", nullable=True, min=-1000, max=1000)
     path = column.text("file, relative to the archive")

@@ -141,7 +141,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.note": ("opmerking", "note"),
     "code.force": ("kracht", "force"),
     "code.between_tows": ("van proef tot proef", "from tow to tow"),
-    "code.stream_drift": ("stroom", "stream"),
+    "code.stream_drift": ("stroom", "current"),
     "code.anemometer": ("windmeter", "anemometer"),
     "code.misfit": ("romp is geen hyperbool", "hull is no hyperbola"),
     "code.mass": ("massa", "mass"),

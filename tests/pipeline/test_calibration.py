@@ -1,4 +1,4 @@
-"""The calibration factor: every run weighs the same, and the stream drops out."""
+"""The calibration factor: every run weighs the same, and the current drops out."""
 
 import numpy as np
 import polars as pl

@@ -110,7 +110,7 @@ def test_intervals_of_b_hold_the_truth(tows):
 
 def test_run_points_scatter_about_their_curves_as_the_unrest_within_the_runs_says(made):
     """Each season's two estimates within a factor of two: the first also has in it what differs
-    from run to run (stream, helm), the second what is taken off (wind, inertia)."""
+    from run to run (current, helm), the second what is taken off (wind, inertia)."""
     used = made.run_points.filter("used").with_columns(
         pl.col("tow_id").str.head(4).alias("season"),
         (pl.col("cw_kg_m") / pl.col("fitted_cw_kg_m") - 1.0).alias("residual"),

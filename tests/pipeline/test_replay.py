@@ -1,4 +1,4 @@
-"""Races replayed under a register: the presentation's example, ranks, fatigue, stream, penalty."""
+"""Races replayed under a register: the presentation's example, ranks, fatigue, current, penalty."""
 
 import datetime as dt
 
@@ -37,7 +37,7 @@ def register(*lines):
 
 
 def results(*rows):
-    """Results of (boat, time [s]), with the stream [m] and the penalty [W] where there are."""
+    """Results of (boat, time [s]), with the current [m] and the penalty [W] where there are."""
     return pl.DataFrame(
         [
             {

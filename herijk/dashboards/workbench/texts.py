@@ -212,7 +212,7 @@ TEXTS: Final[Words] = {
     "speed.operation": ("Hoe de correctie werkt", "How the correction works"),
     "calibration.rule": ("Gps-factor", "GPS factor"),
     "calibration.delay": ("Gps die achterloopt", "GPS that is late"),
-    "calibration.stream": ("Stroom tussen de runs", "Stream between the runs"),
+    "calibration.stream": ("Stroom tussen de runs", "Current between the runs"),
     "calibration.without_gps": ("Proef zonder gps", "Tow without GPS"),
     "window.rule": ("Welk deel van een run", "Which part of a run"),
     "window.minimum_s": ("Kortste venster", "Shortest window"),

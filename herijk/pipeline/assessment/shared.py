@@ -51,8 +51,8 @@ def _of_season(name: str, of_tows: pl.DataFrame, curves: pl.DataFrame) -> pl.Dat
 def rising_with_speed(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     """How the log's factor changes with speed, by the GPS of all its season.
 
-    Per tow it is the slope of ln(GPS / log) by ln speed, among runs one way, in which the stream is
-    the same.
+    Per tow it is the slope of ln(GPS / log) by ln speed, among runs one way, in which the current
+    is the same.
 
     Returns:
         `tow_id, log_not_linear`; no row in a season of few tows.

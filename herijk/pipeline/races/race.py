@@ -1,7 +1,7 @@
 """From a race time to power per rower, and the fatigue factor.
 
 Belongs here: what turns distance, time and a curve's Cw into the number races are decided on.
-Does not belong here: the curve itself (`curve`), penalties and tidal streams, which are inputs.
+Does not belong here: the curve itself (`curve`), penalties and tidal currents, which are inputs.
 Arguments broadcast.
 """
 
@@ -24,7 +24,7 @@ between them."""
 
 
 def mean_speed_m_s(distance_m: ArrayLike, time_s: ArrayLike) -> FloatArray:
-    """Mean speed [m/s] through the water; take the stream off the distance beforehand."""
+    """Mean speed [m/s] through the water; take the current off the distance beforehand."""
     distance, time = (np.asarray(x, dtype=np.float64) for x in (distance_m, time_s))
     return distance / time
 

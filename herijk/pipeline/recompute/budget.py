@@ -60,8 +60,8 @@ def pooled_scatter(o: Outcome) -> curve.Scatter:
 def scatter_of_level(o: Outcome) -> curve.Scatter:
     """The same as it makes the level of a curve uncertain.
 
-    Of tows that are calibrated by themselves, as far as the stream was steady: what is beyond is in
-    `stream_scatter`. Of others that of the points.
+    Of tows that are calibrated by themselves, as far as the current was steady: what is beyond is
+    in `stream_scatter`. Of others that of the points.
     """
     ratio, used, on_curve = _residuals(o)
     batch, by_log = o.batch, pooled_scatter(o)
@@ -169,7 +169,7 @@ def files_log_sd(o: Outcome) -> FloatArray:
 
 
 def stream_scatter(o: Outcome) -> tuple[FloatArray, IntArray]:
-    """Standard deviation of ln y by a stream that is not the same in runs one way, and its dof.
+    """Standard deviation of ln y by a current that is not the same in runs one way, and its dof.
 
     A drift that was taken off is uncertain too. Both of shape (tows,); 0 where no tow is
     calibrated by itself.

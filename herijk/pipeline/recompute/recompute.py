@@ -265,7 +265,7 @@ def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> S
 
 
 def _stream_drift(batch: Batch, steps: Steps, means: RunMeans, used: BoolArray) -> FloatArray:
-    """Part of the GPS speed that is a drift of the stream, as far as asked for, shape (runs,)."""
+    """Part of the GPS speed that is a drift of the current, as far as asked for, shape (runs,)."""
     if steps.calibration.stream == "none":
         return np.zeros(len(batch.tow))
     return stream_drift_m_s(batch, means.gps_m_s, means.speed_m_s, used)

@@ -47,7 +47,7 @@ BEYOND_CURVE = "beyond_curve"
 
 @dataclass(frozen=True)
 class RaceRules:
-    """How results are computed; the distance that the stream carried a boat comes off first.
+    """How results are computed; the distance that the current carried a boat comes off first.
 
     Attributes:
         fatigue: `none`; `known`: between the two published points, refused outside; `extend`: the

@@ -26,7 +26,7 @@ class Settings:
         tow_sd, bend_sd_tow, gps_sd, tow_log_sd, calibration_sd: between tows, each with `spread`:
             ln Cw beyond its random part, the same of the bend, ln(GPS / log) beyond its given
             uncertainty, the ln factor of the log, and that of a log calibrated on dGPS: by the
-            calibration itself and by a stream that changes meanwhile. `spread` is of the logarithm
+            calibration itself and by a current that changes meanwhile. `spread` is of the logarithm
             of a variance: what is said here counts as one repeat tow.
         season_spread: of the logarithm of a season's variances, against those of the archive.
         bend_sd, type_bend_sd: bend of boats about that of their type, of a type about its pooled

@@ -82,7 +82,7 @@ def season_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
         `force_step`, the part of the load cell, with standard deviations. `cause` is
 
         - `force` where a fault of the load cell is likelier than not;
-        - `not told` where one cannot be told, or looks like a stream that runs with the boat both
+        - `not told` where one cannot be told, or looks like a current that runs with the boat both
           ways; where the season is not determined, or the search did not settle; and where a fault
           of the load cell would not show, and one no larger than usual could be the whole step;
         - `log` where the level differs by more than twice its standard deviation;
@@ -132,7 +132,7 @@ def _mean_effect(posterior: Posterior, effects: FloatArray) -> tuple[float, floa
 def _may_be_a_stream(network: Network, season: int, force: float) -> bool:
     """Whether dGPS that is off in a whole season would look like this error of the load cell.
 
-    A stream that runs with the boat both ways, or against it, does that: it makes dGPS over log
+    A current that runs with the boat both ways, or against it, does that: it makes dGPS over log
     unusual, and Cw err the other way.
     """
     own = network.tows.filter(season=season)["own_calibration_ln"].drop_nulls()

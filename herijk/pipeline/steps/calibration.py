@@ -1,8 +1,8 @@
 """Calibration: the factor y that brings the log of a tow's file to ground speed.
 
 `y = mean(v_dGPS) / mean(v_log)` over the steady parts of all runs together, as many out as back,
-so that the stream drops out (Sleepproef, R. Pot 2017, "IJking snelheid"). Every run weighs the
-same, whatever the length of its window: with unequal windows and 5 cm/s of stream a ratio over
+so that the current drops out (Sleepproef, R. Pot 2017, "IJking snelheid"). Every run weighs the
+same, whatever the length of its window: with unequal windows and 5 cm/s of current a ratio over
 samples is wrong by 0.5 % (docs/method.md, 4).
 """
 
@@ -15,11 +15,11 @@ from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.channels import BACK, OUT
 
 USUAL_RUN_SCATTER: Final = 0.006
-"""Standard deviation of GPS over log between runs one way in a steady stream (inferred: half of
+"""Standard deviation of GPS over log between runs one way in a steady current (inferred: half of
 simulated sound tows stay under 0.3 %, one in a hundred exceeds 0.6 %)."""
 
 BY_CHANCE: Final = 2.0
-"""Standard deviations up to which chance may explain a drift of the stream (inferred)."""
+"""Standard deviations up to which chance may explain a drift of the current (inferred)."""
 
 
 def mean_over_both_ways(
@@ -28,7 +28,7 @@ def mean_over_both_ways(
     """Mean of the run means out and of those back, then the mean of the two, per tow.
 
     With as many runs out as back this is the plain mean of run means; with one run lost it still
-    lets a constant stream drop out.
+    lets a constant current drop out.
 
     Args:
         values: one number per run, shape (runs,).
@@ -53,9 +53,9 @@ def mean_over_both_ways(
 def stream_drift_m_s(
     batch: Batch, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray
 ) -> FloatArray:
-    """What a stream that rises or falls evenly from run to run adds to the GPS of each run.
+    """What a current that rises or falls evenly from run to run adds to the GPS of each run.
 
-    Runs out come before runs back, so that such a stream does not drop out of their mean. It shows
+    Runs out come before runs back, so that such a current does not drop out of their mean. It shows
     within both ways, with opposite signs; a log that is not linear, towed faster and faster, shows
     with the same sign. What chance makes of it is taken off: the slope counts by 1 - c^2 / its
     square, or not at all, with c `BY_CHANCE` standard deviations by the scatter about it, or one by

@@ -29,7 +29,7 @@ ten times as sure as white noise would make it."""
 CURVE_PARAMETERS: Final = 2
 
 SHARED_PARAMETERS: Final = 3
-"""What all runs of a tow share of GPS over log: its mean, the stream in it, and a log that is not
+"""What all runs of a tow share of GPS over log: its mean, the current in it, and a log that is not
 linear in speed."""
 
 SINGLE: Final = "single"
@@ -203,7 +203,7 @@ class Assumed:
 
     Attributes:
         calibration_speed_ratio: dGPS calibration of the speed of a tow.
-        stream_drift_speed_ratio: stream that changes between the runs out and those back, which
+        stream_drift_speed_ratio: current that changes between the runs out and those back, which
             the calibration then takes for speed.
         force_ratio: calibration of the load cell, as daily with a known weight.
         wind_coefficient: of a prescribed air drag coefficient: 0.2 either way, all equally likely.
@@ -241,7 +241,7 @@ class Assumed:
     def beside_repeats(self, tow_sd: float, calibration_sd: float) -> "Assumed":
         """What remains assumed where repeat tows show how far tows scatter.
 
-        Calibration with stream drift, which move speed, and recorded temperature, straightness and
+        Calibration with current drift, which move speed, and recorded temperature, straightness and
         the weighing of the crew, which do not, differ from tow to tow: repeat tows show both sums.
         What repeat tows share cancels in their difference, so they never shrink it (ISO 5725-1;
         GUM, type B).
@@ -268,7 +268,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     """Every component of the uncertainty of Cw at one speed, per tow.
 
     A speed error acts through the elasticity kappa of the boat. A tow without dGPS has the wander
-    of its log in place of calibration and stream drift: a log feels the water, not the stream.
+    of its log in place of calibration and current drift: a log feels the water, not the current.
 
     Args:
         tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
@@ -276,7 +276,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
             `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
             where calibrated), `tow_log_sd` of the log (0 where calibrated); `stream_sd` with
-            `stream_dof`, of ln speed by a stream that differs between runs one way; `air_ratio`,
+            `stream_dof`, of ln speed by a current that differs between runs one way; `air_ratio`,
             net wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
             coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is
             taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air

@@ -102,7 +102,7 @@ MOTION = {*LOGS, "gps_m_s", "force_n", "wind_speed_m_s"}
         ({"force_noise": 0.05}, {"force_n"}),
         ({"askew_share": 1.0, "askew_excess": (0.08, 0.08)}, {"force_n"}),
         ({"fast_run_share": 1.0}, MOTION),
-        # Stream moves the boat over ground, hence also through the air.
+        # Current moves the boat over ground, hence also through the air.
         ({"stream_m_s": 0.1}, {"gps_m_s", "force_n", "wind_speed_m_s"}),
         ({"stream_drift_m_s": 0.1}, {"gps_m_s", "force_n", "wind_speed_m_s"}),
     ],
