@@ -37,6 +37,14 @@ class ListKind:
     columns: tuple[Column, ...]
 
 
+_SIZES: Final = (
+    Column("waterline_length_m", "lengte", "length", "m", required=False),
+    Column("beam_m", "breedte", "length", "m", required=False),
+    Column("bow_height_m", "hoogte", "length", "m", required=False),
+    Column("weight_kg", "gewicht", "mass", "kg", required=False),
+)
+"""Sizes of a boat, as it is listed and as it was towed."""
+
 BOATS: Final = ListKind(
     "sloepregister",
     r"sloependata()",
@@ -48,10 +56,7 @@ BOATS: Final = ListKind(
         Column("ht_no", "ht_nr", required=False),
         Column("name", "sloep"),
         Column("boat_type", "type", required=False),
-        Column("waterline_length_m", "lengte", "length", "m", required=False),
-        Column("beam_m", "breedte", "length", "m", required=False),
-        Column("bow_height_m", "hoogte", "length", "m", required=False),
-        Column("weight_kg", "gewicht", "mass", "kg", required=False),
+        *_SIZES,
         Column("rowers", "roeiers", required=False),
         Column("crew_class", "klasse", required=False),
     ),
@@ -72,10 +77,7 @@ TOWS: Final = ListKind(
         Column("rowers", "roeiers"),
         Column("crew_class", "klasse"),
         Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
-        Column("waterline_length_m", "lengte", "length", "m", required=False),
-        Column("beam_m", "breedte", "length", "m", required=False),
-        Column("bow_height_m", "hoogte", "length", "m", required=False),
-        Column("weight_kg", "gewicht", "mass", "kg", required=False),
+        *_SIZES,
         Column("weight_after_kg", "gewicht na", "mass", "kg", required=False),
         Column("crew_weight_kg", "bemanning", "mass", "kg", required=False),
         Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),

@@ -57,7 +57,7 @@ class Proposal:
 
     @property
     def assignment(self) -> str:
-        """Key and value as they stand in their table."""
+        """The key with its value, as `archief.toml` has them."""
         if self.section in _OF_NAMES:
             return f'{self.section} = ["{self.value}"]'
         if self.section == "sample_rate_hz":

@@ -171,7 +171,6 @@ def fold_word(text: str) -> str:
     return " ".join(unicodedata.normalize("NFC", text).casefold().split())
 
 
-@lru_cache(10_000)
 def split_header(cell: str) -> tuple[str, str | None]:
     """Return the folded name in a header cell, and its unit as written where it has one.
 
