@@ -3,7 +3,7 @@
     PYTHONPATH=. python benchmarks/accuracy/methods.py [worlds]
 
 Each world has ten seasons of 24 tows at 20 Hz and a seed of its own. "clean" worlds have all
-instruments and disturbances but no wander between tows, no alterations and no ageing; "history"
+instruments and disturbances but no differences of the log between tows, no alterations and no ageing; "history"
 worlds have everything. Cw is at the declared speed, relative to truth. A line that misses what is
 asked is marked.
 """
