@@ -157,7 +157,7 @@ def _widen(spec: dict[str, object], rows: pl.DataFrame) -> None:
 
 
 ROOM: Final = 0.04
-"""Of an axis, beyond its outermost points."""
+"""Share of an axis that is left beyond its outermost points."""
 
 
 def _encodings(part: Any) -> Iterator[dict[str, Any]]:

@@ -356,7 +356,7 @@ def _fit_chunk(
 
 
 class _State(NamedTuple):
-    """Where a search stands: bend, best height there, and the undamped next step."""
+    """Where a search has come to: bend, best height there, and the undamped next step."""
 
     q: FloatArray
     c0: FloatArray

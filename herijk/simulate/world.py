@@ -37,7 +37,7 @@ HIGHEST_WEIGHT_GAIN_KG: Final = 8.0
 REPLACED_AT: Final = (0.3, 0.7)
 """Part of a season after which its log is replaced."""
 ROWERS_LEFT_OUT: Final = 2
-"""Of a thwart left free."""
+"""Rowers on a thwart, who are missed when it is left free."""
 FREE_THWART: Final = "3"
 BLOCK_COEFFICIENT: Final = 0.65
 """Waterplane over length times beam: a heavier boat lies deeper (stated assumption)."""

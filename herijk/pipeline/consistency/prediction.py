@@ -111,7 +111,7 @@ def _columns(fleet: Observed) -> FloatArray:
 
 
 def _types(fleet: Observed) -> list[str]:
-    """The type of each boat; a boat of no type stands alone."""
+    """The type of each boat; a boat of no type is one by itself."""
     named = zip(fleet.table["boat_type"], fleet.table["fsn_no"], strict=True)
     return [f"{UNKNOWN_TYPE}/{fsn}" if t == UNKNOWN_TYPE else t for t, fsn in named]
 

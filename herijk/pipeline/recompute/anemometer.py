@@ -19,7 +19,7 @@ ANEMOMETER: Final = "anemometer_scale"
 """Its name among the instruments of `season_diagnosis`."""
 
 USUAL_SD: Final = 0.05
-"""Of ln scale of an anemometer of which nothing is known."""
+"""Spread of ln scale of an anemometer about which nothing is known."""
 
 
 def with_anemometer(prepared: Sequence[Prepared]) -> list[Prepared]:

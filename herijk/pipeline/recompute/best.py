@@ -23,7 +23,7 @@ NOT_SEEN_BY_REPEATS: Final = ("force", "wind", "anemometer", "mass", "temperatur
 OTHERS: Final = "cw_others_kg_m"
 
 BEND_SD: Final = 0.04
-"""Of a boat's bend q by its own tows and its type, where a tow was far from its usual speed."""
+"""Spread of a boat's bend q about that of its tows and type, far from its usual speed."""
 
 
 def with_best(
