@@ -61,7 +61,12 @@ def another_formula(text):
 
 
 @pytest.mark.parametrize(
-    "file", ["pipeline/curve.py", "warehouse/archive/samples.py", "warehouse/build/registers.py"]
+    "file",
+    [
+        "pipeline/curve.py",
+        "warehouse/archive/samples/text_files.py",
+        "warehouse/build/registers.py",
+    ],
 )
 def test_other_words_make_nothing_stale(package, known, file):
     assert stale_after(package, known, file, other_words) == set()
@@ -73,7 +78,7 @@ def test_other_words_make_nothing_stale(package, known, file):
         "simulate/boats.py",
         "dashboards/site/pages.py",
         "warehouse/queries/audit.py",
-        "warehouse/archive/published.py",
+        "warehouse/archive/lists/registers.py",
         "warehouse/editions/publish.py",
         "cli/main.py",
     ],
@@ -98,7 +103,8 @@ def test_other_dutch_makes_stale_only_what_is_kept_with_it(package, known, file,
     ("file", "stale"),
     [
         ("pipeline/blocks/sums.py", {"blocks", "version"}),
-        ("warehouse/archive/samples.py", {"samples", "version"}),
+        ("warehouse/archive/samples/text_files.py", {"samples", "version"}),
+        ("warehouse/archive/sheets/row.py", {"archive", "version"}),
         ("pipeline/season_log/posterior.py", {"method", "studies", "version"}),
         ("pipeline/studies/options.py", {"studies"}),
         ("pipeline/consistency/reml.py", {"lines", "consistency"}),

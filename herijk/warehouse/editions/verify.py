@@ -18,7 +18,7 @@ from pydantic import ValidationError
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 from herijk.pipeline.recompute.facts import samples_files, with_hand_windows
 from herijk.warehouse.archive import ArchiveIndex, FileHashes, index_archive
-from herijk.warehouse.archive.files import PARTS
+from herijk.warehouse.archive.files.names import PARTS
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.chain import chain_findings
 from herijk.warehouse.editions.compare import Comparison

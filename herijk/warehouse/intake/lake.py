@@ -26,7 +26,7 @@ from herijk.warehouse.archive import (
     judge_in_files,
     read_tow_samples,
 )
-from herijk.warehouse.archive.resolution import steps_of
+from herijk.warehouse.archive.samples.resolution import steps_of
 from herijk.warehouse.store.code import ADDERS, FAULTS_IN_DUTCH, READERS, code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 

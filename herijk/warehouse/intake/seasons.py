@@ -29,8 +29,8 @@ from herijk.warehouse.archive import (
     read_published_registers,
     read_races,
 )
-from herijk.warehouse.archive.hashes import RACY_SECONDS
-from herijk.warehouse.archive.profile import read_profiles
+from herijk.warehouse.archive.files.hashes import RACY_SECONDS
+from herijk.warehouse.archive.profile.reading import read_profiles
 from herijk.warehouse.intake import lake
 from herijk.warehouse.store.code import FAULTS_IN_DUTCH, code_hash
 from herijk.warehouse.store.store import Store, fingerprint

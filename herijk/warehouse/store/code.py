@@ -33,9 +33,9 @@ LEFT_OUT: Final = (f"{PACKAGE}.tables", *SENTENCES_IN_DUTCH)
 HASH_LENGTH: Final = 12
 
 READERS: Final = (
-    "herijk.warehouse.archive.samples",
-    "herijk.warehouse.archive.plausibility",
-    "herijk.warehouse.archive.resolution",
+    "herijk.warehouse.archive.samples.tow",
+    "herijk.warehouse.archive.samples.resolution",
+    "herijk.warehouse.archive.plausibility.judge",
 )
 """Modules that turn a file into samples: when they compute otherwise, files are read again."""
 
