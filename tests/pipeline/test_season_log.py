@@ -157,9 +157,54 @@ def test_what_tows_of_a_day_share_is_found_and_widens_the_interval(monkeypatch):
     assert (wide > 1.3 * narrow).all()
 
 
-def test_a_fault_that_its_own_fit_sends_away_again_leaves_the_search_at_rest():
-    """A step of the whole fleet in 2011 looks likely there until it is fitted."""
-    _, found = estimated(replace(CLEAN, day_sd=0.015), 4)
+RESTLESS = {
+    "a step of the fleet that looks likely until it is fitted": (replace(CLEAN, day_sd=0.015), 4),
+    "a new log at one place after the other": (
+        replace(
+            HARD,
+            tows_a_season=27,
+            boats=71,
+            tow_noise=0.002,
+            wander=0.01,
+            altered_share=0.0,
+            gps_season_error=0.02,
+            log_change=(2010, 9, 0.03),
+        ),
+        298,
+    ),
+    "steps there and back": (
+        replace(
+            CLEAN,
+            tows_a_season=12,
+            boats=35,
+            run_noise=0.003,
+            altered_share=0.4,
+            gps_season_error=0.02,
+            force_step=(2012, 0.03),
+            day_sd=0.01,
+            log_change=(2012, 12, 0.03),
+        ),
+        220,
+    ),
+    "large and small steps in turn": (
+        replace(
+            HARD,
+            tows_a_season=3,
+            boats=77,
+            tow_noise=0.006,
+            wander=0.01,
+            altered_share=0.0,
+            day_sd=0.03,
+        ),
+        247,
+    ),
+}
+"""Archives in which the search went round and round, or reached its limit of steps."""
+
+
+@pytest.mark.parametrize(("setup", "seed"), RESTLESS.values(), ids=RESTLESS)
+def test_the_search_comes_to_rest(setup, seed):
+    _, found = estimated(setup, seed)
     assert "not settled" not in set(found.diagnosis["verdict"])
 
 

@@ -39,7 +39,7 @@ from herijk.pipeline.season_log.likelihood import (
 )
 from herijk.pipeline.season_log.network import Network
 
-MAX_ITERATIONS: Final = 100
+MAX_ITERATIONS: Final = 500
 TOLERANCE: Final = 1e-10
 UNTROUBLED: Final = 4
 """First iterations, in which no boat is taken for changed: logs may be far off yet.
@@ -294,9 +294,7 @@ def fit(
         steps.append(step)
         if np.abs(step).max() < tolerance and not begins:
             return fitted
-        following = _accelerated(places[-1 - REMEMBERED :], steps[-1 - REMEMBERED :])
-        settled = iteration >= ACCELERATED and np.abs(step).max() < MODEST
-        places.append(following if settled else places[-1] + step)
+        places.append(_following(places, steps))
         now = now.of(places[-1])
     return replace(fitted, settled=False)
 
@@ -326,16 +324,30 @@ def _step(problem: Problem, active: IntArray, now: _State, changes: bool) -> tup
     return fitted, np.concatenate([step, np.clip(move, -1.0, 1.0), gain])
 
 
-def _accelerated(places: list[FloatArray], steps: list[FloatArray]) -> FloatArray:
-    """Next place by Anderson's acceleration (1965) of the steps since one last grew.
+def _following(places: list[FloatArray], steps: list[FloatArray]) -> FloatArray:
+    """Next place: by the last step; by the last few where these shrink, by two where it turned.
 
-    On a plateau steps grow before they shrink; those of before it would lead round and round.
+    On a plateau steps grow before they shrink; to look back on those would lead round and round.
     """
-    grew = np.flatnonzero(np.diff([np.abs(step).max() for step in steps]) >= 0.0)
-    first = int(grew[-1]) + 1 if len(grew) else 0
-    moved, changed = np.diff(places[first:], axis=0), np.diff(steps[first:], axis=0)
-    if not len(moved):
-        return np.asarray(places[-1] + steps[-1])
+    last = 1
+    if len(steps) > ACCELERATED:
+        if _shrink(steps[-1 - REMEMBERED :]):
+            last = 1 + REMEMBERED
+        elif steps[-1] @ steps[-2] < 0.0:
+            last = 2
+    return _accelerated(places[-last:], steps[-last:])
+
+
+def _shrink(steps: list[FloatArray]) -> bool:
+    """Whether the steps are modest, and none is larger than both before it."""
+    size = [np.abs(step).max() for step in steps]
+    grew = any(size[i] >= max(size[i - 2 : i]) for i in range(2, len(size)))
+    return size[-1] < MODEST and not grew
+
+
+def _accelerated(places: list[FloatArray], steps: list[FloatArray]) -> FloatArray:
+    """Next place by Anderson's acceleration (1965); a single step is taken as it is."""
+    moved, changed = np.diff(places, axis=0), np.diff(steps, axis=0)
     weight = np.linalg.lstsq(changed.T, steps[-1], rcond=1e-10)[0]
     return np.asarray(places[-1] + steps[-1] - weight @ (moved + changed))
 
@@ -503,8 +515,8 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
     a start where no boat had changed it is found; what changed boats do without is left again.
 
     A fault enters by what one step from the fit promises, and leaves by a fit of its own, which
-    knows more. Where the two disagree the fault would come and go forever, so no fault leads to a
-    model that was left before.
+    knows more. Where the two disagree it would come and go, at one place after the other, so no
+    fault leads to the kinds of faults of an earlier model.
 
     Args:
         start: where to begin.
@@ -512,9 +524,9 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
     """
     active = problem.always if start is None else start.active
     fitted = fit(problem, active, start, ROUGH, changes)
-    fitted_before: set[frozenset[int]] = set()
+    fitted_before: set[tuple[int, ...]] = set()
     for _ in range(2 * MOST_FAULTS):
-        fitted_before.add(frozenset(fitted.active.tolist()))
+        fitted_before.add(_kinds_in(problem, fitted.active))
         chosen = _better(problem, fitted, fitted_before)
         if chosen is None:
             return fitted
@@ -618,19 +630,26 @@ def _in_fit(problem: Problem, fitted: Fit) -> tuple[IntArray, FloatArray]:
     return places, ln_odds
 
 
-def _better(problem: Problem, fitted: Fit, fitted_before: set[frozenset[int]]) -> IntArray | None:
+def _kinds_in(problem: Problem, active: IntArray) -> tuple[int, ...]:
+    """Kinds of the faults of a model, sorted."""
+    return tuple(sorted(problem.kinds[np.isin(problem.faults, active)].tolist()))
+
+
+def _better(problem: Problem, fitted: Fit, fitted_before: set[tuple[int, ...]]) -> IntArray | None:
     """The unknowns with the fault that is missed most, or without the one that is not needed.
 
     Args:
-        fitted_before: models that no fault is to lead to.
+        fitted_before: kinds of faults of the models that no fault is to lead to.
     """
     places, ln_odds = _in_fit(problem, fitted)
     if len(places) and ln_odds.min() < 0.0:
         return np.delete(fitted.active, places[int(ln_odds.argmin())])
-    now = frozenset(fitted.active.tolist())
     nothing = np.zeros(len(fitted.active))
     more = _more(problem, _candidates(problem, fitted), fitted.covariance, nothing).ln_odds
-    more[[now | {fault} in fitted_before for fault in problem.faults.tolist()]] = -np.inf
+    more[np.isin(problem.faults, fitted.active)] = -np.inf
+    there = _kinds_in(problem, fitted.active)
+    left = [tuple(sorted((*there, kind))) in fitted_before for kind in problem.kinds.tolist()]
+    more[left] = -np.inf
     best = int(first_largest(more))
     return np.append(fitted.active, problem.faults[best]) if more[best] > 0.0 else None
 
