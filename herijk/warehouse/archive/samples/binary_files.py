@@ -22,14 +22,14 @@ BINARY: Final = (".parquet", ".tdms")
 
 
 def next_line(row: int) -> int:
-    """The line of a row where nothing but the header stands above the first."""
+    """The line of a row where nothing but the header is above the first."""
     return max(row + 2, 1)
 
 
 def read_binary(
     path: Path, profile: SeasonProfile, max_bytes: int, most_rows: int | None = None
 ) -> pl.DataFrame:
-    """Return the wanted columns of a Parquet or TDMS file as Float64, as `read_text` does."""
+    """The wanted columns of a Parquet or TDMS file as Float64, as `read_text` does."""
     if kind_of(path) == ".tdms":
         frame = read_tdms(path, max_bytes, most_rows)
     else:
@@ -50,7 +50,7 @@ def read_binary(
 
 
 def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.DataFrame:
-    """Return the columns of a Parquet file that the profile names."""
+    """The columns of a Parquet file that the profile names."""
     try:
         with pq.ParquetFile(path) as file:
             names = file.schema_arrow.names
@@ -87,7 +87,7 @@ def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes:
 
 
 def _as_seconds(cells: pl.Series) -> pl.Series:
-    """Return points in time, or times of day as text, as seconds."""
+    """Points in time, or times of day as text, as seconds."""
     if cells.dtype.is_temporal():
         first = cells[0]
         return pl.select((pl.lit(cells) - first).dt.total_microseconds() / 1e6).to_series()
