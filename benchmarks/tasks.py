@@ -17,8 +17,8 @@ from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.warehouse.archive.files import read_bytes
-from herijk.warehouse.archive.profile import read_profiles
+from herijk.warehouse.archive.files.contents import read_bytes
+from herijk.warehouse.archive.profile.reading import read_profiles
 from herijk.warehouse.intake import lake
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.queries.rebase import rebase

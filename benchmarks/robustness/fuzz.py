@@ -35,11 +35,14 @@ from herijk.pipeline.errors import DefectiveInputError, HerijkError
 from herijk.pipeline.method.definition import parse_method, shipped_methods, shipped_text
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.archive import FileHashes, index_archive, tows
-from herijk.warehouse.archive.kinds import TOWS
-from herijk.warehouse.archive.lists import Wording, read_list
-from herijk.warehouse.archive.profile import Profiles, read_profiles
-from herijk.warehouse.archive.samples import read_samples
+from herijk.warehouse.archive import FileHashes, index_archive
+from herijk.warehouse.archive.files.list_kinds import TOWS
+from herijk.warehouse.archive.lists import tows
+from herijk.warehouse.archive.profile.definition import Profiles
+from herijk.warehouse.archive.profile.reading import read_profiles
+from herijk.warehouse.archive.samples.file import read_samples
+from herijk.warehouse.archive.sheets.reading import read_list
+from herijk.warehouse.archive.spelling.wording import Wording
 from herijk.warehouse.store.decisions import FILE_NAME as DECISIONS
 from herijk.warehouse.store.decisions import read_decisions
 from herijk.warehouse.store.editions import ABOUT, read_about

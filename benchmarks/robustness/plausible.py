@@ -33,7 +33,7 @@ from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import simulate_tow, simulate_world
 from herijk.simulate.worlds import world_settings
 from herijk.tables.keys import LINE
-from herijk.warehouse.archive.plausibility import judge_samples
+from herijk.warehouse.archive.plausibility.judge import judge_samples
 from herijk.warehouse.build.archive_tables import judged_tows
 from tests.worlds import run_rows, tow_rows
 

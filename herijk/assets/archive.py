@@ -9,7 +9,7 @@ import polars as pl
 from herijk.assets.partitions import seasons
 from herijk.assets.resources import Setup
 from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.code import ADDERS, READERS, code_hash
+from herijk.warehouse.store.code import ADDERS, FAULTS_IN_DUTCH, READERS, code_hash
 from herijk.warehouse.store.store import Store
 
 LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
@@ -22,7 +22,7 @@ SUBJECT: Final = {"herijk/subject": "archive"}
 
 
 @dg.asset(
-    code_version=code_hash("herijk.warehouse.archive.index"),
+    code_version=code_hash(intake.__name__, FAULTS_IN_DUTCH),
     freshness_policy=LOOKED_AT,
     group_name="archive",
     kinds={"parquet"},
@@ -52,7 +52,7 @@ def index_result(store: Store) -> dg.MaterializeResult:
 @dg.asset(
     deps=[archive_index],
     partitions_def=seasons,
-    code_version=code_hash(*READERS),
+    code_version=code_hash(*READERS, FAULTS_IN_DUTCH),
     check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
     group_name="archive",
     kinds={"parquet"},

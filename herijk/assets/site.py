@@ -25,7 +25,7 @@ SPREAD: Final = "reproducibility"
     kinds={"html"},
     owners=["team:register"],
     tags={"herijk/subject": "site"},
-    code_version=code_hash(SITE_CODE),
+    code_version=code_hash(*SITE_CODE),
 )
 def site(setup: Setup) -> dg.MaterializeResult:
     """Pages people can look at, swapped in whole."""

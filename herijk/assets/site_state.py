@@ -5,12 +5,12 @@ from typing import Final
 
 from herijk.dashboards.guides import GUIDES, guide_file
 from herijk.warehouse.build.database import DATABASE_TABLE
-from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.code import SENTENCES_IN_DUTCH, code_hash
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store, fingerprint
 from herijk.words import LANGUAGES
 
-SITE_CODE: Final = "herijk.dashboards.site.render"
+SITE_CODE: Final = ("herijk.dashboards.site.render", *SENTENCES_IN_DUTCH)
 SITE_TABLE: Final = "site"
 """An empty table that remembers what the site was made from."""
 
@@ -22,7 +22,7 @@ def site_made_from(store: Store) -> str:
     files += [guide_file(name, language) for name in GUIDES for language in LANGUAGES]
     return fingerprint(
         store.made_from(DATABASE_TABLE),
-        code_hash(SITE_CODE),
+        code_hash(*SITE_CODE),
         [file_sha256(file) for file in sorted(files)],
     )
 

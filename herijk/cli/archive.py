@@ -26,7 +26,7 @@ def check(
 ) -> None:
     """Every fault of lists, headers and a sample of the data, by cause, before any rebuild."""
     from herijk.warehouse.archive.check import check_archive, check_report
-    from herijk.warehouse.archive.files import PROFILE_FILE
+    from herijk.warehouse.archive.files.names import PROFILE_FILE
 
     checked = check_archive(archive)
     show(check_report(archive, checked, LANGUAGE.get()), check_text, as_json)
@@ -48,7 +48,7 @@ def init(
     as_json: AsJson = False,
 ) -> None:
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
-    from herijk.warehouse.archive.templates import write_templates
+    from herijk.warehouse.archive.files.empty_archive import write_templates
 
     write_templates(directory)
     files = sorted(file for file in directory.rglob("*") if file.is_file())

@@ -26,7 +26,7 @@ def fit(
     """A curve with its interval from speeds and forces; B only where the points determine it."""
     from herijk.library.curves import fit as fit_curve
     from herijk.pipeline.errors import MissingKnowledgeError
-    from herijk.warehouse.archive.points import read_points
+    from herijk.warehouse.archive.lists.curve_points import read_points
 
     if not file.is_file():
         raise MissingKnowledgeError("there is no file {}", file)

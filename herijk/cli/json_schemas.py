@@ -28,8 +28,7 @@ from herijk.pipeline.register.register import LINE as NAMES_LINE
 from herijk.tables.declare import dy
 from herijk.tables.row import Row
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.archive.check import CheckReport
-from herijk.warehouse.archive.proposals import Proposal
+from herijk.warehouse.archive.check import CheckReport, Proposal
 from herijk.warehouse.editions.compare import DiffReport
 from herijk.warehouse.editions.lineage import Lineage
 from herijk.warehouse.editions.publish import Published

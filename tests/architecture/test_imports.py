@@ -27,13 +27,21 @@ def contracts_kept(folder):
     return subprocess.run(CHECK, cwd=folder, capture_output=True, text=True, check=False)
 
 
+def named_in(contract):
+    """The modules that a contract names; a layer can hold several, within containers."""
+    containers = contract.get("containers", [])
+    layers = (layer for key in KEYS for layer in contract.get(key, []))
+    names = [name for layer in layers for name in layer.split(" | ")]
+    return [*containers, *(f"{room}.{name}" for room in containers for name in names)] or names
+
+
 def small_project(folder, **sources):
     """A project with the real contracts and empty modules in the places that they name."""
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     (folder / "pyproject.toml").write_text(text[text.index("[tool.importlinter]") :])
     contracts = tomllib.loads(text)["tool"]["importlinter"]["contracts"]
-    named = (contract.get(key, []) for contract in contracts for key in KEYS)
-    for module in {"herijk", *(m for modules in named for m in modules if m.startswith("herijk"))}:
+    modules = (module for contract in contracts for module in named_in(contract))
+    for module in {"herijk", *(module for module in modules if module.startswith("herijk"))}:
         place = folder.joinpath(*module.split("."))
         place.mkdir(parents=True, exist_ok=True)
         (place / "__init__.py").write_text(sources.get(place.name, ""))
@@ -54,6 +62,12 @@ def test_an_import_upwards_is_found(tmp_path):
     found = contracts_kept(small_project(tmp_path, pipeline="import herijk.warehouse"))
     assert found.returncode == 1
     assert "herijk.pipeline -> herijk.warehouse" in found.stdout
+
+
+def test_an_import_upwards_in_the_archive_is_found(tmp_path):
+    found = contracts_kept(small_project(tmp_path, files="import herijk.warehouse.archive.lists"))
+    assert found.returncode == 1
+    assert "herijk.warehouse.archive.files -> herijk.warehouse.archive.lists" in found.stdout
 
 
 def test_a_file_in_the_pipeline_is_found(tmp_path):

@@ -11,7 +11,7 @@ from typer.main import get_command
 
 from herijk.assets.settings import Settings
 from herijk.cli.main import app
-from herijk.warehouse.archive.profile import parse_profiles
+from herijk.warehouse.archive.profile.reading import parse_profiles
 from tests.architecture.repository import ROOT, read
 from tests.conftest import METHODS
 

@@ -3,7 +3,7 @@
 import pytest
 
 from benchmarks.robustness import mutate
-from herijk.warehouse.archive.plausibility import Judged
+from herijk.warehouse.archive.plausibility.judge import Judged
 
 
 def quiet(_):

@@ -7,14 +7,15 @@ import pytest
 
 from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.build.inputs import Inputs
-from herijk.warehouse.store.code import ADDERS, READERS, Sources
+from herijk.warehouse.build.version import MODULES
+from herijk.warehouse.store.code import ADDERS, FAULTS_IN_DUTCH, READERS, Sources
 from herijk.warehouse.store.store import Store
 from tests.architecture.repository import ROOT
 
-COMPUTES = {"samples": READERS, "blocks": ADDERS} | {
-    step.name: (step.compute.__module__,) for step in STEPS
+COMPUTES = {"samples": (*READERS, FAULTS_IN_DUTCH), "blocks": ADDERS, "version": MODULES} | {
+    step.name: (step.compute.__module__, *step.words) for step in STEPS
 }
-"""The modules with which everything is computed that a rebuild keeps."""
+"""The modules with which everything is computed that a rebuild keeps, and a register line."""
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +61,12 @@ def another_formula(text):
 
 
 @pytest.mark.parametrize(
-    "file", ["pipeline/curve.py", "warehouse/archive/samples.py", "warehouse/build/registers.py"]
+    "file",
+    [
+        "pipeline/curve.py",
+        "warehouse/archive/samples/text_files.py",
+        "warehouse/build/registers.py",
+    ],
 )
 def test_other_words_make_nothing_stale(package, known, file):
     assert stale_after(package, known, file, other_words) == set()
@@ -72,7 +78,7 @@ def test_other_words_make_nothing_stale(package, known, file):
         "simulate/boats.py",
         "dashboards/site/pages.py",
         "warehouse/queries/audit.py",
-        "warehouse/archive/published.py",
+        "warehouse/archive/lists/registers.py",
         "warehouse/editions/publish.py",
         "cli/main.py",
     ],
@@ -84,12 +90,25 @@ def test_what_computes_no_table_makes_none_stale(package, known, file):
 @pytest.mark.parametrize(
     ("file", "stale"),
     [
-        ("pipeline/blocks/sums.py", {"blocks"}),
-        ("warehouse/archive/samples.py", {"samples"}),
-        ("pipeline/season_log/posterior.py", {"method", "studies"}),
+        ("words/command.py", set()),
+        ("words/errors.py", set()),
+        ("words/archive.py", {"samples", "archive"}),
+    ],
+)
+def test_other_dutch_makes_stale_only_what_is_kept_with_it(package, known, file, stale):
+    assert stale_after(package, known, file, another_formula) == stale
+
+
+@pytest.mark.parametrize(
+    ("file", "stale"),
+    [
+        ("pipeline/blocks/sums.py", {"blocks", "version"}),
+        ("warehouse/archive/samples/text_files.py", {"samples", "version"}),
+        ("warehouse/archive/sheets/row.py", {"archive", "version"}),
+        ("pipeline/season_log/posterior.py", {"method", "studies", "version"}),
         ("pipeline/studies/options.py", {"studies"}),
         ("pipeline/consistency/reml.py", {"lines", "consistency"}),
-        ("pipeline/register/register.py", {"register", "summaries"}),
+        ("pipeline/register/register.py", {"register", "summaries", "version"}),
         ("pipeline/register/replay.py", {"summaries"}),
         ("warehouse/store/database.py", {"database"}),
     ],

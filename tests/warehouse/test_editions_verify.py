@@ -1,6 +1,7 @@
 """Verify: every kind of tampering is found and named; what is whole passes."""
 
 import datetime as dt
+import hashlib
 import io
 import json
 import os
@@ -15,7 +16,7 @@ import herijk.warehouse.editions.verify
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.warehouse.build.published import published_tables
-from herijk.warehouse.editions import sheets
+from herijk.warehouse.editions import notes, sheets
 from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
 from herijk.warehouse.editions.lineage import lineage
 from herijk.warehouse.editions.publish import publish_printed
@@ -259,9 +260,8 @@ def test_other_code_is_told_but_is_no_broken_promise(published_copy, monkeypatch
         lambda area, drag: 1.5 * original(area, drag),
     )
     assert verify(published_copy.store).wrong
-    for module in ("verify", "remade"):
-        other = f"herijk.warehouse.editions.{module}.code_version"
-        monkeypatch.setattr(other, lambda: "0.2.0+other")
+    other = "herijk.warehouse.editions.remade.code_version"
+    monkeypatch.setattr(other, lambda: "0.2.0+other")
     findings, wrong = found(published_copy, kind="differs")
     assert not wrong
     assert all("the code changed, from" in f.message for f in findings)
@@ -448,7 +448,8 @@ def test_an_edition_of_before_a_column_was_added_is_as_it_was_published(publishe
         older.write_parquet(path / f"{name}.parquet")
         tables[name] = TableDigest(rows=older.height, digest=table_digest(older))
     about = read_about(path)
-    about = about.model_copy(update={"code_version": "0.0.1", "tables": {**about.tables, **tables}})
+    other = {"code_version": "0.0.1", "texts_version": None}
+    about = about.model_copy(update={**other, "tables": {**about.tables, **tables}})
     register = pl.read_parquet(path / "register.parquet")
     fields = [field for field in sheets.SHEET_FIELDS if field.column in register.columns]
     (path / "register.csv").write_bytes(sheets.csv_bytes(register, fields))
@@ -505,6 +506,23 @@ def test_a_text_that_says_something_else_is_told_whatever_its_seal(published_cop
 
 
 @FILES_ALONE
+@FILES_ALONE
+def test_texts_that_are_worded_otherwise_today_are_as_they_were_published(
+    published_copy, monkeypatch
+):
+    monkeypatch.setattr(notes, "MOST_CAUSES", 0)
+    monkeypatch.setattr(herijk.warehouse.editions.verify, "texts_version", lambda: "another")
+    assert found(published_copy) == ([], False)
+
+
+def test_an_edition_of_before_the_version_of_texts_was_noted_keeps_its_seal(published):
+    about = read_about(folder(published))
+    older = about.model_copy(update={"texts_version": None})
+    content = older.model_dump(mode="json", exclude={"seal", "texts_version"})
+    text = json.dumps(content, sort_keys=True)
+    assert older.expected_seal == hashlib.sha256(text.encode()).hexdigest() != about.seal
+
+
 def test_an_edition_that_is_gone_breaks_the_chain(published_copy):
     editions = published_copy.data / "editions"
     first = min((p for p in editions.glob("[!.]*")), key=lambda path: read_about(path).number or 0)

@@ -7,7 +7,7 @@ from unittest import mock
 
 import pytest
 
-from herijk.warehouse.archive import hashes
+from herijk.warehouse.archive.files import hashes
 from herijk.warehouse.intake import seasons as intake
 
 

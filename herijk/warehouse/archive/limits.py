@@ -16,6 +16,9 @@ SAMPLES_MAX_BYTES: Final = 250_000_000
 MOST_ROWS: Final = 3_000_000
 """Ten times the samples of a tow."""
 
+MOST_LISTED_ROWS: Final = 100_000
+"""Rows of a list; a spreadsheet that says to have more is none."""
+
 LONGEST_HEADER: Final = 20_000
 MOST_COLUMNS: Final = 500
 

@@ -13,7 +13,7 @@ from herijk.pipeline.recompute.facts import with_boat_types
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import OF_A_HEADER
-from herijk.warehouse.archive.windows import outside_run
+from herijk.warehouse.archive.lists.windows import outside_run
 from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
 from herijk.warehouse.build.same_samples import CONTENT, same_samples
 from herijk.words import say

@@ -19,6 +19,7 @@ from herijk.warehouse.build.registers import register_tables
 from herijk.warehouse.build.step import Check, Step
 from herijk.warehouse.build.studies import ladders_that_do_not_multiply, study_tables
 from herijk.warehouse.build.summaries import summary_tables
+from herijk.warehouse.store.code import FAULTS_IN_DUTCH
 
 LAKE_ONLY: Final = ("ensemble",)
 """Tables that are not in the database: 200 rows per tow would make up most of it."""
@@ -37,6 +38,7 @@ ARCHIVE: Final = Step(
     ),
     outputs=("boats", "seasons", "tows", "tow_runs", "hand_windows", "quarantine"),
     compute=archive_tables,
+    words=(FAULTS_IN_DUTCH,),
     checks=(Check("every_listed_tow_accounted_for", "tows", unaccounted_tows),),
 )
 RECORDINGS: Final = Step(

@@ -55,6 +55,7 @@ class Step:
         compute: makes the outputs; its docstring says what they are.
         checks: what must hold of the outputs.
         of_method: what else of a method its outputs depend on, beside options and name.
+        words: modules with texts that the outputs hold; texts count nowhere else.
         also: what else the outputs follow from, beside inputs, methods and code.
         is_whole: whether what it makes outside the lake is still there and undamaged.
     """
@@ -66,6 +67,7 @@ class Step:
     compute: Callable[[Inputs], Mapping[str, pl.DataFrame]]
     checks: tuple[Check, ...] = ()
     of_method: Callable[[Method], object] = lambda _: None
+    words: tuple[str, ...] = ()
     also: str = ""
     is_whole: Callable[[Store], bool] = lambda _: True
 
@@ -81,8 +83,8 @@ class Step:
 
     @property
     def code(self) -> str:
-        """Hash of the code that computes the outputs."""
-        return code_hash(self.compute.__module__)
+        """Hash of the code that computes the outputs, and of the texts that they hold."""
+        return code_hash(self.compute.__module__, *self.words)
 
     def made_from(self, store: Store, methods: Sequence[Method]) -> str:
         """Fingerprint of all that the outputs follow from."""

@@ -7,7 +7,7 @@ from typing import Final
 from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 
 MODULES: Final = (
-    *("herijk.warehouse.archive.index", *READERS, *ADDERS),
+    *("herijk.warehouse.archive.index.index", *READERS, *ADDERS),
     *(f"herijk.warehouse.build.{step}" for step in ("archive_tables", "method_tables")),
     "herijk.pipeline.register.register",
 )

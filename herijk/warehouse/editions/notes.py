@@ -31,8 +31,12 @@ from herijk.warehouse.editions.words import (
     Language,
     table,
 )
+from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
+from herijk.warehouse.store.files import file_sha256
+from herijk.warehouse.store.store import fingerprint
 
+TEMPLATES: Final = Path(__file__).parent / "templates"
 TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}
 """The texts of an edition, each with its language; a template has the name of its text."""
 
@@ -72,9 +76,15 @@ def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
 
 
 @cache
+def texts_version() -> str:
+    """Version of the code and the templates that write the texts."""
+    return fingerprint(code_hash(__name__), [file_sha256(TEMPLATES / name) for name in TEXTS])
+
+
+@cache
 def _template(name: str) -> jinja2.Template:
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        loader=jinja2.FileSystemLoader(TEMPLATES),
         undefined=jinja2.StrictUndefined,
         autoescape=False,  # noqa: S701 - Markdown, not HTML
         trim_blocks=True,

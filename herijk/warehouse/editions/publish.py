@@ -284,6 +284,7 @@ def _about(
         inputs_digest=inputs_digest,
         carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
+        texts_version=notes.texts_version(),
     )
 
 

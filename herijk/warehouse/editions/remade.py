@@ -11,7 +11,7 @@ from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.register.register import LINE
 from herijk.tables.row import Row
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.archive.files import BOATS_FILE
+from herijk.warehouse.archive.files.names import BOATS_FILE
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.finding import Finding, line_name

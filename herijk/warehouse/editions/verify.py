@@ -18,14 +18,13 @@ from pydantic import ValidationError
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 from herijk.pipeline.recompute.facts import samples_files, with_hand_windows
 from herijk.warehouse.archive import ArchiveIndex, FileHashes, index_archive
-from herijk.warehouse.archive.files import PARTS
-from herijk.warehouse.build.version import code_version
+from herijk.warehouse.archive.files.names import PARTS
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.chain import chain_findings
 from herijk.warehouse.editions.compare import Comparison
 from herijk.warehouse.editions.finding import Finding, line_name
 from herijk.warehouse.editions.inputs import LIST, NOT_INPUT, SAMPLES
-from herijk.warehouse.editions.notes import texts
+from herijk.warehouse.editions.notes import texts, texts_version
 from herijk.warehouse.editions.remade import remade
 from herijk.warehouse.store.editions import (
     ABOUT,
@@ -191,7 +190,7 @@ def _sheets(path: Place, about: About, intact: set[str]) -> Iterator[Finding]:
 def _texts(store: Store, path: Place, about: About, intact: set[str]) -> Iterator[Finding]:
     """Notices and lists that do not say what the tables say, though their hashes were made to fit.
 
-    Code of another version may say the same in other words, so its texts are not looked at.
+    Texts that another version wrote may say the same in other words, and are not looked at.
     """
     try:
         edition = read_edition(store, path.name)
@@ -199,7 +198,7 @@ def _texts(store: Store, path: Place, about: About, intact: set[str]) -> Iterato
         if about.previous is not None:
             old = read_edition(store, about.previous)
             previous = Comparison(old, edition, edition.tables[CHANGES])
-        expected = texts(edition, previous) if about.code_version == code_version() else {}
+        expected = texts(edition, previous) if about.texts_version == texts_version() else {}
     except (HerijkError, ValidationError, KeyError, OSError):
         return  # told when the edition is made again
     for file in sorted(intact & expected.keys()):

@@ -26,8 +26,8 @@ from herijk.warehouse.archive import (
     judge_in_files,
     read_tow_samples,
 )
-from herijk.warehouse.archive.resolution import steps_of
-from herijk.warehouse.store.code import ADDERS, READERS, code_hash
+from herijk.warehouse.archive.samples.resolution import steps_of
+from herijk.warehouse.store.code import ADDERS, FAULTS_IN_DUTCH, READERS, code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 
 LAKE_FORM: Final = {
@@ -50,7 +50,8 @@ def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonPr
     """What the samples and blocks of a season are made from."""
     season_runs = runs.filter(pl.col("tow_id").is_in(tows["tow_id"].implode()))
     rows = [tows.write_json(), season_runs.sort("tow_id", "run").write_json()]
-    return fingerprint(rows, dataclasses.asdict(profile), code_hash(*READERS), code_hash(*ADDERS))
+    code = (code_hash(*READERS, FAULTS_IN_DUTCH), code_hash(*ADDERS))
+    return fingerprint(rows, dataclasses.asdict(profile), *code)
 
 
 def read_season(
@@ -197,7 +198,8 @@ def _known_tows(store: Store, season: int) -> dict[str, Row]:
 def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
     names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
     facts = [tow[n] for n in names], runs.sort("run").rows()
-    return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READERS))
+    code = code_hash(*READERS, FAULTS_IN_DUTCH)  # faults are remembered with their Dutch
+    return fingerprint(*facts, dataclasses.asdict(profile), code)
 
 
 def keep_only(store: Store, season: int, index: pl.DataFrame) -> None:

@@ -29,10 +29,10 @@ from herijk.warehouse.archive import (
     read_published_registers,
     read_races,
 )
-from herijk.warehouse.archive.hashes import RACY_SECONDS
-from herijk.warehouse.archive.profile import read_profiles
+from herijk.warehouse.archive.files.hashes import RACY_SECONDS
+from herijk.warehouse.archive.profile.reading import read_profiles
 from herijk.warehouse.intake import lake
-from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.code import FAULTS_IN_DUTCH, code_hash
 from herijk.warehouse.store.store import Store, fingerprint
 
 LISTED: Final = ("boats", "tows", "runs", "windows")
@@ -94,7 +94,7 @@ def _seen(root: Path) -> str:
         path: (stat.st_mode, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns)
         for path, stat in stats.items()
     }
-    return fingerprint(str(root.resolve()), files, code_hash(__name__))
+    return fingerprint(str(root.resolve()), files, code_hash(__name__, FAULTS_IN_DUTCH))
 
 
 def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:

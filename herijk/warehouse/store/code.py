@@ -2,8 +2,8 @@
 
 A module counts with all modules of this package that it imports, directly or through others. Of
 each the syntax tree counts, without docstrings and comments, so that only a change of what is
-computed makes another hash. Left out are the declared tables: what a step writes is part of its
-fingerprint (`warehouse.build.step`).
+computed makes another hash. Left out are the declared tables, as what a step writes is part of its
+fingerprint (`warehouse.build.step`), and the Dutch of sentences, which are made in English.
 """
 
 import ast
@@ -20,13 +20,22 @@ from typing import Final, Self
 from herijk.warehouse.store.files import written_beside
 
 PACKAGE: Final = "herijk"
-LEFT_OUT: Final = (f"{PACKAGE}.tables",)
+FAULTS_IN_DUTCH: Final = f"{PACKAGE}.words.archive"
+"""The Dutch of faults: no number depends on it, but tables hold it beside the English."""
+
+SENTENCES_IN_DUTCH: Final = (
+    *(f"{PACKAGE}.words.command", f"{PACKAGE}.words.errors"),
+    FAULTS_IN_DUTCH,
+)
+LEFT_OUT: Final = (f"{PACKAGE}.tables", *SENTENCES_IN_DUTCH)
+"""Modules that count only where they are named."""
+
 HASH_LENGTH: Final = 12
 
 READERS: Final = (
-    "herijk.warehouse.archive.samples",
-    "herijk.warehouse.archive.plausibility",
-    "herijk.warehouse.archive.resolution",
+    "herijk.warehouse.archive.samples.tow",
+    "herijk.warehouse.archive.samples.resolution",
+    "herijk.warehouse.archive.plausibility.judge",
 )
 """Modules that turn a file into samples: when they compute otherwise, files are read again."""
 
@@ -68,12 +77,12 @@ class Sources:
     def closure(self, modules: Iterable[str]) -> set[str]:
         """The given modules and all that they import from the package."""
         closure: set[str] = set()
-        to_do = list(modules)
+        to_do = set(modules)
         while to_do:
             name = to_do.pop()
-            if name not in closure and not name.startswith(LEFT_OUT):
-                closure.add(name)
-                to_do += filter(None, map(self._module, self._facts(name)[1]))
+            closure.add(name)
+            imported = filter(None, map(self._module, self._facts(name)[1]))
+            to_do |= {name for name in imported if not name.startswith(LEFT_OUT)} - closure
         return closure
 
     def _module(self, imported: str) -> str | None:

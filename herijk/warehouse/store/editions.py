@@ -85,6 +85,8 @@ class About(BaseModel):
         inputs_digest: of all tows that went in with their files, not only those of the lines.
         carried_from: the printed edition of which lines were taken over, if any.
         previous: the edition that the release notes compare with.
+        texts_version: of the code and templates that wrote its texts; None in editions of before
+            that was noted.
         number, after_seal: place in the chain of editions, from 1, and seal of the one published
             before; None in editions of before there was a chain.
     """
@@ -103,6 +105,7 @@ class About(BaseModel):
     inputs_digest: str
     carried_from: str | None
     previous: str | None
+    texts_version: str | None = None
     number: int | None = None
     after_seal: str | None = None
     tables: dict[str, TableDigest] = {}
@@ -116,8 +119,9 @@ class About(BaseModel):
     @property
     def expected_seal(self) -> str:
         """SHA-256 of everything but the seal."""
-        unchained = {"number", "after_seal"} if self.number is None else set()
-        content = self.model_dump(mode="json", exclude={"seal", *unchained})
+        unknown = {"number", "after_seal"} if self.number is None else set()
+        unknown |= {"texts_version"} if self.texts_version is None else set()
+        content = self.model_dump(mode="json", exclude={"seal", *unknown})
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

@@ -8,9 +8,10 @@ import pytest
 
 from herijk.cli.archive import check_text
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.archive.check import check_archive, check_report
-from herijk.warehouse.archive.profile import parse_profiles
-from herijk.warehouse.archive.templates import write_templates
+from herijk.warehouse.archive.check.check import check_archive
+from herijk.warehouse.archive.check.report import check_report
+from herijk.warehouse.archive.files.empty_archive import write_templates
+from herijk.warehouse.archive.profile.reading import parse_profiles
 from herijk.words import LANGUAGE, say
 from tests.warehouse.archive.conftest import BOATS, FIRST, TOWS, Archive, Scan
 

@@ -9,7 +9,8 @@ from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
-from herijk.warehouse.archive.plausibility import LEFT_OUT_S, judge_samples
+from herijk.warehouse.archive.plausibility.judge import judge_samples
+from herijk.warehouse.archive.plausibility.run import LEFT_OUT_S
 from tests.worlds import run_rows, tow_rows
 
 RATE_HZ = 20

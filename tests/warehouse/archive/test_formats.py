@@ -16,7 +16,8 @@ import xlsxwriter
 from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive import SeasonProfile, read_samples
+from herijk.warehouse.archive import SeasonProfile
+from herijk.warehouse.archive.samples.file import read_samples
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, TOWS, Archive, Scan
 
 NAME = FIRST.removesuffix(".csv")
@@ -260,7 +261,7 @@ def test_a_recording_that_claims_too_many_samples_is_not_read(
 ) -> None:
     tdms(archive)
     (path,) = (archive.root / "meetdata_2014").glob("*.tdms")
-    monkeypatch.setattr("herijk.warehouse.archive.recordings.MOST_ROWS", 10)
+    monkeypatch.setattr("herijk.warehouse.archive.samples.labview.MOST_ROWS", 10)
     with pytest.raises(DefectiveInputError) as told:
         read_samples(path, SeasonProfile(2014))
     assert told.value.reason_code == "too_large"

@@ -10,9 +10,19 @@ import pytest
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces
-from herijk.warehouse.archive import boats, instruments, kinds, published, tows, windows
-from herijk.warehouse.archive.lists import Wording, read_list
-from herijk.warehouse.archive.misfits import misfits
+from herijk.warehouse.archive.files import list_kinds
+from herijk.warehouse.archive.lists import (
+    boats,
+    force_checks,
+    lamps,
+    races,
+    registers,
+    tows,
+    windows,
+)
+from herijk.warehouse.archive.sheets.outside_limits import misfits
+from herijk.warehouse.archive.sheets.reading import read_list
+from herijk.warehouse.archive.spelling.wording import Wording
 
 TOW = {
     "sleep_id": "2014-001",
@@ -83,20 +93,20 @@ def of_2014(read):
 
 
 window = of_2014(partial(windows._window, {(2014, "2014-001"): {1}}))
-lamp = of_2014(partial(instruments._lamp, {"2014-001"}))
+lamp = of_2014(partial(lamps._lamp, {"2014-001"}))
 LISTS = {
-    "boats": (kinds.BOATS, BOAT, boats._boat),
-    "tows": (kinds.TOWS, TOW, tow_or_first_fault),
-    "windows": (kinds.WINDOWS, WINDOW, window),
-    "checks": (kinds.FORCE_CHECKS, CHECK, of_2014(instruments._force_check)),
-    "lamps": (kinds.LAMPS, LAMP, lamp),
-    "races": (kinds.RACES, RACE, of_2014(published._race_result)),
-    "registers": (kinds.REGISTERS, PRINTED, of_2014(published._register_line)),
+    "boats": (list_kinds.BOATS, BOAT, boats._boat),
+    "tows": (list_kinds.TOWS, TOW, tow_or_first_fault),
+    "windows": (list_kinds.WINDOWS, WINDOW, window),
+    "checks": (list_kinds.FORCE_CHECKS, CHECK, of_2014(force_checks._force_check)),
+    "lamps": (list_kinds.LAMPS, LAMP, lamp),
+    "races": (list_kinds.RACES, RACE, of_2014(races._race_result)),
+    "registers": (list_kinds.REGISTERS, PRINTED, of_2014(registers._register_line)),
 }
 
 
 def test_every_kind_of_list_is_tried():
-    assert {kind.name for kind, _, _ in LISTS.values()} == {k.name for k in kinds.LIST_KINDS}
+    assert {kind.name for kind, _, _ in LISTS.values()} == {k.name for k in list_kinds.LIST_KINDS}
 
 
 def values_of(name, cells, folder):

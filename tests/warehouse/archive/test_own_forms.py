@@ -11,11 +11,13 @@ import polars as pl
 import pytest
 import xlsxwriter
 
-from herijk.warehouse.archive.check import Checked, check_archive, check_report
-from herijk.warehouse.archive.meaning import meanings
-from herijk.warehouse.archive.profile import parse_profiles
-from herijk.warehouse.archive.sheets import read_sheets
-from herijk.warehouse.archive.text import Column, split_header
+from herijk.warehouse.archive.check.check import Checked, check_archive
+from herijk.warehouse.archive.check.report import check_report
+from herijk.warehouse.archive.profile.reading import parse_profiles
+from herijk.warehouse.archive.sheets.sheet import read_sheets
+from herijk.warehouse.archive.sheets.unknown_columns import meanings
+from herijk.warehouse.archive.spelling.columns import Column
+from herijk.warehouse.archive.spelling.headers import split_header
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
 from tests.warehouse.archive.test_formats import assert_same, cells_of, lvm
 

@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 
 from herijk.pipeline.channels import SAMPLE_SCHEMA
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive import SeasonProfile, read_samples, samples
-from herijk.warehouse.archive.text import parse_number
+from herijk.warehouse.archive import SeasonProfile
+from herijk.warehouse.archive.samples import text_files
+from herijk.warehouse.archive.samples.file import read_samples
+from herijk.warehouse.archive.spelling.numbers import parse_number
 from tests.reason_codes import REASON_CODES
 from tests.warehouse.archive.conftest import FIRST, HEADER, TOWS, Archive, Scan
 
@@ -212,11 +214,11 @@ def test_fast_reading_gives_what_careful_reading_gives(
     tmp_path_factory: pytest.TempPathFactory, rows: list[list[str]]
 ) -> None:
     data = "\n".join([HEADER, *(";".join(["1", *row[1:]]) for row in rows)]).encode()
-    body = samples._split_header(data, PROFILE)
-    fast = samples._read_fast(body)
+    body = text_files.find_body(data, PROFILE)
+    fast = text_files._read_fast(body)
     if fast is not None:
         assert fast.select(sorted(fast.columns)).equals(
-            samples._read_carefully(body).select(sorted(fast.columns))
+            text_files._read_carefully(body).select(sorted(fast.columns))
         )
 
 

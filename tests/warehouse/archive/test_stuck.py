@@ -5,11 +5,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from herijk.warehouse.archive.faults import Fault
-from herijk.warehouse.archive.plausibility import (
+from herijk.warehouse.archive.plausibility.run import Run
+from herijk.warehouse.archive.plausibility.whole_runs import (
     _longest_hold,
     _may_hold,
-    _Run,
-    _without_stuck_gps,
+    without_stuck_gps,
 )
 
 
@@ -23,11 +23,11 @@ def test_a_channel_that_moves_is_not_searched():
     assert not _may_hold(np.arange(100, dtype=np.float32), 10)
 
 
-def runs(*spoken: tuple[float, float]) -> list[_Run]:
+def runs(*spoken: tuple[float, float]) -> list[Run]:
     """Steady runs by intended speed and what the GPS holds; 0 is one that moves."""
     log, moving = np.full(500, 2.4, np.float32), np.linspace(2.3, 2.5, 500, dtype=np.float32)
     return [
-        _Run(
+        Run(
             *("2015-001", number, "a.csv", 1, 10, intended, 50.0),
             {"log1": log, "gps": log * 0 + held if held else moving},
         )
@@ -37,7 +37,7 @@ def runs(*spoken: tuple[float, float]) -> list[_Run]:
 
 def without_gps(*spoken: tuple[float, float]) -> list[int]:
     faults: list[Fault] = []
-    kept = _without_stuck_gps(runs(*spoken), faults)
+    kept = without_stuck_gps(runs(*spoken), faults)
     lost = [run.number for run in kept if np.isnan(run.channels["gps"]).all()]
     assert len(faults) == len(lost)
     return lost

@@ -2,7 +2,7 @@
 
 import pytest
 
-from herijk.warehouse.archive.lists import _BOAT
+from herijk.warehouse.archive.sheets.row import BOAT_NUMBER
 from tests.warehouse.archive.conftest import FIRST, RATE_HZ, ROWS, TOWS, Archive, Scan, line_of
 
 TOW = "2014-001"
@@ -20,7 +20,7 @@ def test_a_boat_may_have_nr_before_its_number(archive: Archive, cell: str) -> No
 
 @pytest.mark.parametrize("cell", ["FSN nr", "fsnx 101", "101 nr", "nrs 101"])
 def test_what_is_no_number_of_a_boat_stays_none(cell: str) -> None:
-    assert _BOAT.fullmatch(cell) is None
+    assert BOAT_NUMBER.fullmatch(cell) is None
 
 
 @pytest.mark.parametrize("word", ["run ", "Run", "vaart ", "RUN-", "lauf "])

@@ -1,0 +1,91 @@
+"""What lies in an archive and is not read, and what is not there though it must be."""
+
+from pathlib import Path
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.archive.faults import Fault
+from herijk.warehouse.archive.files.finding import (
+    find_boats_file,
+    list_files,
+    list_misnamed,
+    list_strangers,
+)
+from herijk.warehouse.archive.files.list_kinds import TOWS
+from herijk.warehouse.archive.files.names import (
+    BOATS_FILE,
+    PACKED,
+    SAMPLES,
+    SPREADSHEETS,
+    can_hold_data,
+)
+from herijk.warehouse.archive.index.recognise import guessed, recognised
+from herijk.warehouse.archive.profile.definition import Profiles
+from herijk.warehouse.archive.spelling.text import fold
+from herijk.words import say
+
+
+def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
+    """Return what is not there of that without which nothing can be read.
+
+    Raises:
+        MissingKnowledgeError: there is no archive.
+    """
+    if not root.is_dir():
+        raise MissingKnowledgeError(
+            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
+            "meetdata_<jaar>/.",
+            root,
+            BOATS_FILE,
+        )
+    named = profiles.wording.files
+    lacking = []
+    if find_boats_file(root, named) is None:
+        lacking.append(
+            (BOATS_FILE, say("there is no list of boats: {path} is expected.", path=BOATS_FILE))
+        )
+    if not list_files(root, TOWS, named):
+        path = "sleeplijsten/sleeplijst_<jaar>.csv"
+        lacking.append((path, say("there is no list of tows: {path} is expected.", path=path)))
+    return [Fault(path, None, None, "missing_list", said) for path, said in lacking]
+
+
+def strangers(root: Path, profiles: Profiles) -> list[Fault]:
+    """Return what lies in the archive and is not read; what it can be, where that can be told."""
+    is_lacking = root.is_dir() and bool(missing_lists(root, profiles))
+    message = "The name of '{name}' has letters that cannot be read; give it another name."
+    misnamed = [
+        Fault(path, None, None, "unrecognised_file", say(message, name=path))
+        for path in list_misnamed(root)
+    ]
+    return misnamed + [
+        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path, is_lacking))
+        for path in list_strangers(root, profiles.wording.files)
+        if fold(path) not in profiles.wording.ignore
+    ]
+
+
+def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
+    """Return the sentence about what is not read; while a list is lacking it can be anything."""
+    kind = Path(path)
+    if kind.suffix.lower() in PACKED:
+        return say("'{path}' is not read: it is packed. Unpack it in its folder.", path=path)
+    if kind.suffix.lower() in SPREADSHEETS and kind.parts[0].casefold().startswith(SAMPLES):
+        message = "'{path}' is not read: samples are read from text. Save the sheet as CSV."
+        return say(message, path=path)
+    can_be = dict(recognised(root, path))
+    if not can_be:
+        guesses = tuple(sorted(guessed(root, path)))
+        return say(
+            "'{path}' is not read: it is not recognised.",
+            path=path,
+            guesses=guesses,
+            is_other=not guesses
+            and not ((is_lacking or (root / path).is_dir()) and can_hold_data(root / path)),
+        )
+    return say(
+        "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; "
+        "say so under [files] in archief.toml.",
+        path=path,
+        kinds=", ".join(sorted(set(can_be.values()))),
+        can_be=tuple(sorted(can_be.items())),
+    )

@@ -1,0 +1,67 @@
+"""One cell of a header: the name in it, and its unit."""
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from herijk.warehouse.archive.spelling.text import fold
+from herijk.warehouse.archive.spelling.units import is_any_unit, is_unit
+
+_BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
+_UNIT_BEHIND: Final = re.compile(r"^(.*?[^\s_,])(?:\s*,\s+|\s+in\s+|[\s_]+)(m_s|[^\s_]+)$")
+_NO_UNIT_BEHIND: Final = frozenset("cfgksw")
+"""Single letters that mean something else behind a name: `log C`, `meetfile s`."""
+
+
+def split_header(cell: str) -> tuple[str, str | None]:
+    """Return the folded name in a header cell, and its unit as written where it has one.
+
+    A unit is in brackets, or last (`kracht, N`, `snelheid in kn`, `breedte_cm`); other brackets
+    belong to the name.
+    """
+    cell = cell.strip()
+    groups = list(_BRACKETS.finditer(cell))
+    units = [group for group in groups if is_any_unit(_last_part(group)[1])]
+    square = [group for group in groups if group[1] is not None]
+    for group in units or square[-1:]:
+        more, unit = _last_part(group)
+        return fold(cell[: group.start()] + more + cell[group.end() :]), unit
+    behind = _UNIT_BEHIND.match(cell)
+    unit = behind[2].replace("m_s", "m/s") if behind else ""
+    if behind and is_unit(unit) and unit.casefold() not in _NO_UNIT_BEHIND:
+        return fold(behind[1]), unit
+    return fold(cell), None
+
+
+def _last_part(group: re.Match[str]) -> tuple[str, str]:
+    """Return what is in brackets before the last comma, and behind it: `(richting, graden)`."""
+    more, _, unit = (group[1] or group[2] or "").rpartition(",")
+    return more, unit.strip()
+
+
+def with_units(header: Sequence[str], below: Sequence[str]) -> list[str] | None:
+    """Return a header with the units of the row below it; None where that row is no row of units.
+
+    Args:
+        header: the cells of the header.
+        below: the cells of the next row: `m/s`, `[N]`, or nothing.
+    """
+    units = [cell.strip().strip("[]()").strip() for cell in below]
+    if len(units) > len(header) or not any(units):
+        return None
+    if not any(map(is_unit, units)):
+        return None
+    if not all(is_any_unit(unit) for unit in units if fold(unit) or unit in {"%", "°"}):
+        return None
+    units += [""] * (len(header) - len(units))
+    pairs = zip(header, units, strict=True)
+    return [f"{name} [{unit}]" if is_any_unit(unit) else name for name, unit in pairs]
+
+
+def is_rest_of_header(header: Sequence[str], below: Sequence[str]) -> bool:
+    """Whether a row goes on with the header above it: not a digit, and units or names it lacks."""
+    if any(map(str.isdigit, "".join(below))) or not any(map(str.strip, below)):
+        return False
+    names = [cell.strip() for cell in header if cell.strip()]
+    has_units = any(is_unit(cell.strip("[]() ")) or split_header(cell)[1] for cell in below)
+    return has_units or len(set(names)) < len(names)
