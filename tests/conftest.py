@@ -4,7 +4,7 @@ import os
 import shutil
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -19,6 +19,7 @@ from hypothesis import settings
 
 import herijk.assets.rebuild
 import herijk.assets.runs
+import herijk.dashboards.report_page
 from herijk.assets.report import Report
 from herijk.assets.resources import Setup
 from herijk.assets.side_by_side import Read, Task
@@ -79,15 +80,21 @@ class _Directly:
 
 
 @contextmanager
-def directly() -> Iterator[None]:
-    """Inside, rebuilds do their work without Dagster, and the site counts as made."""
+def directly(page: bool = False) -> Iterator[None]:
+    """Inside, rebuilds do their work without Dagster, and the site counts as made.
+
+    Args:
+        page: make the page about the rebuild too, a quarter of the work.
+    """
 
     def unrecorded(setup: Setup, other: object, work: Callable[[Any], None]) -> list[object]:
         work(_Directly(setup))
         return []
 
     no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
-    with no_site, in_one_process(), mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
+    no_dagster = mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded)
+    no_page = mock.patch.object(herijk.dashboards.report_page, "report_pages", return_value={})
+    with no_site, no_dagster, in_one_process(), nullcontext() if page else no_page:
         yield
 
 
@@ -116,13 +123,14 @@ class Workbench:
         methods: Sequence[str] = METHODS,
         seasons: Collection[int] | None = None,
         whole: bool = False,
+        page: bool = False,
     ) -> Report:
         """A rebuild in this process.
 
         The whole has Dagster's runs (recorded in memory), studies, comparisons of types, checks and
-        pages; a third of it does for most tests.
+        pages; most tests do without, and without the page about the rebuild.
         """
-        with self.records_in_memory() if whole else directly():
+        with self.records_in_memory() if whole else directly(page):
             return herijk.assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
 
     @staticmethod

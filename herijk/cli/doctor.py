@@ -53,7 +53,7 @@ def doctor(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Look whether machine, settings, data folder and archive are in order."""
+    """Check that machine, settings, data folder and archive are in order."""
     report = Findings(list(_findings(data, archive)))
     show(report, _text, as_json)
     if not all(finding.sound for finding in report.findings):
@@ -83,7 +83,8 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
         yield Finding("data folder", True, tell("{} is not there yet; a rebuild makes it", data))
     if archive is not None:
         there = archive.is_dir()
-        yield Finding("archive", there, str(archive) if there else tell("{} is no folder", archive))
+        said = str(archive) if there else tell("{} is not a folder", archive)
+        yield Finding("archive", there, said)
 
 
 def _space(data: Path) -> Finding:

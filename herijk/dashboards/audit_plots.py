@@ -155,7 +155,7 @@ def _widen(scatters: dict[str, Any], rows: pl.DataFrame) -> None:
 
 
 ROOM: Final = 0.04
-"""Of an axis, beyond its outermost points."""
+"""Share of an axis that is left beyond its outermost points."""
 
 
 def _types(report: TypesAudit) -> list[str]:

@@ -56,7 +56,7 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     register = built.table("register").filter(pl.col("tow_id").str.starts_with("2009"))
     stronger = register.filter(pl.col("tow_id") != gone).row(0, named=True)
     with_more_force(bench, stronger["tow_id"])
-    report = bench.rebuild()
+    report = bench.rebuild(page=True)
     assert latest(bench)["headlines"] == report.headlines
     assert {(row["tow_id"], row["what"]) for row in report.tow_rows} == {
         (gone, "gone"),

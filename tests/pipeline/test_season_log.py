@@ -157,6 +157,12 @@ def test_what_tows_of_a_day_share_is_found_and_widens_the_interval(monkeypatch):
     assert (wide > 1.3 * narrow).all()
 
 
+def test_a_fault_that_its_own_fit_sends_away_again_leaves_the_search_at_rest():
+    """A step of the whole fleet in 2011 looks likely there until it is fitted."""
+    _, found = estimated(replace(CLEAN, day_sd=0.015), 4)
+    assert "not settled" not in set(found.diagnosis["verdict"])
+
+
 def test_wander_within_the_season_is_found_and_widens_the_interval():
     found = estimate_season_factors(simulate(replace(CLEAN, wander=0.015), 2).tows)
     _, calm = estimated(CLEAN, 1002)

@@ -147,8 +147,8 @@ def type_lines(
 ) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
     """Straight lines of each quantity on each explaining variable, per method and boat type.
 
-    Of the newest tow of each boat and crew all, of other choices of tows those that the
-    presentation of 2015 plots.
+    All lines over the newest tow of each boat and crew; over other choices of tows, those that
+    the presentation of 2015 plots.
 
     Returns:
         Rows of the tables `type_lines` and `type_line_points`. Where no line is drawn, `reason`
@@ -326,8 +326,8 @@ def _explaining(boats: Observed, name: str) -> FloatArray:
 def type_outliers(observed: Observed) -> pl.DataFrame:
     """The newest tow of every boat against its type, with what could explain a difference.
 
-    Compared are ln Cw at the standard speed, after the line on ln displacement where that is known,
-    and the bend. A boat's expectation comes from the other boats alone; the deviation is in
+    ln Cw at the standard speed is compared, after the line on ln displacement where that is known,
+    and so is the bend. A boat's expectation comes from the other boats alone; the deviation is in
     standard deviations of a prediction (externally Studentised).
 
     Returns:

@@ -23,8 +23,9 @@ from herijk.pipeline.consistency.observed import (
     q_at,
 )
 from herijk.pipeline.consistency.reml import Design, Problem
-from herijk.pipeline.curve import VALID_RATIO
+from herijk.pipeline.curve import LEAST_MARGIN, VALID_RATIO
 from herijk.pipeline.hull import hull_speed_m_s
+from herijk.pipeline.quantiles import NORMAL
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from herijk.tables.consistency import SlowTows, SpeedTrend
 from herijk.tables.declare import dy
@@ -239,6 +240,6 @@ def _power_ratio(tows: Observed, s_s2_m2: FloatArray, speed_m_s: FloatArray) -> 
     known = np.isfinite(shared) & np.isfinite(own)
     ratio = np.where(known, own, np.nan) / np.where(known, shared, 1.0)
     x = (speed_m_s / tows.column("declared_speed_m_s")) ** 2 - 1.0
-    slope = x / np.maximum(1.0 - q * x, 0.05)
+    slope = x / np.maximum(1.0 - q * x, LEAST_MARGIN)
     sd = np.abs(slope) * np.sqrt(tows.column("q_unit_variance")) * tows.column("run_sd_ratio")
-    return np.stack([ratio, ratio * np.exp(-1.96 * sd), ratio * np.exp(1.96 * sd)])
+    return np.stack([ratio, ratio * np.exp(-NORMAL * sd), ratio * np.exp(NORMAL * sd)])

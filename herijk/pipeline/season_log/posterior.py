@@ -502,14 +502,20 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
     A log that was replaced is easily taken for many tows pulled askew, and then is not missed. From
     a start where no boat had changed it is found; what changed boats do without is left again.
 
+    A fault enters by what one step from the fit promises, and leaves by a fit of its own, which
+    knows more. Where the two disagree the fault would come and go forever, so no fault leads to a
+    model that was left before.
+
     Args:
         start: where to begin.
         changes: boats may have been altered, and tows pulled askew.
     """
     active = problem.always if start is None else start.active
     fitted = fit(problem, active, start, ROUGH, changes)
+    fitted_before: set[frozenset[int]] = set()
     for _ in range(2 * MOST_FAULTS):
-        chosen = _better(problem, fitted)
+        fitted_before.add(frozenset(fitted.active.tolist()))
+        chosen = _better(problem, fitted, fitted_before)
         if chosen is None:
             return fitted
         if np.isin(chosen, problem.faults).sum() > MOST_FAULTS:
@@ -612,14 +618,19 @@ def _in_fit(problem: Problem, fitted: Fit) -> tuple[IntArray, FloatArray]:
     return places, ln_odds
 
 
-def _better(problem: Problem, fitted: Fit) -> IntArray | None:
-    """The unknowns with the fault that is missed most, or without the one that is not needed."""
+def _better(problem: Problem, fitted: Fit, fitted_before: set[frozenset[int]]) -> IntArray | None:
+    """The unknowns with the fault that is missed most, or without the one that is not needed.
+
+    Args:
+        fitted_before: models that no fault is to lead to.
+    """
     places, ln_odds = _in_fit(problem, fitted)
     if len(places) and ln_odds.min() < 0.0:
         return np.delete(fitted.active, places[int(ln_odds.argmin())])
+    now = frozenset(fitted.active.tolist())
     nothing = np.zeros(len(fitted.active))
     more = _more(problem, _candidates(problem, fitted), fitted.covariance, nothing).ln_odds
-    more[np.isin(problem.faults, fitted.active)] = -np.inf
+    more[[now | {fault} in fitted_before for fault in problem.faults.tolist()]] = -np.inf
     best = int(first_largest(more))
     return np.append(fitted.active, problem.faults[best]) if more[best] > 0.0 else None
 

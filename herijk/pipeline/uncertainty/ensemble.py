@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 MEMBERS: Final = 200
 SEED: Final = 2009
 FEW_ROWS: Final = 8192
-"""So many errors are added up at a time: those of all tows take as much again as the tables."""
+"""Errors added up at a time: those of all tows would take as much memory as the tables."""
 REMEMBERED: Final = 1 << 14
-"""So many keys' errors are kept for the next method, whose keys are the same: 26 MB."""
+"""Keys whose errors are kept for the next method, which has the same keys: 26 MB."""
 
 
 def register_ensemble(

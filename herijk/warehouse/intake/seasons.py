@@ -42,7 +42,7 @@ INDEXED: Final = (
 )
 """What is kept of the archive's lists."""
 UNREADABLE: Final = "unreadable_file"
-"""Of a file that could not be read: it may be readable the next time, though nothing changed."""
+"""A file that could not be read may be readable the next time, though nothing changed."""
 SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
 """What is kept of a season, as the archive was when it was read."""
 
