@@ -88,6 +88,7 @@ def _of_types(views: Views, report: TypesAudit) -> Iterator[Plot]:
         "repeats",
         boats.select("method", "fsn_no")
         .unique()
+        .sort("method", "fsn_no")
         .join(views.repeat_pairs(), on=["method", "fsn_no"], maintain_order="left"),
     )
     predicted, bends = views.predicted().filter(own), views.shared_bends().filter(own)
