@@ -46,6 +46,9 @@ ARCHIVE: Final[dict[str, str]] = {
     "{names} must be there, here or in the boat list.": (
         "{names} moet er zijn, hier of in de lijst van sloepen."
     ),
+    "the year is {cell}; {low:g} to {high:g} can be right.": (
+        "het jaar is {cell}; {low:g} tot {high:g} kan kloppen."
+    ),
     "column '{column}' is {cell}; {low:g} to {high:g} can be right.": (
         "kolom '{column}' is {cell}; {low:g} tot {high:g} kan kloppen."
     ),

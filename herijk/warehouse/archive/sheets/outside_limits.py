@@ -24,4 +24,6 @@ def _why(table: type[dy.Schema], row: Row, column: str, rule: str) -> Sentence:
         return say("column '{column}' is '{cell}', which cannot be right.", **named)
     low, high = limits(table, column)
     message = "column '{column}' is {cell}; {low:g} to {high:g} can be right."
+    if column == "season":  # of the file's name, or of a date: no list has such a column
+        message = "the year is {cell}; {low:g} to {high:g} can be right."
     return say(message, **named, low=low, high=high)
