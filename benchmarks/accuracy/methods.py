@@ -3,9 +3,9 @@
     PYTHONPATH=. python benchmarks/accuracy/methods.py [worlds]
 
 Each world has ten seasons of 24 tows at 20 Hz and a seed of its own. "clean" worlds have all
-instruments and disturbances but no wander between tows, no alterations and no ageing; "history"
-worlds have everything. Cw is at the declared speed, relative to truth. A line that misses what is
-asked is marked.
+instruments and disturbances, but logs that differ between seasons alone, no alterations and no
+ageing; "history" worlds have everything. Cw is at the declared speed, relative to truth. A line
+that misses what is asked is marked.
 """
 
 import sys

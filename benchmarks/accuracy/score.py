@@ -33,8 +33,8 @@ Record = dict[str, Any]
 def faulty_seasons(world: str, seasons: Iterable[int]) -> set[int]:
     """Seasons in which a world differs from its base."""
     named = WORLDS[world]
-    tied = set(named.options.get("ties", ()))
-    return {s for s in seasons if s in tied or named.defects(s) != named.base(s)}
+    unlinked = set(named.options.get("linking_boats", ()))
+    return {s for s in seasons if s in unlinked or named.defects(s) != named.base(s)}
 
 
 def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -> list[Record]:

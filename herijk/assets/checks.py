@@ -37,7 +37,7 @@ def counts_agree(setup: Setup) -> dg.AssetCheckResult:
 
 
 def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
-    """Not more of the listed tows are set aside than the settings allow."""
+    """No more of the listed tows are set aside than the settings allow."""
     aside, listed = set_aside_tows(setup.store)
     return dg.AssetCheckResult(
         passed=aside <= setup.set_aside_share * listed,

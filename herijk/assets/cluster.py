@@ -96,7 +96,7 @@ def read_seasons(
             checks = result.get_asset_check_evaluations()
     except (OSError, KilledWorker, NoWorkerError) as error:
         raise UnavailableError(
-            "the Dask cluster at {} did not finish: {}. Look whether its scheduler "
+            "the Dask cluster at {} did not finish: {}. Check that its scheduler "
             "and workers are up, and run it again: what was finished is kept",
             address,
             error,

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from herijk.assets.runs import Work
 
 ROUNDS: Final = 3
-"""So many times a rebuild begins again because the archive changed under its hands."""
+"""How often a rebuild begins at most, where the archive changes while it runs."""
 
 
 def rebuild(

@@ -59,14 +59,14 @@ class Settings(BaseModel):
         from dagster._utils.schedules import is_valid_cron_schedule  # noqa: PLC0415 - takes a second
 
         if not is_valid_cron_schedule(line):
-            raise ValueError(f"{line!r} is no cron line, such as '0 3 * * *'")
+            raise ValueError(f"{line!r} is not a cron line, such as '0 3 * * *'")
         return line
 
     @field_validator("timezone")
     @classmethod
     def _is_timezone(cls, name: str) -> str:
         if name not in available_timezones():
-            raise ValueError(f"{name!r} is no time zone, such as 'Europe/Amsterdam'")
+            raise ValueError(f"{name!r} is not a time zone, such as 'Europe/Amsterdam'")
         return name
 
     @property

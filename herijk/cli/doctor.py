@@ -53,7 +53,7 @@ def doctor(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Look whether machine, settings, data folder and archive are in order."""
+    """Check that machine, settings, data folder and archive are in order."""
     report = Findings(list(_findings(data, archive)))
     show(report, _text, as_json)
     if not all(finding.sound for finding in report.findings):
@@ -70,7 +70,7 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     from herijk.warehouse.store.store import Store
 
     yield Finding("Herijk", True, version("herijk"))
-    yield Finding("Python", sys.version_info >= (3, 11), sys.version.split()[0])
+    yield Finding("Python", True, sys.version.split()[0])
     yield _space(data)
     yield _tried("settings", lambda: tell("applies {}", ", ".join(read_settings(data).applied)))
     known = known_methods(data)
@@ -83,7 +83,8 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
         yield Finding("data folder", True, tell("{} is not there yet; a rebuild makes it", data))
     if archive is not None:
         there = archive.is_dir()
-        yield Finding("archive", there, str(archive) if there else tell("{} is no folder", archive))
+        said = str(archive) if there else tell("{} is not a folder", archive)
+        yield Finding("archive", there, said)
 
 
 def _space(data: Path) -> Finding:

@@ -141,7 +141,7 @@ def lineage(
 def due(
     data: DataFolder = Path("data"),
     method: Annotated[
-        str, typer.Option(metavar="NAME", help="Method whose curves are asked for the speeds.")
+        str, typer.Option(metavar="NAME", help="Method whose curves give the speeds.")
     ] = "rebased",
     as_of: AsOf = None,
     as_json: AsJson = False,

@@ -286,7 +286,7 @@ def _moved(moved: list[Row]) -> str:
 def verify(report: "Verification") -> str:
     """What was checked and what is wrong."""
     if not report.editions and not report.findings:
-        return tell("No edition was published yet; nothing to verify.")
+        return tell("No edition has been published yet; nothing to verify.")
     rows = [(e.edition, code(e.kind), e.lines, e.made_again, e.equal) for e in report.editions]
     head = ("edition", "kind", "lines", "made again", "equal")
     parts = [

@@ -88,7 +88,7 @@ def _begin_in_utf8() -> NoReturn:
 
 
 def _written_down(error: BaseException) -> str:
-    """A sentence about an error that nobody foresaw, and where the rest of it stands."""
+    """A sentence about an error that nobody foresaw, and where to read the rest."""
     import tempfile
     import traceback
 

@@ -85,7 +85,7 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
             for name, child in children.items():
                 if child.poll() is not None:
                     raise UnavailableError(
-                        "{} ended by itself with status {}; what it said stands above",
+                        "{} ended by itself with status {}; what it said is above",
                         name,
                         child.returncode,
                     )

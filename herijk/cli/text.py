@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
 
 _NUMBER: Final = re.compile(r"[-+]?[0-9]+([.,][0-9]+)?( %| N)?\*?|-?")
-"""A cell that stands to the right."""
+"""A cell that is aligned to the right."""
 
 
 def page(parts: Iterable[str], simulated: bool) -> str:
@@ -245,9 +245,9 @@ def _diagnosis(report: "LogErrorReport") -> str:
         for r in report.diagnosis
     ]
     note = tell(
-        "would not show: a fault of the usual size would be taken for what stands under 'or else'. "
-        "The interval\ncounts how seldom such a fault is, so where nothing points to one it can be "
-        "0 to 0."
+        "would not show: a fault of the usual size would be taken for what is given under "
+        "'or else'. The interval\ncounts how seldom such a fault is, so where nothing points to "
+        "one it can be 0 to 0."
     )
     return f"{table(head, rows)}\n\n{note}"
 

@@ -1,7 +1,7 @@
 """What keeps pages of other sites out of a server on this machine, and bounds who connects.
 
 A page that reaches it by a name of its own (DNS rebinding) is refused by its Host header; one that
-sends a form or a script, by its Origin and type. Which pages there are stands elsewhere.
+sends a form or a script, by its Origin and type. Which pages there are is not decided here.
 """
 
 import socket

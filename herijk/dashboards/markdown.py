@@ -33,7 +33,7 @@ def to_html(text: str, links: Mapping[str, str]) -> Markup:
 
 
 def _lead(tokens: Iterable[Token], links: Mapping[str, str]) -> None:
-    """Lets links lead to pages; links do not stand in each other."""
+    """Lets links lead to pages; links are not nested."""
     plain = False
     for token in tokens:
         if token.type == "link_open":

@@ -21,6 +21,9 @@ from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.quantiles import t_quantile
 
+LEAST_MARGIN: Final = 0.05
+"""1 - (v/B)^2 is kept above this where a speed is only supposed: beyond B there is no curve."""
+
 VALID_RATIO: Final = (0.85, 1.15)
 """Speeds at which a curve counts, as ratios of its declared speed (Cw-kromme, R. Pot 2015)."""
 
@@ -353,7 +356,7 @@ def _fit_chunk(
 
 
 class _State(NamedTuple):
-    """Where a search stands: bend, best height there, and the undamped next step."""
+    """Where a search has come to: bend, best height there, and the undamped next step."""
 
     q: FloatArray
     c0: FloatArray

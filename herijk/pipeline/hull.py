@@ -20,8 +20,8 @@ CREW_SIDE_AREA_M2: Final = 1.0
 """Added to length x height in the oblique-wind formula of 2015."""
 
 USUAL_BOW_HEIGHT_M: Final = 1.0
-"""Of a bow that nobody measured (inferred). Only boats towed without an anemometer may lack the
-height; there it moves the interval and not Cw."""
+"""Height taken for a bow that nobody measured (inferred). Only boats towed without an anemometer
+may lack the height; there it moves the interval and not Cw."""
 
 
 def hull_speed_m_s(waterline_length_m: FloatArray) -> FloatArray:

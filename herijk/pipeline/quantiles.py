@@ -1,4 +1,4 @@
-"""The level of the intervals, and the quantile that goes with it."""
+"""The level of the intervals, the quantiles that go with it, and a robust spread."""
 
 from typing import Final
 
@@ -9,6 +9,12 @@ from numpy.typing import ArrayLike
 from herijk.pipeline.arrays import FloatArray
 
 LEVEL: Final = 0.95
+
+NORMAL: Final = 1.959963984540054
+"""Standard deviations to either side of a normal number, in an interval of `LEVEL`."""
+
+MAD_TO_SD: Final = 1.4826
+"""Standard deviation over median distance from the median, of normal numbers."""
 
 
 def t_quantile(dof: ArrayLike) -> FloatArray:

@@ -49,8 +49,8 @@ def parse_toml(text: str) -> dict[str, object]:
         place = re.search(r"at line (\d+)", str(error))
         raise ValueError(
             say(
-                "line {} cannot be read; a number has a decimal point, a text stands between "
-                "quotes, and a key stands once in its table",
+                "line {} cannot be read; a number has a decimal point, text is put between "
+                "quotes, and a key occurs once in its table",
                 int(place[1]) if place else len(text.splitlines()),
             )
         ) from error

@@ -71,7 +71,7 @@ class Spelling:
 
 
 PLAIN: Final = Spelling(".csv", encoding="cp1252")
-"""Of the files that belong to no season."""
+"""How files are written that belong to no season."""
 SPELLINGS: Final = (
     PLAIN,
     Spelling(".csv.gz", force_unit="kgf", iso_dates=False, own_names=True),

@@ -67,7 +67,7 @@ GIVEN_NAMES: Final = ("Tréwes", "Noordvaarder", "Zeeëgel", "Vrouwe Coöperatie
 GIVEN_NAME_EVERY: Final = 7
 FIRST_FSN_NUMBER: Final = 100
 HUMP_AMPLITUDE: Final = 0.03
-"""Of a marked hump; a hyperbola through 90, 100 and 110 % then misses 0.8 % (median)."""
+"""Size of a marked hump; a hyperbola through 90, 100 and 110 % then misses 0.8 % (median)."""
 HUMP_PHASE_RAD: Final = 0.0
 
 Shape: TypeAlias = Literal["bow wave", "hump", "delft"]

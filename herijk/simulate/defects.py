@@ -21,7 +21,7 @@ class Defects:
 
     # Logs. True speed = log speed x factor: a worn propeller turns too slowly, its factor is > 1.
     log_season_factor: tuple[float, float] = (1.0, 1.0)  # range the season's factor is drawn from
-    log_tow_wander: float = 0.0  # sd of ln factor between the tows of a season
+    log_tow_sd: float = 0.0  # sd of ln factor between the tows of a season
     log_run_wander: float = 0.0  # relative sd between runs, and slowly within a run
     log_noise_m_s: float = 0.0  # sd
     log2_ratio: tuple[float, float] = (1.0, 1.0)  # range of log 2 / log 1, drawn each tow
@@ -109,7 +109,7 @@ class Defects:
         """
         return replace(
             cls.history(season),
-            log_tow_wander=0.0,
+            log_tow_sd=0.0,
             askew_share=0.0,
             fast_run_share=0.0,
             alteration_share=0.0,
@@ -119,7 +119,7 @@ class Defects:
 
 _PROPELLER_LOGS = Defects(
     log_season_factor=(1.04, 1.065),
-    log_tow_wander=0.012,
+    log_tow_sd=0.012,
     log_run_wander=0.004,
     log_noise_m_s=0.04,
     log2_ratio=(0.99, 1.01),
@@ -158,14 +158,14 @@ _WITH_GPS = replace(_PROPELLER_LOGS, gps_wander_m_s=0.08, gps_noise_m_s=0.03)
 _DOPPLER_LOGS = replace(
     _WITH_GPS,
     log_season_factor=(0.985, 1.015),
-    log_tow_wander=0.006,
+    log_tow_sd=0.006,
     log_run_wander=0.002,
     log_noise_m_s=0.03,
 )
 _WITH_DGPS = replace(
     _DOPPLER_LOGS,
     log_season_factor=(0.99, 1.01),
-    log_tow_wander=0.004,
+    log_tow_sd=0.004,
     log2_ratio=(0.94, 0.97),
     gps_wander_m_s=0.0,
     gps_noise_m_s=0.01,

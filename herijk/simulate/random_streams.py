@@ -30,7 +30,7 @@ class Subject(IntEnum):
 class Component(IntEnum):
     """Last part of a tow's address. Never renumber."""
 
-    LOG_WANDER = 1
+    LOG_OF_TOW = 1
     LOG2_RATIO = 2
     ASKEW = 3
     FAST_RUN = 4

@@ -37,7 +37,7 @@ HIGHEST_WEIGHT_GAIN_KG: Final = 8.0
 REPLACED_AT: Final = (0.3, 0.7)
 """Part of a season after which its log is replaced."""
 ROWERS_LEFT_OUT: Final = 2
-"""Of a thwart left free."""
+"""Rowers on a thwart, who are missed when it is left free."""
 FREE_THWART: Final = "3"
 BLOCK_COEFFICIENT: Final = 0.65
 """Waterplane over length times beam: a heavier boat lies deeper (stated assumption)."""
@@ -58,7 +58,7 @@ class WorldSettings:
         air: the air coefficients that are true in this world.
         shape: of the boats' resistance.
         spread: of boats of a type, relative to the usual; 0 makes them identical.
-        ties: seasons of which only so many boats are also towed in another season.
+        linking_boats: of a season, how many of its boats are also towed in another; else all.
         tows_a_day, days_apart: how a season's tows are spread.
         freeboards_from: first season whose list gives freeboards; None for never.
     """
@@ -71,7 +71,7 @@ class WorldSettings:
     air: AirCoefficients = field(default_factory=AirCoefficients)
     shape: Shape = "bow wave"
     spread: float = 1.0
-    ties: Mapping[int, int] = field(default_factory=dict)
+    linking_boats: Mapping[int, int] = field(default_factory=dict)
     tows_a_day: int = 8
     days_apart: int = 1
     freeboards_from: int | None = None
@@ -91,7 +91,7 @@ class TowTruth:
     """What the archive does not tell about a tow.
 
     True speed = log speed x `log_factor`, which is `log_factor_of_day`, of all tows of that day,
-    with the tow's own wander; `second_log_factor` is that of its second file, None without.
+    with the tow's own deviation; `second_log_factor` is that of its second file, None without.
     `season_log_factor` is without trend and replaced log. `cw` is at the declared speed and has
     the still-air part in it. `askew_ratio` is true force over straight force; `force_zero_n` is
     what the load cell reads without force; `altered` also when unreported.
@@ -235,13 +235,13 @@ def _schedule(settings: WorldSettings, boat: Callable[[int], Boat]) -> list[_Slo
     slots: list[_Slot] = []
     for season in range(FIRST_SEASON, settings.seasons[-1] + 1):
         waiting = sorted((when, crew) for crew, when in due.items() if when <= season)
-        tied = settings.ties.get(season, settings.tows_per_season)
-        crews = [crew for _, crew in waiting[: min(tied, settings.tows_per_season)]]
+        linking = settings.linking_boats.get(season, settings.tows_per_season)
+        crews = [crew for _, crew in waiting[: min(linking, settings.tows_per_season)]]
         while len(crews) < settings.tows_per_season:
             crews.append(next(newcomers))
         for number, crew in enumerate(crews, start=1):
             due.pop(crew, None)
-            if number <= tied:
+            if number <= linking:
                 due[crew] = season + RETOW_YEARS[(number - 1) % len(RETOW_YEARS)]
             slots.append(_Slot(season, number, *crew))
     return slots
@@ -298,8 +298,8 @@ def _tow(
         return float(true_cw_kg_m(hull, np.array(declared), at_c, settings.air))
 
     of_day = season_log_factor * _log_change(settings, slot.season, day)
-    wander = float(draw(Component.LOG_WANDER).standard_normal())
-    log_factor = of_day * float(np.exp(defects.log_tow_wander * wander))
+    deviation = float(draw(Component.LOG_OF_TOW).standard_normal())
+    log_factor = of_day * float(np.exp(defects.log_tow_sd * deviation))
     two_files = draw(Component.SECOND_FILE).random() < defects.second_file_share
     return Tow(
         tow_id=f"{slot.season}-{slot.number:03d}",

@@ -72,7 +72,7 @@ WORLDS: Final[Mapping[str, NamedWorld]] = {
     "restless": NamedWorld(
         "Logs vary 1.2 % between tows, 12 % of boats are altered unreported, boats age.",
         {
-            BEFORE_DGPS: {"log_tow_wander": 0.012},
+            BEFORE_DGPS: {"log_tow_sd": 0.012},
             EVER: {
                 "alteration_share": 0.12,
                 "alteration_sd": 0.08,
@@ -168,12 +168,13 @@ WORLDS: Final[Mapping[str, NamedWorld]] = {
         "Until 2013 temperatures are not written down, while the water warms from 4 to 12 C.",
         _warming(4.0, 12.0),
     ),
-    "three-ties": NamedWorld(
+    "three-links": NamedWorld(
         "Of the boats of 2010 only three are also towed in other seasons.",
-        options={"ties": {2010: 3}},
+        options={"linking_boats": {2010: 3}},
     ),
-    "untied": NamedWorld(
-        "None of the boats of 2010 is towed in another season.", options={"ties": {2010: 0}}
+    "unlinked": NamedWorld(
+        "None of the boats of 2010 is towed in another season.",
+        options={"linking_boats": {2010: 0}},
     ),
 }
 

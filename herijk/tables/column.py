@@ -9,7 +9,7 @@ LOWER_END: Final = (
     "lower end of its 95 % interval; where methods.interval is runs_alone, of the spread of the "
     "runs alone: the log's error is not in it"
 )
-"""Of an interval of Cw or B."""
+"""Description of the lower end of an interval of Cw or B."""
 
 
 def text(description: str, **rules: Any) -> dy.String:

@@ -78,7 +78,7 @@ class RegisterHistory(_Line):
 
 
 class DueList(PerMethod):
-    """Until when each boat and crew's tow counts, and the speed of its next tow."""
+    """How long the tow of each boat and crew counts, and the speed of its next tow."""
 
     fsn_no = column.fsn_no(primary_key=True)
     rowers = column.rowers(primary_key=True)

@@ -1,4 +1,4 @@
-"""How serious a check of the assessment is; what each asks of people stands with the checks."""
+"""How serious a check of the assessment is; what each asks of people is said with the checks."""
 
 from typing import Final, Literal, get_args
 

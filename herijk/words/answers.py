@@ -63,7 +63,7 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
     ),
     "answer_best": (
         "De beste schatting uit alle proeven van het archief is {best} kg/m ({low} tot {high}); "
-        "zij rust voor {share} % op deze proef.",
+        "die rust voor {share} % op deze proef.",
         "The best estimate from all tows of the archive is {best} kg/m ({low} to {high}); {share} "
         "% of it rests on this tow.",
     ),
@@ -112,12 +112,12 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
     ),
     "answer_unknown": (
         "Of de verandering groter is dan de onzekerheid, is niet te zeggen: van een van beide "
-        "getallen is zij niet bekend.",
+        "getallen is die niet bekend.",
         "Whether the change is larger than the uncertainty cannot be told: that of one of the "
         "numbers is not known.",
     ),
     "answer_old_spread": (
-        "In de onzekerheid van het oude getal zit de fout van de log niet; zij is dus te klein.",
+        "In de onzekerheid van het oude getal zit de fout van de log niet; die is dus te klein.",
         "The uncertainty of the old number leaves out the error of the log: it is too small.",
     ),
     "answer_place": (
@@ -148,11 +148,11 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
     ),
     "answer_valid": (
         "De proef van {tow} telt tot en met {until}.",
-        "The tow of {tow} counts until and including {until}.",
+        "The tow of {tow} counts up to and including {until}.",
     ),
     "answer_expired": (
         "De proef van {tow} telde tot en met {until}.",
-        "The tow of {tow} counted until and including {until}.",
+        "The tow of {tow} counted up to and including {until}.",
     ),
     "answer_next": (
         "Volgende proef: sleep bij {speed} m/s ({reason}).",

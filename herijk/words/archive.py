@@ -303,7 +303,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "meer dan {:g} s, dus de run gaat verder zonder deze kolom"
     ),
     "The force is {:.0f} N in a typical run; it must be positive.": (
-        "De kracht is {:.0f} N in een gewone run; zij moet positief zijn."
+        "De kracht is {:.0f} N in een gewone run; die moet positief zijn."
     ),
     "Columns '{}' and '{}' seem to be exchanged: typically they hold {:.4g} and {:.4g}, "
     "and only the other way round can that be right.": (
@@ -402,13 +402,13 @@ ARCHIVE: Final[dict[str, str]] = {
     "all wind angles lie between -3.14 and 6.28, as angles in radians do": (
         "alle windhoeken liggen tussen -3,14 en 6,28, zoals hoeken in radialen"
     ),
-    "Look whether these are this boat's samples, and what the load cell was set to.": (
+    "Check whether these are this boat's samples, and what the load cell was set to.": (
         "Kijk of dit de metingen van deze sloep zijn, en hoe de krachtmeter was ingesteld."
     ),
     "It looks like {}: correct the unit in the header, or the scale.": (
         "Het lijkt op {}: verbeter de eenheid in de kop, of de schaal."
     ),
-    "Run {} holds the very samples of tow {} ({}) of {} {}{}, packed or written otherwise.": (
+    "Run {} holds exactly the samples of tow {} ({}) of {} {}{}, packed or written otherwise.": (
         "Run {} bevat precies de metingen van proef {} ({}) van {} {}{}, anders verpakt of "
         "geschreven."
     ),

@@ -149,7 +149,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.between_tows": ("van proef tot proef", "from tow to tow"),
     "code.stream_drift": ("stroom", "current"),
     "code.anemometer": ("windmeter", "anemometer"),
-    "code.misfit": ("romp is geen hyperbool", "hull is no hyperbola"),
+    "code.misfit": ("romp is geen hyperbool", "hull is not a hyperbola"),
     "code.mass": ("massa", "mass"),
     "code.random": ("spreiding van de runs", "scatter of the runs"),
     "code.season_log": ("log van het seizoen", "log of the season"),
@@ -234,7 +234,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "candidate.weight": ("opvallend gewicht", "unusual weight"),
     "candidate.length": ("opvallende lengte", "unusual length"),
     "candidate.season": (
-        "haar seizoen ligt aan dezelfde kant",
+        "het seizoen ligt aan dezelfde kant",
         "its season lies to the same side",
     ),
     "candidate.log": ("opvallende ijking van de log", "unusual calibration of its log"),

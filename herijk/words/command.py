@@ -70,7 +70,7 @@ COMMAND: Final[dict[str, str]] = {
     "Write a simulated archive with known truth (the truth lies beside it, not in it).": (
         "Schrijf een gesimuleerd archief met bekende waarheid (die ligt ernaast, niet erin)."
     ),
-    "Look whether machine, settings, data folder and archive are in order.": (
+    "Check that machine, settings, data folder and archive are in order.": (
         "Kijk of computer, instellingen, datamap en archief in orde zijn."
     ),
     "Where a boat's numbers come from, step by step; or whether boats of a type are equal.": (
@@ -106,7 +106,7 @@ COMMAND: Final[dict[str, str]] = {
         "Noem de methoden: de meegeleverde, en die in de map `methods` van --data."
     ),
     "One method in words, with what differs from the one it extends.": (
-        "Een methode in woorden, met wat verschilt van die waar zij op voortbouwt."
+        "Een methode in woorden, met wat verschilt van de methode waarop die voortbouwt."
     ),
     "Read a method file and say in words what it does; an error is told with its line.": (
         "Lees een methodebestand en zeg in woorden wat het doet; bij een fout staat de regel."
@@ -124,11 +124,11 @@ COMMAND: Final[dict[str, str]] = {
         "niets uitgegeven of bewaard."
     ),
     "What a board sends its members before they vote: what changes, for whom, how uncertain.": (
-        "Wat een bestuur zijn leden stuurt voor zij stemmen: wat verandert er, voor wie, "
+        "Wat een bestuur zijn leden stuurt vóór de stemming: wat verandert er, voor wie, "
         "hoe zeker is het."
     ),
     "Freeze an edition of the register: it is never changed afterwards.": (
-        "Geef een editie van het register uit: zij verandert daarna nooit meer."
+        "Geef een editie van het register uit, die daarna nooit meer verandert."
     ),
     "Two editions side by side: who gains, who loses, why, and what it does to races.": (
         "Twee edities naast elkaar: wie wint, wie verliest, waardoor, en wat het met "
@@ -224,7 +224,7 @@ COMMAND: Final[dict[str, str]] = {
     "Name of the new edition, for example 2026-1.": (
         "Naam van de nieuwe editie, bijvoorbeeld 2026-1."
     ),
-    "Day from which it counts: 2026-05-08.": "Dag waarop zij ingaat: 2026-05-08.",
+    "Day from which it counts: 2026-05-08.": "Dag waarop de editie ingaat: 2026-05-08.",
     "Who decided it, and where.": "Wie het besloot, en waar.",
     "Method that the last rebuild applied.": (
         "Methode die bij de laatste herberekening is toegepast."
@@ -239,13 +239,11 @@ COMMAND: Final[dict[str, str]] = {
     "Fatigue correction of races: none, known (2 to 3 h only) or extend.": (
         "Uitputtingscorrectie in wedstrijden: none, known (alleen 2 tot 3 uur) of extend."
     ),
-    "Method whose curves are asked for the speeds.": (
-        "Methode waarvan de krommen de snelheden geven."
-    ),
+    "Method whose curves give the speeds.": ("Methode waarvan de krommen de snelheden geven."),
     "Name of the new method, for example ours-2027.": (
         "Naam van de nieuwe methode, bijvoorbeeld ours-2027."
     ),
-    "Method that it begins from.": "Methode waar zij van uitgaat.",
+    "Method that it begins from.": "Methode om van uit te gaan.",
     "Table with a header: speeds, forces or Cw.": "Tabel met een kop: snelheden, krachten of Cw.",
     "Column of speeds.": "Kolom met snelheden.",
     "Column of forces.": "Kolom met krachten.",
@@ -370,13 +368,13 @@ COMMAND: Final[dict[str, str]] = {
     "archive": "archief",
     "applies {}": "past {} toe",
     "method {}": "methode {}",
-    "{} is not there yet; a rebuild makes it": "{} is er nog niet; een herberekening maakt haar",
-    "{} is no folder": "{} is geen map",
+    "{} is not there yet; a rebuild makes it": "{} is er nog niet; een herberekening maakt het",
+    "{} is not a folder": "{} is geen map",
     "{:.1f} GB free at {}": "{:.1f} GB vrij in {}",
     "{} tows in {} seasons": "{} proeven in {} seizoenen",
     "{} files in {}; begin with index.html": "{} bestanden in {}; begin met index.html",
     "The workbench is at {} (on this machine only); Ctrl-C stops it.": (
-        "De werkbank staat op {} (alleen op deze computer); Ctrl-C stopt haar."
+        "De werkbank staat op {} (alleen op deze computer); Ctrl-C sluit af."
     ),
     "WARNING: everybody who can reach {host} can read the site and Dagster's page: there "
     "is no password. Put a proxy with one in front (docs/security.md), or serve on "
@@ -589,7 +587,7 @@ COMMAND: Final[dict[str, str]] = {
         "winnaar verliest."
     ),
     "not known": "niet bekend",
-    "No edition was published yet; nothing to verify.": (
+    "No edition has been published yet; nothing to verify.": (
         "Er is nog geen editie uitgegeven; er is niets te controleren."
     ),
     "{}\nMade again: measured lines from the blocks of the archive, carried lines from the "
@@ -650,7 +648,7 @@ COMMAND: Final[dict[str, str]] = {
         "Sleep deze opnieuw, in deze volgorde, om de seizoensfactoren het scherpst te krijgen"
     ),
     "{}: nobody, this method estimates no log error, so no tow would narrow it.": (
-        "{}: niemand, deze methode schat geen logfout, dus geen proef maakt haar scherper."
+        "{}: niemand, deze methode schat geen logfout, dus geen proef maakt die scherper."
     ),
     "{}.\nAll of them together bring the uncertainty of a season's log error from {:.3f} % "
     "to {:.3f} % of speed (standard\ndeviation); the last column says how far it is after "
@@ -666,7 +664,7 @@ COMMAND: Final[dict[str, str]] = {
         "Van, tot: het 95 %-interval van Cw als de methode de fout van de log schat; anders alleen "
         "de spreiding\nvan de runs, zonder die fout. A en B gelden van 85 tot 115 % van v."
     ),
-    "would not show: a fault of the usual size would be taken for what stands under 'or else'. "
+    "would not show: a fault of the usual size would be taken for what is given under 'or else'. "
     "The interval\ncounts how seldom such a fault is, so where nothing points to one it can be "
     "0 to 0.": (
         "zou niet opvallen: een fout van gewone grootte zou worden aangezien voor wat bij 'of "
@@ -752,7 +750,7 @@ COMMAND: Final[dict[str, str]] = {
         "De plaats tussen {} gesleepte sloepen van het type ({}), nieuwste proef van elke "
         "sloep en ploeg:"
     ),
-    "If it shared its type's bend:": "Als zij de bocht van haar type zou delen:",
+    "If it shared its type's bend:": "Met de bocht van het type:",
     "Slow tow:": "Langzame proef:",
     "Its repeat tows (without an alteration between them; E_n above 1: they disagree):": (
         "Herhaalde proeven (zonder verbouwing ertussen; E_n boven 1: ze spreken elkaar tegen):"
@@ -881,7 +879,7 @@ COMMAND: Final[dict[str, str]] = {
     "ageing is not taken out: fewer than six pairs within the last era.": (
         "veroudering is niet verrekend: minder dan zes paren in het laatste tijdperk."
     ),
-    "ageing taken out: Cw {} % a year, by n {} pairs of all types within the last era.": (
+    "ageing taken out: Cw {} % a year, from n {} pairs of all types within the last era.": (
         "veroudering verrekend: Cw {} % per jaar, uit n {} paren van alle types in het "
         "laatste tijdperk."
     ),

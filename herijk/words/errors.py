@@ -4,7 +4,7 @@ from typing import Final
 
 ERRORS: Final[dict[str, str]] = {
     # The machine, the data folder
-    "the Dask cluster at {} did not finish: {}. Look whether its scheduler and workers are "
+    "the Dask cluster at {} did not finish: {}. Check that its scheduler and workers are "
     "up, and run it again: what was finished is kept": (
         "het Dask-cluster op {} kwam niet klaar: {}. Kijk of de scheduler en de workers "
         "draaien en start opnieuw: wat af is, blijft bewaard"
@@ -24,11 +24,11 @@ ERRORS: Final[dict[str, str]] = {
     ),
     "to read on {} a library is needed that is not there; install it with: pip install "
     "'herijk[dask]'": (
-        "om op {} te lezen is een bibliotheek nodig die ontbreekt; installeer haar met: "
+        "om op {} te lezen is een bibliotheek nodig die ontbreekt; installeer die met: "
         "pip install 'herijk[dask]'"
     ),
     "{} needs a library that is not there; install it with: pip install 'herijk[s3]'": (
-        "voor {} is een bibliotheek nodig die ontbreekt; installeer haar met: pip install "
+        "voor {} is een bibliotheek nodig die ontbreekt; installeer die met: pip install "
         "'herijk[s3]'"
     ),
     "{} cannot be reached: {}. Look at the network, at AWS_ENDPOINT_URL, and at "
@@ -39,7 +39,7 @@ ERRORS: Final[dict[str, str]] = {
     "{}: there is no bucket {}; make it, or mend opslag.toml": (
         "{}: er is geen bucket {}; maak hem, of verbeter opslag.toml"
     ),
-    "{} ended by itself with status {}; what it said stands above": (
+    "{} ended by itself with status {}; what it said is above": (
         "{} stopte vanzelf met status {}; wat het meldde staat hierboven"
     ),
     "{}:{} cannot be used: {}. Name another with --port": (
@@ -78,7 +78,7 @@ ERRORS: Final[dict[str, str]] = {
         "systemd LimitNOFILE=1024) en start opnieuw"
     ),
     "the disk under {root} gives errors. Look in the system's log, and replace it": (
-        "de schijf onder {root} geeft fouten. Kijk in het logboek van het systeem en vervang haar"
+        "de schijf onder {root} geeft fouten. Kijk in het logboek van het systeem en vervang hem"
     ),
     "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no "
     "table, only the history of runs": (
@@ -92,7 +92,7 @@ ERRORS: Final[dict[str, str]] = {
         "niet meer bestanden openen (sta er meer toe: ulimit -n 1024; in systemd "
         "LimitNOFILE=1024), of heeft geen recht op die map"
     ),
-    "a figure could not be drawn: the drawing library stopped, most often because this "
+    "a figure could not be drawn: the drawing library stopped, usually because this "
     "process may not open more files (allow more: ulimit -n 1024; in systemd "
     "LimitNOFILE=1024)": (
         "een figuur kon niet getekend worden: het tekenprogramma stopte, meestal omdat dit "
@@ -100,7 +100,7 @@ ERRORS: Final[dict[str, str]] = {
         "systemd LimitNOFILE=1024)"
     ),
     "{} cannot be opened: {}": "{} is niet te openen: {}",
-    "another program has it open to write in it. Close that program, or let it open the "
+    "another program has it open for writing. Close that program, or let it open the "
     "file to read only, and try again": (
         "een ander programma heeft het open om erin te schrijven. Sluit dat programma, of "
         "open het bestand daar alleen om te lezen, en probeer opnieuw"
@@ -182,8 +182,8 @@ ERRORS: Final[dict[str, str]] = {
     "{} letters, up to {} dots in a line; at most {} and {} can be right": (
         "{} letters, tot {} punten in een regel; hoogstens {} en {} kan kloppen"
     ),
-    "line {} cannot be read; a number has a decimal point, a text stands between quotes, and a key "
-    "stands once in its table": (
+    "line {} cannot be read; a number has a decimal point, text is put between quotes, and a key "
+    "occurs once in its table": (
         "regel {} is niet te lezen; een getal heeft een decimale punt, een tekst staat tussen "
         "aanhalingstekens, en een sleutel staat een keer in zijn tabel"
     ),
@@ -209,12 +209,12 @@ ERRORS: Final[dict[str, str]] = {
     "{}, line {}": "{}, regel {}",
     "{}; allowed here: {}": "{}; hier kan: {}",
     "{} (season {})": "{} (seizoen {})",
-    "{!r} is no season range; write 2009:2011, 2015: or 2014": (
+    "{!r} is not a range of seasons; write 2009:2011, 2015: or 2014": (
         "{!r} is geen reeks seizoenen; schrijf 2009:2011, 2015: of 2014"
     ),
-    "range {!r} ends before it begins": "reeks {!r} eindigt voor zij begint",
+    "range {!r} ends before it begins": "reeks {!r} eindigt voordat die begint",
     "a method cannot build on itself: {}; change its name or this one": (
-        "een methode kan niet op zichzelf voortbouwen: {}; verander haar naam of deze"
+        "een methode kan niet op zichzelf voortbouwen: {}; geef een van beide een andere naam"
     ),
     "unknown step; allowed here: {}": "onbekende stap; hier kan: {}",
     "a table of options is needed, not {!r}": "hier hoort een tabel met opties, niet {!r}",
@@ -353,7 +353,7 @@ ERRORS: Final[dict[str, str]] = {
     "the present": "heden",
     "method {} says nothing about season {}; it covers {} to {}. Leave that season out "
     "with --seasons, or widen the method's `seasons`": (
-        "methode {} zegt niets over seizoen {}; zij geldt van {} tot {}. Laat dat seizoen "
+        "methode {} zegt niets over seizoen {}; die geldt van {} tot {}. Laat dat seizoen "
         "weg met --seasons, of maak `seasons` van de methode ruimer"
     ),
     "season factors: {} of tow {} is {}, and {} more; give only tows with a sound curve": (
@@ -384,7 +384,7 @@ ERRORS: Final[dict[str, str]] = {
     ),
     "edition {} was taken over from print and has no method; compare it with another "
     "edition: herijk diff {} EDITION": (
-        "editie {} is overgenomen zoals gedrukt en heeft geen methode; vergelijk haar met "
+        "editie {} is overgenomen zoals gedrukt en heeft geen methode; vergelijk die met "
         "een andere editie: herijk diff {} EDITIE"
     ),
     "the tables of method {} are not those of the archive and code of today; run: herijk "
@@ -400,7 +400,7 @@ ERRORS: Final[dict[str, str]] = {
     "an edition needs a decision: say who decided it and where, with --decision": (
         "een editie vraagt een besluit: zeg met --decision wie het nam en waar"
     ),
-    "{} decides about {}, which is no tow of the warehouse; mend the sleep_id, or take the "
+    "{} decides about {}, which is not a tow of the warehouse; mend the sleep_id, or take the "
     "decision out": (
         "{} besluit over {}, en die sleepproef is er niet; verbeter de sleep_id, of haal "
         "het besluit weg"
@@ -459,7 +459,7 @@ ERRORS: Final[dict[str, str]] = {
     "the folder was renamed; it is {}": "de map is hernoemd; het is {}",
     "{} was changed: its seal does not fit": "{} is gewijzigd: het zegel past niet",
     "{} is a link to somewhere else; an edition holds its files itself": (
-        "{} verwijst naar elders; een editie bevat haar bestanden zelf"
+        "{} verwijst naar elders; de bestanden van een editie staan in de editie zelf"
     ),
     "{} was added after publication": "{} is na de uitgave toegevoegd",
     "{} is gone; put it back from a copy": "{} is weg; zet het terug uit een kopie",

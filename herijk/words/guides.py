@@ -45,7 +45,7 @@ otherwise.
         """Een controle (`herijk audit`) laat zien waar de getallen van een sloep vandaan komen,
 of dat gelijke sloepen gelijk behandeld worden.
 
-- Bij elke uitspraak staat op hoeveel sloepen en proeven zij rust. Meer proeven van één sloep
+- Bij elke uitspraak staat op hoeveel sloepen en proeven die rust. Meer proeven van één sloep
   zijn niet meer sloepen.
 - Intervallen zijn 95 %. "Stijgt met" staat er alleen als het interval van de helling nul
   uitsluit. Geen verband gezien is geen bewijs dat er geen is: kijk hoe breed het interval is.

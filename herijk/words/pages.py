@@ -18,7 +18,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "words": ("Begrippen", "Glossary"),
     "guide_method": ("De rekenmethode", "The method"),
     "about_guide_method": (
-        "Elke formule, van meting tot registerregel, met haar bron.",
+        "Elke formule, van meting tot registerregel, met de bron.",
         "Every formula, from samples to a register line, with its source.",
     ),
     "guide_audit": ("Een controle lezen", "Reading an audit"),
@@ -30,7 +30,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "guide_whole": ("De hele tekst", "The whole text"),
     "guide_note": (
         "Het document van het project, zoals het bij het programma hoort.",
-        "The document of the project, as it stands beside the program.",
+        "The document of the project, as it is shipped with the program.",
     ),
     "edition_title": ("Editie", "Edition"),
     "notice": ("Bericht aan de leden", "Notice to the members"),
@@ -137,7 +137,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "tows_number": ("Sleepproeven", "Tows"),
     "compare_boats": ("Twee sloepen vergeleken", "Two boats compared"),
     "compare_note": (
-        "De krommen volgens de beste methode, elk met haar 95 %-band. Waar de banden elkaar raken, "
+        "De krommen volgens de beste methode, elk met de 95 %-band. Waar de banden elkaar raken, "
         "is niet te zeggen welke sloep lichter loopt.",
         "The curves under the best method, each with its 95 % band. Where bands touch, the data "
         "do not say which boat runs easier.",
@@ -152,7 +152,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Het oordeel gaat over de nieuwste proef van elke sloep en ploeg, grafieken en tabellen "
         "over de proeven die u kiest. Standaardsnelheid: de middelste opgegeven snelheid van het "
         "type, waarbij Cw te vergelijken is; de opgegeven snelheid verschilt per ploeg. De lijn is "
-        "de best passende rechte met haar 95 %-interval. Een doorgetrokken streep door een punt is "
+        "de best passende rechte met het 95 %-interval. Een doorgetrokken streep door een punt is "
         "het 95 %-interval; een gestreepte is alleen de spreiding van de runs: de fout van de log "
         "zit er niet in.",
         "The verdict is about the newest tow of each boat and crew, charts and tables about the "
@@ -181,9 +181,9 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "together",
     ),
     "head_old_spread": (
-        " In de onzekerheid van {editions} zit de fout van de log niet: in werkelijkheid is zij "
+        " In de onzekerheid van {editions} zit de fout van de log niet: in werkelijkheid is die "
         "groter.",
-        " The uncertainty of {editions} leaves out the error of the log: in truth it is larger.",
+        " The uncertainty of {editions} leaves out the error of the log: it is really larger.",
     ),
     "and": (" en ", " and "),
     "head_mostly": ("; meestal vooral door: {cause}", "; most often mainly: {cause}"),
@@ -409,10 +409,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "boat_history": ("Door de jaren", "Through the years"),
     "boat_history_note": (
-        "Cw bij de opgegeven snelheid van elke proef, volgens elke methode. Een volle lijn is het "
-        "95 %-interval, een met streepjes de spreiding van de runs alleen: de fout van de log zit "
-        "er niet in.",
-        "Cw at the declared speed of every tow, by every method. A full line is its 95 % "
+        "Cw bij de opgegeven snelheid van elke proef, volgens elke methode. Een doorgetrokken lijn "
+        "is het 95 %-interval, een streepjeslijn de spreiding van de runs alleen: de fout van de "
+        "log zit er niet in.",
+        "Cw at the declared speed of every tow, by every method. A solid line is its 95 % "
         "interval, a dashed one the spread of the runs alone: the log's error is not in it.",
     ),
     "boat_traces": ("Wat de instrumenten zeiden", "What the instruments said"),

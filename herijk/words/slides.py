@@ -13,7 +13,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "Een open teken is een proef die te langzaam of te snel was voor de standaardsnelheid, een "
         "zwarte stip een proef met te weinig vermogen. De lijn is de best passende rechte met een "
         "95 %-interval; bij gewicht en lengte een per ploegklasse. R² is het deel van de spreiding "
-        "dat de lijn verklaart, met elke proef gewogen naar haar fout en proeven van een sloep als "
+        "dat de lijn verklaart, met elke proef gewogen naar de fout en proeven van een sloep als "
         "herhaling. Een proef waarvan Cw van het type afwijkt, is genoemd. Een streep is het "
         "95 %-interval van een proef; een streepjeslijn de spreiding van de runs alleen: de fout "
         "van de log zit er niet in.",
@@ -332,7 +332,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "claim_print_summary_note": (
         "Gedrukte Cw gedeeld door de herrekende, per seizoen. Kijk hier eerst, voor er iets wordt "
         "herijkt: wat overblijft is onverklaard.",
-        "Printed Cw over the recomputed, per season. Look here before anything is re-based: what "
-        "is left is unexplained.",
+        "Printed Cw divided by the recomputed one, per season. Look here before anything is "
+        "re-based: what is left is unexplained.",
     ),
 }

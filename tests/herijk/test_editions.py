@@ -90,7 +90,7 @@ def test_verify_under_other_code_says_that_what_was_published_stands(
 
 def test_verify_without_any_edition_says_so(herijk, tmp_path):
     status, out, _ = herijk("verify", "--data", tmp_path)
-    assert (status, out) == (0, "No edition was published yet; nothing to verify.\n")
+    assert (status, out) == (0, "No edition has been published yet; nothing to verify.\n")
 
 
 def test_lineage_goes_from_line_to_files_runs_and_seconds(herijk, published):

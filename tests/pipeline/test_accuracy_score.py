@@ -20,7 +20,7 @@ def test_nothing_seen_is_no_figure():
 def test_a_fault_is_in_the_seasons_of_its_world():
     seasons = range(2009, 2019)
     assert faulty_seasons("force-zero", seasons) == {2016}
-    assert faulty_seasons("untied", seasons) == {2010}
+    assert faulty_seasons("unlinked", seasons) == {2010}
     assert faulty_seasons("clean", seasons) == set()
 
 

@@ -51,7 +51,7 @@ def test_without_defects_a_plain_method_finds_the_truth_but_for_the_hyperbola(cl
 
 
 def test_calibration_on_dgps(clean):
-    worn = Defects(log_season_factor=(1.05, 1.05), log_tow_wander=0.01, stream_m_s=0.1)
+    worn = Defects(log_season_factor=(1.05, 1.05), log_tow_sd=0.01, stream_m_s=0.1)
     wind = OBLIQUE % ""  # the current carries the boat through the air
     assert error(cw_of(worn, wind=wind), clean).min() > 0.08
     found = cw_of(worn, wind=wind, calibration='{ rule = "gps_per_tow" }')

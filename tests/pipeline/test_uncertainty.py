@@ -5,6 +5,7 @@ import polars as pl
 import pytest
 from scipy import stats
 
+from herijk.pipeline.quantiles import LEVEL, MAD_TO_SD, NORMAL
 from herijk.pipeline.season_log.assumed import Settings
 from herijk.pipeline.uncertainty.propagation import (
     COMPONENTS,
@@ -35,6 +36,13 @@ def tows(**changed):
 
 def u_of(held, component):
     return held.filter(pl.col("component") == component)["u_ratio"][0]
+
+
+def test_what_is_said_of_a_normal_number_is_so():
+    assert pytest.approx(stats.norm.ppf(0.5 * (1.0 + LEVEL)), rel=1e-15) == NORMAL
+    assert stats.median_abs_deviation([-1, 0, 1], scale="normal") == pytest.approx(
+        MAD_TO_SD, rel=1e-4
+    )
 
 
 def test_pooled_over_36_runs_the_estimate_is_near_the_truth():

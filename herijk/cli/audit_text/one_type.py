@@ -349,7 +349,7 @@ def _ageing(fleet: Fleet) -> list[str]:
     yearly = (100 * known[0][f"ageing_{end}"] for end in ("per_year", "lo", "hi"))
     return [
         tell(
-            "ageing taken out: Cw {} % a year, by n {} pairs of all types within the last era.",
+            "ageing taken out: Cw {} % a year, from n {} pairs of all types within the last era.",
             interval(*yearly, digits=2),
             known[0]["n_ageing"],
         )

@@ -41,7 +41,7 @@ method they are of, the selectors say."""
 
 
 AT_ONCE: Final = 64
-"""So many boats' rows are formatted in one go: each go costs time, and each boat memory."""
+"""Boats whose rows are formatted in one go: each go costs time, and each boat memory."""
 
 
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:

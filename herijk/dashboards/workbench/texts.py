@@ -141,7 +141,7 @@ TEXTS: Final[Words] = {
     "in_types_note": (
         "De gekozen proeven, Cw bij de standaardsnelheid van het type. Sleep over een grafiek, of "
         "vul eronder van en tot in (Esc wist ze), om te zien welke sloepen daar liggen; kies er "
-        "een om haar boven te zien. De tabel toetst of sloepen van een type één B kunnen delen, "
+        "een om die boven te zien. De tabel toetst of sloepen van een type één B kunnen delen, "
         "met van elke ploeg de nieuwste van die proeven: een kleine p zegt van niet.",
         "The chosen tows, Cw at the standard speed of the type. Drag over a chart, or fill in from "
         "and to below it (Esc clears them), to see which boats lie there; choose one to see it "
@@ -159,7 +159,7 @@ TEXTS: Final[Words] = {
     "in_boat": ("Een sloep", "A boat"),
     "in_boat_note": (
         "De kromme en de runs voor en na. Open tekens tellen niet mee. De streep bij de "
-        "opgegeven snelheid is het 95 %-interval; met streepjes is hij alleen de spreiding van de "
+        "opgegeven snelheid is het 95 %-interval; een streepjeslijn is alleen de spreiding van de "
         "runs, zonder de fout van de log.",
         "The curve and the runs before and after. Open marks do not count. The bar at the "
         "declared speed is the 95 % interval; a dashed bar is the spread of the runs alone, "

@@ -16,7 +16,7 @@ import polars as pl
 from herijk.pipeline.assessment.checks import CHECK, CHECKS, CODES, DOUBTS, UNUSUAL
 from herijk.pipeline.assessment.days import days_apart
 from herijk.pipeline.assessment.freeboard import by_freeboard
-from herijk.pipeline.assessment.mean_shift import MOSTLY, NORMAL_MAD
+from herijk.pipeline.assessment.mean_shift import MOSTLY
 from herijk.pipeline.assessment.season_levels import season_levels
 from herijk.pipeline.assessment.shared import (
     rising_with_speed,
@@ -24,6 +24,7 @@ from herijk.pipeline.assessment.shared import (
     ways_apart,
 )
 from herijk.pipeline.choice import SAME_SHARE
+from herijk.pipeline.quantiles import MAD_TO_SD, NORMAL
 from herijk.pipeline.season_log.diagnosis import FAULT
 from herijk.pipeline.season_log.effects import FLEET
 from herijk.tables.archive import Tows
@@ -33,9 +34,6 @@ from herijk.tables.keys import LINE
 LIKE: Final = ("boat_type", "rowers", "crew_class")
 FEWEST_LIKE_BOATS: Final = 4
 """Fewest boats of a type among which one can stand out (inferred)."""
-
-NORMAL_WIDTH: Final = 3.92
-"""Standard deviations in a 95 % interval."""
 
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 NOT_ALWAYS_KNOWN: Final = pl.DataFrame(
@@ -338,7 +336,7 @@ def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
         .with_columns(
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
-            ln_sd=pl.when(pl.col("cw_others_kg_m").is_not_null()).then(ln_width / NORMAL_WIDTH),
+            ln_sd=pl.when(pl.col("cw_others_kg_m").is_not_null()).then(ln_width / (2 * NORMAL)),
         )
         .sort("tow_date", "tow_id")
     )
@@ -438,7 +436,7 @@ def _scatter_of_pairs(ln: pl.Series) -> float:
     """Standard deviation of ln Cw / Cw before, whatever a few boats did."""
     if len(ln) < FEWEST_PAIRS:
         return AGREE
-    return float(np.median(np.abs(ln.to_numpy()))) / NORMAL_MAD
+    return MAD_TO_SD * float(np.median(np.abs(ln.to_numpy())))
 
 
 def _seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:

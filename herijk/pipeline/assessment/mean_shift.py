@@ -15,6 +15,7 @@ import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.choice import first_largest
+from herijk.pipeline.quantiles import MAD_TO_SD
 
 NARROWEST: Final = 0.5
 """An archive may scatter less than is assumed; a limit shrinks to half at most."""
@@ -28,8 +29,6 @@ MOSTLY: Final = 1.645
 
 AT_A_TIME: Final = 2048
 """Candidates that are weighed together: those of ten thousand tows would take gigabytes."""
-
-NORMAL_MAD: Final = 0.6745
 
 
 @dataclass(frozen=True)
@@ -156,7 +155,7 @@ class _Left:
         if single.sum() < FEWEST_FOR_SCALE:
             return np.ones(len(single))
         z = self._score[single] / np.sqrt(self._weight[single])
-        scatter = float(np.median(np.abs(z))) / NORMAL_MAD
+        scatter = MAD_TO_SD * float(np.median(np.abs(z)))
         return np.where(self._may.single, max(scatter, NARROWEST), max(scatter, 1.0))
 
     def take_out(

@@ -71,9 +71,9 @@ class Spread:
 LEVEL: Final = Spread(
     tow=0.045, day=0.025, season=0.05, archive=0.20, boat=0.12, boat_type=0.10, log_alone=0.12
 )
-"""Of ln Cw at the declared speed: logs of before 2012 are 6 % wrong, which is 15 % in Cw."""
+"""Spread of ln Cw at the declared speed: until 2011 logs are 6 % off, which is 15 % in Cw."""
 BEND: Final = Spread(tow=0.10, day=0.03, season=0.05, archive=0.30, boat=0.20, boat_type=0.10)
-"""Of dlnCw/dlnv: B lies at 1.06 to 1.5 times the hull speed."""
+"""Spread of dlnCw/dlnv: B lies at 1.06 to 1.5 times the hull speed."""
 WIND_AHEAD: Final = Spread(tow=0.06, day=0.03, season=0.05, archive=0.05)
 WIND_ABEAM: Final = Spread(tow=0.06, day=0.03, season=0.05, archive=0.05)
 SPEED: Final = Spread(tow=0.008, day=0.004, season=0.01, archive=0.01)

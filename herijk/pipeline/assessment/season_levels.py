@@ -16,7 +16,7 @@ FEWEST: Final = 4
 """Fewest changes for which what they share is taken to be the season's (inferred)."""
 
 ROUNDS: Final = 60
-"""Of half a step each, as neighbouring seasons move towards each other; at most 1e-4 is left."""
+"""Half a step is made in each, as neighbouring seasons move each other; 1e-4 is left at most."""
 
 
 def season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int, float]:

@@ -15,7 +15,6 @@ from herijk.pipeline.consistency.eras import median_interval, season_ranges
 from herijk.pipeline.consistency.lines import ALL_TOWS, NEWEST, tow_outliers
 from herijk.pipeline.consistency.observed import (
     ALL_TYPES,
-    NORMAL_95,
     TOW,
     UNKNOWN_TYPE,
     Observed,
@@ -26,7 +25,7 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.tow_speed import is_slow, speed_case
 from herijk.pipeline.hull import hull_speed_m_s
-from herijk.pipeline.quantiles import t_quantile
+from herijk.pipeline.quantiles import NORMAL, t_quantile
 from herijk.tables.consistency import HullSpeed
 from herijk.tables.frames import frame_of
 
@@ -71,7 +70,7 @@ def beside_their_type(tows: Observed) -> pl.DataFrame:
     """The columns of `compared_tows` that follow from a tow and the standard speed of its type."""
     speed = tows.column("standard_speed_m_s")
     cw = curve_anywhere(tows, speed)
-    half = NORMAL_95 * np.sqrt(ln_cw_variance(tows, speed))
+    half = NORMAL * np.sqrt(ln_cw_variance(tows, speed))
     a_lo, a_hi = _a_interval(tows)
     hull = hull_speed_m_s(tows.column("waterline_length_m"))
     b = tows.table["b_m_s"].to_numpy().astype(np.float64)
@@ -107,7 +106,7 @@ def _a_interval(tows: Observed) -> tuple[FloatArray, FloatArray]:
         - 2.0 * tows.column("c0_q_unit_covariance") / (1.0 + q)
         + tows.column("q_unit_variance") / (1.0 + q) ** 2
     )
-    half = NORMAL_95 * np.sqrt(np.maximum(unit, 0.0)) * tows.column("run_sd_ratio")
+    half = NORMAL * np.sqrt(np.maximum(unit, 0.0)) * tows.column("run_sd_ratio")
     return tows.column("a_kg_m") * np.exp(-half), tows.column("a_kg_m") * np.exp(half)
 
 

@@ -32,10 +32,10 @@ POWER_AT: Final = (0.05, 0.10)
 SPEED_RATIOS: Final = {"cw_085_kg_m": 0.85, "cw_kg_m": 1.0, "cw_115_kg_m": 1.15}
 
 BEND_BOUNDS: Final = (-2.0, 0.999)
-"""Of the shared s, as a share of that which puts B on the fastest point."""
+"""Limits of the shared s, as a share of the s that puts B on the fastest point."""
 
 HIGHEST_POWER: Final = 6
-"""Of ln speed in the shape that equal hulls share: enough for a hump near hull speed."""
+"""Power of ln speed in the shape that equal hulls share: enough for a hump near hull speed."""
 
 SAME_COLUMN: Final = 1e-9
 """Columns that differ by less, relatively, are one: a single class, or speeds all alike."""

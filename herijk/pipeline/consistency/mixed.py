@@ -18,13 +18,10 @@ import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency.reml import Problem, Stack, Whitened, search
-from herijk.pipeline.quantiles import t_quantile
+from herijk.pipeline.quantiles import NORMAL, t_quantile
 
 BOAT, OTHER, CELL = "boat", "other", "cell"
 COMPONENTS: Final = (BOAT, OTHER, CELL)
-
-PROFILE_DROP: Final = 3.841458820694124
-"""Deviance above its minimum at the ends of a 95 % profile interval (chi-squared, 1 dof)."""
 
 PROFILE_PRECISION: Final = 1e-7
 """The search for an end of a profile interval stops when a step is less, as a share of the spread:
@@ -237,7 +234,7 @@ class _Profile:
         root = np.sqrt(np.maximum(there.deviance - self.least, 0.0))
         # Along the profile the other variances are at their best, so they add nothing.
         slope = 2.0 * sd * there.gradient[each, place]
-        return root - np.sqrt(PROFILE_DROP), slope / np.maximum(2.0 * root, 1e-300)
+        return root - NORMAL, slope / np.maximum(2.0 * root, 1e-300)
 
     def ends(
         self, inside: FloatArray, outside: FloatArray, excess: FloatArray, place: IntArray
@@ -254,7 +251,7 @@ class _Profile:
             place: of which component, (ends,).
         """
         inside, outside = inside.copy(), outside.copy()
-        least = np.sqrt(PROFILE_DROP)
+        least = NORMAL
         at: FloatArray = inside + (outside - inside) * least / (least + excess)
         busy = np.arange(len(at))
         for _ in range(MAX_STEPS):

@@ -14,11 +14,11 @@ import polars as pl
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.curve import VALID_RATIO
+from herijk.pipeline.quantiles import NORMAL
 from herijk.tables.keys import LINE
 
 UNKNOWN_TYPE, ALL_TYPES = "unknown", "all"
 FEWEST_POINTS: Final = 3
-NORMAL_95: Final = 1.959963984540054
 
 TOW: Final = ("method", "tow_id", *LINE, "boat_type")
 """What names a tow, and with it a boat and crew, in the tables of this package."""
@@ -205,7 +205,7 @@ def ln_cw_variance(observed: Observed, speed_m_s: FloatArray | float) -> FloatAr
     """
     runs = ln_cw_unit_variance(observed, speed_m_s) * observed.column("run_sd_ratio") ** 2
     half = 0.5 * np.log(observed.column("cw_hi_kg_m") / observed.column("cw_lo_kg_m"))
-    return np.fmax(runs, (half / NORMAL_95) ** 2)
+    return np.fmax(runs, (half / NORMAL) ** 2)
 
 
 def bend_at(observed: Observed, speed_m_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:

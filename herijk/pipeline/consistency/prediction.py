@@ -12,7 +12,6 @@ import polars as pl
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import (
-    NORMAL_95,
     UNKNOWN_TYPE,
     Observed,
     curve_at,
@@ -20,7 +19,7 @@ from herijk.pipeline.consistency.observed import (
     newest,
 )
 from herijk.pipeline.consistency.reml import Design, Problem
-from herijk.pipeline.quantiles import t_quantile
+from herijk.pipeline.quantiles import NORMAL, t_quantile
 from herijk.tables.consistency import PredictedCw, PredictionError
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
@@ -73,7 +72,7 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
         numbers = _second_opinion(fleet, x, cw, variance)
     except mixed.NotSettledError:
         return rows.with_columns(reason=pl.lit("not_settled"))
-    both = NORMAL_95 * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
+    both = NORMAL * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
     return rows.with_columns(
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items())
     ).with_columns(disagrees=pl.col("ln_ratio").abs() > both, reason=pl.lit(""))
@@ -112,7 +111,7 @@ def _columns(fleet: Observed) -> FloatArray:
 
 
 def _types(fleet: Observed) -> list[str]:
-    """The type of each boat; a boat of no type stands alone."""
+    """The type of each boat; a boat of no type is one by itself."""
     named = zip(fleet.table["boat_type"], fleet.table["fsn_no"], strict=True)
     return [f"{UNKNOWN_TYPE}/{fsn}" if t == UNKNOWN_TYPE else t for t, fsn in named]
 

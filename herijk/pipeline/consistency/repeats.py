@@ -14,11 +14,11 @@ from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.components import DISTINCT, WITHIN_TYPE
 from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.consistency.observed import Observed, bend_of_curve
+from herijk.pipeline.quantiles import LEVEL
 from herijk.tables.consistency import RepeatPairs, Reproducibility
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 
-LEVEL: Final = 0.95
 ALL_PAIRS: Final = "all"
 
 

@@ -23,8 +23,9 @@ from herijk.pipeline.consistency.observed import (
     q_at,
 )
 from herijk.pipeline.consistency.reml import Design, Problem
-from herijk.pipeline.curve import VALID_RATIO
+from herijk.pipeline.curve import LEAST_MARGIN, VALID_RATIO
 from herijk.pipeline.hull import hull_speed_m_s
+from herijk.pipeline.quantiles import NORMAL
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from herijk.tables.consistency import SlowTows, SpeedTrend
 from herijk.tables.declare import dy
@@ -59,7 +60,6 @@ van verkeerde snelheid kiezen"); of a low tow raced slower the text says nothing
 FEWEST_BOATS: Final = 4
 FEWEST_OTHERS: Final = 2
 ENDS: Final = ("", "_lo", "_hi")
-COMPARED_AT: Final = ("110", "120", "rowed", "raced")
 
 
 def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> BoolArray:
@@ -149,10 +149,10 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     """Tows whose curve is used where it was not measured, and what that does to race power.
 
     Towed with little power, or raced at speeds at which the curve does not count. The tow's own
-    curve is compared with the curve of the same runs that has the bend of the type's other boats:
-    10 and 20 % above its declared speed, at the speed that its crew will really row, the median
-    declared speed of the type's other crews of that class (inferred), and at the fastest speed that
-    it raced. The interval is that of the tow's own bend alone.
+    curve is compared with the curve of the same runs that has the bend of the type's other boats,
+    at the speed that its crew will really row, the median declared speed of the type's other crews
+    of that class (inferred), and at the fastest speed that it raced. The interval is that of the
+    tow's own bend alone.
 
     Args:
         observed: all tows.
@@ -175,8 +175,7 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     raced_cw = curve_anywhere(chosen, raced_speed)
     raced_power = power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))
     columns = {"rowed_speed_m_s": rowed, "raced_power_w": raced_power}
-    speeds = (1.1 * declared, 1.2 * declared, rowed, raced_speed)
-    for at, speed in zip(COMPARED_AT, speeds, strict=True):
+    for at, speed in (("rowed", rowed), ("raced", raced_speed)):
         ends = _power_ratio(chosen, bend, speed)
         columns |= {f"power_ratio_{at}{end}": ends[i] for i, end in enumerate(ENDS)}
     ratio = declared / hull_speed_m_s(chosen.column("waterline_length_m"))
@@ -241,6 +240,6 @@ def _power_ratio(tows: Observed, s_s2_m2: FloatArray, speed_m_s: FloatArray) -> 
     known = np.isfinite(shared) & np.isfinite(own)
     ratio = np.where(known, own, np.nan) / np.where(known, shared, 1.0)
     x = (speed_m_s / tows.column("declared_speed_m_s")) ** 2 - 1.0
-    slope = x / np.maximum(1.0 - q * x, 0.05)
+    slope = x / np.maximum(1.0 - q * x, LEAST_MARGIN)
     sd = np.abs(slope) * np.sqrt(tows.column("q_unit_variance")) * tows.column("run_sd_ratio")
-    return np.stack([ratio, ratio * np.exp(-1.96 * sd), ratio * np.exp(1.96 * sd)])
+    return np.stack([ratio, ratio * np.exp(-NORMAL * sd), ratio * np.exp(NORMAL * sd)])

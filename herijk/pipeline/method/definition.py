@@ -352,7 +352,7 @@ class _Reader:
         """First and last season of a range as the file writes it."""
         match = re.fullmatch(r"(\d{4})(:(\d{4})?)?", text) if isinstance(text, str) else None
         if match is None:
-            wrong = say("{!r} is no season range; write 2009:2011, 2015: or 2014", text)
+            wrong = say("{!r} is not a range of seasons; write 2009:2011, 2015: or 2014", text)
             raise self.error(key, wrong)
         first = int(match[1])
         last = int(match[3]) if match[3] else (LAST_SEASON if match[2] else first)
@@ -381,7 +381,7 @@ class _Reader:
         return self.error(".".join(path), message, where=".".join(where))
 
     def _line(self, key: str) -> int | None:
-        """Where the key stands: the last line that holds it, or else the step it belongs to."""
+        """Where the key is: the last line that holds it, or else the step it belongs to."""
         parts = key.split(".")
         for wanted in (parts[-2:], parts[-1:], parts[-2:-1]):
             lines = [number for number, keys in self._keys_of_lines() if set(wanted) <= keys]

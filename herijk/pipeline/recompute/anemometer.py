@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-import scipy
 
+from herijk.pipeline.quantiles import NORMAL
 from herijk.pipeline.recompute.outcome import Outcome, Prepared
 from herijk.pipeline.season_log.diagnosis import ALARM, ALARM_SD, DIAGNOSIS_SCHEMA, SOUND
 from herijk.pipeline.steps.anemometer import Anemometer, WindRatio, anemometer_of_seasons
@@ -19,7 +19,7 @@ ANEMOMETER: Final = "anemometer_scale"
 """Its name among the instruments of `season_diagnosis`."""
 
 USUAL_SD: Final = 0.05
-"""Of ln scale of an anemometer of which nothing is known."""
+"""Spread of ln scale of an anemometer about which nothing is known."""
 
 
 def with_anemometer(prepared: Sequence[Prepared]) -> list[Prepared]:
@@ -68,7 +68,7 @@ def anemometer_diagnosis(outcomes: Sequence[Outcome]) -> pl.DataFrame:
         .group_by("season", maintain_order=True)
         .agg(pl.col("estimate", "sd").first(), pl.len().alias("tows"))
     )
-    half = scipy.special.ndtri(0.975) * pl.col("sd")
+    half = NORMAL * pl.col("sd")
     shown = (USUAL_SD**2 - pl.col("sd") ** 2).clip(1e-6 * USUAL_SD**2).sqrt()
     distance = pl.col("estimate") / shown
     alarm = distance.abs() >= ALARM_SD

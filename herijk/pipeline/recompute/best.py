@@ -11,6 +11,8 @@ from typing import Final
 
 import polars as pl
 
+from herijk.pipeline.curve import LEAST_MARGIN
+from herijk.pipeline.quantiles import NORMAL
 from herijk.pipeline.season_log import SeasonFactors
 
 BEST: Final = ("cw_best_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m")
@@ -21,13 +23,7 @@ NOT_SEEN_BY_REPEATS: Final = ("force", "wind", "anemometer", "mass", "temperatur
 OTHERS: Final = "cw_others_kg_m"
 
 BEND_SD: Final = 0.04
-"""Of a boat's bend q by its own tows and its type, where a tow was far from its usual speed."""
-
-LEAST_MARGIN: Final = 0.05
-"""1 - q ((v/v0)^2 - 1) is kept above this."""
-
-QUANTILE: Final = 1.959964
-"""Of a normal distribution, for intervals of 95 %."""
+"""Spread of a boat's bend q about that of its tows and type, far from its usual speed."""
 
 
 def with_best(
@@ -69,7 +65,7 @@ def with_best(
     def half(end: str) -> pl.Expr:
         own = pl.col(end) - pl.col("ln_cw")
         beside = pl.col("shared") + pl.col("misfit_variance") + pl.col("bend_variance")
-        return (own**2 + QUANTILE**2 * beside).sqrt()
+        return (own**2 + NORMAL**2 * beside).sqrt()
 
     by_all = (best, best * (-half("lo")).exp(), best * half("hi").exp())
     measured = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")

@@ -201,7 +201,7 @@ def _unsteady_stream(o: Outcome) -> tuple[FloatArray, IntArray]:
 
 
 def _run_calibrations(o: Outcome) -> tuple[FloatArray, BoolArray]:
-    """GPS / log of each run, and which runs of tows calibrated by themselves have it; (runs,)."""
+    """GPS / log of each run, and whether it is a run of a tow calibrated by itself; (runs,)."""
     gps, log = o.means.gps_m_s - o.stream_m_s, o.means.speed_m_s
     used = o.used & np.isfinite(gps) & (gps > 0) & (log > 0) & o.calibrated[o.batch.tow]
     used &= o.steps.calibration.rule == "gps_per_tow"

@@ -171,7 +171,7 @@ def evaluate(
 def _with_expected_wind(
     prepared: list[Prepared], shared: ArchiveCoefficient | None
 ) -> list[Prepared]:
-    """What tows with an anemometer let expect of the wind of those without, where a method asks.
+    """The wind that tows without an anemometer must have had, by those with one, if a method asks.
 
     Wind along the course adds more on one way than it takes off on the other, so that a tow whose
     wind nobody measured comes out too high.

@@ -8,10 +8,9 @@ from typing import Final, TypeAlias
 
 import numpy as np
 import polars as pl
-import scipy
 
 from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.quantiles import LEVEL
+from herijk.pipeline.quantiles import NORMAL
 from herijk.pipeline.season_log.effects import (
     CHANGE,
     FLEET,
@@ -155,7 +154,7 @@ def _row(posterior: Posterior, key: Key, columns: list[int]) -> dict[str, object
     faults = [c - k for c in columns if c >= k]
     mean = float(posterior.mean[columns].sum())
     variance = float(posterior.covariance[np.ix_(columns, columns)].sum())
-    half = float(scipy.special.ndtri(0.5 * (1.0 + LEVEL))) * np.sqrt(max(variance, 0.0))
+    half = NORMAL * np.sqrt(max(variance, 0.0))
     chance = min(float(posterior.chance[faults].sum()), 1.0) if faults else None
     distance = _distance(posterior, columns)
     shows = bool(posterior.shows[faults].any())

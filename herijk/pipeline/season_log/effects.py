@@ -19,9 +19,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.curve import LEAST_MARGIN
 from herijk.pipeline.season_log.assumed import Settings
 from herijk.pipeline.season_log.network import Network
-from herijk.pipeline.season_log.scale import LEAST_MARGIN
 
 LOG: Final = "log_scale"
 GPS_SCALE: Final = "gps_scale"

@@ -10,7 +10,7 @@ import numpy as np
 from herijk.pipeline.arrays import FloatArray, IntArray
 
 LOST: Final = 1e-9
-"""A share of the information below this is none."""
+"""A share of the information below this counts as nothing."""
 
 
 class LeftOut(NamedTuple):

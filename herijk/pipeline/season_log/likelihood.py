@@ -28,7 +28,7 @@ MOST_CHANGES: Final = 2
 FEW_BOATS: Final = 128
 
 LEVEL_SD: Final = 1.0
-"""Of ln Cw between boats: so wide that a boat's level is its own."""
+"""Spread of ln Cw between boats: so wide that no boat's level is drawn to that of others."""
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from herijk.tables.keys import LINE
 from herijk.tables.season_log import RetowChoice
 
 UNKNOWN_SD: Final = 0.06
-"""Of ln factor of a season that nothing ties to the anchor: the worst log was 6 % wrong."""
+"""Spread of ln factor where nothing links a season to the anchor: the worst log was 6 % off."""
 
 MOST_BOATS: Final = 10
 

@@ -1,14 +1,10 @@
 """What a scale error of the log does to ln Cw at a fixed speed; nothing of how it is estimated."""
 
-from typing import Final
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from herijk.pipeline.arrays import FloatArray, IntArray
-
-LEAST_MARGIN: Final = 0.05
-"""1 - (v/B)^2 is kept above this while a log factor is searched."""
+from herijk.pipeline.curve import LEAST_MARGIN
 
 
 def scale_effect(ln_factor: ArrayLike, r: ArrayLike) -> tuple[FloatArray, FloatArray]:

@@ -19,13 +19,13 @@ from herijk.pipeline.blocks.run_blocks import WindowSums
 from herijk.pipeline.steps.calibration import mean_over_both_ways
 
 UNKNOWN_LOG_SD: Final = 0.06
-"""Of ln boat speed by a log of which nothing is known: the worst was 6 % wrong."""
+"""Spread of ln boat speed by a log about which nothing is known: the worst was 6 % off."""
 
 USUAL_TOW_SD: Final = 0.06
-"""Of a tow's ratio, as wind changes between out and back: where no season has two tows."""
+"""Spread of a tow's ratio where no season has two tows: wind changes between out and back."""
 
 ARCHIVE_SD: Final = 0.15
-"""Of ln scale of one anemometer used in all seasons (inferred)."""
+"""Spread of ln scale of one anemometer used in all seasons (inferred)."""
 
 BETWEEN_SEASONS: Final = np.geomspace(0.001, 0.5, 60)
 """Standard deviations of ln scale between seasons that are tried."""

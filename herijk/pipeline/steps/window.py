@@ -19,6 +19,7 @@ import scipy
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks, WindowSums
 from herijk.pipeline.method.definition import Window
+from herijk.pipeline.quantiles import MAD_TO_SD
 
 WORTH_DECIMALS: Final = 6
 """Windows whose worth is equal to the microsecond are equals: the same faults in another order of
@@ -43,7 +44,6 @@ RAMP_MARGIN_S: Final = 5
 PEAK_MARGIN_S: Final = 1
 """Cut on both sides of a peak or gust, for its flanks."""
 
-MAD_TO_SD: Final = 1.4826
 FORCE_SD_FLOOR: Final = 0.01
 """Smallest spread of block means that a peak is measured by, as a share of the median force."""
 

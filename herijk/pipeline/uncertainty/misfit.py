@@ -18,7 +18,7 @@ USUAL_RATIO: Final = 0.002
 """Misfit of a hull of which nothing is known: median of the Delft series (docs/method.md, 9)."""
 
 USUAL_TOWS: Final = 20.0
-"""So many tows `USUAL_RATIO` weighs."""
+"""How many tows `USUAL_RATIO` counts for."""
 
 SHAPE: Final = 4
 """Numbers of a tow's residuals: mean, slope, bend, and out against back."""

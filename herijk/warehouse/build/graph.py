@@ -12,7 +12,7 @@ from herijk.warehouse.build.database import (
     is_whole,
     warehouse_database,
 )
-from herijk.warehouse.build.inputs import METHOD_TABLES, PUBLISHED
+from herijk.warehouse.build.inputs import ARCHIVE_TABLES, METHOD_TABLES, PUBLISHED
 from herijk.warehouse.build.method_tables import RUNS, method_tables, tows_without_curve_row
 from herijk.warehouse.build.recordings import recording_tables
 from herijk.warehouse.build.registers import register_tables
@@ -36,7 +36,7 @@ ARCHIVE: Final = Step(
         *("list_faults", "listed_boats", "listed_windows"),
         *("season_tows", "season_runs", "season_index", "blocks"),
     ),
-    outputs=("boats", "seasons", "tows", "tow_runs", "hand_windows", "quarantine"),
+    outputs=ARCHIVE_TABLES,
     compute=archive_tables,
     words=(FAULTS_IN_DUTCH,),
     checks=(Check("every_listed_tow_accounted_for", "tows", unaccounted_tows),),

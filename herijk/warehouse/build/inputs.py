@@ -34,6 +34,9 @@ PUBLISHED: Final = tuple(
 )
 """Tables of all published editions together."""
 
+ARCHIVE_TABLES: Final = ("boats", "seasons", "tows", "tow_runs", "hand_windows", "quarantine")
+"""Tables of what the archive holds, made together."""
+
 METHOD_TABLES: Final = (
     "run_points",
     "curves",
@@ -126,8 +129,6 @@ def _read(inputs: Inputs, name: str) -> pl.DataFrame:
         return inputs.published[name.removeprefix("published_")]
     if name == DECISIONS:
         return _decisions(store)
-    if name == BLOCKS:
-        return intake.all_blocks(store)
     if name in intake.INDEXED:
         return _listed(store, name)
     return _of_seasons(store, name) if name in SEASON_TABLES else store.read(name)
@@ -141,11 +142,16 @@ def made_from(store: Store, name: str, methods: Sequence[Method]) -> object:
         return published_made_from(store)
     if name == DECISIONS:
         return table_digest(_decisions(store))
-    if name in intake.INDEXED:  # made again whenever a file was touched, so its content counts
-        return table_digest(_listed(store, name))
+    if name in intake.INDEXED or name in ARCHIVE_TABLES:
+        return _content(store, name)
     if name == BLOCKS or name in SEASON_TABLES:
         return {season: store.made_from(name, season) for season in store.partitions(name)}
     return store.made_from(name)
+
+
+def _content(store: Store, name: str) -> str | None:
+    """Hash of a table that is made again whenever a file was touched, often as it was."""
+    return None if store.made_from(name) is None else table_digest(_listed(store, name))
 
 
 def _of_seasons(store: Store, name: str) -> pl.DataFrame:

@@ -120,7 +120,7 @@ def _seen(shift: Shift) -> str:
 
 def _way_out(shift: Shift) -> str:
     if not shift.causes:
-        return "Look whether these are this boat's samples, and what the load cell was set to."
+        return "Check whether these are this boat's samples, and what the load cell was set to."
     if shift.causes == TURNED:
         return say(
             "If the vane is turned, or counts from another 0, declare wind_zero_deg = {:.0f} under "

@@ -105,7 +105,7 @@ def _faults(same: pl.DataFrame) -> Iterator[Fault]:
             None,
             "duplicate_tow" if of_one else "samples_listed_twice",
             say(
-                "Run {} holds the very samples of tow {} ({}) of {} {}{}, packed or "
+                "Run {} holds exactly the samples of tow {} ({}) of {} {}{}, packed or "
                 "written otherwise.",
                 row["run"] % SECOND_FILE_OFFSET,
                 other["tow_id"],

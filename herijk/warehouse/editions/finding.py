@@ -15,7 +15,7 @@ class Finding:
             or `notice`.
         where: file, tow or line.
         message: what is seen, what it was, what to do.
-        wrong: whether a promise is broken; a notice is none.
+        wrong: whether a promise is broken; a notice breaks none.
     """
 
     edition: str

@@ -258,7 +258,7 @@ def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
     unknown = decisions.join(tows, on="tow_id", how="anti")["tow_id"].to_list()
     if unknown:
         raise MissingKnowledgeError(
-            "{} decides about {}, which is no tow of the warehouse; mend the "
+            "{} decides about {}, which is not a tow of the warehouse; mend the "
             "sleep_id, or take the decision out",
             decided.FILE_NAME,
             ", ".join(unknown),

@@ -42,7 +42,7 @@ INDEXED: Final = (
 )
 """What is kept of the archive's lists."""
 UNREADABLE: Final = "unreadable_file"
-"""Of a file that could not be read: it may be readable the next time, though nothing changed."""
+"""A file that could not be read may be readable the next time, though nothing changed."""
 SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
 """What is kept of a season, as the archive was when it was read."""
 
@@ -146,15 +146,13 @@ def _is_stale(store: Store, profiles: Profiles, season: int) -> bool:
     return any(store.made_from(table, str(season)) != made_from for table in SEASON_TABLES)
 
 
-def forget_unlisted_seasons(store: Store) -> list[int]:
+def forget_unlisted_seasons(store: Store) -> None:
     """Removes the tables of seasons that the archive no longer lists."""
     listed = set(listed_seasons(store))
-    gone = [int(s) for s in store.partitions("blocks") if int(s) not in listed]
-    for season in gone:
+    for season in [int(s) for s in store.partitions("blocks") if int(s) not in listed]:
         lake.keep_only(store, season, SeasonIndex.create_empty())
         for table in SEASON_TABLES:
             store.remove(table, str(season))
-    return gone
 
 
 def read_season(

@@ -44,7 +44,7 @@ def due_report(store: Store, method: str, as_of: dt.date | None = None) -> DueRe
 
     Args:
         store: the data folder.
-        method: whose curves are asked for the speeds.
+        method: whose curves give the speeds.
         as_of: the day on which validity is judged; that of the last tow or race when left out.
 
     Raises:

@@ -46,7 +46,7 @@ class Scenario:
 
         Returns:
             Columns of `register_changes` and `side_by_side`, with `name` and `boat_type`. A line
-            that appears or disappears stands above all that change.
+            that appears or disappears comes before all that change.
         """
         drafts = self.before.register, self.after.register
         return (

@@ -43,7 +43,7 @@ ADDERS: Final = ("herijk.pipeline.blocks.sums",)
 """Modules that add samples up: when they compute otherwise, the lake's samples are added again."""
 
 Facts = tuple[str, list[str]]
-"""Of a module: the hash of its tree, and the names that it imports from the package."""
+"""The hash of a module's tree, and the names that it imports from the package."""
 
 
 @dataclass

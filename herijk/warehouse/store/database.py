@@ -26,7 +26,7 @@ STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.0 opens the file; the newest form would shut out programs of last year."""
 
 _HELD: Final = (
-    "another program has it open to write in it. Close that program, or let it open the file to "
+    "another program has it open for writing. Close that program, or let it open the file to "
     "read only, and try again"
 )
 _SPOILT: Final = (

@@ -15,7 +15,7 @@ TEMPORARY_PREFIX = ".herijk-"
 WINDOWS = os.name == "nt"
 
 AT_FDCWD, RENAME_EXCHANGE = -100, 2
-"""Of `renameat2(2)`: paths are relative to where we are; exchange the two."""
+"""Arguments of `renameat2(2)`: paths are relative to where we are; exchange the two."""
 
 
 @contextmanager

@@ -42,7 +42,7 @@ _CLOSED_RECORDS: Final = (
 )
 
 _NO_DRAWING: Final = (
-    "a figure could not be drawn: the drawing library stopped, most often because this process may "
+    "a figure could not be drawn: the drawing library stopped, usually because this process may "
     "not open more files (allow more: ulimit -n 1024; in systemd LimitNOFILE=1024)"
 )
 

@@ -83,7 +83,7 @@ MOTION = {*LOGS, "gps_m_s", "force_n", "wind_speed_m_s"}
     ("sizes", "channels"),
     [
         ({"log_season_factor": (1.05, 1.05)}, LOGS),
-        ({"log_tow_wander": 0.01}, LOGS),
+        ({"log_tow_sd": 0.01}, LOGS),
         ({"log_run_wander": 0.01}, LOGS),
         ({"log_noise_m_s": 0.03}, LOGS),
         ({"log2_ratio": (0.95, 0.95)}, {"log2_m_s"}),

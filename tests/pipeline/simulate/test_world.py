@@ -124,10 +124,8 @@ def test_alterations_change_cw_and_about_half_is_reported():
     assert 0.35 < reported < 0.65
 
 
-def test_log_wander_moves_single_tows_about_the_season():
-    world = simulate_world(
-        WorldSettings(defects=lambda s: replace(Defects(), log_tow_wander=0.012))
-    )
+def test_the_log_of_single_tows_scatters_about_that_of_the_season():
+    world = simulate_world(WorldSettings(defects=lambda s: replace(Defects(), log_tow_sd=0.012)))
     logs = np.log([t.truth.log_factor / t.truth.season_log_factor for t in world.tows])
     assert np.std(logs) == pytest.approx(0.012, rel=0.15)
 

@@ -147,12 +147,12 @@ def test_boats_of_a_type_are_identical_where_the_world_says_so():
     assert {len(shapes) for shapes in boats.values()} == {1}
 
 
-@pytest.mark.parametrize(("name", "tied"), [("untied", 0), ("three-ties", 3)])
-def test_so_many_boats_of_2010_are_towed_again(name, tied):
+@pytest.mark.parametrize(("name", "linking"), [("unlinked", 0), ("three-links", 3)])
+def test_so_many_boats_of_2010_are_towed_again(name, linking):
     tows = world(name).tows
     of_2010 = {(t.boat.index, t.crew_class) for t in tows if t.season == 2010}
     elsewhere = {(t.boat.index, t.crew_class) for t in tows if t.season != 2010}
-    assert len(of_2010 & elsewhere) == tied
+    assert len(of_2010 & elsewhere) == linking
 
 
 def test_missing_temperatures_are_in_the_water_but_not_in_the_list():
