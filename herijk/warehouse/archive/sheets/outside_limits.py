@@ -11,7 +11,7 @@ from herijk.words import Sentence, say
 
 
 def misfits(table: type[dy.Schema], frame: pl.DataFrame) -> Iterator[tuple[Row, Sentence]]:
-    """Yield each row outside the declared limits, with the first limit that it breaks."""
+    """Each row outside the declared limits, with the first limit that it breaks."""
     _, failure = table.filter(frame)
     for row in failure.details().iter_rows(named=True):
         broken = next(name for name, state in row.items() if state == "invalid")
