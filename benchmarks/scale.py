@@ -33,7 +33,6 @@ from polars.testing import assert_frame_equal
 from benchmarks.world import RATE_HZ, SEASONS, World
 from herijk.assets import rebuild, runs
 from herijk.assets.cluster import read_seasons
-from herijk.assets.progress import Quiet
 from herijk.pipeline.method.definition import shipped_method, shipped_methods
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.intake import seasons as intake
@@ -46,6 +45,7 @@ from tests.elsewhere import (
     lie_in_bucket,
     s3_server,
 )
+from tests.quiet import Quiet
 
 METHODS = tuple(shipped_methods())
 TERMS = Terms("2026-1", dt.date(2026, 5, 8), "benchmark", dt.date(2026, 5, 1))

@@ -21,7 +21,6 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from herijk.assets.progress import Quiet
 from herijk.assets.rebuild import rebuild
 from herijk.dashboards.site.pages import MENU
 from herijk.dashboards.site.render import build_site
@@ -30,6 +29,7 @@ from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
+from tests.quiet import Quiet
 
 READY = (
     "[...document.querySelectorAll('.chart')].every(chart => chart.querySelector('svg')"

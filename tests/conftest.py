@@ -20,7 +20,6 @@ from hypothesis import settings
 import herijk.assets.rebuild
 import herijk.assets.runs
 import herijk.dashboards.report_page
-from herijk.assets.progress import Quiet
 from herijk.assets.report import Report
 from herijk.assets.resources import Setup
 from herijk.assets.side_by_side import Read, Task
@@ -29,6 +28,7 @@ from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import CONSISTENCY, LINES, STUDIES
 from herijk.warehouse.store.store import Store
+from tests.quiet import Quiet
 
 # The same examples every time, whatever the machine's speed.
 settings.register_profile("repeatable", deadline=None, derandomize=True, max_examples=50)

@@ -48,10 +48,8 @@ def _plain(value: object) -> object:
     return asdict(value) if is_dataclass(value) and not isinstance(value, type) else str(value)
 
 
-def read_day(value: str | dt.date) -> dt.date:
+def read_day(value: str) -> dt.date:
     """Returns a day that was written as 2026-05-08."""
-    if isinstance(value, dt.date):
-        return value
     try:
         return dt.date.fromisoformat(value)
     except ValueError as error:

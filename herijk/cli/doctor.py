@@ -70,7 +70,7 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     from herijk.warehouse.store.store import Store
 
     yield Finding("Herijk", True, version("herijk"))
-    yield Finding("Python", sys.version_info >= (3, 11), sys.version.split()[0])
+    yield Finding("Python", True, sys.version.split()[0])
     yield _space(data)
     yield _tried("settings", lambda: tell("applies {}", ", ".join(read_settings(data).applied)))
     known = known_methods(data)

@@ -88,6 +88,7 @@ def _of_types(views: Views, report: TypesAudit) -> Iterator[Plot]:
         "repeats",
         boats.select("method", "fsn_no")
         .unique()
+        .sort("method", "fsn_no")
         .join(views.repeat_pairs(), on=["method", "fsn_no"], maintain_order="left"),
     )
     predicted, bends = views.predicted().filter(own), views.shared_bends().filter(own)
@@ -141,35 +142,21 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: s
     return path
 
 
-def _widen(spec: dict[str, object], rows: pl.DataFrame) -> None:
+def _widen(scatters: dict[str, Any], rows: pl.DataFrame) -> None:
     """Gives both axes room for all these rows, so that plots of several methods compare."""
-    for axis in ("x", "y"):
-        shown = [e for e in _encodings(spec) if e.get(axis, {}).get("type") == "quantitative"]
-        fields = {e[end].get("field") for e in shown for end in (axis, f"{axis}2") if end in e}
-        values = pl.concat([rows[name].drop_nulls() for name in fields & set(rows.columns)])
+    encoding = scatters["spec"]["encoding"]
+    for axis in (encoding["x"], encoding["y"]):
+        values = rows[axis["field"]].drop_nulls()
         if values.is_empty():
             continue
         low, high = values.min(), values.max()
         room = ROOM * (high - low)
-        for encoding in shown:
-            scale = {"domain": [low - room, high + room], "nice": False}
-            encoding[axis]["scale"] = encoding[axis].get("scale", {}) | scale
+        scale = {"domain": [low - room, high + room], "nice": False}
+        axis["scale"] = axis.get("scale", {}) | scale
 
 
 ROOM: Final = 0.04
 """Share of an axis that is left beyond its outermost points."""
-
-
-def _encodings(part: Any) -> Iterator[dict[str, Any]]:
-    """Every encoding of a specification, also of its layers and facets."""
-    if isinstance(part, dict):
-        if "encoding" in part:
-            yield part["encoding"]
-        for name in ("spec", "layer", "concat", "hconcat", "vconcat"):
-            yield from _encodings(part.get(name))
-    elif isinstance(part, list):
-        for one in part:
-            yield from _encodings(one)
 
 
 def _types(report: TypesAudit) -> list[str]:

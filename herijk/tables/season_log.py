@@ -38,7 +38,6 @@ class SeasonLinks(PerPart):
     dof = column.number("1", "its degrees of freedom", nullable=True)
     influence = column.number("1", "largest change when one boat is left out", nullable=True)
     influence_boat = column.text("that boat", nullable=True)
-    weakest_mode = column.number("1", "share in what is known worst", nullable=True)
     factor_no_boats = column.number(
         "1", "the same without boat identity, a check; empty too if not settled", nullable=True
     )

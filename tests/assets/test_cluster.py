@@ -13,7 +13,6 @@ import dagster as dg
 import pytest
 
 from herijk.assets import rebuild, runs
-from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.editions.publish import Terms, publish
@@ -22,6 +21,7 @@ from herijk.warehouse.store.store import Store
 from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 from tests.elsewhere import assert_same_lake, dask_cluster, edition_hashes, lie_in_bucket
+from tests.quiet import Quiet
 
 DAY = dt.date(2026, 5, 1)
 

@@ -83,7 +83,7 @@ LIMITED = """
 import resource, sys
 from pathlib import Path
 from herijk.assets.rebuild import rebuild
-from herijk.assets.progress import Quiet
+from tests.quiet import Quiet
 from herijk.pipeline.errors import UnavailableError
 import herijk.dashboards.report_page, herijk.dashboards.site.render
 _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -131,7 +131,7 @@ AS_NOBODY = """
 import os, sys
 from pathlib import Path
 from herijk.assets.rebuild import rebuild
-from herijk.assets.progress import Quiet
+from tests.quiet import Quiet
 from herijk.pipeline.errors import UnavailableError
 os.setuid(int(sys.argv[3]))
 try:

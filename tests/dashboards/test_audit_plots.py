@@ -7,6 +7,7 @@ from xml.etree import ElementTree as ET
 import duckdb
 import pytest
 
+from herijk.dashboards import audit_plots
 from herijk.dashboards.audit_plots import file_name, write_audit_plots
 from herijk.warehouse.queries.audit import audit
 from herijk.warehouse.store.store import Store
@@ -93,6 +94,19 @@ def test_plots_of_two_methods_have_equal_axes(type_plots):
         for method in ("as-published", "rebased-2015")
     ]
     assert ticks[0] == ticks[1] != []
+
+
+def test_repeats_are_drawn_in_the_same_order_each_time(built, tmp_path, monkeypatch):
+    rows = {}
+
+    def keep(plot, *_):
+        rows[plot.figure] = plot.rows.select("method", "fsn_no").rows()
+        return tmp_path / plot.figure
+
+    monkeypatch.setattr(audit_plots, "_write", keep)
+    write_audit_plots(built.store, audit(built.store, ["Kuikensloep"]), tmp_path, "en")
+    assert len(set(rows["repeats"])) > 2
+    assert rows["repeats"] == sorted(rows["repeats"])
 
 
 def test_an_index_shows_every_plot(built, tmp_path):

@@ -516,14 +516,8 @@ def test_what_a_best_estimate_rests_on_sums_to_one_and_needs_no_other_boat():
     assert (both["fsn_no"] == both["fsn_no_other"]).all()
 
 
-def test_weakest_mode_is_ageing_like_and_belongs_to_its_variance():
+def test_the_uncertainty_of_a_factor_is_that_of_the_covariance():
     _, found = estimated(HARD, 1000)
-    mode = found.factors["weakest_mode"].to_numpy()
-    assert np.linalg.norm(mode) == pytest.approx(1.0)
-    assert (mode > 0).all()  # all seasons off together, the earliest most
-    assert mode @ found.covariance @ mode == pytest.approx(
-        np.linalg.eigvalsh(found.covariance).max()
-    )
     sd = np.sqrt(np.diag(found.covariance))
     assert sd == pytest.approx(found.factors["ln_sd"].to_numpy())
 

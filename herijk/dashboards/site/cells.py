@@ -1,6 +1,5 @@
 """Cells of tables in one language: numbers, codes in words, links and hashes."""
 
-import datetime as dt
 import json
 import math
 from collections.abc import Callable, Sequence
@@ -176,8 +175,6 @@ class Cells:
     def _plain(self, value: object) -> Markup:
         if isinstance(value, bool):
             return self.text("yes" if value else "no")
-        if isinstance(value, dt.datetime):
-            return escape(value.isoformat(" "))
         return escape(value)
 
     def _code(self, value: Any) -> Markup:

@@ -158,7 +158,7 @@ def type_lines(
     rows: list[Row] = []
     to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
     for choice, tows in chosen_tows(observed):
-        measured, shared = quantities(tows), _Shared(tows, choice)
+        measured, shared = quantities(tows), _Shared(tows)
         run_variance = tows.column("run_sd_ratio") ** 2
         speeds = tows.column("standard_speed_m_s")
         for (method, boat_type), own in tows.rows_by("method", "boat_type"):
@@ -221,7 +221,7 @@ class _Across:
 class _Shared:
     """What lines have in common: one design serves all methods and quantities with its tows."""
 
-    def __init__(self, tows: Observed, choice: Choice) -> None:
+    def __init__(self, tows: Observed) -> None:
         table = tows.table
         self.explaining = {name: _explaining(tows, name) for name in (*EXPLAINING, LN_DISPLACEMENT)}
         self._tow, self._boat, self._crew = (
@@ -229,7 +229,6 @@ class _Shared:
             for by in (("tow_id",), ("fsn_no",), ("rowers", "crew_class"))
         )
         self._class = table["crew_class"].to_numpy()
-        self._season = _seasons(table["season"].to_numpy().astype(np.int64), choice)
         self._made: dict[tuple[str, str, bytes], tuple[Row, _Across | None]] = {}
 
     def through(
@@ -258,8 +257,7 @@ class _Shared:
         width = float(np.abs(centred).max())
         if width <= 1e-9 * np.abs(x).max():
             return counts | {"reason": "equal_values"}, None
-        season = None if self._season is None else self._season[rows]
-        design = Design.of(np.column_stack([crews, centred / width]), self._boat[rows], season)
+        design = Design.of(np.column_stack([crews, centred / width]), self._boat[rows])
         names, places, at = [], [], []
         whose = self._class[rows] if explaining in OF_THE_BOAT else np.full(len(rows), "all")
         for name in np.unique(whose):
@@ -316,11 +314,6 @@ class _Line:
         columns |= {"crew_class": list(across.names), "x": list(across.places)}
         value, lo, hi = (end[:-1].tolist() for end in ends)
         return columns | {"y": value, "lo": lo, "hi": hi}
-
-
-def _seasons(season: IntArray, choice: Choice) -> IntArray | None:
-    """The season of each tow, where seasons may deviate."""
-    return season if mixed.OTHER in choice.components else None
 
 
 def _explaining(boats: Observed, name: str) -> FloatArray:
@@ -401,8 +394,8 @@ class _Compared:
             return None
         variance = unit[known] * boats.column("run_sd_ratio") ** 2
         fsn_no = boats.table["fsn_no"].to_numpy()
-        season = boats.table["season"].to_numpy().astype(np.int64)
-        design = Design.of(x, fsn_no, _seasons(season, choice))
+        season = boats.table["season"].to_numpy() if mixed.OTHER in choice.components else None
+        design = Design.of(x, fsn_no, season)
         problem = Problem.of(design, y, variance)
         return cls(boats, quantity, problem)
 

@@ -60,7 +60,6 @@ van verkeerde snelheid kiezen"); of a low tow raced slower the text says nothing
 FEWEST_BOATS: Final = 4
 FEWEST_OTHERS: Final = 2
 ENDS: Final = ("", "_lo", "_hi")
-COMPARED_AT: Final = ("110", "120", "rowed", "raced")
 
 
 def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> BoolArray:
@@ -150,10 +149,10 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     """Tows whose curve is used where it was not measured, and what that does to race power.
 
     Towed with little power, or raced at speeds at which the curve does not count. The tow's own
-    curve is compared with the curve of the same runs that has the bend of the type's other boats:
-    10 and 20 % above its declared speed, at the speed that its crew will really row, the median
-    declared speed of the type's other crews of that class (inferred), and at the fastest speed that
-    it raced. The interval is that of the tow's own bend alone.
+    curve is compared with the curve of the same runs that has the bend of the type's other boats,
+    at the speed that its crew will really row, the median declared speed of the type's other crews
+    of that class (inferred), and at the fastest speed that it raced. The interval is that of the
+    tow's own bend alone.
 
     Args:
         observed: all tows.
@@ -176,8 +175,7 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     raced_cw = curve_anywhere(chosen, raced_speed)
     raced_power = power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))
     columns = {"rowed_speed_m_s": rowed, "raced_power_w": raced_power}
-    speeds = (1.1 * declared, 1.2 * declared, rowed, raced_speed)
-    for at, speed in zip(COMPARED_AT, speeds, strict=True):
+    for at, speed in (("rowed", rowed), ("raced", raced_speed)):
         ends = _power_ratio(chosen, bend, speed)
         columns |= {f"power_ratio_{at}{end}": ends[i] for i, end in enumerate(ENDS)}
     ratio = declared / hull_speed_m_s(chosen.column("waterline_length_m"))

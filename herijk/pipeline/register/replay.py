@@ -52,12 +52,9 @@ class RaceRules:
     Attributes:
         fatigue: `none`; `known`: between the two published points, refused outside; `extend`: the
             power law between them, for every time.
-        speed_decimals: decimals to which the speed is rounded first, as the federation's example
-            does; None for none.
     """
 
     fatigue: Fatigue = "extend"
-    speed_decimals: int | None = None
 
 
 def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.DataFrame:
@@ -84,8 +81,6 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     rowed = _with_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
     through_water = rowed["distance_m"] - rowed["stream_m"].fill_null(0.0)
     speed = mean_speed_m_s(through_water, rowed["rowing_time_s"])
-    if rules.speed_decimals is not None:
-        speed = np.round(speed, rules.speed_decimals)
     a, s = curve_of_lines(rowed)
     resistance = cw(np.nan_to_num(a), np.nan_to_num(s), speed)
     has_line = np.isfinite(a)

@@ -34,8 +34,8 @@ class SeasonFactors:
     Attributes:
         factors: one row per season, part and log that has tows without dGPS calibration, sorted:
             `season, part, log, factor, lo, hi, source, ln_sd, dof, n_tows, n_links, component,
-            influence, influence_boat, critical_boats, weakest_mode, factor_no_boats,
-            lo_no_boats, hi_no_boats, agreement`. See `estimate_season_factors`.
+            influence, influence_boat, critical_boats, factor_no_boats, lo_no_boats, hi_no_boats,
+            agreement`. See `estimate_season_factors`.
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
         tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
@@ -119,8 +119,8 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
         network (0 has the anchor). `influence` is the largest change of the factor when one boat
         (`influence_boat`) is left out, and `critical_boats` how many boats would leave the season
-        undetermined. `weakest_mode` is its share in the combination of seasons that is known worst,
-        `agreement` (factor - the one without boat identity) in standard deviations.
+        undetermined. `agreement` is the factor less the one without boat identity, in standard
+        deviations.
 
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
@@ -142,7 +142,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
     diagnosis = season_diagnosis(posterior)
     return SeasonFactors(
-        factors=_described(posterior, along, covariance, change, second),
+        factors=_described(posterior, along, change, second),
         covariance=covariance,
         tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
         calibration_sd=calibration_sd,
@@ -184,15 +184,6 @@ def _group_means(posterior: Posterior) -> FloatArray:
     return np.array(means).reshape(len(groups), len(posterior.places))
 
 
-def _weakest_mode(covariance: FloatArray) -> FloatArray:
-    """The share of each ln factor in their combination that is known worst."""
-    if not len(covariance):
-        return np.zeros(0)
-    mode = np.linalg.eigh(covariance).eigenvectors[:, -1]
-    sign = np.sign(mode[first_largest(np.abs(mode))])  # which way round is arbitrary
-    return np.asarray(mode * sign)
-
-
 def _without_each_boat(posterior: Posterior) -> FloatArray:
     """Change of every unknown of the fit when a boat is left out, (boats, unknowns)."""
     fit, cluster = posterior.fit, posterior.problem.network.cluster
@@ -210,14 +201,13 @@ def _without_each_boat(posterior: Posterior) -> FloatArray:
 def _described(
     posterior: Posterior,
     along: FloatArray,
-    covariance: FloatArray,
     change: FloatArray,
     second: Second,
 ) -> pl.DataFrame:
     """The factor of each group with its interval and what it rests on; see `SeasonFactors`.
 
     Args:
-        along: as `_group_means` gives it; `covariance`: of those means.
+        along: as `_group_means` gives it.
         change: of every unknown of the fit without each boat, (boats, unknowns).
         second: the estimate without boats.
     """
@@ -257,7 +247,6 @@ def _described(
         influence=placed(np.where(np.isfinite(influence), influence, np.nan)),
         influence_boat=pl.Series(network.boat_names).gather(placed(boat).cast(pl.Int64)),
         critical_boats=placed(critical.sum(axis=0)).cast(pl.Int64),
-        weakest_mode=placed(_weakest_mode(covariance)),
         factor_no_boats=other.exp(),
         lo_no_boats=(other - other_half).exp(),
         hi_no_boats=(other + other_half).exp(),

@@ -33,7 +33,6 @@ def register_ensemble(
     budget: pl.DataFrame,
     estimated: "SeasonFactors | None",
     members: int = MEMBERS,
-    seed: int = SEED,
 ) -> FloatArray:
     """Realisations of the Cw of every line of a register.
 
@@ -46,13 +45,12 @@ def register_ensemble(
         estimated: the season factors, whose errors are drawn with their correlation; None where the
             method estimates none.
         members: number of realisations.
-        seed: of the draws; a part of the edition.
 
     Returns:
         Cw [kg/m], shape (members, lines).
     """
     budget = budget.filter(pl.col("tow_id").is_in(lines["tow_id"].unique().implode()))
-    keys, errors = _errors(budget, estimated, members, seed)
+    keys, errors = _errors(budget, estimated, members)
     tows = budget["tow_id"].unique().sort()
     place = pl.DataFrame({"tow_id": tows}).with_row_index("place")
     row = budget.select("tow_id").join(place, on="tow_id", maintain_order="left")["place"]
@@ -98,20 +96,6 @@ def as_frame(lines: pl.DataFrame, cw_kg_m: FloatArray) -> pl.DataFrame:
     )
 
 
-def share_heavier(members: pl.DataFrame, tow_id: str, other: str) -> float:
-    """Share of the members in which one tow has the larger Cw at its declared speed.
-
-    Args:
-        members: rows of the table `ensemble` of one method.
-        tow_id, other: tows of two boats, or two of one boat.
-
-    Raises:
-        MissingKnowledgeError: one of them has no members: it has no curve under the method.
-    """
-    mine, theirs = _members_of(members, [tow_id, other])
-    return float((mine > theirs).mean())
-
-
 def share_first(members: pl.DataFrame, results: pl.DataFrame) -> pl.DataFrame:
     """Share of the members in which each crew of a race has the highest power per rower.
 
@@ -155,13 +139,13 @@ def _members_of(members: pl.DataFrame, tow_ids: Sequence[str]) -> FloatArray:
 
 
 def _errors(
-    budget: pl.DataFrame, estimated: "SeasonFactors | None", members: int, seed: int
+    budget: pl.DataFrame, estimated: "SeasonFactors | None", members: int
 ) -> tuple[pl.DataFrame, FloatArray]:
     """Standard normal errors of every key, shape (keys, members), season factors correlated."""
     keys = budget.select("key").unique().sort("key").with_row_index("index")
     errors = np.zeros((keys.height, members))
     for own, key in zip(errors, keys["key"], strict=True):
-        own[:] = _independent(seed, key, members)
+        own[:] = _independent(key, members)
     if estimated is None:
         return keys, errors
     determined = estimated.factors.drop_nulls("factor").select(
@@ -169,7 +153,7 @@ def _errors(
     )
     sd = np.sqrt(np.diag(estimated.covariance))
     root = np.linalg.cholesky(estimated.covariance / np.outer(sd, sd))
-    independent = [_independent(seed, key, members) for key in determined["key"]]
+    independent = [_independent(key, members) for key in determined["key"]]
     if independent:
         joint = root @ np.stack(independent)
         used = determined.with_row_index("row").join(keys, on="key", maintain_order="left")
@@ -178,7 +162,7 @@ def _errors(
 
 
 @lru_cache(maxsize=REMEMBERED)
-def _independent(seed: int, key: str, members: int) -> FloatArray:
+def _independent(key: str, members: int) -> FloatArray:
     """Standard normal errors of a key, from a stream of its own; not to be written to."""
-    stream = np.random.default_rng(np.array([seed, *key.encode()], dtype=np.uint32))
+    stream = np.random.default_rng(np.array([SEED, *key.encode()], dtype=np.uint32))
     return stream.standard_normal(members)

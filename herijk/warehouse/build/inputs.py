@@ -129,8 +129,6 @@ def _read(inputs: Inputs, name: str) -> pl.DataFrame:
         return inputs.published[name.removeprefix("published_")]
     if name == DECISIONS:
         return _decisions(store)
-    if name == BLOCKS:
-        return intake.all_blocks(store)
     if name in intake.INDEXED:
         return _listed(store, name)
     return _of_seasons(store, name) if name in SEASON_TABLES else store.read(name)

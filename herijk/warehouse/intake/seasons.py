@@ -146,15 +146,13 @@ def _is_stale(store: Store, profiles: Profiles, season: int) -> bool:
     return any(store.made_from(table, str(season)) != made_from for table in SEASON_TABLES)
 
 
-def forget_unlisted_seasons(store: Store) -> list[int]:
+def forget_unlisted_seasons(store: Store) -> None:
     """Removes the tables of seasons that the archive no longer lists."""
     listed = set(listed_seasons(store))
-    gone = [int(s) for s in store.partitions("blocks") if int(s) not in listed]
-    for season in gone:
+    for season in [int(s) for s in store.partitions("blocks") if int(s) not in listed]:
         lake.keep_only(store, season, SeasonIndex.create_empty())
         for table in SEASON_TABLES:
             store.remove(table, str(season))
-    return gone
 
 
 def read_season(

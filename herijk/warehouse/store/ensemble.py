@@ -15,9 +15,7 @@ ENSEMBLE = "ensemble"
 def read_ensemble(store: Store, method: str) -> pl.DataFrame:
     """The 200 equally likely values of Cw of every tow under a method.
 
-    Whether tow X is heavier than Y, `pipeline.uncertainty.ensemble.share_heavier` says of them;
-    who would have won, `share_first`. The members of a register are those of the tows its lines
-    name.
+    The members of a register are those of the tows its lines name.
 
     Returns:
         Rows of the table `ensemble`, sorted by tow and member.

@@ -256,12 +256,13 @@ def test_a_damaged_tdms_is_a_fault_wherever_it_was_cut(
     assert caplog.records == []
 
 
-def test_a_recording_that_claims_too_many_samples_is_not_read(
-    archive: Archive, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("limit", ["MOST_ROWS", "SAMPLES_MAX_BYTES"])
+def test_a_recording_that_is_larger_or_claims_more_samples_is_not_read(
+    archive: Archive, monkeypatch: pytest.MonkeyPatch, limit: str
 ) -> None:
     tdms(archive)
     (path,) = (archive.root / "meetdata_2014").glob("*.tdms")
-    monkeypatch.setattr("herijk.warehouse.archive.samples.labview.MOST_ROWS", 10)
+    monkeypatch.setattr(f"herijk.warehouse.archive.samples.labview.{limit}", 10)
     with pytest.raises(DefectiveInputError) as told:
         read_samples(path, SeasonProfile(2014))
     assert told.value.reason_code == "too_large"

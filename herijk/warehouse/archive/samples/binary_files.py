@@ -11,7 +11,7 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.files.contents import not_whole, too_large
 from herijk.warehouse.archive.files.names import kind_of
-from herijk.warehouse.archive.limits import MOST_ROWS, too_many_rows
+from herijk.warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
 from herijk.warehouse.archive.profile.season import SeasonProfile
 from herijk.warehouse.archive.samples.columns import check_nothing_misspelt, seconds_of_clock, to_si
 from herijk.warehouse.archive.samples.labview import read_tdms
@@ -22,18 +22,13 @@ BINARY: Final = (".parquet", ".tdms")
 
 
 def next_line(row: int) -> int:
-    """The line of a row where nothing but the header stands above the first."""
+    """The line of a row where nothing but the header is above the first."""
     return max(row + 2, 1)
 
 
-def read_binary(
-    path: Path, profile: SeasonProfile, max_bytes: int, most_rows: int | None = None
-) -> pl.DataFrame:
-    """Return the wanted columns of a Parquet or TDMS file as Float64, as `read_text` does."""
-    if kind_of(path) == ".tdms":
-        frame = read_tdms(path, max_bytes, most_rows)
-    else:
-        frame = _read_parquet(path, profile, max_bytes)
+def read_binary(path: Path, profile: SeasonProfile, most_rows: int | None = None) -> pl.DataFrame:
+    """The wanted columns of a Parquet or TDMS file as Float64, as `read_text` does."""
+    frame = read_tdms(path, most_rows) if kind_of(path) == ".tdms" else _read_parquet(path, profile)
     if frame.is_empty():
         raise DefectiveInputError("unreadable_file", say("There are no samples in the file."))
     columns = find_columns(frame.columns, profile.columns)
@@ -49,14 +44,14 @@ def read_binary(
     return to_si(pl.DataFrame(numbers), columns)
 
 
-def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.DataFrame:
-    """Return the columns of a Parquet file that the profile names."""
+def _read_parquet(path: Path, profile: SeasonProfile) -> pl.DataFrame:
+    """The columns of a Parquet file that the profile names."""
     try:
         with pq.ParquetFile(path) as file:
             names = file.schema_arrow.names
             columns = find_columns(names, profile.columns)
             check_nothing_misspelt(names, columns, profile)
-            _check_parquet_size(path, file, len(columns), max_bytes)
+            _check_parquet_size(path, file, len(columns))
             wanted = [names[column.index] for column in columns.values()]
             schema = pa.schema([file.schema_arrow.field(name) for name in wanted])
             table = pa.Table.from_batches(_batches(file, wanted), schema)
@@ -78,16 +73,16 @@ def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]
         yield batch
 
 
-def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes: int) -> None:
+def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int) -> None:
     metadata = file.metadata
     groups = (metadata.row_group(index) for index in range(metadata.num_row_groups))
     unpacked = sum(group.total_byte_size for group in groups)
-    if max(unpacked, metadata.num_rows * width * 8, path.stat().st_size) > max_bytes:
-        raise too_large(path, max_bytes)
+    if max(unpacked, metadata.num_rows * width * 8, path.stat().st_size) > SAMPLES_MAX_BYTES:
+        raise too_large(path, SAMPLES_MAX_BYTES)
 
 
 def _as_seconds(cells: pl.Series) -> pl.Series:
-    """Return points in time, or times of day as text, as seconds."""
+    """Points in time, or times of day as text, as seconds."""
     if cells.dtype.is_temporal():
         first = cells[0]
         return pl.select((pl.lit(cells) - first).dt.total_microseconds() / 1e6).to_series()

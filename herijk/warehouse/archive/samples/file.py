@@ -37,16 +37,14 @@ _FOR_A_RATE: Final = 500
 def read_samples(
     path: Path,
     profile: SeasonProfile,
-    max_bytes: int = SAMPLES_MAX_BYTES,
     sample_rate_hz: int | None = None,
     run: int | None = None,
 ) -> pl.DataFrame:
-    """Read one samples file.
+    """Reads one samples file.
 
     Args:
         path: text, also LabVIEW's, packed or not; `.parquet`; `.tdms`.
         profile: names and units of the columns in that season.
-        max_bytes: limit of the file, unpacked.
         sample_rate_hz: rate the time column must agree with; not checked when None.
         run: the run that the file is, where it is one of several.
 
@@ -60,9 +58,9 @@ def read_samples(
         DefectiveInputError: the first fault that costs the whole file, with its line.
     """
     if kind_of(path) in BINARY:
-        raw, line_of = read_binary(path, profile, max_bytes), next_line
+        raw, line_of = read_binary(path, profile), next_line
     else:
-        body = find_body(read_bytes(path, max_bytes), profile)
+        body = find_body(read_bytes(path, SAMPLES_MAX_BYTES), profile)
         raw, line_of = read_text(body), body.line
     samples = to_schema(with_runs(raw, run), line_of, profile.wind_zero_deg)
     check_runs(samples["run"], line_of)
@@ -75,7 +73,7 @@ def read_samples(
 
 
 def check_header(path: Path, profile: SeasonProfile) -> None:
-    """Read the columns of a samples file, not its samples.
+    """Reads the columns of a samples file, not its samples.
 
     Raises:
         DefectiveInputError: as `read_samples`, for a fault of the header.
@@ -93,15 +91,15 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
         except (OSError, pa.ArrowException) as error:
             raise not_whole(path, "Parquet", error) from error
     if kind == ".tdms":
-        return read_tdms(path, SAMPLES_MAX_BYTES, most_rows=0).columns
+        return read_tdms(path, most_rows=0).columns
     return find_body(read_start(path, HEAD_BYTES), profile).header
 
 
 def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
-    """Return the samples per second at the start of a file; None where it has no times to say."""
+    """The samples per second at the start of a file; None where it has no times to say."""
     try:
         if kind_of(path) in BINARY:
-            frame = read_binary(path, profile, SAMPLES_MAX_BYTES, _FOR_A_RATE)
+            frame = read_binary(path, profile, _FOR_A_RATE)
         else:
             body = find_body(read_start(path, HEAD_BYTES), profile)
             if "time" not in body.columns:
@@ -116,7 +114,7 @@ def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
 
 
 def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[tuple[str, str], ...]:
-    """Return `run` or `time` with a column nobody knows as which it tells the runs of a file."""
+    """`run` or `time` with a column nobody knows as which it tells the runs of a file."""
     header = _header_of(path, profile)
     unknown = unknown_headers(header, find_columns(header, profile.columns))
     pairs = [(key, name) for key in ("run", "time") for name in unknown]

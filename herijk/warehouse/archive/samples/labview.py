@@ -13,8 +13,8 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive.files.contents import not_whole
-from herijk.warehouse.archive.limits import MOST_ROWS, too_many_rows
+from herijk.warehouse.archive.files.contents import not_whole, too_large
+from herijk.warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
 from herijk.words import say
 
 _END_OF_HEADER: Final = "***End_of_Header***"
@@ -29,7 +29,7 @@ def is_labview(text: str) -> bool:
 
 
 def labview_as_table(text: str) -> tuple[str, list[int]]:
-    """Return a LabVIEW measurement file as a table of text with one header.
+    """A LabVIEW measurement file as a table of text with one header.
 
     Each segment (a header of its own, with samples below it) becomes a run where there is none:
     column `run` is put before the others.
@@ -67,7 +67,7 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
 
 
 def _about(lines: list[str]) -> dict[str, str]:
-    """Return what the head of the file says, by name."""
+    """What the head of the file says, by name."""
     properties = {}
     for line in lines[:40]:
         if line.strip().startswith(_END_OF_HEADER):
@@ -78,7 +78,7 @@ def _about(lines: list[str]) -> dict[str, str]:
 
 
 def _segment_header(lines: list[str], start: int, separator: str) -> tuple[list[str], list[int]]:
-    """Return the header of a segment with units, and which columns hold a channel."""
+    """The header of a segment with units, and which columns hold a channel."""
     names = (
         [cell.strip() for cell in lines[start + 1].split(separator)]
         if start + 1 < len(lines)
@@ -108,13 +108,12 @@ def _is_number(cell: str) -> bool:
     return bool(re.fullmatch(r"\s*[+-]?[0-9.,]+(?:[eE][+-]?[0-9]+)?\s*", cell)) or not cell.strip()
 
 
-def read_tdms(path: Path, max_bytes: int, most_rows: int | None = None) -> pl.DataFrame:
-    """Return the channels of a TDMS file as columns; each group is a run where none is named.
+def read_tdms(path: Path, most_rows: int | None) -> pl.DataFrame:
+    """The channels of a TDMS file as columns; each group is a run where none is named.
 
     Args:
         path: the file.
-        max_bytes: so large it may be.
-        most_rows: of each group, to see the columns only; all when left out.
+        most_rows: of each group, 0 to see the columns only; None for all.
 
     Raises:
         DefectiveInputError: `unreadable_file` or `too_large`.
@@ -124,8 +123,8 @@ def read_tdms(path: Path, max_bytes: int, most_rows: int | None = None) -> pl.Da
 
     log_manager.set_level(logging.CRITICAL)  # what is wrong with a file is told with the file
     try:
-        if path.stat().st_size > max_bytes:
-            raise ValueError(f"larger than {max_bytes} bytes")
+        if path.stat().st_size > SAMPLES_MAX_BYTES:
+            raise too_large(path, SAMPLES_MAX_BYTES)
         with path.open("rb") as raw, nptdms.TdmsFile.open(raw) as file:
             groups = [group for group in file.groups() if group.channels()]
             frames = [
