@@ -107,7 +107,7 @@ class Boat:
 
 
 def draw_boat(index: int, rng: np.random.Generator, shape: Shape, spread: float) -> Boat:
-    """Draw boat number `index` from the table of types.
+    """Draws boat number `index` from the table of types.
 
     Args:
         index: number of the boat.

@@ -77,7 +77,7 @@ class WorldSettings:
     freeboards_from: int | None = None
 
     def __post_init__(self) -> None:
-        """Check what a user typed."""
+        """Checks what a user typed."""
         if not self.seasons or list(self.seasons) != sorted(set(self.seasons)):
             raise HerijkError("seasons must ascend and be at least one; got {}", self.seasons)
         if self.tows_per_season < 1:

@@ -46,6 +46,9 @@ ARCHIVE: Final[dict[str, str]] = {
     "{names} must be there, here or in the boat list.": (
         "{names} moet er zijn, hier of in de lijst van sloepen."
     ),
+    "the year is {cell}; {low:g} to {high:g} can be right.": (
+        "het jaar is {cell}; {low:g} tot {high:g} kan kloppen."
+    ),
     "column '{column}' is {cell}; {low:g} to {high:g} can be right.": (
         "kolom '{column}' is {cell}; {low:g} tot {high:g} kan kloppen."
     ),
@@ -128,7 +131,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "Kolom '{header}' is in Beaufort, en dat is een klasse van wind en geen snelheid. Zet "
         "zonder wind in m/s wind onder absent in het profiel van het seizoen in archief.toml."
     ),
-    "only '{text}' stands in this row. A heading or a remark may begin with #.": (
+    "there is only '{text}' in this row. A heading or a remark may begin with #.": (
         "alleen '{text}' staat in deze rij. Een kopje of opmerking mag met # beginnen."
     ),
     "a speed and a force must be above zero.": (
@@ -183,7 +186,7 @@ ARCHIVE: Final[dict[str, str]] = {
     # Files
     "there is no file '{name}' in {folder}.": "er is geen bestand '{name}' in {folder}.",
     "'{name}' can be any of {found}.": "'{name}' kan elk van deze zijn: {found}.",
-    "'{name}' is a path; only the name of a file in {folder} can stand here.": (
+    "'{name}' is a path; only the name of a file in {folder} can be given here.": (
         "'{name}' is een pad; hier kan alleen de naam staan van een bestand in {folder}."
     ),
     "No row of a tow list names this file.": "Geen rij van een sleeplijst noemt dit bestand.",
@@ -222,7 +225,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "The file is not text in UTF-8, UTF-16 or Windows-1252: it can be damaged.": (
         "Het bestand is geen tekst in UTF-8, UTF-16 of Windows-1252: het kan beschadigd zijn."
     ),
-    "The header is no row of a table: {error}.": "De kop is geen rij van een tabel: {error}.",
+    "The header is not a row of a table: {error}.": "De kop is geen rij van een tabel: {error}.",
     "This LabVIEW file has no segment header.": "Dit LabVIEW-bestand heeft geen kop.",
     # Columns and samples
     "Not found in the header: {names}. Found: {found}.": (
@@ -259,7 +262,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "run {run:g} does not exist; runs are numbered 1 to {last}.": (
         "run {run:g} bestaat niet; runs zijn genummerd van 1 tot {last}."
     ),
-    "run {run} begins again; its rows must stand together.": (
+    "run {run} begins again; its rows must be together.": (
         "run {run} begint opnieuw; zijn rijen moeten bij elkaar staan."
     ),
     "the time does not increase within the run.": "de tijd loopt niet op binnen de run.",
@@ -319,7 +322,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "{}: geen rij is te gebruiken, want er ontbreken velden of de tijd springt terug; de run "
         "valt af."
     ),
-    "column '{column}' {} in all runs, which is no wind; the tow goes on without wind.": (
+    "column '{column}' {} in all runs, which is not wind; the tow goes on without wind.": (
         "kolom '{column}' {} in alle runs, en dat is geen wind; de proef gaat verder zonder wind."
     ),
     "{}: rows do not have their fields, {:.3g} s in all; {}.": (
@@ -351,7 +354,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "geen kolom voor {} in de kop {!r}; noem hem met {}"
     ),
     "All {} tows of {}": "Alle {} proeven van {}",
-    "{} has the very samples of {}; the run is left out.": (
+    "{} has exactly the samples of {}; the run is left out.": (
         "{} bevat precies de metingen van {}; de run telt niet mee."
     ),
     "column '{column}' holds {:.3g} in a typical run and log1 {:.3g}, so it looks like {unit}; the "

@@ -22,7 +22,7 @@ LANGUAGE: Final = ContextVar("LANGUAGE", default="en")
 
 @cache
 def dutch() -> Mapping[str, str]:
-    """Return every such sentence in Dutch, by its English text; read when it is needed."""
+    """Every such sentence in Dutch, by its English text; read when it is needed."""
     from herijk.words.archive import ARCHIVE  # noqa: PLC0415
     from herijk.words.command import COMMAND  # noqa: PLC0415
     from herijk.words.errors import ERRORS  # noqa: PLC0415
@@ -64,14 +64,14 @@ class Sentence(str):
     values: Mapping[str, Any]
 
     def spoken(self, language: str) -> str:
-        """Return the sentence in `en` or `nl`; in English where there is no Dutch."""
+        """The sentence in `en` or `nl`; in English where there is no Dutch."""
         in_order = tuple(spoken(value, language) for value in self.in_order)
         named = {name: spoken(value, language) for name, value in self.values.items()}
         return _filled(self.template, language, in_order, named)
 
 
 def say(template: str, *in_order: object, **named: object) -> Sentence:
-    """Return the sentence that a template gives with the values filled in.
+    """The sentence that a template gives with the values filled in.
 
     What comes from files and libraries is made printable: it goes to terminals and tables.
     """
@@ -83,26 +83,26 @@ def say(template: str, *in_order: object, **named: object) -> Sentence:
 
 
 def tell(template: str, *in_order: object, **named: object) -> str:
-    """Return a text in the language of this command, with the values filled in, in words too."""
+    """A text in the language of this command, with the values filled in, in words too."""
     language = LANGUAGE.get()
     by_name = {name: spoken(value, language) for name, value in named.items()}
     return _filled(template, language, tuple(spoken(v, language) for v in in_order), by_name)
 
 
 def number(value: float, form: str) -> str:
-    """Return a number as the language of this command writes it; `form` as in `format`."""
+    """A number as the language of this command writes it; `form` as in `format`."""
     return format(value, form).replace(".", DECIMALS[LANGUAGE.get()])
 
 
 def in_per_cent(probability: float) -> str:
-    """Return a probability that was counted in draws, which never make it certain."""
+    """A probability that was counted in draws, which never make it certain."""
     if probability < 0.01:
         return "<\u00a01\u00a0%"
     return ">\u00a099\u00a0%" if probability > 0.99 else f"{100 * probability:.0f}\u00a0%"
 
 
 def _printable(value: object) -> object:
-    """Return text or an error as one line without control characters; other values as they are."""
+    """Text or an error as one line without control characters; other values as they are."""
     if isinstance(value, Exception) and value.args and isinstance(value.args[0], Sentence):
         return value.args[0]
     if isinstance(value, Sentence) or not isinstance(value, str | Exception):
@@ -112,7 +112,7 @@ def _printable(value: object) -> object:
 
 
 def spoken(text: Any, language: str) -> Any:
-    """Return a sentence or an error in the language asked for; what has no words, unchanged."""
+    """A sentence or an error in the language asked for; what has no words, unchanged."""
     if isinstance(text, Exception):
         text = text.args[0] if text.args and isinstance(text.args[0], Sentence) else str(text)
     if isinstance(text, Sentence):
@@ -121,14 +121,14 @@ def spoken(text: Any, language: str) -> Any:
 
 
 def innermost(text: str) -> str:
-    """Return what a sentence says of its line: the sentence within `Line 3: ...`."""
+    """What a sentence says of its line: the sentence within `Line 3: ...`."""
     while isinstance(text, Sentence) and isinstance(text.values.get("what"), Sentence):
         text = text.values["what"]
     return text
 
 
 def cause_of(text: str) -> str:
-    """Return what sentences of one cause share: the same words about the same column.
+    """What sentences of one cause share: the same words about the same column.
 
     What differs from fault to fault is left open: `column 'klasse' is '…'; H or D is expected.`
     """

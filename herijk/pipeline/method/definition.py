@@ -42,9 +42,9 @@ class _Options(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-def _later(default: str) -> Any:
+def _later(default: object, ge: float | None = None, le: float | None = None) -> Any:
     """An option added later: its default stays out of the hash, so that no older method changes."""
-    return Field(default=default, exclude_if=lambda value: value == default)
+    return Field(default=default, ge=ge, le=le, exclude_if=lambda value: value == default)
 
 
 class Speed(_Options):

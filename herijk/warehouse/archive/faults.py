@@ -48,7 +48,7 @@ class Fault:
     message_nl: str = field(init=False)
 
     def __post_init__(self) -> None:
-        """Say the message in Dutch too, and what it shares with others."""
+        """Says the message in Dutch too, and what it shares with others."""
         object.__setattr__(self, "cause", cause_of(self.message))
         object.__setattr__(self, "message_nl", spoken(self.message, "nl"))
 
@@ -69,11 +69,11 @@ class DefectiveFileError(DefectiveInputError):
 
 
 def at_line(line: int, what: str) -> Sentence:
-    """Return a sentence with the line that it is about."""
+    """A sentence with the line that it is about."""
     return say("Line {line}: {what}", line=line, what=what)
 
 
 def fault_from(error: DefectiveInputError, path: str, tow_id: str | None = None) -> Fault:
-    """Return the fault an error stands for; `path` serves where the error knows none itself."""
+    """The fault an error stands for; `path` serves where the error knows none itself."""
     where = error.path if isinstance(error, DefectiveFileError) else path
     return Fault(where, tow_id, error.line, error.reason_code, error.message)

@@ -11,13 +11,13 @@ from herijk.words import say
 
 LIST_MAX_BYTES: Final = 20_000_000
 SAMPLES_MAX_BYTES: Final = 250_000_000
-"""Of a file, unpacked; one tow of six runs at 1000 Hz is 12 MB."""
+"""Size of a file, unpacked; one tow of six runs at 1000 Hz is 12 MB."""
 
 MOST_ROWS: Final = 3_000_000
 """Ten times the samples of a tow."""
 
 MOST_LISTED_ROWS: Final = 100_000
-"""Rows of a list; a spreadsheet that says to have more is none."""
+"""Rows of a list; a spreadsheet that claims more is not a list."""
 
 LONGEST_HEADER: Final = 20_000
 MOST_COLUMNS: Final = 500
@@ -37,7 +37,7 @@ def too_many_rows(rows: int) -> DefectiveInputError:
 
 
 def check_header(line: str, columns: int) -> None:
-    """Refuses a header that is none.
+    """Refuses what cannot be a header.
 
     Raises:
         DefectiveInputError: `too_large`.

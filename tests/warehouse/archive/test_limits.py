@@ -164,7 +164,7 @@ def test_one_step_outside_is_set_aside_and_inside_accepted(
 def test_a_season_outside_its_limits_is_set_aside_with_a_sentence(season, fits, tmp_path):
     row = {**values_of("races", RACE, tmp_path), "season": season, "path": "a.csv", "line": 2}
     found = [why for _, why in misfits(ListedRaces, frame_of(ListedRaces, [row]))]
-    sentence = f"column 'season' is {season}; 1990 to 2100 can be right."
+    sentence = f"the year is {season}; 1990 to 2100 can be right."
     assert found == ([] if fits else [sentence])
 
 

@@ -556,7 +556,7 @@ def test_a_heading_between_the_rows_is_told_once_and_costs_no_tow(
     archive.edit(TOWS, lambda _: "\n".join([header, first, heading, *rows, ""]))
     (fault,) = archive.scan().faults
     assert (fault.reason_code, fault.line) == ("bad_list_row", 3)
-    assert "only 'maart 2014' stands in this row" in fault.message
+    assert "there is only 'maart 2014' in this row" in fault.message
     assert archive.scan().good.keys() == good_scan.good.keys()
     assert len(check_archive(archive.root).causes) == 1
 

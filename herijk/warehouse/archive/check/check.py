@@ -29,7 +29,7 @@ from herijk.warehouse.archive.profile.reading import parse_profiles, profile_tex
 from herijk.warehouse.archive.spelling.headers import split_header
 
 ROUNDS: Final = 8
-"""So often what was proposed is tried, at most."""
+"""How often what was proposed is tried, at most."""
 _PIECE: Final = 1 << 16
 
 
@@ -64,7 +64,7 @@ class Checked:
 
 
 def check_archive(root: Path) -> Checked:
-    """Look through an archive.
+    """Looks through an archive.
 
     Raises:
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
@@ -95,7 +95,7 @@ def _doubted(
     seen: Iterable[Sequence[Proposal]],
     listed: pl.DataFrame,
 ) -> Iterator[Proposal]:
-    """Give the proposals; what only some files of a season lack is not to be declared absent.
+    """Gives the proposals; what only some files of a season lack is not to be declared absent.
 
     A rate that the files say themselves leaves no question about it.
     """
@@ -114,7 +114,7 @@ def _doubted(
 
 
 def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[Fault]]:
-    """Return the lists, and what is wrong in them, in headers and in a tow of each season.
+    """The lists, and what is wrong in them, in headers and in a tow of each season.
 
     Files that nobody reads come first, and alone: they can be the lists.
     """
@@ -136,7 +136,7 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
 
 
 def quick_hash(path: Path) -> str:
-    """Return a hash of a file's size and ends: enough to find copies, and read in no time."""
+    """A hash of a file's size and ends: enough to find copies, and read in no time."""
     with path.open("rb") as file:
         start = file.read(_PIECE)
         size = path.stat().st_size
@@ -145,7 +145,7 @@ def quick_hash(path: Path) -> str:
 
 
 def _grouped(seen: Mapping[Fault, Sequence[Proposal]]) -> tuple[Cause, ...]:
-    """Return the faults by cause, those with most first."""
+    """The faults by cause, those with most first."""
     by_cause: dict[tuple[str, str], list[Fault]] = {}
     for fault in seen:
         by_cause.setdefault((fault.reason_code, fault.cause), []).append(fault)

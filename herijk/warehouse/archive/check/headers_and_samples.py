@@ -29,7 +29,7 @@ from herijk.words import Sentence, innermost, say
 
 
 def faults_in_headers(root: Path, index: ArchiveIndex, unused: Collection[str]) -> Iterator[Fault]:
-    """Read the header of every samples file, whatever is wrong with the row that names it.
+    """Reads the header of every samples file, whatever is wrong with the row that names it.
 
     Files that lists which can be read do not name say nothing of their season.
     """
@@ -44,7 +44,7 @@ def faults_in_headers(root: Path, index: ArchiveIndex, unused: Collection[str]) 
 
 
 def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fault]:
-    """Read the first tow of each season and kind of file whose header is good.
+    """Reads the first tow of each season and kind of file whose header is good.
 
     Where no tow of a season can be read, a file of it is read without judging its content.
     """
@@ -81,7 +81,7 @@ def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Itera
 
 
 def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> Iterator[Fault]:
-    """Read a samples file that no sound row names, and look which runs are in it.
+    """Reads a samples file that no sound row names, and looks which runs are in it.
 
     Its rate is that of its times: what a list says that cannot be read yet is not known.
     """
@@ -109,7 +109,7 @@ def _differ(one: float, other: float) -> bool:
 
 
 def _rate_of_its_own(tow: Row, rate: float) -> Fault:
-    """Return that a tow was sampled at another rate than the first of its season."""
+    """That a tow was sampled at another rate than the first of its season."""
     said = say(
         "By its times it has {own:g} samples per second, other than the first tow of its "
         "season: write that into the tow list, in a column 'meetfrequentie [Hz]'.",
@@ -119,7 +119,7 @@ def _rate_of_its_own(tow: Row, rate: float) -> Fault:
 
 
 def _with_columns_of_runs(fault: Fault, root: Path, profile: SeasonProfile) -> Fault:
-    """Return a fault with the columns that can be that of the runs, where only that is missing."""
+    """A fault with the columns that can be that of the runs, where only that is missing."""
     what = innermost(fault.message)
     if not isinstance(what, Sentence) or what.values.get("keys") != ("run",):
         return fault
@@ -128,7 +128,7 @@ def _with_columns_of_runs(fault: Fault, root: Path, profile: SeasonProfile) -> F
 
 
 def _other_rate(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault | None:
-    """Return that the rate cannot be right: at it all runs last half as long as planned, or less.
+    """That the rate cannot be right: at it all runs last half as long as planned, or less.
 
     Files with times say their rate themselves.
     """
@@ -150,7 +150,7 @@ def _other_rate(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault |
 
 
 def _other_plan(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault | None:
-    """Return that the file has other runs than are planned, with what their targets can be."""
+    """That the file has other runs than are planned, with what their targets can be."""
     in_file = _mean_speeds(samples)
     runs = index.runs.filter(tow_id=tow["tow_id"])
     present = set(in_file["run"])

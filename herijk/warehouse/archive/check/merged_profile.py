@@ -10,7 +10,7 @@ from herijk.warehouse.archive.check.proposals import OF_NAMES, Proposal
 
 
 def merged(text: str, proposals: Iterable[Proposal]) -> str:
-    """Return `archief.toml` with proposals written in; what is there stays."""
+    """`archief.toml` with proposals written in; what is there stays."""
     document = tomlkit.parse(text)
     for proposal in proposals:
         if proposal.section == "ignore":
@@ -42,7 +42,7 @@ def _in_section(document: Any, proposal: Proposal) -> None:
 
 
 def _add(table: Any, key: str, value: str) -> None:
-    """Add to a list; a new one goes before the tables, where TOML wants it."""
+    """Adds to a list; a new one goes before the tables, where TOML wants it."""
     if key in table:
         if value not in table[key]:
             table[key].append(value)
@@ -80,7 +80,7 @@ def _in_profile(document: Any, proposal: Proposal) -> None:
 
 
 def _loosen(profile: Any) -> None:
-    """Write `columns = { force = "trek" }` as a line for each, so that more can stand beside it."""
+    """Writes `columns = { force = "trek" }` as a line for each, so that more can be added."""
     columns = profile.get("columns")
     if isinstance(columns, InlineTable):
         profile.remove("columns")

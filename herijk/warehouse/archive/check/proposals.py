@@ -47,7 +47,7 @@ class Proposal:
         key: its key there; empty for `ignore`, `absent` and `reversed`.
         value: its value.
         season: the season of a profile, else 0.
-        is_active: it is no guess; otherwise it is written as a comment.
+        is_active: it is not a guess; otherwise it is written as a comment.
     """
 
     section: str
@@ -83,7 +83,7 @@ class Proposal:
 def propose(
     fault: Fault, named: Mapping[str, str], seasons: Mapping[str, int]
 ) -> tuple[Proposal, ...]:
-    """Return what would settle a fault; nothing where only a person can.
+    """What would settle a fault; nothing where only a person can.
 
     Args:
         fault: what is wrong.
@@ -141,7 +141,7 @@ def _of_decimals(path: str, values: Any, _: int) -> Iterator[Proposal]:
 def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
     """Columns that a samples file lacks: the one column that can be it, or declared absent.
 
-    A file without a column that can be log 1 or the force is no samples file: notes, say.
+    A file without a column that can be log 1 or the force is not a samples file: notes, say.
     """
     keys, header = values.get("keys", ()), values.get("header", ())
     if not season or not set(keys) <= set(_SAMPLES):
@@ -183,7 +183,7 @@ def _has_other_brackets(cell: str) -> bool:
 
 
 def _own_log_first(key: str, cells: list[str]) -> list[str]:
-    """Return headers that can be a log: of the second log first those that say so."""
+    """Headers that can be a log: of the second log first those that say so."""
     if key not in {"log1", "log2"}:
         return cells
     is_second = [bool(_OF_THE_SECOND.search(_without_unit(cell).strip())) for cell in cells]
@@ -256,7 +256,7 @@ def _is_like(cell: str, column: Column) -> bool:
 
 
 def _anothers(cell: str, key: str) -> bool:
-    """Whether a header is by its name another column's: wind is no log, also in knots."""
+    """Whether a header is another column's by its name: wind is not a log, also in knots."""
     others = (column for other, column in _SAMPLES.items() if other != key)
     like_another = any(_is_like(cell, c) and _can_be(cell, c) for c in others)
     return like_another and not _is_like(cell, _SAMPLES[key])
@@ -273,7 +273,7 @@ def _can_be(cell: str, column: Column) -> bool:
 
 
 def _without_unit(cell: str) -> str:
-    """Return the name in a header cell as it is written."""
+    """The name in a header cell as it is written."""
     name, unit = split_header(cell)
     if unit is None:
         return cell
@@ -281,7 +281,7 @@ def _without_unit(cell: str) -> str:
 
 
 def _season(path: str, named: Mapping[str, str]) -> int:
-    """Return the season of a samples file, 0 where its folder does not tell it."""
+    """The season of a samples file, 0 where its folder does not tell it."""
     own = (name for folder, name in named.items() if path.startswith(f"{folder}/"))
     name = next(own, path.partition("/")[0])
     digits = "".join(letter for letter in name if letter.isdigit())

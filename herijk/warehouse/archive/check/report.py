@@ -52,7 +52,7 @@ class CheckReport:
 
 
 def check_report(root: Path, checked: Checked, language: str) -> CheckReport:
-    """Return a check of an archive with its sentences in `en` or `nl`."""
+    """A check of an archive with its sentences in `en` or `nl`."""
     causes = [_cause_report(cause, language) for cause in checked.causes]
     return CheckReport(str(root), checked.tows, causes, checked.profile)
 

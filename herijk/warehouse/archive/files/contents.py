@@ -15,7 +15,7 @@ _CHUNK_BYTES: Final = 1 << 20
 
 
 def read_bytes(path: Path, max_bytes: int) -> bytes:
-    """Return the content of a file, unpacked when it is `.gz` or `.zst`.
+    """The content of a file, unpacked when it is `.gz` or `.zst`.
 
     Raises:
         DefectiveInputError: `too_large`, `samples_missing` or `unreadable_file`.
@@ -30,7 +30,7 @@ def read_bytes(path: Path, max_bytes: int) -> bytes:
 
 
 def read_start(path: Path, most: int) -> bytes:
-    """Return the first bytes of a file, unpacked, up to a whole line where there is one.
+    """The first bytes of a file, unpacked, up to a whole line where there is one.
 
     Raises:
         DefectiveInputError: `samples_missing` or `unreadable_file`.
@@ -41,7 +41,7 @@ def read_start(path: Path, most: int) -> bytes:
 
 
 def _first_bytes(path: Path, most: int) -> bytes:
-    """Return a file, unpacked, but not more of it: a small one can unpack to gigabytes."""
+    """A file, unpacked, but not more of it: a small one can unpack to gigabytes."""
     compression = COMPRESSION.get(path.suffix.casefold())
     try:
         with path.open("rb") as raw:
@@ -67,7 +67,7 @@ def _unpack(raw: IO[bytes], compression: str, most: int) -> bytes:
 
 
 def not_whole(path: Path, kind: str, error: Exception) -> DefectiveInputError:
-    """Return the error for a file of another program that is damaged or cut off."""
+    """The error for a file of another program that is damaged or cut off."""
     said = say(
         "'{name}' is not a whole {kind} file: {error}.", name=path.name, kind=kind, error=error
     )
@@ -75,7 +75,7 @@ def not_whole(path: Path, kind: str, error: Exception) -> DefectiveInputError:
 
 
 def too_large(path: Path, max_bytes: int) -> DefectiveInputError:
-    """Return the error for a file that holds more than `max_bytes`."""
+    """The error for a file that holds more than `max_bytes`."""
     return DefectiveInputError(
         "too_large",
         say(

@@ -72,7 +72,7 @@ _CHOICES: Final = {"crew_class": ["H", "D"], "altered": ["ja", "nee"]}
 
 
 def write_templates(root: Path) -> None:
-    """Make an empty archive.
+    """Makes an empty archive.
 
     Raises:
         MissingKnowledgeError: there is something in the folder already.
@@ -88,7 +88,7 @@ def write_templates(root: Path) -> None:
 
 
 def _write_list(path: Path, kind: ListKind, example: dict[str, object]) -> None:
-    """Write a spreadsheet with a header, an example, and a check on each column with limits."""
+    """Writes a spreadsheet with a header, an example, and a check on each column with limits."""
     import xlsxwriter  # type: ignore[import-untyped]  # noqa: PLC0415 - only here
 
     with xlsxwriter.Workbook(str(path)) as book:
@@ -105,7 +105,7 @@ def _write_list(path: Path, kind: ListKind, example: dict[str, object]) -> None:
 
 
 def _rule(column: Column, table: type[dy.Schema]) -> dict[str, object] | None:
-    """Return what a spreadsheet holds a column against: the limits that its table declares."""
+    """What a spreadsheet holds a column against: the limits that its table declares."""
     if column.key in _CHOICES:
         return {"validate": "list", "source": _CHOICES[column.key]}
     declared = table.columns().get(column.key)

@@ -45,7 +45,7 @@ class ArchiveFile:
 
 
 def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[ArchiveFile]:
-    """Return the lists of a kind; season 0 where the name does not tell it.
+    """The lists of a kind; season 0 where the name does not tell it.
 
     Hidden files are left out. The order is that of the names.
 
@@ -74,14 +74,14 @@ def _match_list(kind: ListKind, name: str) -> re.Match[str] | None:
 
 
 def _named(named: Mapping[str, str]) -> Iterator[tuple[str, str, int]]:
-    """Give path, kind and season (0 for none) of what `[files]` names."""
+    """Gives path, kind and season (0 for none) of what `[files]` names."""
     for path, stands_for in sorted(named.items()):
         if match := STANDS_FOR.fullmatch(stands_for):
             yield path, match[1], int(match[2] or 0)
 
 
 def list_sample_files(root: Path, named: Mapping[str, str]) -> list[ArchiveFile]:
-    """Return all samples files: `meetdata_<jaar>/<meetfile>` with a suffix of samples.
+    """All samples files: `meetdata_<jaar>/<meetfile>` with a suffix of samples.
 
     Those in a folder of their own, `meetdata_<jaar>/<meetfile>/`, come too. Season 0 are those of
     a folder without a year.
@@ -95,7 +95,7 @@ def list_sample_files(root: Path, named: Mapping[str, str]) -> list[ArchiveFile]
 
 
 def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
-    """Return the files and folders of an archive that nobody reads, relative to it."""
+    """The files and folders of an archive that nobody reads, relative to it."""
     folders = {kind.folder: _find_folder(root, kind.folder) for kind in LIST_KINDS}
     strangers = [
         entry
@@ -117,7 +117,7 @@ def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
 
 
 def _opened(entry: Path, known: set[Path]) -> list[Path]:
-    """Return an entry, or what is in it where something in it is known under `[files]`."""
+    """An entry, or what is in it where something in it is known under `[files]`."""
     if entry in known:
         return []
     if not any(path.is_relative_to(entry) for path in known):
@@ -130,7 +130,7 @@ def _path_in(root: Path, entry: Path) -> str:
 
 
 def find_boats_file(root: Path, named: Mapping[str, str]) -> str | None:
-    """Return the path of the boat list, whatever kind of file it is; None when there is none."""
+    """The path of the boat list, whatever kind of file it is; None when there is none."""
     lists = list_files(root, BOATS, named)
     return lists[0].path if lists else None
 
@@ -158,7 +158,7 @@ def _entries_of(root: Path, folder: str) -> list[Path]:
 
 
 def _find_folder(root: Path, name: str) -> Path:
-    """Return a folder, however its name is capitalised."""
+    """A folder, however its name is capitalised."""
     alike = [entry for entry in _entries(root) if entry.name.casefold() == name]
     return alike[0] if alike else root / name
 
@@ -183,7 +183,7 @@ def _can_be_written(name: str) -> bool:
 
 
 def list_misnamed(root: Path) -> list[str]:
-    """Return files and folders whose names are no text, which are not read, with `?` for that."""
+    """Files and folders that are not read as their names are not text; `?` marks what is not."""
     misnamed = (
         Path(folder, name)
         for folder, folders, files in os.walk(root)
@@ -199,7 +199,7 @@ def _archive_file(root: Path, entry: Path, season: int) -> ArchiveFile:
 
 
 def path_inside(root: Path, relative: str) -> Path:
-    """Return the full path of a file of the archive.
+    """The full path of a file of the archive.
 
     Raises:
         DefectiveInputError: `path_outside_archive`.
@@ -219,7 +219,7 @@ def _is_inside(root: Path, full: Path) -> bool:
 
 
 def outside_archive(relative: str) -> DefectiveFileError:
-    """Return the error for a path that leaves the archive."""
+    """The error for a path that leaves the archive."""
     return DefectiveFileError(
         "path_outside_archive",
         say("'{path}' leads outside the archive, where nothing is read.", path=relative),

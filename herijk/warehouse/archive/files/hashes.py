@@ -30,7 +30,7 @@ class FileHashes:
 
     @classmethod
     def load(cls, path: Path) -> "FileHashes":
-        """Return the cache saved at `path`; an empty one when it is absent or damaged."""
+        """The cache saved at `path`; an empty one when it is absent or damaged."""
         try:
             stored = json.loads(path.read_text(encoding="utf-8"))
             return cls(
@@ -43,12 +43,12 @@ class FileHashes:
             return cls()
 
     def save(self, path: Path) -> None:
-        """Write the cache to `path` in one step: a reader sees the old one or the new one."""
+        """Writes the cache to `path` in one step: a reader sees the old one or the new one."""
         with written_beside(path) as beside:
             beside.write_text(json.dumps(self.entries, indent=0, sort_keys=True), encoding="utf-8")
 
     def hash_samples(self, root: Path, path: str) -> str:
-        """Return the SHA-256 of samples; of a file per run that of their hashes, in their order.
+        """The SHA-256 of samples; of a file per run that of their hashes, in their order.
 
         Args:
             root: the archive.
@@ -60,7 +60,7 @@ class FileHashes:
         return hash_of_parts([self.hash_file(root / part) for part in path.split(PARTS)])
 
     def hash_file(self, path: Path) -> str:
-        """Return the SHA-256 of a file's content, as hexadecimal text.
+        """The SHA-256 of a file's content, as hexadecimal text.
 
         Raises:
             OSError: the file cannot be read.
@@ -82,7 +82,7 @@ class FileHashes:
 
 
 def hash_of_parts(hashes: list[str]) -> str:
-    """Return one hash of several files from theirs, in their order; that of a single one is it."""
+    """One hash of several files from theirs, in their order; that of a single one is it."""
     if len(hashes) == 1:
         return hashes[0]
     return hashlib.sha256("\n".join(hashes).encode()).hexdigest()

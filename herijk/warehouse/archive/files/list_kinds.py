@@ -173,4 +173,4 @@ RACES: Final = ListKind(
     ),
 )
 LIST_KINDS: Final = (BOATS, TOWS, LAMPS, WINDOWS, FORCE_CHECKS, REGISTERS, RACES)
-"""Of kinds that a header fits equally, the first is meant: lamps before windows."""
+"""Where a header fits several kinds equally, the first is meant: lamps before windows."""

@@ -36,19 +36,19 @@ _RUN_ALONE: Final = re.compile(r"(?:run|vaart|lauf|r|no|nr)?[ _.-]*([0-9]{1,2})"
 
 
 def split_sheet(path: str) -> tuple[str, str]:
-    """Return file and sheet of `Lijsten.xlsx#Proeven`; an empty sheet where none is named."""
+    """File and sheet of `Lijsten.xlsx#Proeven`; an empty sheet where none is named."""
     file, mark, sheet = path.rpartition("#")
     return (file, sheet) if mark and file.casefold().endswith(SPREADSHEETS) else (path, "")
 
 
 def sample_suffix(name: str) -> str:
-    """Return the suffix of a samples file, in lower case; empty when it is none."""
+    """The suffix of a samples file, in lower case; empty for any other file."""
     folded = name.casefold()
     return next((suffix for suffix in SAMPLE_SUFFIXES if folded.endswith(suffix)), "")
 
 
 def kind_of(path: Path) -> str:
-    """Return the suffix of a file as it is unpacked, in lower case: `.csv` of `x.csv.gz`."""
+    """The suffix of a file as it is unpacked, in lower case: `.csv` of `x.csv.gz`."""
     name = path.name.casefold()
     for packed in COMPRESSION:
         name = name.removesuffix(packed)
@@ -62,13 +62,13 @@ def can_hold_data(path: Path) -> bool:
 
 
 def match_key(name: str) -> str:
-    """Return the name of a samples file for comparing: folded, without suffix."""
+    """The name of a samples file for comparing: folded, without suffix."""
     folded = fold_word(name)
     return folded.removesuffix(sample_suffix(folded)).strip()
 
 
 def as_one_run(name: str) -> tuple[str, int] | None:
-    """Return the tow and the run that the name of a samples file says, None where it says none.
+    """The tow and the run that the name of a samples file says, None where it says none.
 
     `snol 8h 2014 run 3.csv`, `snol 8h 2014_3.lvm` and `snol 8h 2014 r03.txt` are run 3 of
     `snol 8h 2014`.

@@ -31,7 +31,7 @@ def keep(
     faults: list[Fault],
     more: list[Fault] | None = None,
 ) -> list[Entry]:
-    """Return the entries that pass a check; the others leave a fault, and `more` of a row."""
+    """The entries that pass a check; the others leave a fault, and `more` of a row."""
     passed = []
     for entry in entries:
         try:
@@ -46,7 +46,7 @@ def keep(
 
 
 def unique_ids(entries: Iterable[Entry]) -> Callable[[Entry], None]:
-    """Return the check that a row's `sleep_id` is its own."""
+    """The check that a row's `sleep_id` is its own."""
     by_id: dict[str, list[Entry]] = defaultdict(list)
     for entry in entries:
         if entry.tow_id is not None:
@@ -72,7 +72,7 @@ def unique_ids(entries: Iterable[Entry]) -> Callable[[Entry], None]:
 
 
 def read_cells(entry: Entry, profiles: Profiles) -> None:
-    """Read what the row itself says of the tow, without its files."""
+    """Reads what the row itself says of the tow, without its files."""
     entry.row.check_whole()
     rate_hz = profiles.for_season(entry.season).sample_rate_hz
     read = all_of(
@@ -88,7 +88,7 @@ def read_cells(entry: Entry, profiles: Profiles) -> None:
 
 
 def lost_cells(entry: Entry) -> Iterator[Fault]:
-    """Return a fault for each cell that the tow does without."""
+    """A fault for each cell that the tow does without."""
     for error in entry.lost_cells:
         fault = fault_from(error, entry.list_path, entry.tow_id)
         message = say("{what} The cell counts as empty.", what=fault.message)
@@ -96,7 +96,7 @@ def lost_cells(entry: Entry) -> Iterator[Fault]:
 
 
 def fits_table(entries: Iterable[Entry]) -> Callable[[Entry], None]:
-    """Return the check that a tow lies within the limits of the table `tows`."""
+    """The check that a tow lies within the limits of the table `tows`."""
     frame = frame_of(ListedTows, [entry.tow for entry in entries])
     why = {row["tow_id"]: sentence for row, sentence in misfits(ListedTows, frame)}
 
@@ -108,7 +108,7 @@ def fits_table(entries: Iterable[Entry]) -> Callable[[Entry], None]:
 
 
 def unique_samples(entries: Iterable[Entry]) -> Callable[[Entry], None]:
-    """Return the check that a row's samples are its own, by content.
+    """The check that a row's samples are its own, by content.
 
     A first file may be the second file of another tow of the same boat: that is how two tows are
     combined.
@@ -168,7 +168,7 @@ def _listed_twice(entry: Entry, other: Entry) -> DefectiveInputError:
 
 
 def join_boat(entry: Entry, boats: Boats) -> None:
-    """Give the tow its boat, with the sizes that were not written down that day."""
+    """Gives the tow its boat, with the sizes that were not written down that day."""
     fsn_no = entry.tow["fsn_no"]
     why = boats.bad.get(fsn_no)
     if why is not None:
@@ -195,7 +195,7 @@ def join_boat(entry: Entry, boats: Boats) -> None:
 
 
 def place_day(entry: Entry, profiles: Profiles) -> None:
-    """Note which logs were on board that day, unless it is set aside."""
+    """Notes which logs were on board that day, unless it is set aside."""
     day = entry.tow["tow_date"]
     reason = profiles.reason_set_aside(day)
     if reason is not None:

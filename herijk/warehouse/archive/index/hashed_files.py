@@ -24,7 +24,7 @@ class Hashes:
         self.rows: dict[str, tuple[str, int]] = {}
 
     def add(self, path: str, full_path: Path) -> str:
-        """Return the hash of a file and remember that it was looked at.
+        """The hash of a file, which is noted as looked at.
 
         Raises:
             DefectiveInputError: `unreadable_file`.
@@ -46,13 +46,13 @@ class Hashes:
         return self.rows[path][0]
 
     def add_samples(self, file: SamplesFile) -> str:
-        """Return the hash of samples, of several files one of their hashes."""
+        """The hash of samples, of several files one of their hashes."""
         sha256 = hash_of_parts([self.add(part.path, part.full_path) for part in file.parts])
         self.rows[file.path] = (sha256, sum(self.rows[part.path][1] for part in file.parts))
         return sha256
 
     def frame(self) -> dy.DataFrame[ListedFiles]:
-        """Return every file looked at."""
+        """Every file looked at."""
         rows = [(path, *self.rows[path]) for path in sorted(self.rows)]
         return frame_of(ListedFiles, rows)
 

@@ -80,7 +80,7 @@ class ArchiveIndex:
 def index_archive(
     root: Path, hash_file: Callable[[Path], str], profiles: Profiles | None = None
 ) -> ArchiveIndex:
-    """Read the lists of an archive and find the files of every tow.
+    """Reads the lists of an archive and finds the files of every tow.
 
     Args:
         root: folder of the archive.
@@ -174,7 +174,7 @@ def _add_instruments(
     good: list[Entry],
     faults: list[Fault],
 ) -> None:
-    """Put what is known of the load cell and the warning lamps into the tows."""
+    """Puts what is known of the load cell and the warning lamps into the tows."""
     tow_ids = {entry.tow_id for entry in entries if entry.tow_id is not None}
     checks, unread = read_force_checks(root, profiles.wording)
     lamps, unread_lamps = read_lamps(root, profiles.wording, tow_ids)

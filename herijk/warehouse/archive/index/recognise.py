@@ -32,19 +32,19 @@ from herijk.warehouse.archive.spelling.numbers import is_number
 from herijk.warehouse.archive.spelling.wording import Wording
 
 MOST_FILES: Final = 2000
-"""Of a folder of another name; photographs can be many."""
+"""Files of a folder of another name that are looked at; photographs can be many."""
 
 FEWEST_COLUMNS: Final = 3
-"""So many columns must have names that are known, or hold numbers."""
+"""How many columns must have names that are known, or hold numbers."""
 
 FEWEST_SAMPLES: Final = 50
-"""So many rows of numbers must be at the start of a file for it to hold samples."""
+"""How many rows of numbers must be at the start of a file for it to hold samples."""
 
 _YEAR: Final = re.compile(r"(?<![0-9])((?:19|20)[0-9]{2})(?![0-9])")
 
 
 def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
-    """Give what a file, or what lies in a folder, can stand for, by path.
+    """Gives what a file, or what lies in a folder, can stand for, by path.
 
     Args:
         root: the archive.
@@ -54,7 +54,7 @@ def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
 
 
 def guessed(root: Path, path: str) -> Iterator[tuple[str, str]]:
-    """Give what files of which nobody knows the words can stand for, by what is in their columns.
+    """Gives what files of which nobody knows the words can stand for, by what is in their columns.
 
     A list with a column of dates can be of tows, one without of boats, and long rows of numbers
     samples.
@@ -69,7 +69,7 @@ def guessed(root: Path, path: str) -> Iterator[tuple[str, str]]:
 def _stand_for(
     root: Path, path: str, kinds_of: Callable[[Path], Mapping[str, str]]
 ) -> Iterator[tuple[str, str]]:
-    """Give what files stand for, given the kinds of each by its sheets; samples as a folder."""
+    """Gives what files stand for, given the kinds of each by its sheets; samples as a folder."""
     full = root / path
     folders: set[Path] = set()
     for file in _files_under(full):
@@ -88,7 +88,7 @@ def _stand_for(
 
 
 def _recognised_kinds(file: Path) -> Mapping[str, str]:
-    """Return the kind of each sheet; that of the file, without a name, where they are alike."""
+    """The kind of each sheet; that of the file, without a name, where they are alike."""
     if kind_of(file) in {".tdms", ".lvm", ".parquet"} or _is_labview(file):
         return {"": SAMPLES}
     is_list, is_samples = file.suffix.casefold() in LIST_SUFFIXES, bool(sample_suffix(file.name))
@@ -107,7 +107,7 @@ def _recognised_kinds(file: Path) -> Mapping[str, str]:
 
 
 def _guessed_kinds(file: Path) -> Mapping[str, str]:
-    """Return the kind of each sheet by its content."""
+    """The kind of each sheet by its content."""
     kinds = {sheet.name: _kind_by_content(sheet) for sheet in _sheets_of(file, TOWS.columns)}
     return {sheet: kind for sheet, kind in kinds.items() if kind is not None}
 
@@ -122,7 +122,7 @@ def _is_labview(file: Path) -> bool:
 
 
 def _sheets_of(file: Path, columns: Sequence[Column]) -> list[Sheet]:
-    """Return the sheets of a workbook, or the start of a text as one; none of what is neither."""
+    """The sheets of a workbook, or the start of a text as one; none of what is neither."""
     suffix = file.suffix.casefold()
     try:
         if suffix in SPREADSHEETS:
@@ -152,7 +152,7 @@ def _mostly(is_one: Callable[[str], bool], cells: Sequence[str]) -> bool:
 
 
 def _files_under(full: Path) -> list[Path]:
-    """Return a file, or the first files in a folder; links are left out."""
+    """A file, or the first files in a folder; links are left out."""
     if full.is_symlink():
         return []
     if full.is_file():
@@ -162,14 +162,14 @@ def _files_under(full: Path) -> list[Path]:
 
 
 def _folder_of_season(top: Path, file: Path) -> Path:
-    """Return the outermost folder of a samples file whose name has a year, else the top."""
+    """The outermost folder of a samples file whose name has a year, else the top."""
     inside = [parent for parent in file.parents if parent.is_relative_to(top)]
     dated = [folder for folder in inside if _YEAR.search(folder.name)]
     return dated[-1] if dated else inside[-1]
 
 
 def _list_of_year(kind: str, *names: str) -> str:
-    """Return a kind of list with the year in the first of these names that has one."""
+    """A kind of list with the year in the first of these names that has one."""
     if kind == BOATS.name:
         return kind
     dated = (_with_year(kind, name) for name in names)
@@ -183,7 +183,7 @@ def _with_year(kind: str, name: str) -> str:
 
 @lru_cache(1000)
 def _named(header: tuple[str, ...], columns: tuple[Column, ...]) -> int:
-    """Return how many cells of a header are names of columns, less the columns it lacks."""
+    """How many cells of a header are names of columns, less the columns it lacks."""
     cells = [cell for cell in header if cell.strip()]
     named = sum(any(likeness(cell, column) > 0 for column in columns) for cell in cells)
     lacking = [c for c in columns if c.required and not any(likeness(x, c) > 0 for x in cells)]

@@ -16,7 +16,7 @@ FilesByName = dict[tuple[int, str], list["SamplesFile"]]
 
 
 def _names(entry: Entry) -> list[str]:
-    """Return the names of the files in a row; of a file per run with `PARTS` between them."""
+    """The names of the files in a row; of a file per run with `PARTS` between them."""
     cells = (entry.row.optional_text(key) for key in ("file", "second_file"))
     return [_without_own_folder(cell, entry.season) for cell in cells if cell is not None]
 
@@ -31,13 +31,13 @@ def _without_own_folder(name: str, season: int) -> str:
 
 
 def names_of_files(entry: Entry) -> Iterator[str]:
-    """Give the name of each single file in a row."""
+    """Gives the name of each single file in a row."""
     for name in _names(entry):
         yield from name.split(PARTS)
 
 
 def files_by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[Entry]) -> FilesByName:
-    """Return the samples by season and the name they answer to.
+    """The samples by season and the name they answer to.
 
     Files that are a run each answer together to what their names have in common, unless a row
     names one of them by itself.
@@ -59,7 +59,7 @@ def files_by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[Entry])
 
 
 def files_meant(name: str, season: int, by_name: FilesByName) -> list[SamplesFile]:
-    """Return the files a name in a list can mean; a name with its extension is more precise."""
+    """The files a name in a list can mean; a name with its extension is more precise."""
     key = match_key(name)
     alike = by_name.get((season, key)) or by_name.get((0, key), [])
     exact = [file for file in alike if fold_word(file.parts[0].full_path.name) == fold_word(name)]
@@ -72,7 +72,7 @@ def not_listed(
     unread_seasons: set[int],
     by_name: FilesByName,
 ) -> list[Fault]:
-    """Return a fault for each samples file no row names, in seasons whose list could be read.
+    """A fault for each samples file no row names, in seasons whose list could be read.
 
     Rows that are set aside for another reason name their files all the same.
     """
@@ -97,7 +97,7 @@ def not_listed(
 
 
 def find_files(entry: Entry, by_name: FilesByName, hashes: Hashes) -> None:
-    """Find the samples of a row and note them in its tow."""
+    """Finds the samples of a row and notes them in its tow."""
     entry.files = [_find_files_of(entry, names, by_name) for names in _names(entry)]
     first, second = entry.files[0], entry.files[1] if len(entry.files) > 1 else None
     entry.tow |= {
@@ -111,7 +111,7 @@ def find_files(entry: Entry, by_name: FilesByName, hashes: Hashes) -> None:
 
 
 def _find_files_of(entry: Entry, names: str, by_name: FilesByName) -> SamplesFile:
-    """Return the samples of a cell: of one name, or of one for each run."""
+    """The samples of a cell: of one name, or of one for each run."""
     files = [_find_file(entry, name, by_name) for name in names.split(PARTS)]
     return SamplesFile(tuple(part for file in files for part in file.parts))
 
@@ -119,7 +119,7 @@ def _find_files_of(entry: Entry, names: str, by_name: FilesByName) -> SamplesFil
 def _find_file(entry: Entry, name: str, by_name: FilesByName) -> SamplesFile:
     values = {"name": shorten(name), "folder": f"meetdata_{entry.season}/"}
     if "/" in name or "\\" in name or name.startswith(".."):
-        message = "'{name}' is a path; only the name of a file in {folder} can stand here."
+        message = "'{name}' is a path; only the name of a file in {folder} can be given here."
         raise entry.row.fault(say(message, **values), "path_outside_archive")
     candidates = files_meant(name, entry.season, by_name)
     if not candidates:

@@ -19,7 +19,7 @@ from herijk.words import say
 def read_tow_lists(
     root: Path, profiles: Profiles, faults: list[Fault]
 ) -> tuple[list[Entry], set[int]]:
-    """Return the rows of all tow lists, and the seasons of lists that cannot be read."""
+    """The rows of all tow lists, and the seasons of lists that cannot be read."""
     entries: list[Entry] = []
     unread_seasons: set[int] = set()
     for file in list_files(root, TOWS, profiles.wording.files):
@@ -37,7 +37,7 @@ def read_tow_lists(
 
 
 def _year_of(row: ListRow) -> int:
-    """Return the season of a row in a list of all years; 0 where its date cannot be read."""
+    """The season of a row in a list of all years; 0 where its date cannot be read."""
     day = _day_of(row)
     return 0 if day is None else day.year
 
@@ -50,7 +50,7 @@ def _day_of(row: ListRow) -> dt.date | None:
 
 
 def idle_settings(profiles: Profiles, entries: list[Entry]) -> list[Fault]:
-    """Return what `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
+    """What `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
     days = {_day_of(entry.row) for entry in entries}
     seasons = {entry.season for entry in entries}
     tows = {entry.tow_id for entry in entries}

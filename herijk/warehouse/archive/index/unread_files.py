@@ -25,7 +25,7 @@ from herijk.words import say
 
 
 def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
-    """Return what is not there of that without which nothing can be read.
+    """What is not there of that without which nothing can be read.
 
     Raises:
         MissingKnowledgeError: there is no archive.
@@ -50,7 +50,7 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
 
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
-    """Return what lies in the archive and is not read; what it can be, where that can be told."""
+    """What lies in the archive and is not read; what it can be, where that can be told."""
     is_lacking = root.is_dir() and bool(missing_lists(root, profiles))
     message = "The name of '{name}' has letters that cannot be read; give it another name."
     misnamed = [
@@ -65,7 +65,7 @@ def strangers(root: Path, profiles: Profiles) -> list[Fault]:
 
 
 def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
-    """Return the sentence about what is not read; while a list is lacking it can be anything."""
+    """The sentence about what is not read; while a list is lacking it can be anything."""
     kind = Path(path)
     if kind.suffix.lower() in PACKED:
         return say("'{path}' is not read: it is packed. Unpack it in its folder.", path=path)

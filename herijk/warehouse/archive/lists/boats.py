@@ -45,12 +45,12 @@ class Boats:
     more: tuple[Fault, ...] = ()
 
     def frame(self) -> pl.DataFrame:
-        """Return the good boats, a row for each crew that rows them, in the order of the list."""
+        """The good boats, a row for each crew that rows them, in the order of the list."""
         rows = [{**boat, **self.good[boat["fsn_no"]], **_crew_of(boat)} for boat in self.crews]
         return frame_of(ListedBoats, rows).unique(maintain_order=True)
 
     def find(self, fsn_no: str) -> Row | None:
-        """Return a boat by its number; leading zeros do not matter where that leaves one boat."""
+        """A boat by its number; leading zeros do not matter where that leaves one boat."""
         if fsn_no in self.good:
             return self.good[fsn_no]
         alike = [b for number, b in self.good.items() if _bare(number) == _bare(fsn_no)]
@@ -66,7 +66,7 @@ def _crew_of(boat: Row) -> Row:
 
 
 def read_boats(root: Path, path: str, wording: Wording) -> Boats:
-    """Read the boat list; a defective row or an ambiguous boat becomes a fault.
+    """Reads the boat list; a defective row or an ambiguous boat becomes a fault.
 
     A boat may have a row for each of its names and crews. Dimensions, weight and crew may be empty.
 
@@ -104,7 +104,7 @@ def _boat(row: ListRow) -> Row:
 
 
 def _merged(row: ListRow, boat: Row, before: Row | None) -> Row:
-    """Return a boat with what its rows so far say; two sizes or types cannot both be right."""
+    """A boat with what its rows so far say; two sizes or types cannot both be right."""
     if before is None:
         return boat
     for key in OF_THE_BOAT:

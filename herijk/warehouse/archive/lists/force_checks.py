@@ -20,16 +20,16 @@ GRAVITY_M_S2: Final = 9.813
 """In the Netherlands."""
 
 ONE_READING_SD: Final = 0.003
-"""Of the ratio of one reading, where a day has too few to show it (inferred)."""
+"""Spread of the ratio of one reading, where a day has too few to show it (inferred)."""
 
 WEIGHT_SD: Final = 0.001
-"""Of the known weight (inferred)."""
+"""Relative error of the known weight (inferred)."""
 
 FEWEST_READINGS: Final = 3
 
 
 def read_force_checks(root: Path, wording: Wording) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Read every list of readings of the load cell, and the lines that cannot be read."""
+    """Reads every list of readings of the load cell, and the lines that cannot be read."""
     return read_lists(root, FORCE_CHECKS, wording, _force_check)
 
 

@@ -22,7 +22,7 @@ from herijk.words import say
 def read_lamps(
     root: Path, wording: Wording, tow_ids: Collection[str]
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Read every list of lamps, and the lines that cannot be read or are of no listed tow."""
+    """Reads every list of lamps, and the lines that cannot be read or are of no listed tow."""
     return read_lists(root, LAMPS, wording, partial(_lamp, tow_ids))
 
 

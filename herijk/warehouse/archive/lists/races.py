@@ -25,7 +25,7 @@ _ROWING_TIME: Final = re.compile(
 def read_races(
     root: Path, wording: Wording | None = None
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Read every `wedstrijden/<naam>_<jaar>.csv`.
+    """Reads every `wedstrijden/<naam>_<jaar>.csv`.
 
     Returns:
         One row a result (`ListedRaces`; distances in m, times in s, penalties in W), and the lines
@@ -42,7 +42,7 @@ _RESULT: Final = ("race", "race_date", "fsn_no", "rowers", "crew_class")
 
 
 def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
-    """Return the results of crews that have one in a race; of equal rows the first counts."""
+    """The results of crews that have one in a race; of equal rows the first counts."""
     others = [name for name in results.columns if name not in {"path", "line"}]
     is_again = pl.struct(others).is_first_distinct().not_()
     one = results.filter(is_again.not_())

@@ -28,7 +28,7 @@ _BELOW_ONE: Final = 0.999
 def read_published_registers(
     root: Path, wording: Wording | None = None
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Read every `sloepregister/sloepregister_<jaar>.csv`.
+    """Reads every `sloepregister/sloepregister_<jaar>.csv`.
 
     Returns:
         One row per line of a register (`PrintedLines`), and the lines that cannot be read. A boat

@@ -21,7 +21,7 @@ from herijk.warehouse.archive.spelling.text import fold_word, shorten
 from herijk.words import say
 
 TWICE: Final = 2.0
-"""So many times what the boat list says cannot be right (inferred)."""
+"""A size this many times that of the boat list cannot be right (inferred)."""
 _DIMENSIONS: Final = {
     column.key: column
     for column in TOWS.columns
@@ -33,7 +33,7 @@ _VALUES: Final = tuple(
     for column in TOWS.columns
     if column.key != "tow_id" and column.key in TOWS.table.columns()
 )
-"""Columns whose cells are values of the tow as they stand."""
+"""Columns whose cells are values of the tow as they are."""
 _DECISIVE: Final = frozenset({"speed_correction_ratio", "sample_rate_hz", "altered"})
 """Optional, but where one cannot be read an empty cell would say something else: no alteration."""
 _DISPENSABLE: Final = frozenset(
@@ -47,7 +47,7 @@ _TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
 
 
 def per_tow(rows: Sequence[ListRow]) -> list[ListRow]:
-    """Return one row for each tow, with its id, also of a list with a row for each run.
+    """One row for each tow, with its id, also of a list with a row for each run.
 
     Where there is no column of ids, day, boat and crew are the id.
     """
@@ -75,7 +75,7 @@ def _with_id(row: ListRow) -> ListRow:
 
 
 def _joined(runs: Sequence[ListRow]) -> ListRow:
-    """Return the rows of a tow's runs as one; its files are in the order of the runs."""
+    """The rows of a tow's runs as one; its files are in the order of the runs."""
     runs = sorted(runs, key=lambda row: row.cells.get("run", "").zfill(2))
     numbers = [row.cells.get("run", "") for row in runs]
     files = list(dict.fromkeys(row.cells.get("file", "") for row in runs))
@@ -89,7 +89,7 @@ def _joined(runs: Sequence[ListRow]) -> ListRow:
 def _why_not_one(
     runs: Sequence[ListRow], numbers: Sequence[str], files: Sequence[str]
 ) -> str | None:
-    """Return what is wrong with the rows of one tow's runs together, None where nothing is."""
+    """What is wrong with the rows of one tow's runs together, None where nothing is."""
     first = runs[0]
     for row in runs:
         if row.row_problem is not None:
@@ -116,7 +116,7 @@ def _why_not_one(
 def read_tow(
     row: ListRow, season: int, default_rate_hz: int
 ) -> tuple[Row, list[DefectiveInputError]]:
-    """Return the values of a tow, without its files; empty dimensions are None.
+    """The values of a tow, without its files; empty dimensions are None.
 
     Returns:
         The values; and what is wrong in cells that the tow can do without, which count as empty.
@@ -150,7 +150,7 @@ def read_tow(
 
 
 def unlike_boat(tow: Row, boat: Row, row: ListRow) -> dict[str, DefectiveInputError]:
-    """Return what is wrong in cells that the boat list contradicts: in feet, or a digit too many.
+    """What is wrong in cells that the boat list contradicts: in feet, or a digit too many.
 
     No rebuilding makes a boat twice as long or heavy. Which of the two is right nobody can know.
     """
@@ -169,7 +169,7 @@ def unlike_boat(tow: Row, boat: Row, row: ListRow) -> dict[str, DefectiveInputEr
 
 
 def fill_dimensions(tow: Row, boat: Row, row: ListRow, has_wind: bool) -> Row:
-    """Return the tow with the boat's dimensions where that day's were not written down.
+    """The tow with the boat's dimensions where that day's were not written down.
 
     Args:
         tow: what the row says.
@@ -190,7 +190,7 @@ def fill_dimensions(tow: Row, boat: Row, row: ListRow, has_wind: bool) -> Row:
 
 
 def read_selection(row: ListRow, plan: Plan) -> frozenset[int]:
-    """Return the runs to use; runs of the second file are 21 and on.
+    """The runs to use; runs of the second file are 21 and on.
 
     Args:
         row: row of a tow list.
@@ -214,7 +214,7 @@ def read_selection(row: ListRow, plan: Plan) -> frozenset[int]:
 
 
 def _spelled_out(cell: str) -> str:
-    """Return the cell with ranges such as 1-6 as single numbers, and commas for `en`."""
+    """The cell with ranges such as 1-6 as single numbers, and commas for `en`."""
 
     def numbers(match: re.Match[str]) -> str:
         letter = "b" if match[1].startswith("b") else ""

@@ -26,7 +26,7 @@ RunsOf = Mapping[tuple[int, str | None], Collection[int]]
 def read_windows(
     root: Path, wording: Wording, runs_of: RunsOf
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Return the windows for tows that are not set aside (`ListedWindows`), and the faulty rows.
+    """The windows for tows that are not set aside (`ListedWindows`), and the faulty rows.
 
     Two windows for one run cost both, as nobody can know which is right.
     """
@@ -39,7 +39,7 @@ def read_windows(
 
 
 def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
-    """Return a fault for each window that ends after its run.
+    """A fault for each window that ends after its run.
 
     Args:
         windows: rows of `ListedWindows`.
@@ -57,7 +57,7 @@ def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
 
 
 def check_order(row: ListRow, window: Row) -> None:
-    """Raise where a window, or the time that a lamp burned, does not end after it begins."""
+    """Raises where a window, or the time that a lamp burned, does not end after it begins."""
     start, end = window["start_s"], window["end_s"]
     if start >= end:
         message = "'van' is {start} s and 'tot' {end} s; a window ends after it begins."

@@ -31,19 +31,19 @@ from herijk.words import say
 
 DROPOUT_M_S: Final = 0.1
 SPEED_SPIKE_RATIO: Final = 0.3
-"""Of the speed around it: a boat and its crew weigh a ton, and cannot change so much in seconds."""
+"""Share of the speed around it: a boat and its crew weigh a ton, and change no faster."""
 GPS_JUMP_RATIO: Final = 0.1
 """The same of a GPS, which has no noise of samples: such a jump is the receiver's (inferred)."""
 AROUND_S: Final = 11
 """The speed around a sample: the median over so many seconds of each one's median."""
 FORCE_SPIKE_RATIO: Final = (-3.0, 5.0)
-"""Of the usual force. A tow line cannot push: what a slack one reads is noise about zero."""
+"""Share of the usual force. A tow line cannot push: what a slack one reads is noise about zero."""
 FORCE_DEAD_RATIO: Final = 0.05
 FORCE_DEAD_S: Final = 0.1
-"""A force that stays at one value so near zero, for so long, is no force."""
+"""A force that stays at one value so near zero, for so long, is not one."""
 GUST_RATIO: Final = 2.5
 GUST_M_S: Final = 4.0
-"""Wind over so many times the run's median and so much more is no gust that cups can follow."""
+"""Wind so many times the run's median, and this much more, is not a gust that cups follow."""
 
 _NOT_IN_THIS_RUN: Final = say("over {:g} s, so the run goes on without this column", LEFT_OUT_S)
 

@@ -42,7 +42,7 @@ SPEEDS: Final = ("log1", "log2", "gps")
 WIND: Final = ("wind_speed", "wind_angle")
 HEADER: Final = 1
 FIRST_ROW: Final = 2
-"""Line of the first row of a tow's samples where nothing but a header stands above it."""
+"""Line of the first row of a tow's samples where nothing but a header is above it."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def median_of(values: Array) -> float:
 
 
 def second_means(values: Array, rate_hz: int) -> NDArray[np.float64]:
-    """Return the mean of every whole second, NaN where one of its samples is none."""
+    """The mean of every whole second, NaN where one of its samples is left out."""
     seconds = len(values) // rate_hz
     means: NDArray[np.float64] = (
         values[: seconds * rate_hz].reshape(seconds, rate_hz).mean(axis=1, dtype=np.float64)

@@ -22,9 +22,9 @@ from herijk.warehouse.archive.samples.frame import run_starts
 from herijk.words import say
 
 SHORTEST_RUN_RATIO: Final = 0.99
-"""Of what is planned."""
+"""Share of the planned time."""
 LONGEST_RUN_RATIO: Final = 1.8
-"""Of what is planned: a rate that is wrong is usually half of the right one (inferred)."""
+"""The same: a rate that is wrong is usually half of the right one (inferred)."""
 
 
 def measured(samples: pl.DataFrame) -> dict[str, str]:
@@ -115,7 +115,7 @@ def long_runs(runs: list[Run]) -> list[Fault]:
 
 
 def without_copies(runs: list[Run], faults: list[Fault]) -> list[Run]:
-    """Of runs with the very same samples, the one at its intended speed is what was measured."""
+    """Of runs with exactly the same samples, the one at its intended speed is what was measured."""
     kept: dict[bytes, Run] = {}
     for run in sorted(runs, key=_off_target):
         both = [run.channels[key] for key in ("log1", "force")]
@@ -124,7 +124,9 @@ def without_copies(runs: list[Run], faults: list[Fault]) -> list[Run]:
         other = kept.setdefault(content, run)
         if other is not run:
             message = say(
-                "{} has the very samples of {}; the run is left out.", run.name, other.name.lower()
+                "{} has exactly the samples of {}; the run is left out.",
+                run.name,
+                other.name.lower(),
             )
             faults.append(run.fault("samples_listed_twice", message, 0, "run"))
     return sorted(kept.values(), key=lambda run: run.number)

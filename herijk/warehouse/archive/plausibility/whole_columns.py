@@ -53,7 +53,7 @@ class _Typical:
 
 
 def _typical(runs: list[Run]) -> dict[str, _Typical]:
-    """Return what each channel does typically, relative to the intended speed where it is one.
+    """What each channel does typically, relative to the intended speed where it is one.
 
     Medians over runs of medians, so that a fault in one run does not pass for a mix-up.
     """
@@ -69,7 +69,7 @@ def _typical(runs: list[Run]) -> dict[str, _Typical]:
 
 
 def _implausible(channels: Mapping[str, _Typical], intended_m_s: float) -> list[str]:
-    """Return the channels whose typical values cannot be what their header says."""
+    """The channels whose typical values cannot be what their header says."""
     log1 = channels["log1"].median
     others = [key for key in ("log2", "gps") if key in channels]
     plausible = {
@@ -108,7 +108,7 @@ def no_wind(runs: list[Run]) -> Fault:
     So people write that there was no anemometer: 999 throughout. The tow goes on as one without.
     """
     message = say(
-        "column '{column}' {} in all runs, which is no wind; the tow goes on without wind.",
+        "column '{column}' {} in all runs, which is not wind; the tow goes on without wind.",
         what_it_holds(runs[0].channels["wind_speed"][0]),
         column=COLUMN_OF["wind_speed"],
     )
@@ -184,7 +184,7 @@ def check_log2_and_gps(runs: list[Run]) -> None:
 
 
 def check_speed_unit(runs: list[Run]) -> None:
-    """Raise where log 1 looks like km/h."""
+    """Raises where log 1 looks like km/h."""
     means = [known_of(mean_of, run.channels["log1"]) / run.intended_m_s for run in runs]
     ratio = float(np.median(means))
     if within(ratio, KM_H_RATIO):

@@ -64,7 +64,7 @@ def judge_whole(run: Run, faults: list[Fault]) -> tuple[Run | None, list[Fault]]
 
 
 def _longest_hold(values: Array, counts: BoolArray | None = None) -> tuple[int, int]:
-    """Return (first row, length) of the longest stretch of one value in which `counts` holds."""
+    """(first row, length) of the longest stretch of one value in which `counts` holds."""
     if counts is None:
         counts = np.ones(len(values), dtype=bool)
     starts, lengths = stretches((values[1:] != values[:-1]) | (counts[1:] != counts[:-1]))
@@ -74,7 +74,7 @@ def _longest_hold(values: Array, counts: BoolArray | None = None) -> tuple[int, 
 
 
 def _may_hold(values: Array, samples: int) -> bool:
-    """Whether a value may stand for so many samples, two or more: sees two of each such stretch."""
+    """Whether a value may last for so many samples, two or more: sees two of each such stretch."""
     seen = values[:: max(samples // 2, 1)]
     return bool((seen[1:] == seen[:-1]).any())
 

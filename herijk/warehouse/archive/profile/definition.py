@@ -35,7 +35,7 @@ _DIMENSIONS: Final = {column.key: column.dimension for column in SAMPLE_COLUMNS}
 
 
 def _season_range(value: object) -> object:
-    """Read `"2009:2011"` or `"2009"` as (first, last)."""
+    """Reads `"2009:2011"` or `"2009"` as (first, last)."""
     if not isinstance(value, str):
         raise ValueError('a season range is text, e.g. "2009:2011" or "2013"')
     first, _, last = value.partition(":")
@@ -187,7 +187,7 @@ class Profiles(_Strict):
         )
 
     def for_season(self, season: int) -> SeasonProfile:
-        """Return the profile of a season; the project's default where none is given."""
+        """The profile of a season; the project's default where none is given."""
         table = self._table(season)
         return SeasonProfile(
             season=season,
@@ -200,7 +200,7 @@ class Profiles(_Strict):
         )
 
     def plan_of(self, tow_id: str, season: int) -> Plan:
-        """Return the plan of a tow: its own, that of its season, or the standard."""
+        """The plan of a tow: its own, that of its season, or the standard."""
         for table in self.plan:
             if tow_id in table.tows:
                 return table.plan
@@ -215,7 +215,7 @@ class Profiles(_Strict):
 
     @property
     def season_ranges(self) -> list[tuple[str, tuple[int, int]]]:
-        """Return the seasons of every profile and plan, by the name of their table."""
+        """The seasons of every profile and plan, by the name of their table."""
         plans = [("plan", plan.seasons) for plan in self.plan if plan.seasons is not None]
         return [("profile", table.seasons) for table in self.profile] + plans
 
@@ -238,11 +238,11 @@ class Profiles(_Strict):
         )
 
     def reason_set_aside(self, day: dt.date) -> str | None:
-        """Return why a day is set aside, None when it is not."""
+        """Why a day is set aside, None when it is not."""
         return next((entry.reason for entry in self.set_aside if entry.date == day), None)
 
     def part_of_log(self, log: str, day: dt.date) -> int:
-        """Return how often a log had been replaced since its season began: 0 with the first."""
+        """How often a log had been replaced since its season began: 0 with the first."""
         since = dt.date(day.year, 1, 1)
         replaced = (entry.date for entry in self.log_replaced if entry.log == log)
         return sum(since <= date <= day for date in replaced)

@@ -14,7 +14,7 @@ from herijk.words import Sentence, say
 
 
 def read_profiles(root: Path) -> Profiles:
-    """Read `archief.toml` of an archive; defaults when it is absent.
+    """Reads `archief.toml` of an archive; defaults when it is absent.
 
     Raises:
         MissingKnowledgeError: the file cannot be understood; it names the file and the key.
@@ -23,7 +23,7 @@ def read_profiles(root: Path) -> Profiles:
 
 
 def profile_text(root: Path) -> str:
-    """Return the text of `archief.toml`; empty when there is none.
+    """The text of `archief.toml`; empty when there is none.
 
     Raises:
         MissingKnowledgeError: it cannot be read, or there are two.
@@ -38,7 +38,7 @@ def profile_text(root: Path) -> str:
 
 
 def parse_profiles(text: str) -> Profiles:
-    """Read the text of an `archief.toml`.
+    """Reads the text of an `archief.toml`.
 
     Raises:
         MissingKnowledgeError: it cannot be understood; the message names the key.
@@ -52,7 +52,7 @@ def parse_profiles(text: str) -> Profiles:
 
 
 def _profile_path(root: Path) -> Path | None:
-    """Return the profile, however its name is capitalised; None when there is none.
+    """The profile, however its name is capitalised; None when there is none.
 
     Raises:
         MissingKnowledgeError: there are two.
@@ -67,7 +67,7 @@ def _profile_path(root: Path) -> Path | None:
 
 
 def _explain(error: ValidationError) -> Sentence:
-    """Return one clause per problem, each with its key."""
+    """One clause per problem, each with its key."""
     clauses = [
         say(
             "{}: {}", f"'{'.'.join(map(str, problem['loc'])) or 'file'}'", problem_in_words(problem)

@@ -22,12 +22,12 @@ BINARY: Final = (".parquet", ".tdms")
 
 
 def next_line(row: int) -> int:
-    """The line of a row where nothing but the header stands above the first."""
+    """The line of a row where nothing but the header is above the first."""
     return max(row + 2, 1)
 
 
 def read_binary(path: Path, profile: SeasonProfile, most_rows: int | None = None) -> pl.DataFrame:
-    """Return the wanted columns of a Parquet or TDMS file as Float64, as `read_text` does."""
+    """The wanted columns of a Parquet or TDMS file as Float64, as `read_text` does."""
     frame = read_tdms(path, most_rows) if kind_of(path) == ".tdms" else _read_parquet(path, profile)
     if frame.is_empty():
         raise DefectiveInputError("unreadable_file", say("There are no samples in the file."))
@@ -45,7 +45,7 @@ def read_binary(path: Path, profile: SeasonProfile, most_rows: int | None = None
 
 
 def _read_parquet(path: Path, profile: SeasonProfile) -> pl.DataFrame:
-    """Return the columns of a Parquet file that the profile names."""
+    """The columns of a Parquet file that the profile names."""
     try:
         with pq.ParquetFile(path) as file:
             names = file.schema_arrow.names
@@ -82,7 +82,7 @@ def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int) -> None:
 
 
 def _as_seconds(cells: pl.Series) -> pl.Series:
-    """Return points in time, or times of day as text, as seconds."""
+    """Points in time, or times of day as text, as seconds."""
     if cells.dtype.is_temporal():
         first = cells[0]
         return pl.select((pl.lit(cells) - first).dt.total_microseconds() / 1e6).to_series()

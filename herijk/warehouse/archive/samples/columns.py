@@ -23,7 +23,7 @@ _CLOCK: Final = (
 def check_nothing_misspelt(
     header: Sequence[str], columns: Mapping[str, FoundColumn], profile: SeasonProfile
 ) -> None:
-    """Raise where there is no GPS, but a column that can be one: left out, it changes numbers."""
+    """Raises where there is no GPS, but a column that can be one: left out, it changes numbers."""
     gps = [column for column in profile.columns if column.key == "gps"]
     if "gps" in columns or not gps:
         return
@@ -40,7 +40,7 @@ def check_nothing_misspelt(
 
 
 def seconds_of_clock(cells: pl.Series) -> pl.Series:
-    """Return times of day, with or without a date before them, as seconds."""
+    """Times of day, with or without a date before them, as seconds."""
     parts = cells.str.strip_chars().str.extract_groups(_CLOCK).struct
     hours, minutes, seconds = (
         parts.field(name).str.replace(",", ".", literal=True).cast(pl.Float64())
@@ -50,7 +50,7 @@ def seconds_of_clock(cells: pl.Series) -> pl.Series:
 
 
 def to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFrame:
-    """Return columns as they are written in SI units."""
+    """Columns as they are written in SI units."""
     scaled = (
         (pl.col(key) + scale.shift) * scale.numerator / scale.denominator
         for key in frame.columns

@@ -40,7 +40,7 @@ def read_samples(
     sample_rate_hz: int | None = None,
     run: int | None = None,
 ) -> pl.DataFrame:
-    """Read one samples file.
+    """Reads one samples file.
 
     Args:
         path: text, also LabVIEW's, packed or not; `.parquet`; `.tdms`.
@@ -73,7 +73,7 @@ def read_samples(
 
 
 def check_header(path: Path, profile: SeasonProfile) -> None:
-    """Read the columns of a samples file, not its samples.
+    """Reads the columns of a samples file, not its samples.
 
     Raises:
         DefectiveInputError: as `read_samples`, for a fault of the header.
@@ -96,7 +96,7 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
 
 
 def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
-    """Return the samples per second at the start of a file; None where it has no times to say."""
+    """The samples per second at the start of a file; None where it has no times to say."""
     try:
         if kind_of(path) in BINARY:
             frame = read_binary(path, profile, _FOR_A_RATE)
@@ -114,7 +114,7 @@ def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
 
 
 def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[tuple[str, str], ...]:
-    """Return `run` or `time` with a column nobody knows as which it tells the runs of a file."""
+    """`run` or `time` with a column nobody knows as which it tells the runs of a file."""
     header = _header_of(path, profile)
     unknown = unknown_headers(header, find_columns(header, profile.columns))
     pairs = [(key, name) for key in ("run", "time") for name in unknown]

@@ -30,7 +30,7 @@ LineOf = Callable[[int], int]
 
 
 def with_runs(raw: pl.DataFrame, run: int | None) -> pl.DataFrame:
-    """Return the samples with a run: that of the file, or a new one where the time restarts."""
+    """The samples with a run: that of the file, or a new one where the time restarts."""
     if run is not None:
         return raw.with_columns(pl.lit(float(run)).alias("run"))
     if "run" in raw.columns:
@@ -48,7 +48,7 @@ def with_runs(raw: pl.DataFrame, run: int | None) -> pl.DataFrame:
 
 
 def to_schema(raw: pl.DataFrame, line_of: LineOf, wind_zero_deg: float) -> pl.DataFrame:
-    """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
+    """The frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
     if raw["run"].is_nan().any():
         raw = _with_known_runs(raw)
     _check_run_numbers(raw["run"], line_of)
@@ -70,7 +70,7 @@ def to_schema(raw: pl.DataFrame, line_of: LineOf, wind_zero_deg: float) -> pl.Da
 
 
 def _with_known_runs(raw: pl.DataFrame) -> pl.DataFrame:
-    """Return the samples with every row in a run: one whose run cannot be read holds no numbers."""
+    """The samples with every row in a run: one whose run cannot be read holds no numbers."""
     unread = raw["run"].is_nan()
     run = raw["run"].fill_nan(None).forward_fill().backward_fill()
     if run.null_count():
@@ -101,12 +101,12 @@ def check_runs(run: pl.Series, line_of: LineOf) -> None:
     numbers = run.to_numpy()[starts]
     for position, number in enumerate(numbers):
         if number in numbers[:position]:
-            what = say("run {run} begins again; its rows must stand together.", run=int(number))
+            what = say("run {run} begins again; its rows must be together.", run=int(number))
             raise _at(line_of(int(starts[position])), "split_run", what)
 
 
 def run_starts(run: NDArray[np.int8]) -> NDArray[np.intp]:
-    """Return the row at which each run begins."""
+    """The row at which each run begins."""
     return np.flatnonzero(np.concatenate(([True], run[1:] != run[:-1])))
 
 

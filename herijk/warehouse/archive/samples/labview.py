@@ -29,7 +29,7 @@ def is_labview(text: str) -> bool:
 
 
 def labview_as_table(text: str) -> tuple[str, list[int]]:
-    """Return a LabVIEW measurement file as a table of text with one header.
+    """A LabVIEW measurement file as a table of text with one header.
 
     Each segment (a header of its own, with samples below it) becomes a run where there is none:
     column `run` is put before the others.
@@ -67,7 +67,7 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
 
 
 def _about(lines: list[str]) -> dict[str, str]:
-    """Return what the head of the file says, by name."""
+    """What the head of the file says, by name."""
     properties = {}
     for line in lines[:40]:
         if line.strip().startswith(_END_OF_HEADER):
@@ -78,7 +78,7 @@ def _about(lines: list[str]) -> dict[str, str]:
 
 
 def _segment_header(lines: list[str], start: int, separator: str) -> tuple[list[str], list[int]]:
-    """Return the header of a segment with units, and which columns hold a channel."""
+    """The header of a segment with units, and which columns hold a channel."""
     names = (
         [cell.strip() for cell in lines[start + 1].split(separator)]
         if start + 1 < len(lines)
@@ -109,7 +109,7 @@ def _is_number(cell: str) -> bool:
 
 
 def read_tdms(path: Path, most_rows: int | None) -> pl.DataFrame:
-    """Return the channels of a TDMS file as columns; each group is a run where none is named.
+    """The channels of a TDMS file as columns; each group is a run where none is named.
 
     Args:
         path: the file.

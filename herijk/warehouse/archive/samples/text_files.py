@@ -76,14 +76,14 @@ class Body:
 
 
 def read_text(body: Body) -> pl.DataFrame:
-    """Return the wanted columns as Float64, in SI units; an absent or empty gps is left out."""
+    """The wanted columns as Float64, in SI units; an absent or empty gps is left out."""
     fast = _read_fast(body)
     columns = _read_carefully(body) if fast is None else fast
     return to_si(columns, body.columns)
 
 
 def find_body(data: bytes, profile: SeasonProfile) -> Body:
-    """Find the header, below titles if there are any, and what it says of the columns."""
+    """Finds the header, below titles if there are any, and what it says of the columns."""
     if not data.isascii() or b"\x00" in data or not data[:100].strip():
         data = unicodedata.normalize("NFC", decode(data)).encode()
     places: list[int] = []
@@ -121,9 +121,9 @@ def find_body(data: bytes, profile: SeasonProfile) -> Body:
 
 
 def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int]] | None:
-    """Return the rows with the number of their run behind them, and the place of each.
+    """The rows with the number of their run behind them, and the place of each.
 
-    A run is what stands between blank lines; None where there are none between rows. In a file
+    A run is what is between blank lines; None where there are none between rows. In a file
     without a column of runs or times nothing else can be meant by them.
     """
     nothing = delimiter.encode() + b" \t\r"
@@ -142,7 +142,7 @@ def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int
 
 
 def _cells_of_line(lines: Sequence[str], number: int, delimiter: str) -> list[str]:
-    """Return the cells of a line that may be no row of samples; none where there is no line."""
+    """The cells of a line that may not be a row of samples; none where there is no line."""
     if number >= len(lines) or any(map(str.isdigit, lines[number])):
         return []
     return lines[number].split(None if delimiter == " " else delimiter)
@@ -164,9 +164,9 @@ def _is_clock(data: bytes, delimiter: str, time: FoundColumn | None) -> bool:
 
 
 def _read_fast(body: Body) -> pl.DataFrame | None:
-    """Return the columns, or None where the careful way has to judge.
+    """The columns, or None where the careful way has to judge.
 
-    That is also where a carriage return stands within a line: Polars takes it for a blank. And
+    That is also where a carriage return is within a line: Polars takes it for a blank. And
     where there are commas and points: Polars takes either for the decimal mark.
     """
     mixed = b"," in body.data and b"." in body.data
@@ -201,7 +201,7 @@ def _read_fast(body: Body) -> pl.DataFrame | None:
 
 
 def _has_stray_return(data: bytes) -> bool:
-    """Whether a carriage return stands anywhere but before a line feed."""
+    """Whether a carriage return is anywhere but before a line feed."""
     if b"\r" not in data:
         return False
     letters = np.frombuffer(data, np.uint8)
@@ -215,7 +215,7 @@ def _all_finite(numbers: pl.Series) -> bool:
 
 
 def _read_carefully(body: Body) -> pl.DataFrame:
-    """Return the same columns, NaN where a cell is no number or its row has not all its fields."""
+    """The same columns, NaN where a cell is not a number or its row has not all its fields."""
     text = body.data.rstrip(b"\r\n").decode()
     lines = pl.Series("line", text.split("\n")).str.strip_suffix("\r")
     if body.delimiter == ",":
@@ -238,10 +238,10 @@ def _read_carefully(body: Body) -> pl.DataFrame:
 
 
 def _to_numbers(cells: pl.Series, whole: pl.Series) -> pl.Series:
-    """Return text as numbers, NaN where it is none or the row is not whole.
+    """Text as numbers; NaN where it is not one or the row is not whole.
 
-    In a column of decimal commas 1.012 can be a thousand and twelve: it is no number either. Nor is
-    1,012 among points.
+    In a column of decimal commas 1.012 can be a thousand and twelve: it is not a number either, nor
+    is 1,012 among points.
     """
     spelled = cells.str.contains(NUMBER_PATTERN)
     commas, points = (cells.str.contains(mark, literal=True).sum() for mark in ",.")

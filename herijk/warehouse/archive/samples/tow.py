@@ -22,7 +22,7 @@ from herijk.warehouse.archive.samples.text_files import find_body
 
 
 def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> pl.DataFrame:
-    """Read the samples of a tow, both files combined.
+    """Reads the samples of a tow, both files combined.
 
     Args:
         root: the archive.
@@ -44,7 +44,7 @@ def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> pl.DataFra
 
 
 def _read_parts(root: Path, tow: Row, paths: str, profile: SeasonProfile) -> list[pl.DataFrame]:
-    """Read a file, or the files that are a run each."""
+    """Reads a file, or the files that are a run each."""
     several = paths.split(PARTS)
     if len(several) == 1:
         return [_read_part(root, tow, paths, profile, None)]
@@ -54,7 +54,7 @@ def _read_parts(root: Path, tow: Row, paths: str, profile: SeasonProfile) -> lis
 
 
 def runs_of_parts(names: Sequence[str]) -> list[int]:
-    """Return the run that each file of a tow is: by the number in its name, else by their order."""
+    """The run that each file of a tow is: by the number in its name, else by their order."""
     named = [one for name in names if (one := as_one_run(name)) is not None]
     numbers = [run for _, run in named]
     if len({tow for tow, _ in named}) == 1 and len(set(numbers)) == len(names):
@@ -75,7 +75,7 @@ def _read_part(
 def place_in_file(
     root: Path, tow: Row, profile: SeasonProfile, runs: pl.Series, path: str, row: int
 ) -> tuple[str, int]:
-    """Return the file of a row of a tow's samples, and the line in it.
+    """The file of a row of a tow's samples, and the line in it.
 
     Args:
         root: the archive.

@@ -1,4 +1,4 @@
-"""Whether a cell can stand in a column, by what it looks like."""
+"""Whether a cell can belong to a column, by what it looks like."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -14,7 +14,7 @@ from herijk.warehouse.archive.spelling.synonyms import ALL_RUNS, CLASSES, NO, YE
 from herijk.warehouse.archive.spelling.text import fold_word
 
 FITS: Final = 0.8
-"""So large a share of the cells must be what the column holds; the rest can be faults."""
+"""The least share of the cells that must be what the column holds; the rest can be faults."""
 _LIKE_A_TIME: Final = re.compile(r"[0-9]{1,2}\s*[:.uhUH]\s*[0-9]{2}.*")
 _LIKE_RUNS: Final = re.compile(
     r"b?[0-9]{1,2}(\s*([,;+&\s.-]|en|and|und|et|t/m|tm|bis|to|à)\s*b?[0-9]{1,2}){2,}"
@@ -23,7 +23,7 @@ _LIKE_RUNS: Final = re.compile(
 
 
 def can_stand(table: type[dy.Schema], column: Column, cell: str) -> bool:
-    """Return whether a cell can stand in a column, whatever its limits in another unit."""
+    """Whether a cell can belong to a column, whatever its limits in another unit."""
     if column.key in _LOOKS:
         return _LOOKS[column.key](cell)
     schema = table.columns().get(column.key)
@@ -37,7 +37,7 @@ def can_stand(table: type[dy.Schema], column: Column, cell: str) -> bool:
 
 
 def _can_be_number(table: type[dy.Schema], column: Column, cell: str) -> bool:
-    """Return whether a cell is a number with a unit of the column, a whole one where it must."""
+    """Whether a cell is a number with a unit of the column, a whole one where it must."""
     match = LIKE_A_NUMBER.fullmatch(ungrouped(cell))
     if match is None or not (not match[2] or is_own_unit(column.key, column.dimension, match[2])):
         return False
@@ -48,7 +48,7 @@ def _can_be_number(table: type[dy.Schema], column: Column, cell: str) -> bool:
 
 
 def _can_be_file(cell: str) -> bool:
-    """Return whether a cell can be the name of a file: neither a number, nor a date, nor a time."""
+    """Whether a cell can be the name of a file: neither a number, nor a date, nor a time."""
     patterns = (LIKE_A_NUMBER, LIKE_A_DATE, _LIKE_A_TIME)
     return len(cell) > 3 and not any(pattern.fullmatch(cell) for pattern in patterns)
 
@@ -67,4 +67,4 @@ _LOOKS: Final[Mapping[str, Callable[[str], bool]]] = {
     "name": lambda cell: any(map(str.isalpha, cell)),
     "boat_type": lambda cell: any(map(str.isalpha, cell)),
 }
-"""What cells of text look like, of columns that not every text can stand in."""
+"""What cells of text look like, of columns that do not take every text."""

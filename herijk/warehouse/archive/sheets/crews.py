@@ -18,7 +18,7 @@ _CREW: Final = re.compile(r"\s*([0-9]{1,2})\s*([^\W\d_]+)\s*")
 
 
 def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
-    """Return the table with rowers and class in a column each, where one column holds both.
+    """The table with rowers and class in a column each, where one column holds both.
 
     Where either column is missing, a column that is one of them, or that nobody knows, may hold
     crews. A number and letters are then apart in every cell, also where the letters are no class;
@@ -53,7 +53,7 @@ def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
 
 
 def _crews(sheet: Sheet, place: int) -> bool:
-    """Return whether a column holds crews."""
+    """Whether a column holds crews."""
     cells = [row.fields[place] for row in sheet.rows if place < len(row.fields)]
     there = [cell for cell in cells if cell.strip()]
     return bool(there) and sum(_is_crew(cell) for cell in there) >= FITS * len(there)
@@ -65,7 +65,7 @@ def _is_crew(cell: str) -> bool:
 
 
 def _filled(fields: Sequence[str], rowers: int, crew_class: int) -> list[str]:
-    """Return a row with the class of a crew among the rowers in its own cell, empty or the same."""
+    """A row with the class of a crew among the rowers in its own cell, empty or the same."""
     filled = list(fields)
     there = max(rowers, crew_class) < len(fields)
     match = _CREW.fullmatch(fields[rowers]) if there and _is_crew(fields[rowers]) else None
@@ -76,7 +76,7 @@ def _filled(fields: Sequence[str], rowers: int, crew_class: int) -> list[str]:
 
 
 def _apart(fields: Sequence[str], place: int, width: int) -> list[str]:
-    """Return a row with the class in the last column of so many."""
+    """A row with the class in the last column of so many."""
     apart = [*fields[: width - 1], *[""] * (width - 1 - len(fields))]
     match = _CREW.fullmatch(apart[place])
     apart[place], crew_class = match.groups() if match else (apart[place], "")

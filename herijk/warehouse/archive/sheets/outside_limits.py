@@ -11,7 +11,7 @@ from herijk.words import Sentence, say
 
 
 def misfits(table: type[dy.Schema], frame: pl.DataFrame) -> Iterator[tuple[Row, Sentence]]:
-    """Yield each row outside the declared limits, with the first limit that it breaks."""
+    """Each row outside the declared limits, with the first limit that it breaks."""
     _, failure = table.filter(frame)
     for row in failure.details().iter_rows(named=True):
         broken = next(name for name, state in row.items() if state == "invalid")
@@ -24,4 +24,6 @@ def _why(table: type[dy.Schema], row: Row, column: str, rule: str) -> Sentence:
         return say("column '{column}' is '{cell}', which cannot be right.", **named)
     low, high = limits(table, column)
     message = "column '{column}' is {cell}; {low:g} to {high:g} can be right."
+    if column == "season":  # of the file's name, or of a date: no list has such a column
+        message = "the year is {cell}; {low:g} to {high:g} can be right."
     return say(message, **named, low=low, high=high)

@@ -41,7 +41,7 @@ def read_rows(
     reason_code: str,
     table: type[dy.Schema],
 ) -> list[ListRow]:
-    """Return the rows of a table of text that anybody made; other columns are ignored.
+    """The rows of a table of text that anybody made; other columns are ignored.
 
     Args:
         data: content of the file.
@@ -58,7 +58,7 @@ def read_rows(
 
 
 def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[ListRow]:
-    """Return the rows of a list of the archive; empty ones are left out.
+    """The rows of a list of the archive; empty ones are left out.
 
     Args:
         root: folder of the archive.
@@ -103,7 +103,7 @@ def read_lists(
     wording: Wording,
     read_row: Callable[[ListRow, int], Row],
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Read the lists of a kind: rows of its table, and a fault for each that cannot be read.
+    """Reads the lists of a kind: rows of its table, and a fault for each that cannot be read.
 
     Args:
         root: folder of the archive.
@@ -137,7 +137,7 @@ def read_lists(
 def _columns_of(
     sheet: Sheet, wanted: Sequence[Column], wording: Wording, table: type[dy.Schema]
 ) -> dict[str, FoundColumn]:
-    """Return the columns of a list; one that nobody knows is a fault."""
+    """The columns of a list; one that nobody knows is a fault."""
     optional = [replace(column, required=False) for column in wanted]
     places = find_columns(sheet.header, optional, sheet.line)
     strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
@@ -172,7 +172,7 @@ def _cells(fields: Sequence[str], reading: Reading) -> dict[str, str]:
 
 
 def _meant(cell: str, words: Mapping[str, str]) -> str:
-    """Return what a cell stands for: the archive's own words first, then nothing for `n.v.t.`."""
+    """What a cell stands for: the archive's own words first, then nothing for `n.v.t.`."""
     folded = fold_word(cell)
     if folded in words:
         return words[folded]

@@ -84,7 +84,7 @@ class ListRow:
         return self.reading.columns
 
     def fault(self, message: str, reason_code: str | None = None) -> DefectiveInputError:
-        """Return the error for this row."""
+        """The error for this row."""
         if self.reading.sheet:
             message = say("sheet '{sheet}': {what}", sheet=self.reading.sheet, what=message)
         said = at_line(self.line, message)
@@ -93,32 +93,32 @@ class ListRow:
     def wrong(
         self, message: str, key: str, reason_code: str | None = None, **values: object
     ) -> DefectiveInputError:
-        """Return the error for a cell; the message may have `{column}` and `{cell}` in it."""
+        """The error for a cell; the message may have `{column}` and `{cell}` in it."""
         cell = shorten(self.cells.get(key, ""))
         said = say(message, column=self.named(key), cell=cell, **values)
         return self.fault(said, reason_code)
 
     def check_whole(self) -> None:
-        """Raise when something is wrong with the row as a whole."""
+        """Raises when something is wrong with the row as a whole."""
         if self.row_problem is not None:
             raise self.fault(self.row_problem)
 
     def optional_text(self, key: str) -> str | None:
-        """Return the text of a cell, None when it is empty."""
+        """The text of a cell, None when it is empty."""
         return self.cells.get(key) or None
 
     def text(self, key: str) -> str:
-        """Return the text of a cell that must not be empty."""
+        """The text of a cell that must not be empty."""
         return self._there(key, self.optional_text(key))
 
     def _there(self, key: str, value: T | None) -> T:
-        """Return the value of a cell that must not be empty."""
+        """The value of a cell that must not be empty."""
         if value is None:
             raise self.fault(say("column '{column}' is empty.", column=self.named(key)))
         return value
 
     def optional_number(self, key: str) -> float | None:
-        """Return a number in SI units within the limits, None when the cell is empty."""
+        """A number in SI units within the limits, None when the cell is empty."""
         cell = self.optional_text(key)
         if cell is None:
             return None
@@ -136,7 +136,7 @@ class ListRow:
         return value
 
     def _digits_and_scale(self, key: str, cell: str) -> tuple[str, Scale]:
-        """Return the number in a cell and its scale: its own unit goes before the header's."""
+        """The number in a cell and its scale: its own unit goes before the header's."""
         column = self.columns[key]
         own = WITH_UNIT.fullmatch(cell)
         if own and not UNITS[column.dimension] and is_own_unit(key, column.dimension, own[2]):
@@ -151,7 +151,7 @@ class ListRow:
         return digits, scale or column.scale
 
     def _is_in_ones(self, key: str, cell: str, value: float) -> bool:
-        """Return whether 1.140 is little more than one, where 1140 can be right as well.
+        """Whether 1.140 is little more than one, where 1140 can be right as well.
 
         Raises where both can be right and this list writes its decimals with the other mark.
         """
@@ -176,11 +176,11 @@ class ListRow:
         raise self.fault(said, "ambiguous_number")
 
     def number(self, key: str) -> float:
-        """Return a number that must be there."""
+        """A number that must be there."""
         return self._there(key, self.optional_number(key))
 
     def optional_integer(self, key: str) -> int | None:
-        """Return a whole number, None when the cell is empty."""
+        """A whole number, None when the cell is empty."""
         value = self.optional_number(key)
         if value is None:
             return None
@@ -189,7 +189,7 @@ class ListRow:
         return int(value)
 
     def optional_date(self, key: str) -> dt.date | None:
-        """Return a date, None when the cell is empty."""
+        """A date, None when the cell is empty."""
         cell = self.optional_text(key)
         if cell is None:
             return None
@@ -203,21 +203,21 @@ class ListRow:
             raise self.wrong(message, key) from error
 
     def date(self, key: str) -> dt.date:
-        """Return a date that must be there."""
+        """A date that must be there."""
         return self._there(key, self.optional_date(key))
 
     def check_year(self, day: dt.date, year: int, reason_code: str | None = None) -> None:
-        """Raise where a day is not in the year of the list."""
+        """Raises where a day is not in the year of the list."""
         if day.year != year:
             message = "the date {day} is not in {season}, the year of the list."
             raise self.fault(say(message, day=day, season=year), reason_code)
 
     def run(self, key: str) -> int:
-        """Return the number of a run: 1 to 20, or 21 to 40 for b1 to b20."""
+        """The number of a run: 1 to 20, or 21 to 40 for b1 to b20."""
         return run_number(self.text(key), self, key, range(1, MOST_RUNS + 1))
 
     def optional_crew_class(self, key: str) -> str | None:
-        """Return `H` or `D`, None when the cell is empty."""
+        """`H` or `D`, None when the cell is empty."""
         cell = self.optional_text(key)
         value = CLASSES.get(fold_word(cell or ""))
         if cell is not None and value is None:
@@ -226,20 +226,20 @@ class ListRow:
         return value
 
     def yes_or_no(self, key: str) -> bool:
-        """Return whether a cell says yes; an empty one says no."""
+        """Whether a cell says yes; an empty one says no."""
         cell = fold_word(self.optional_text(key) or "nee")
         if cell in YES or cell in NO:
             return cell in YES
         raise self.wrong("column '{column}' is '{cell}', not ja, nee or empty.", key, choice="ja")
 
     def boat(self, key: str) -> str:
-        """Return the number of a boat: `FSN 101`, `fsn nr 101` and `101` are FSN101."""
+        """The number of a boat: `FSN 101`, `fsn nr 101` and `101` are FSN101."""
         cell = self.text(key)
         number = BOAT_NUMBER.fullmatch(cell.strip())
         return f"FSN{number[1].upper()}" if number else cell
 
     def value(self, column: Column) -> Any:
-        """Return the value of a cell, of the type that the table of the list declares.
+        """The value of a cell, of the type that the table of the list declares.
 
         It is None where the cell is empty, which it may be if the table or the header can do
         without the column.
@@ -251,11 +251,11 @@ class ListRow:
         return value if may_be_empty else self._there(column.key, value)
 
     def values(self, columns: Iterable[Column]) -> dict[str, Any]:
-        """Return the values of cells; one that cannot be read does not hide the others."""
+        """The values of cells; one that cannot be read does not hide the others."""
         return all_of({column.key: partial(self.value, column) for column in columns})
 
     def named(self, key: str) -> str:
-        """Return what the file calls a column."""
+        """What the file calls a column."""
         place = self.columns.get(key)
         return place.header if place else key
 
@@ -284,7 +284,7 @@ class DefectiveRowError(DefectiveInputError):
 
 
 def all_of(readings: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:
-    """Return what each of these reads; one that cannot be read does not hide the others.
+    """What each of these reads; one that cannot be read does not hide the others.
 
     Raises:
         DefectiveRowError: the first fault, with the others.
@@ -302,15 +302,15 @@ def all_of(readings: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:
 
 
 def others_of(error: DefectiveInputError) -> tuple[DefectiveInputError, ...]:
-    """Return what else is wrong in the row of a fault."""
+    """What else is wrong in the row of a fault."""
     return error.others if isinstance(error, DefectiveRowError) else ()
 
 
 def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -> int:
-    """Return the number of a run as written in a list: 1 and on, or 21 and on for b1 and on.
+    """The number of a run as written in a list: 1 and on, or 21 and on for b1 and on.
 
     Raises:
-        DefectiveInputError: it is none, with the row's reason code and line.
+        DefectiveInputError: it is not one, with the row's reason code and line.
     """
     match = _RUN.fullmatch(part)
     if match is None or int(match[2]) not in planned:
@@ -327,6 +327,6 @@ def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -
 
 
 def is_own_unit(key: str, dimension: str, text: str) -> bool:
-    """Return whether a text behind a number is a unit, or says what is counted: `8 roeiers`."""
+    """Whether a text behind a number is a unit, or says what is counted: `8 roeiers`."""
     names = HEADERS.get(key, ()) if dimension == "none" else ()
     return find_scale(dimension, text) is not None or fold(text) in map(fold, names)

@@ -33,12 +33,12 @@ from herijk.warehouse.archive.spelling.text import (
 from herijk.words import say
 
 FEWEST_OF_A_LIST: Final = 4
-"""Columns: in a list of so many a row of one cell is none of its rows."""
+"""Columns: in a list of that many, a row of one cell is not one of its rows."""
 _TOTALS: Final = frozenset(
     {"totaal", "totalen", "subtotaal", "total", "som", "sum", "summe", "gesamt", "aantal",
      "gemiddelde", "gemiddeld", "average", "mean", "mittelwert"}
 )  # fmt: skip
-"""What the first cell of a row below a table begins with where it is no row of it."""
+"""What the first cell of a row below a table begins with where it is not one of its rows."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Sheet:
 def read_sheets(
     data: bytes, columns: Sequence[Column], suffix: str = ".csv", only: str = ""
 ) -> list[Sheet]:
-    """Return the tables in a file: of a workbook the sheets that name the columns.
+    """The tables in a file: of a workbook the sheets that name the columns.
 
     A sheet that names less than half as many columns as the best is about something else. Only
     where there are several tables has each its name.
@@ -117,7 +117,7 @@ def _alike(sheets: Sequence[Sheet], columns: Sequence[Column]) -> list[Sheet]:
 def _whole_header(
     rows: Sequence[list[str]], place: int, columns: Sequence[Column]
 ) -> tuple[list[str], int]:
-    """Return the header with what stands of it in the rows beside it, and its last row.
+    """The header, with what belongs to it in the rows next to it, and its last row.
 
     Args:
         rows: the first rows of the table.
@@ -142,7 +142,7 @@ def _names_more(one: Sequence[str], other: Sequence[str], columns: Sequence[Colu
 
 
 def _joined_rows(upper: Sequence[str], lower: Sequence[str]) -> list[str] | None:
-    """Return two rows of one header as one: `Gewicht` over `voor` and `na` goes for both."""
+    """Two rows of one header as one: `Gewicht` over `voor` and `na` goes for both."""
     if len(lower) > len(upper) or not any(map(str.strip, upper)):
         return None
     joined, last = [], ""
@@ -154,7 +154,7 @@ def _joined_rows(upper: Sequence[str], lower: Sequence[str]) -> list[str] | None
 
 
 def _only_rows(rows: Iterable[Row], header: Sequence[str]) -> list[Row]:
-    """Return the rows that hold something, without totals, remarks, and the header once more.
+    """The rows that hold something, without totals, remarks, and the header once more.
 
     Notes below the last row are left out. A heading between the rows is told as such.
     """
@@ -176,7 +176,7 @@ def _is_beside(cells: Sequence[str], names: Collection[str]) -> bool:
 
 def _as_heading(row: Row, cell: str) -> Row:
     said = say(
-        "only '{text}' stands in this row. A heading or a remark may begin with #.",
+        "there is only '{text}' in this row. A heading or a remark may begin with #.",
         text=shorten(cell),
     )
     return replace(row, problem=row.problem or said)
@@ -187,7 +187,7 @@ def _is_total(cell: str) -> bool:
 
 
 def _text_row(number: int, line: str, delimiter: str, width: int) -> Row:
-    """Read line by line: a quotation mark left open would swallow the rows below."""
+    """Reads line by line: a quotation mark left open would swallow the rows below."""
     try:
         fields = split_line(line, delimiter)
     except DefectiveInputError:
@@ -204,7 +204,7 @@ def _text_row(number: int, line: str, delimiter: str, width: int) -> Row:
 
 
 def sheets_of_workbook(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet]:
-    """Give the sheets of a workbook, each from its header on."""
+    """Gives the sheets of a workbook, each from its header on."""
     import python_calamine  # noqa: PLC0415 - only where there is a spreadsheet
 
     try:
@@ -222,7 +222,7 @@ def sheets_of_workbook(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet
 
 
 def _cells_of(grid: Any) -> list[list[str]]:
-    """Return the cells of a sheet as text; what is in merged cells is in each of them."""
+    """The cells of a sheet as text; what is in merged cells is in each of them."""
     rows = [[_as_text(cell) for cell in row] for row in grid.iter_rows()]
     top, left = grid.start or (0, 0)
     for (first_row, first), (last_row, last) in grid.merged_cell_ranges or ():
@@ -247,7 +247,7 @@ def _sheet(
 
 
 def _as_text(cell: object) -> str:
-    """Return a cell as it would be in a table of text."""
+    """A cell as it would be in a table of text."""
     if isinstance(cell, bool):
         return "ja" if cell else "nee"
     if isinstance(cell, float):
@@ -261,5 +261,5 @@ def _as_text(cell: object) -> str:
 
 
 def joined(names: Iterable[str]) -> str:
-    """Return names in quotes with commas between them."""
+    """Names in quotes with commas between them."""
     return ", ".join(f"'{name}'" for name in names)

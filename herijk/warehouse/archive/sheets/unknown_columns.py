@@ -31,7 +31,7 @@ _DISTINCT: Final = frozenset({"tow_id", "file"})
 Cells = Mapping[str, Sequence[str]]
 """The cells under each header that nobody knows."""
 Fits = Callable[[Column, str], bool]
-"""Whether a cell can stand in a column."""
+"""Whether a cell can belong to a column."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Meaning:
 
 
 def check_named(sheet: Sheet, known: Collection[int]) -> None:
-    """Raise where a column without a name holds something: its header may have been lost."""
+    """Raises where a column without a name holds something: its header may have been lost."""
     for place, header in enumerate(sheet.header):
         if place in known or fold(header):
             continue
@@ -69,7 +69,7 @@ def check_named(sheet: Sheet, known: Collection[int]) -> None:
 def meanings_in(
     headers: Sequence[str], free: Sequence[Column], sheet: Sheet, table: type[dy.Schema]
 ) -> tuple[Meaning, ...]:
-    """Return what headers that nobody knows can mean, by their names and by their cells."""
+    """What headers that nobody knows can mean, by their names and by their cells."""
     places = {cell.strip(): place for place, cell in enumerate(sheet.header)}
     cells = {
         header: [
@@ -84,7 +84,7 @@ def meanings_in(
 
 
 def about_unknown(unknown: Sequence[Meaning]) -> str:
-    """Return the sentence about columns that nobody knows, with the likely known ones."""
+    """The sentence about columns that nobody knows, with the likely known ones."""
     return say(
         "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or put "
         "it there under ignore.",
@@ -98,12 +98,12 @@ def about_unknown(unknown: Sequence[Meaning]) -> str:
 
 
 def meanings(strange: Cells, free: Sequence[Column], fits: Fits) -> tuple[Meaning, ...]:
-    """Return what each of the headers can mean, every column at most once.
+    """What each of the headers can mean, every column at most once.
 
     Args:
         strange: the cells under each header that nobody knows.
         free: the columns that no header has.
-        fits: whether a cell can stand in a column.
+        fits: whether a cell can belong to a column.
     """
     meant: dict[str, Meaning] = {}
     needed = [column for column in free if column.required]
@@ -125,7 +125,7 @@ def meanings(strange: Cells, free: Sequence[Column], fits: Fits) -> tuple[Meanin
 
 
 def _by_name(strange: Cells, free: Sequence[Column], fits: Fits) -> dict[str, Meaning]:
-    """Return the headers that are like the name of a column that can hold their cells."""
+    """The headers that are like the name of a column that can hold their cells."""
     pairs = [
         (likeness(header, column), header, column)
         for header, cells in strange.items()
@@ -144,13 +144,13 @@ def _by_name(strange: Cells, free: Sequence[Column], fits: Fits) -> dict[str, Me
 
 
 def _by_name_alone(strange: Cells, free: Sequence[Column], _: Fits) -> dict[str, Meaning]:
-    """Return the headers that are like a name, whatever stands under them: only a person knows."""
+    """The headers that are like a name, whatever is under them: only a person knows."""
     named = _by_name(dict.fromkeys(strange, ()), free, lambda *_: True)
     return {header: replace(meaning, is_sure=False) for header, meaning in named.items()}
 
 
 def _by_content(strange: Cells, free: Sequence[Column], fits: Fits) -> dict[str, Meaning]:
-    """Return the headers whose cells are what a column holds."""
+    """The headers whose cells are what a column holds."""
     meant: dict[str, Meaning] = {}
     for column in free:
         for header, cells in strange.items():
@@ -164,7 +164,7 @@ def _by_content(strange: Cells, free: Sequence[Column], fits: Fits) -> dict[str,
 def _by_unit(
     strange: Cells, free: Sequence[Column], fits: Fits, is_shared: bool = False
 ) -> dict[str, Meaning]:
-    """Return the headers with a unit that only one column can have.
+    """The headers with a unit that only one column can have.
 
     Where `is_shared`, several can have it: headers and columns are then paired in their order.
     """
@@ -190,6 +190,6 @@ def _may_hold(column: Column, header: str) -> bool:
 
 
 def _share(column: Column, cells: Sequence[str], fits: Fits) -> float:
-    """Return the share of the cells that can stand in a column; 1 where all are empty."""
+    """The share of the cells that can belong to a column; 1 where all are empty."""
     filled = [cell for cell in cells if cell]
     return sum(fits(column, cell) for cell in filled) / len(filled) if filled else 1.0

@@ -75,10 +75,10 @@ def _folded(names: tuple[str, ...]) -> frozenset[str]:
 def find_columns(
     header: Sequence[str], columns: Iterable[Column], line: int = 1
 ) -> dict[str, FoundColumn]:
-    """Find columns by name and unit, in any order.
+    """Finds columns by name and unit, in any order.
 
     Two columns may share a name when their dimensions differ (`wind [m/s]`, `wind [gra]`). A
-    column's own name goes before its other names: where it stands they are left alone. A header
+    column's own name goes before its other names: where it occurs they are left alone. A header
     without a unit is the one column of that name that no other header took.
 
     Args:
@@ -120,7 +120,7 @@ def _is_own(column: Column, places: Mapping[str, FoundColumn]) -> bool:
 
 
 def unknown_headers(header: Sequence[str], places: Mapping[str, FoundColumn]) -> list[str]:
-    """Return the headers of no column that was found; empty ones do not count."""
+    """The headers of no column that was found; empty ones do not count."""
     taken = {column.index for column in places.values()}
     return [cell.strip() for i, cell in enumerate(header) if i not in taken and fold(cell)]
 
@@ -128,7 +128,7 @@ def unknown_headers(header: Sequence[str], places: Mapping[str, FoundColumn]) ->
 def _choose(
     namesakes: list[Column], unit: str | None, cell: str, places: dict[str, FoundColumn], line: int
 ) -> Column:
-    """Return the one column a header cell stands for."""
+    """The one column a header cell stands for."""
     fitting = [c for c in namesakes if unit is None or find_scale(c.dimension, unit) is not None]
     if unit is not None and fold_unit(unit) in BEAUFORT:
         said = say(
@@ -182,7 +182,7 @@ def _in_brackets(units: Iterable[str]) -> str:
 
 
 def score_of(header: Sequence[str], columns: Iterable[Column]) -> int:
-    """Return how many cells of a line are names of columns: the header has most."""
+    """How many cells of a line are names of columns: the header has most."""
     names = _names_of(tuple(columns))
     return sum(split_header(cell)[0] in names for cell in header)
 
@@ -193,7 +193,7 @@ def _names_of(columns: tuple[Column, ...]) -> frozenset[str]:
 
 
 def find_header(lines: Sequence[str], columns: Sequence[Column]) -> int:
-    """Return which of the first lines is the header."""
+    """Which of the first lines is the header."""
     rows = [
         split_or_nothing(line) if _LETTER.search(line) and not is_separator_line(line) else []
         for line in lines[:HEADER_WITHIN]
@@ -202,7 +202,7 @@ def find_header(lines: Sequence[str], columns: Sequence[Column]) -> int:
 
 
 def header_among(rows: Sequence[Sequence[str]], columns: Sequence[Column]) -> int:
-    """Return which row names most columns; where none names two, the first with most names."""
+    """Which row names most columns; where none names two, the first with most names."""
     scores = [score_of(row, columns) for row in rows]
     if max(scores, default=0) < 2:
         scores = [score + _texts(row) for score, row in zip(scores, rows, strict=True)]
@@ -210,7 +210,7 @@ def header_among(rows: Sequence[Sequence[str]], columns: Sequence[Column]) -> in
 
 
 def _texts(row: Sequence[str]) -> int:
-    """Return how many cells of a row are text, 0 where one is a number."""
+    """How many cells of a row are text, 0 where one is a number."""
     cells = [cell.strip() for cell in row if cell.strip()]
     is_data = any(cell[0].isdigit() or cell[0] in "+-" for cell in cells)
     return 0 if is_data else len(cells)

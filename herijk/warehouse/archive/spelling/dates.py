@@ -30,7 +30,7 @@ class AmbiguousDateError(ValueError):
 
 
 def parse_date(text: str, order: str = "") -> dt.date:
-    """Return the date in a text, the year first or the day first; a time of day is left out.
+    """The date in a text, the year first or the day first; a time of day is left out.
 
     Args:
         text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `za 1 maart 2014`, `1-mrt-14`,
@@ -39,7 +39,7 @@ def parse_date(text: str, order: str = "") -> dt.date:
 
     Raises:
         AmbiguousDateError: day and month can be exchanged.
-        ValueError: it is no date.
+        ValueError: it is not a date.
     """
     text = _WEEKDAY.sub("", _TIME_OF_DAY.sub("", text.strip().casefold()))
     iso, day_first = _ISO_DATE.fullmatch(text), _DAY_FIRST.fullmatch(text)
@@ -65,7 +65,7 @@ def _year(digits: str) -> int:
 
 
 def date_order(cells: Iterable[str]) -> str:
-    """Return `dmy` or `mdy` where dates with slashes in a list can only be meant so, else empty."""
+    """`dmy` or `mdy` where dates with slashes in a list can only be meant so, else empty."""
     matches = (_DAY_FIRST.fullmatch(_TIME_OF_DAY.sub("", cell.strip())) for cell in cells)
     pairs = [(int(m[1]), int(m[3])) for m in matches if m and m[2] == "/"]
     orders = {"dmy" for first, _ in pairs if first > 12}
@@ -74,5 +74,5 @@ def date_order(cells: Iterable[str]) -> str:
 
 
 def is_like_a_date(cell: str) -> bool:
-    """Return whether there is a date in a cell, in whatever order."""
+    """Whether there is a date in a cell, in whatever order."""
     return LIKE_A_DATE.search(cell) is not None or _SERIAL_DATE.fullmatch(cell) is not None

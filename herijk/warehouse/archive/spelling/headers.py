@@ -14,7 +14,7 @@ _NO_UNIT_BEHIND: Final = frozenset("cfgksw")
 
 
 def split_header(cell: str) -> tuple[str, str | None]:
-    """Return the folded name in a header cell, and its unit as written where it has one.
+    """The folded name in a header cell, and its unit as written where it has one.
 
     A unit is in brackets, or last (`kracht, N`, `snelheid in kn`, `breedte_cm`); other brackets
     belong to the name.
@@ -34,13 +34,13 @@ def split_header(cell: str) -> tuple[str, str | None]:
 
 
 def _last_part(group: re.Match[str]) -> tuple[str, str]:
-    """Return what is in brackets before the last comma, and behind it: `(richting, graden)`."""
+    """What is in brackets before the last comma, and behind it: `(richting, graden)`."""
     more, _, unit = (group[1] or group[2] or "").rpartition(",")
     return more, unit.strip()
 
 
 def with_units(header: Sequence[str], below: Sequence[str]) -> list[str] | None:
-    """Return a header with the units of the row below it; None where that row is no row of units.
+    """A header with the units of the row below it; None where that row is not one of units.
 
     Args:
         header: the cells of the header.

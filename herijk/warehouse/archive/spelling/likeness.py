@@ -11,10 +11,10 @@ from herijk.warehouse.archive.spelling.headers import split_header
 from herijk.warehouse.archive.spelling.text import fold
 
 ALIKE: Final = 0.6
-"""So large a share of their words must two names have in common."""
+"""The least share of their words that two names must have in common."""
 
 ALIKE_IN_LETTERS: Final = 0.75
-"""So large a share of their letters, where the words differ: a misspelling."""
+"""The least share of their letters, where the words differ: a misspelling."""
 
 _STOP_WORDS: Final = frozenset(
     {"de", "het", "een", "van", "der", "den", "the", "of", "a", "an", "das", "die", "dem"}
@@ -29,7 +29,7 @@ _SHORTEST_START: Final = 3
 
 
 def likeness(header: str, column: Column) -> float:
-    """Return how much a header is like the names of a column, from 0, not at all, to 1."""
+    """How much a header is like the names of a column, from 0, not at all, to 1."""
     words = _words(header)
     others = [_words(other) for other in (column.header, *column.also)]
     by_words = max(_of_words(words, other) for other in others)
@@ -69,7 +69,7 @@ def _of_letters(ones: Sequence[str], others: Sequence[str]) -> float:
 
 
 def nearest_column(cell: str, columns: Iterable[Column]) -> Column | None:
-    """Return the column whose name is most like a header; None when none is like it."""
+    """The column whose name is most like a header; None when none is like it."""
     names = {fold(name): column for column in columns for name in (column.header, *column.also)}
     like = difflib.get_close_matches(split_header(cell)[0], names, n=1, cutoff=0.6)
     return names[like[0]] if like else None

@@ -12,7 +12,7 @@ NUMBER_PATTERN: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+
 
 _NUMBER: Final = re.compile(NUMBER_PATTERN)
 _GAPS: Final = "'\u2019 \u00a0\u202f"
-"""What stands between thousands and never before decimals."""
+"""Marks between thousands that are never before decimals."""
 WITH_UNIT: Final = re.compile(
     rf"([+-]?[0-9.,]+(?:[{_GAPS}][0-9]{{3}})*(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?)"
     r"\s*([^0-9\s.,+-].*)"
@@ -27,7 +27,7 @@ LIKE_A_NUMBER: Final = re.compile(r"([+-]?[0-9]+(?:[.,][0-9]+)?)\s*([^0-9\s_].*)
 
 
 def parse_number(text: str) -> float:
-    """Return the number a cell holds.
+    """The number a cell holds.
 
     Raises:
         ValueError: the cell is empty, not an ordinary number, or too large to be one.
@@ -42,7 +42,7 @@ def parse_number(text: str) -> float:
 
 
 def ungrouped(cell: str) -> str:
-    """Return a number without the marks between its thousands, where they can be nothing else.
+    """A number without the marks between its thousands, where they can be nothing else.
 
     `1.140,50`, `1,234,567`, `1 140` and `1'140` are; `1.140` can be little more than one.
     """
@@ -53,11 +53,11 @@ def ungrouped(cell: str) -> str:
 
 
 def is_number(cell: str) -> bool:
-    """Return whether a cell is a number without a unit, or a time of day."""
+    """Whether a cell is a number without a unit, or a time of day."""
     match = LIKE_A_NUMBER.fullmatch(ungrouped(cell))
     return match is not None and not match[2]
 
 
 def decimal_mark(cells: Iterable[str]) -> str:
-    """Return the marks that stand before decimals, of numbers that can only be read so."""
+    """The decimal marks of numbers that can be read in one way only."""
     return "".join(sorted({m[1] for cell in cells if (m := _DECIMAL.fullmatch(cell))}))

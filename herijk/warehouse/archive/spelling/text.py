@@ -17,7 +17,7 @@ LONGEST_QUOTE: Final = 40
 
 
 def decode(data: bytes) -> str:
-    """Return the text of a file in UTF-8 or UTF-16 (with or without BOM) or Windows-1252.
+    """The text of a file in UTF-8 or UTF-16 (with or without BOM) or Windows-1252.
 
     Raises:
         DefectiveInputError: `unreadable_file` for anything else, and for an empty file.
@@ -37,7 +37,7 @@ def decode(data: bytes) -> str:
 
 
 def _encodings(data: bytes) -> tuple[str, ...]:
-    """Return what the bytes can be: text of Latin letters in UTF-16 has a zero in every other."""
+    """What the bytes can be: text of Latin letters in UTF-16 has a zero in every other."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return ("utf-16",)
     start = data[:2000]
@@ -55,7 +55,7 @@ def is_separator_line(line: str) -> bool:
 
 
 def find_delimiter(header_line: str) -> str:
-    """Return the delimiter that occurs most in a header; a blank, then `;`, when there is none.
+    """The delimiter that occurs most in a header; a blank, then `;`, when there is none.
 
     Raises:
         DefectiveInputError: `too_large`: it is longer than a header can be.
@@ -68,7 +68,7 @@ def find_delimiter(header_line: str) -> str:
 
 
 def split_line(line: str, delimiter: str) -> list[str]:
-    """Return the fields of one line, quotes taken off.
+    """The fields of one line, quotes taken off.
 
     Raises:
         DefectiveInputError: `unreadable_file`, e.g. when a quotation mark is not closed.
@@ -78,12 +78,12 @@ def split_line(line: str, delimiter: str) -> list[str]:
     try:
         return next(csv.reader(io.StringIO(line), delimiter=delimiter, strict=True), [])
     except csv.Error as error:
-        said = say("The header is no row of a table: {error}.", error=error)
+        said = say("The header is not a row of a table: {error}.", error=error)
         raise DefectiveInputError("unreadable_file", said, line=1) from error
 
 
 def split_or_nothing(line: str, delimiter: str = "") -> list[str]:
-    """Return the fields of a line that may be no row of a table; none where it is not."""
+    """The fields of a line that may not be a row of a table; none where it is not."""
     try:
         return split_line(line, delimiter or find_delimiter(line))
     except DefectiveInputError:
@@ -92,17 +92,17 @@ def split_or_nothing(line: str, delimiter: str = "") -> list[str]:
 
 @lru_cache(10_000)
 def fold(text: str) -> str:
-    """Return a header for comparing: its letters and digits, without case and accents."""
+    """A header for comparing: its letters and digits, without case and accents."""
     plain = unicodedata.normalize("NFKD", text).casefold()
     return "".join(letter for letter in plain if letter.isalnum())
 
 
 def fold_word(text: str) -> str:
-    """Return a value or a file name for comparing: without case; blanks inside count once."""
+    """A value or a file name for comparing: without case; blanks inside count once."""
     return " ".join(unicodedata.normalize("NFC", text).casefold().split())
 
 
 def shorten(text: str) -> str:
-    """Return the text, printable and cut to a length that fits in a sentence."""
+    """The text, printable and cut to a length that fits in a sentence."""
     printable = "".join(letter if letter.isprintable() else "?" for letter in text[:LONGEST_QUOTE])
     return printable + ("..." if len(text) > LONGEST_QUOTE else "")

@@ -27,15 +27,15 @@ class Scale(NamedTuple):
     shift: float = 0.0
 
     def to_si(self, number: float) -> float:
-        """Return a number in the SI unit."""
+        """A number in the SI unit."""
         return (number + self.shift) * self.numerator / self.denominator
 
     def turned(self) -> "Scale":
-        """Return the scale of what has the other sign."""
+        """The scale of what has the other sign."""
         return self._replace(numerator=-self.numerator)
 
     def from_si(self, value: float) -> float:
-        """Return a value in the SI unit in this one."""
+        """A value in the SI unit in this one."""
         return value * self.denominator / self.numerator - self.shift
 
 
@@ -92,7 +92,7 @@ _NO_UNIT: Final = (
     *(ArithmeticError, AssertionError, AttributeError, RecursionError, SyntaxError, TypeError),
     *(ValueError, tokenize.TokenError),
 )
-"""What Pint raises for text that is no unit: it reads it with Python's tokenizer."""
+"""What Pint raises for text that is not a unit: it reads it with Python's tokenizer."""
 
 _PINT: Final = {
     "speed": "m/s",
@@ -106,12 +106,12 @@ _PINT: Final = {
 
 
 def fold_unit(text: str) -> str:
-    """Return a unit for comparing: without case, blanks and ways to write an accent."""
+    """A unit for comparing: without case, blanks and ways to write an accent."""
     return "".join(unicodedata.normalize("NFC", text).casefold().split())
 
 
 def find_scale(dimension: str, unit: str) -> Scale | None:
-    """Return the scale of a unit as written; None when it is none of this dimension."""
+    """The scale of a unit as written; None where it is not one of this dimension."""
     folded = fold_unit(unit)
     usual = UNITS[dimension]
     known = usual.get(SPELLINGS.get(dimension, {}).get(folded, folded))

@@ -29,7 +29,7 @@ class Wording:
     files: Mapping[str, str] = field(default_factory=dict)
 
     def with_names(self, columns: Iterable[Column]) -> tuple[Column, ...]:
-        """Return the columns with the other names that they answer to."""
+        """The columns with the other names that they answer to."""
         return tuple(replace(c, also=(*c.also, *self._names(c))) for c in columns)
 
     def _names(self, column: Column) -> tuple[str, ...]:
