@@ -61,7 +61,12 @@ def _corrected(prepared: Prepared, anemometer: Anemometer) -> Prepared:
 def anemometer_diagnosis(outcomes: Sequence[Outcome]) -> pl.DataFrame:
     """Rows of `season_diagnosis`: the anemometer of every season where it was estimated."""
     tows = pl.concat(
-        [o.batch.tows.select("season", estimate=o.wind_ln_scale, sd=o.wind_ln_sd) for o in outcomes]
+        [
+            o.batch.tows.select(
+                "season", estimate=o.prepared.wind_ln_scale, sd=o.prepared.wind_ln_sd
+            )
+            for o in outcomes
+        ]
     )
     seasons = (
         tows.filter(pl.col("sd").is_finite())

@@ -66,7 +66,7 @@ def scatter_of_level(o: Outcome) -> curve.Scatter:
     ratio, used, on_curve = _residuals(o)
     batch, by_log = o.batch, pooled_scatter(o)
     of_runs, told = _run_calibrations(o)
-    alone = ~batch.any(o.used & (~told | batch.in_second_file))
+    alone = ~batch.any(o.prepared.used & (~told | batch.in_second_file))
     steady = alone & (_unsteady_stream(o)[0] == 0.0)
     by_gps = ratio - (2.0 + 2.0 * _median_bend(o)) * batch.by_tow(np.log(of_runs))
     way = batch.by_tow(batch.direction.astype(np.float64))
@@ -157,7 +157,7 @@ def files_log_sd(o: Outcome) -> FloatArray:
     ratio, used, _ = _residuals(o)
     second = o.batch.by_tow(o.batch.in_second_file.astype(np.float64)) > 0
     files = [used & ~second, used & second]
-    combined = files[0].any(axis=1) & files[1].any(axis=1) & ~o.calibrated
+    combined = files[0].any(axis=1) & files[1].any(axis=1) & ~o.prepared.calibrated
     of_first, of_second = (
         np.where(mine, ratio, 0.0).sum(axis=1) / np.maximum(mine.sum(axis=1), 1) for mine in files
     )
@@ -176,7 +176,7 @@ def stream_scatter(o: Outcome) -> tuple[FloatArray, IntArray]:
     """
     batch, used = o.batch, _run_calibrations(o)[1]
     scatter, dof = _unsteady_stream(o)
-    drifts = (np.where(used, x, 0.0) for x in (o.stream_m_s, o.means.speed_m_s))
+    drifts = (np.where(used, x, 0.0) for x in (o.prepared.stream_m_s, o.prepared.means.speed_m_s))
     drift, speed = (
         mean_over_both_ways(x, batch.direction, batch.tow, used, batch.size)[0] for x in drifts
     )
@@ -202,8 +202,9 @@ def _unsteady_stream(o: Outcome) -> tuple[FloatArray, IntArray]:
 
 def _run_calibrations(o: Outcome) -> tuple[FloatArray, BoolArray]:
     """GPS / log of each run, and whether it is a run of a tow calibrated by itself; (runs,)."""
-    gps, log = o.means.gps_m_s - o.stream_m_s, o.means.speed_m_s
-    used = o.used & np.isfinite(gps) & (gps > 0) & (log > 0) & o.calibrated[o.batch.tow]
+    p = o.prepared
+    gps, log = p.means.gps_m_s - p.stream_m_s, p.means.speed_m_s
+    used = p.used & np.isfinite(gps) & (gps > 0) & (log > 0) & p.calibrated[o.batch.tow]
     used &= o.steps.calibration.rule == "gps_per_tow"
     return np.where(used, gps, 1.0) / np.where(used, log, 1.0), used
 
@@ -211,7 +212,7 @@ def _run_calibrations(o: Outcome) -> tuple[FloatArray, BoolArray]:
 def run_point_ratio(o: Outcome) -> FloatArray:
     """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
     season, source = _season(o)[o.batch.tow], o.steps.speed.source
-    return run_point_uncertainty(o.batch.blocks, o.windows.mask, season, source)
+    return run_point_uncertainty(o.batch.blocks, o.prepared.windows.mask, season, source)
 
 
 def budget_of(
@@ -346,18 +347,19 @@ def _terms_of_tows(
     o: Outcome, factors: SeasonFactors | None, scatter: curve.Scatter
 ) -> pl.DataFrame:
     """What `propagation.budget` asks of tows, as far as it is the same at any speed."""
+    p = o.prepared
     batch = o.batch
-    estimated = np.isfinite(o.estimated.ln_sd)
+    estimated = np.isfinite(p.estimated.ln_sd)
     usual = USUAL_BEND if factors is None else _median_bend(o)
-    bend = np.where(np.isfinite(o.estimated.bend), o.estimated.bend, usual)
+    bend = np.where(np.isfinite(p.estimated.bend), p.estimated.bend, usual)
     # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
     # taken off, and only what is put back for still air has it.
     taken_off = 0.0 if o.steps.wind.coefficients == "archive" else o.air_kg_m
-    net_air = batch.mean(taken_off - o.still_air_kg_m, o.used)
+    net_air = batch.mean(taken_off - o.still_air_kg_m, p.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
-    felt_unit = o.by_true_speed(o.means.air.ahead + o.means.air.behind)
-    per_coefficient = batch.mean(still_unit - felt_unit, o.used)
+    felt_unit = p.by_true_speed(p.means.air.ahead + p.means.air.behind)
+    per_coefficient = batch.mean(still_unit - felt_unit, p.used)
     stream_sd, stream_dof = stream_scatter(o)
     return batch.tows.select(
         "tow_id",
@@ -366,19 +368,19 @@ def _terms_of_tows(
         pl.lit(o.steps.speed.source).alias("log"),
         pl.Series("random_dof", scatter.dof),
         pl.Series("bend", bend),
-        pl.Series("calibrated", o.calibrated),
-        pl.Series("askew_ratio", o.estimated.askew_ratio).fill_nan(None),
-        pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
-        pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
+        pl.Series("calibrated", p.calibrated),
+        pl.Series("askew_ratio", p.estimated.askew_ratio).fill_nan(None),
+        pl.Series("log_sd", np.where(estimated, p.estimated.ln_sd, 0.0)),
+        pl.Series("log_dof", np.where(estimated, p.estimated.dof, np.inf)),
         pl.Series("tow_log_sd", _tow_log_sd(o, factors)),
         pl.Series("stream_sd", stream_sd),
         pl.Series("stream_dof", stream_dof),
         pl.Series("net_air_kg_m", net_air),
-        pl.Series("wind_ln_sd", o.wind_ln_sd).fill_nan(None),
+        pl.Series("wind_ln_sd", p.wind_ln_sd).fill_nan(None),
         pl.Series("air_per_coefficient_kg_m", per_coefficient),
         pl.Series("wind_measured", batch.measured("wind")),
-        pl.Series("still_air_kg_m", batch.mean(o.still_air_kg_m, o.used)),
-        pl.Series("temperature_known", o.temperature_known),
+        pl.Series("still_air_kg_m", batch.mean(o.still_air_kg_m, p.used)),
+        pl.Series("temperature_known", p.temperature_known),
         force_uncertainty(batch.tows).alias("force_sd"),
     )
 
@@ -407,7 +409,7 @@ def _tow_log_sd(o: Outcome, estimated: SeasonFactors | None) -> FloatArray:
     if estimated is None:
         return np.zeros(o.batch.size)
     log_sd = estimated.tow_log_sd_of(o.batch.of_tow("season"))
-    return np.where(o.calibrated, 0.0, np.hypot(log_sd, files_log_sd(o)))
+    return np.where(o.prepared.calibrated, 0.0, np.hypot(log_sd, files_log_sd(o)))
 
 
 def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
@@ -415,7 +417,7 @@ def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
     assumed = Assumed()
     if estimated is not None:
         assumed = assumed.beside_repeats(estimated.tow_sd, estimated.calibration_sd)
-    assumed = replace(assumed, unmeasured_wind=o.expected_wind.sd)
+    assumed = replace(assumed, unmeasured_wind=o.prepared.expected_wind.sd)
     if o.steps.wind.coefficients == "archive":
         assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
     return assumed

@@ -3,9 +3,9 @@
 Filled by `pipeline.recompute.recompute`, made into tables by `pipeline.recompute.results`.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -157,10 +157,11 @@ class Prepared:
 
 
 @dataclass(frozen=True)
-class Outcome(Prepared):
+class Outcome:
     """A batch with all that a method found out about it.
 
     Attributes:
+        prepared: what does not depend on the wind coefficients.
         ahead, behind, still_air_coefficient: drag coefficients of each run, shape (runs,).
         coefficient_sd: standard deviation of the archive's coefficient; NaN where there is none.
         cw_kg_m: corrected coefficient, shape (runs,).
@@ -168,6 +169,7 @@ class Outcome(Prepared):
             chose, shape (tows,).
     """
 
+    prepared: Prepared
     ahead: FloatArray
     behind: FloatArray
     still_air_coefficient: FloatArray
@@ -177,20 +179,25 @@ class Outcome(Prepared):
     free: curve.Curves
     curves: curve.Curves
 
-    @classmethod
-    def of(cls, prepared: Prepared, **own: Any) -> "Outcome":
-        """The outcome of what was prepared, with the fields of its own."""
-        return cls(**{f.name: getattr(prepared, f.name) for f in fields(prepared)}, **own)
+    @property
+    def batch(self) -> Batch:
+        """The tows."""
+        return self.prepared.batch
+
+    @property
+    def steps(self) -> Steps:
+        """The steps of the method for them."""
+        return self.prepared.steps
 
     @cached_property
     def air_kg_m(self) -> FloatArray:
         """The air part that was taken off, shape (runs,)."""
-        return self.air_of(self.ahead, self.behind)
+        return self.prepared.air_of(self.ahead, self.behind)
 
     @cached_property
     def still_air_kg_m(self) -> FloatArray:
         """The still-air part that was put back, shape (runs,)."""
-        return self.still_air_of(self.still_air_coefficient)
+        return self.prepared.still_air_of(self.still_air_coefficient)
 
     @property
     def cw_at_declared(self) -> FloatArray:

@@ -215,8 +215,9 @@ def _differ_in_curve_alone(outcome: Outcome, steps: Steps) -> bool:
 
 def _with_curve(outcome: Outcome, steps: Steps) -> Outcome:
     """The same points with the curve that other steps choose."""
-    other = replace(outcome, steps=steps)
-    return replace(other, curves=_choose_curve(other, outcome.points, outcome.free))
+    prepared = replace(outcome.prepared, steps=steps)
+    curves = _choose_curve(prepared, outcome.points, outcome.free)
+    return replace(outcome, prepared=prepared, curves=curves)
 
 
 def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) -> Prepared:
@@ -310,7 +311,7 @@ def _finish(prepared: Prepared, shared: ArchiveCoefficient | None) -> Outcome:
     cw = prepared.cw_of(ahead, behind, still)
     points = prepared.points_of(cw)
     free = curve.fit(points)
-    return Outcome.of(
+    return Outcome(
         prepared,
         ahead=ahead,
         behind=behind,

@@ -127,30 +127,31 @@ def as_tables(
 
 
 def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
-    means, has_window, tow = o.means, o.windows.exists, o.batch.tow
-    on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
+    p = o.prepared
+    means, has_window, tow = p.means, p.windows.exists, o.batch.tow
+    on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], p.speed_m_s)
     log1 = np.where(has_window, means.log1_m_s, 1.0)
     has_limits = o.steps.window.rule != "all"
     wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
     log2_ratio = means.log2_m_s / log1
     log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
     numbers = {
-        "window_start_s": o.windows.start_s,
-        "window_end_s": o.windows.end_s,
-        "end_speed_m_s": o.windows.ends.speed_m_s,
-        "end_force_ratio": o.windows.ends.force_ratio,
-        "end_wind_m_s": o.windows.ends.wind_m_s,
-        "speed_factor": o.speed_factor,
-        "speed_m_s": o.speed_m_s,
-        "gross_cw_kg_m": o.by_true_speed(means.gross_kg_m),
-        "inertia_cw_kg_m": o.by_true_speed(means.inertia_kg_m),
+        "window_start_s": p.windows.start_s,
+        "window_end_s": p.windows.end_s,
+        "end_speed_m_s": p.windows.ends.speed_m_s,
+        "end_force_ratio": p.windows.ends.force_ratio,
+        "end_wind_m_s": p.windows.ends.wind_m_s,
+        "speed_factor": p.speed_factor,
+        "speed_m_s": p.speed_m_s,
+        "gross_cw_kg_m": p.by_true_speed(means.gross_kg_m),
+        "inertia_cw_kg_m": p.by_true_speed(means.inertia_kg_m),
         "air_cw_kg_m": o.air_kg_m,
         "still_air_cw_kg_m": o.still_air_kg_m,
-        "temperature_cw_kg_m": o.temperature_kg_m,
+        "temperature_cw_kg_m": p.temperature_kg_m,
         "wind_coefficient_ahead": o.ahead,
         "wind_coefficient_behind": o.behind,
         "cw_kg_m": o.cw_kg_m,
-        "cw_sd": o.by_true_speed(means.sd_kg_m),
+        "cw_sd": p.by_true_speed(means.sd_kg_m),
         "u_ratio": run_point_ratio(o) if pooled else np.nan,
         "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
         "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
@@ -161,13 +162,13 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     ).with_columns(
         pl.Series("lost_s", o.batch.lost_s),
         *(_column(name, values, has_window) for name, values in numbers.items()),
-        _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), has_window & has_limits),
+        _column("ends_ratio", p.windows.ends.in_limits(o.steps.window), has_window & has_limits),
         _column("gps_ratio", means.gps_m_s / log1, has_window),
         pl.Series("gps_delay_s", means.gps_delay_s, pl.Int8),
         _column("fitted_cw_kg_m", on_curve, has_window & o.curves.converged[tow]),
-        pl.Series("cut_reason", o.windows.reasons, pl.String),
-        pl.Series("used", o.used),
-        pl.Series("reason", o.reasons, pl.String),
+        pl.Series("cut_reason", p.windows.reasons, pl.String),
+        pl.Series("used", p.used),
+        pl.Series("reason", p.reasons, pl.String),
     )
 
 
@@ -198,9 +199,11 @@ def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     ).with_columns(
         *(_column(name, values, sound) for name, values in numbers.items()),
         _column("b_m_s", o.curves.b_m_s, sound & o.curves.b_determined),
-        _column("calibration_factor", o.calibration_factor, o.steps.calibration.rule != "none"),
+        _column(
+            "calibration_factor", o.prepared.calibration_factor, o.steps.calibration.rule != "none"
+        ),
         pl.Series("b_capped", o.curves.b_capped),
-        pl.Series("runs_used", o.batch.count(o.used), pl.Int8),
+        pl.Series("runs_used", o.batch.count(o.prepared.used), pl.Int8),
     )
 
 
@@ -224,8 +227,9 @@ FactorRow = tuple[int, float, float | None, float | None, str]
 
 
 def _mean_factor(o: Outcome, season: int) -> FactorRow:
-    mine = (o.batch.of_tow("season") == season) & o.calibrated
-    ln_factor = np.log((o.known_factor * o.calibration_factor)[mine])
+    p = o.prepared
+    mine = (o.batch.of_tow("season") == season) & p.calibrated
+    ln_factor = np.log((p.known_factor * p.calibration_factor)[mine])
     n = len(ln_factor)
     if n == 0:
         return season, 1.0, None, None, "none"

@@ -176,6 +176,7 @@ def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
 
 def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     """Per tow its curve at its line's `speed`, with uncertainty, and its GPS ratio."""
+    p = o.prepared
     batch, steps = o.batch, o.steps
     lines = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
     speed = lines["speed"].to_numpy()
@@ -190,7 +191,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     gps, gps_sd, has_gps = _gps_ratio(o)
     own_sd, q = np.hypot(files_log_sd(o), stream_scatter(o)[0]), safe_r / (1.0 - safe_r)
     by_log = (2.0 + 2.0 * q, 2.0 * q * (1.0 + q))
-    y = np.where(o.calibrated, o.calibration_factor, 1.0)
+    y = np.where(p.calibrated, p.calibration_factor, 1.0)
     numbers = {
         "ln_cw": np.where(sound, np.log(safe), np.nan),
         "ln_cw_sd": np.sqrt(
@@ -203,7 +204,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
         + by_log[0] * by_log[1] * own_sd**2,
         "other_ln_ratio": _other_ln_ratio(o),
-        "own_calibration_ln": np.where(o.calibrated, np.log(o.known_factor * y), np.nan),
+        "own_calibration_ln": np.where(p.calibrated, np.log(p.known_factor * y), np.nan),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
         "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, own_sd), np.nan),
     }
@@ -217,7 +218,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         pl.lit(OTHER_LOG.get(steps.speed.source)).alias("other_log"),
         log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
         pl.lit(calibrated).alias("anchored"),
-        pl.Series("temperature_known", o.temperature_known),
+        pl.Series("temperature_known", p.temperature_known),
         force_uncertainty(batch.tows).alias("force_sd"),
         pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / speed),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
@@ -226,8 +227,8 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
 
 def _unmeasured_wind_kg_m(o: Outcome) -> FloatArray:
     """Standard uncertainty of Cw by wind that nobody measured, shape (tows,); 0 where it was."""
-    still = o.batch.mean(o.still_air_kg_m, o.used)
-    return np.where(o.batch.measured("wind"), 0.0, still * o.expected_wind.sd)
+    still = o.batch.mean(o.still_air_kg_m, o.prepared.used)
+    return np.where(o.batch.measured("wind"), 0.0, still * o.prepared.expected_wind.sd)
 
 
 def _water_points(o: Outcome) -> curve.Points:
@@ -238,11 +239,12 @@ def _water_points(o: Outcome) -> curve.Points:
 
 def _other_ln_ratio(o: Outcome) -> FloatArray:
     """Mean of ln(log in use / other log) over each tow's runs; NaN where there is none."""
+    p = o.prepared
     source = o.steps.speed.source
     if source not in OTHER_LOG:
         return np.full(o.batch.size, np.nan)
-    mean = {"log1": o.means.log1_m_s, "log2": o.means.log2_m_s}
-    turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
+    mean = {"log1": p.means.log1_m_s, "log2": p.means.log2_m_s}
+    turning = p.used & (mean["log1"] > 0) & (mean["log2"] > 0)
     turning &= o.batch.measured("log2")[o.batch.tow]
     turning &= mean["log1"] != mean["log2"]  # a run without its log 2 has log 1 in its place
     ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
@@ -261,8 +263,9 @@ def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
     The random part is the scatter of run ratios about their direction's mean, pooled over the
     batch: one tow's six runs are too few.
     """
-    batch, gps, log = o.batch, o.means.gps_m_s, o.means.speed_m_s
-    used = o.used & np.isfinite(gps)
+    p = o.prepared
+    batch, gps, log = o.batch, p.means.gps_m_s, p.means.speed_m_s
+    used = p.used & np.isfinite(gps)
     y, both = gps_factor(gps, log, batch.direction, batch.tow, used, batch.size)
     ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
     spread, count = 0.0, 0.0
