@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from herijk.pipeline import curve
-from herijk.pipeline.uncertainty.misfit import Departure, departure_of_boats
+from herijk.pipeline.uncertainty.misfit import USUAL_RATIO, Departure, departure_of_boats
 
 TARGET = np.tile([0.9, 1.0, 1.1], 2)
 WAY = np.repeat([1.0, -1.0], 3)
@@ -61,17 +61,29 @@ def test_tows_that_do_not_tell_have_what_the_others_show():
     assert variance[lost].min() > variance[~lost].max()
 
 
-def test_two_speeds_show_no_shape():
-    found, _, _ = departures(0.02)
-    two = np.where(TARGET == 1.1, 1.0, TARGET)
-    shape = (TOWS, 6)
-    held = Departure.of(
-        np.zeros(shape),
-        np.ones(shape, bool),
-        np.broadcast_to(TARGET, shape),
-        np.broadcast_to(WAY, shape),
-        np.broadcast_to(two, shape),
+def departure_of_residuals(residuals, target):
+    return Departure.of(
+        residuals,
+        np.ones(residuals.shape, bool),
+        np.broadcast_to(TARGET, residuals.shape),
+        np.broadcast_to(WAY, residuals.shape),
+        np.broadcast_to(target, residuals.shape),
         np.array([1.0]),
     )
-    assert np.isfinite(found.variance).all()
-    assert np.isinf(held.variance).all()
+
+
+def test_two_speeds_show_no_shape():
+    residuals = SCATTER * np.random.default_rng(2).standard_normal((TOWS, 6))
+    two = np.where(TARGET == 1.1, 1.0, TARGET)
+    assert np.isfinite(departure_of_residuals(residuals, TARGET).variance).all()
+    assert np.isinf(departure_of_residuals(residuals, two).variance).all()
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-16])
+def test_points_that_wind_coefficients_brought_onto_the_curve_tell_nothing(rounding):
+    """One tow under wind coefficients of each run has no scatter at all; its budget held NaN."""
+    residuals = rounding * np.random.default_rng(3).standard_normal((1, 6))
+    found = departure_of_residuals(residuals, TARGET)
+    mean, variance = departure_of_boats(found, np.zeros(1, np.int64))
+    assert mean.item() == 0.0
+    assert np.sqrt(variance.item()) == pytest.approx(USUAL_RATIO)

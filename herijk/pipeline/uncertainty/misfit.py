@@ -23,6 +23,12 @@ USUAL_TOWS: Final = 20.0
 SHAPE: Final = 4
 """Numbers of a tow's residuals: mean, slope, bend, and out against back."""
 
+ROUNDING: Final = 1e-20
+"""Mean square of residuals that are rounding alone.
+
+Wind coefficients of each run can bring every point onto the curve: such points tell nothing.
+"""
+
 
 @dataclass(frozen=True)
 class Departure:
@@ -67,10 +73,11 @@ class Departure:
             parabola = np.einsum("tij,tpj,tp->ti", inverse, design, e)
             rest = e - np.einsum("tpj,tj->tp", design, parabola)
             scatter = (rest**2).sum() / (weight.sum() - SHAPE * tells.sum())
-            at = asked - 1.0
-            along = np.stack([np.ones_like(at), at, at**2, np.zeros_like(at)], axis=1)
-            ratio[tells] = parabola @ along.T
-            variance[tells] = scatter * np.einsum("sj,tjk,sk->ts", along, inverse, along)
+            if scatter > ROUNDING:
+                at = asked - 1.0
+                along = np.stack([np.ones_like(at), at, at**2, np.zeros_like(at)], axis=1)
+                ratio[tells] = parabola @ along.T
+                variance[tells] = scatter * np.einsum("sj,tjk,sk->ts", along, inverse, along)
         return cls(ratio, variance)
 
 
