@@ -82,7 +82,8 @@ def make_all(archive: Path, data: Path) -> None:
 
 def main() -> None:
     """Tries so many parts; exit code 1 where one failed."""
-    number, seed = (int(text) for text in [*sys.argv[1:], "50", "1"][:2])
+    given = sys.argv[1:]
+    number, seed = map(int, [*given, *("50", "1")[len(given) :]])
     outcomes: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         whole = Path(folder) / "whole"

@@ -8,6 +8,9 @@ import polars as pl
 
 from herijk.assets.partitions import seasons
 from herijk.assets.resources import Setup
+from herijk.assets.shown import columns_of
+from herijk.pipeline.blocks.run_blocks import BLOCK_SCHEMA
+from herijk.pipeline.channels import SAMPLE_SCHEMA
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.code import ADDERS, FAULTS_IN_DUTCH, READERS, code_hash
 from herijk.warehouse.store.store import Store
@@ -56,6 +59,7 @@ def index_result(store: Store) -> dg.MaterializeResult:
     check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
     group_name="archive",
     kinds={"parquet"},
+    metadata=columns_of(SAMPLE_SCHEMA),
     owners=OWNERS,
     tags=SUBJECT,
 )
@@ -94,6 +98,7 @@ def samples_result(season_index: pl.DataFrame) -> dg.MaterializeResult:
     code_version=code_hash(*ADDERS),
     group_name="archive",
     kinds={"parquet"},
+    metadata=columns_of(BLOCK_SCHEMA),
     owners=OWNERS,
     tags=SUBJECT,
 )

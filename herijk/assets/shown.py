@@ -28,6 +28,12 @@ PAGES: Final[Mapping[str, str]] = {
 COLUMNS: Final = 12
 
 
+def columns_of(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
+    """The columns of what the lake holds beside tables, as metadata of its asset."""
+    columns = [dg.TableColumn(name, str(kind)) for name, kind in schema.items()]
+    return {"dagster/column_schema": dg.TableSchema(columns)}
+
+
 def preview(table: str, frame: pl.DataFrame) -> dict[str, dg.MetadataValue]:
     """The first rows of a table that people look for; nothing of others."""
     if table not in PAGES or frame.is_empty():

@@ -40,8 +40,16 @@ SUM_NAMES: Final = (
     *("gps", "gps_n"),
 )
 
-PLACE: Final = ("tow_id", "run", "second", "n")
+PLACE: Final[dict[str, pl.DataType]] = {
+    "tow_id": pl.String(),
+    "run": pl.Int8(),
+    "second": pl.Int16(),
+    "n": pl.Int32(),
+}
 """Columns of blocks beside their sums."""
+
+BLOCK_SCHEMA: Final = PLACE | dict.fromkeys(SUM_NAMES, pl.Float64())
+"""Columns of the blocks of a season."""
 
 
 @dataclass(frozen=True)

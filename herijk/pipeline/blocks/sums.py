@@ -18,7 +18,7 @@ from numba import float32, float64, int64, njit, types
 from numpy.typing import NDArray
 
 from herijk.pipeline.arrays import FloatArray, IntArray
-from herijk.pipeline.blocks.run_blocks import SUM_NAMES
+from herijk.pipeline.blocks.run_blocks import BLOCK_SCHEMA, SUM_NAMES
 
 LANES: Final = np.uintp(16)
 """Running sums of each kind: enough for the widest registers, few enough for the nearest cache."""
@@ -74,10 +74,11 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     return pl.DataFrame(
         {
             "run": number,
-            "second": second.astype(np.int16),
-            "n": n.astype(np.int32),
+            "second": second,
+            "n": n,
             **dict(zip(SUM_NAMES, sums, strict=True)),
-        }
+        },
+        schema={name: kind for name, kind in BLOCK_SCHEMA.items() if name != "tow_id"},
     )
 
 

@@ -16,10 +16,9 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import SUM_NAMES, RunBlocks, stack_blocks
+from herijk.pipeline.blocks.run_blocks import BLOCK_SCHEMA, RunBlocks, stack_blocks
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
-from herijk.tables.archive import TraceSeconds
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import AboutArchive, Faults, SeasonIndex
 from herijk.warehouse.archive import (
@@ -184,9 +183,7 @@ def collect_blocks(store: Store, season: int) -> pl.DataFrame:
 def all_blocks(store: Store, columns: Sequence[str] | None = None) -> pl.DataFrame:
     """Blocks of all seasons, or some of their columns; those without a sound tow have none."""
     frames = [store.read("blocks", season, columns) for season in store.partitions("blocks")]
-    sums = (pl.lit(0.0).alias(name) for name in ("n", *SUM_NAMES))
-    nothing = TraceSeconds.create_empty().select("tow_id", "run", "second", *sums)
-    return pl.concat([f for f in frames if f.height] or [nothing])
+    return pl.concat([f for f in frames if f.height] or [pl.DataFrame(schema=BLOCK_SCHEMA)])
 
 
 def typed_tows(store: Store) -> pl.DataFrame:
