@@ -38,8 +38,10 @@ def test_a_reader_always_finds_a_whole_folder(tmp_path):
 
     reader = threading.Thread(target=read)
     reader.start()
-    while reads[0] < 50:  # a quick machine would be done before the reader had its turn
+    exchanges = 0
+    while exchanges < 50 or reads[0] < 50:  # on a quick machine the reader has few turns
         put_in_place(beside, target)
+        exchanges += 1
     stop.set()
     reader.join()
     assert missed == []
