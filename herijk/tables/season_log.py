@@ -13,7 +13,8 @@ class LogFactors(PerMethod):
     lo = column.number("1", "lower end of the 95 % interval; empty where unknown", nullable=True)
     hi = column.number("1", "upper end", nullable=True)
     source = column.text(
-        "none, prescribed, estimated, gps, or not settled (the search did not come to rest)",
+        "none, prescribed, estimated, gps, or not settled (the search did not come to rest, or the "
+        "factor contradicts the season's repeat tows and is not used)",
         regex="^(none|prescribed|estimated|gps|not settled)$",
     )
 

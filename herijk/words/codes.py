@@ -204,6 +204,10 @@ CODES: Final[dict[str, tuple[str, str]]] = {
         "kromme meer veranderd dan de onzekerheid",
         "curve changed beyond its uncertainty",
     ),
+    "code.best_estimate_differs": (
+        "beste schatting spreekt de proef tegen",
+        "best estimate contradicts the tow",
+    ),
     "code.b_at_cap": ("B op zijn bovengrens", "B at its cap"),
     "code.heavier_after": ("na de proef zwaarder", "heavier after"),
     "code.log2_differs": ("log 2 wijkt af", "log 2 differs"),

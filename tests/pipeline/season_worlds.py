@@ -168,6 +168,7 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "rowers": 8,
         "crew_class": "H",
         "ln_cw": level,
+        "reference_ln": 0.0,
         "true_ln_cw": truth,
         "kappa": 2 * (1 + q_guess),
         "ln_cw_sd": 0.41 * setup.run_noise,

@@ -99,6 +99,8 @@ def _curve(tow: Mapping[str, Any]) -> dict[str, Any]:
         "cw_hi_kg_m": CW * math.exp(0.0392),
         "cw_others_kg_m": CW,
         "cw_best_kg_m": CW,
+        "cw_best_lo_kg_m": CW * math.exp(-0.01),
+        "cw_best_hi_kg_m": CW * math.exp(0.01),
         "b_capped": False,
         "power_w": CW * V0**3 / 8,
         "residual_sd_ratio": 0.01,
@@ -160,7 +162,10 @@ gone = {"residual_sd_ratio": None}
 run1 = pl.col("run") == 1
 back = pl.col("direction") == -1
 lower_cw = pl.col("cw_kg_m") * 0.95
-heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
+heavier = {
+    **{"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW, "cw_best_kg_m": 1.08 * CW},
+    **{f"cw_best_{end}_kg_m": 1.08 * CW * math.exp(x) for end, x in (("lo", -0.01), ("hi", 0.01))},
+}
 narrow = {"cw_lo_kg_m": CW * math.exp(-0.0196), "cw_hi_kg_m": CW * math.exp(0.0196)}
 
 # check: (table, tow, changes, observed, limit, what fires as well)
@@ -239,6 +244,9 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "curve_change_significant": (
         "curves", LATER, {**heavier, **narrow}, math.log(1.08) / (0.02**2 + 0.01**2) ** 0.5, 3,
         {"curve_changed", "curve_change_unexplained"},
+    ),
+    "best_estimate_differs": (
+        "curves", SUBJECT, {"cw_best_kg_m": CW * math.exp(0.06)}, 0.06 / 0.0492, 1, set(),
     ),
     "pulled_askew": (
         "curves", SUBJECT, heavier, 0.08, 0.05, set(),

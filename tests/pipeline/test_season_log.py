@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import polars as pl
@@ -13,6 +14,7 @@ from herijk.pipeline import curve
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.season_log import (
     estimate_season_factors,
+    guard,
     other_log_factors,
     posterior,
     retow_choice,
@@ -29,6 +31,7 @@ PERFECT = replace(
     CLEAN, tow_noise=0.0, run_noise=1e-6, gps_run_error=0.0, gps_season_error=0.0, kappa_error=0.0
 )
 WORLDS = 4
+PHANTOM = Path(__file__).parents[1] / "data" / "phantom_tows.parquet"
 USUAL = Settings()
 
 
@@ -112,6 +115,45 @@ def test_hard_worlds_recover_2009_to_2011():
     assert low <= covered.sum() <= high
 
 
+def test_no_fault_is_seen_in_an_ordinary_archive():
+    """The step into the model promised faults of load cell and GPS that their own fit rejects."""
+    tows = pl.read_parquet(PHANTOM)
+    found = estimate_season_factors(tows)
+    truth = tows.group_by("season").agg(pl.col("true_ln_factor").mean())
+    seasons = found.factors.join(truth, on="season").sort("season")
+    assert seasons.height == 5
+    error = (seasons["factor"].log() - seasons["true_ln_factor"]).abs()
+    assert error.max() < 0.005
+    assert found.diagnosis.filter("alarm").is_empty()
+
+
+@pytest.mark.parametrize("wrong", [-0.03, 0.03])
+def test_a_factor_that_repeat_tows_contradict_is_refused(wrong, monkeypatch):
+    world, found = estimated(CLEAN, 1000)
+    ln_factor = found.factors["factor"].log().to_numpy()
+    assert found.factors["source"].to_list() == ["estimated"] * len(ln_factor)
+    problem = posterior.Problem.of(Network.of(world.tows), USUAL)
+    off = np.where(found.factors["season"] == 2009, wrong, 0.0)
+    ln_sd = found.factors["ln_sd"].to_numpy()
+    assert guard.refused(posterior.solve(problem), ln_factor + off, ln_sd).tolist() == [
+        season == 2009 for season in found.factors["season"]
+    ]
+
+
+def test_a_factor_over_ten_per_cent_is_not_used():
+    world = simulate(replace(CLEAN, log_factors=((2009, 1.13),)), 1)
+    found = estimate_season_factors(world.tows)
+    of_2009 = found.factors.row(by_predicate=pl.col("season") == 2009, named=True)
+    assert (of_2009["source"], of_2009["factor"]) == ("not settled", None)
+    assert found.is_refused(2009, "log1")
+    assert not found.is_refused(2010, "log1")
+    of_tows = found.instruments.join(world.tows.select("tow_id", "season"), on="tow_id")
+    assert of_tows.filter(season=2009)["factor"].null_count() == of_tows.filter(season=2009).height
+    doubted = found.diagnosis.filter(season=2009, instrument="log_scale")
+    assert doubted["verdict"].to_list() == ["not settled"]
+    assert doubted["alarm"].all()
+
+
 @pytest.mark.parametrize("steps", [1, 2, 3])
 def test_the_search_begins_without_leaps(steps, monkeypatch):
     """Of some unknown next to nothing may be known at its start: steps of 26 and 70 were made."""
@@ -133,14 +175,16 @@ def test_ageing_is_told_from_log_errors():
 def test_boats_that_age_apart_are_seen_to_drift_and_their_best_estimates_hold():
     """Half of the boats get 2 % worse a year, the others do not."""
     setup = replace(CLEAN, ageing_per_year=0.01, ageing_apart_per_year=0.01)
-    world = simulate(setup, 3)
-    found = estimate_season_factors(world.tows)
     _, calm = estimated(CLEAN, 1000)
     assert calm.drift_sd < 0.004
-    assert found.drift_sd > 0.01
-    best = found.best.join(world.tows.select("tow_id", "true_ln_cw"), on="tow_id")
-    held = best.select(pl.col("true_ln_cw").is_between("lo", "hi")).to_series()
-    assert held.mean() > 0.93
+    held = []
+    for seed in (3, 4):
+        world = simulate(setup, seed)
+        found = estimate_season_factors(world.tows)
+        assert found.drift_sd > 0.01
+        best = found.best.join(world.tows.select("tow_id", "true_ln_cw"), on="tow_id")
+        held.append(best.select(pl.col("true_ln_cw").is_between("lo", "hi")).to_series().mean())
+    assert np.mean(held) > 0.9  # no normal drift: 92 % in eight worlds
 
 
 def test_what_tows_of_a_day_share_is_found_and_widens_the_interval(monkeypatch):

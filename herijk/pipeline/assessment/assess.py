@@ -193,8 +193,12 @@ def _beside_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame
 
 def _of_curves(curves: pl.DataFrame) -> pl.DataFrame:
     has_curve = pl.col("a_kg_m").is_not_null()
+    apart = (pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).log().abs()
+    both = pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")
+    both *= pl.col("cw_best_hi_kg_m") / pl.col("cw_best_lo_kg_m")
     return curves.select(
         "tow_id",
+        best_estimate_differs=apart / (0.5 * both.log()),
         no_curve=has_curve,
         few_runs="runs_used",
         residual_large="residual_sd_ratio",

@@ -111,6 +111,7 @@ CHECKS: Final = (
     Check("curve_changed", lowest=-0.05, highest=0.05, severity="note"),
     Check("curve_change_unexplained", lowest=-0.05, highest=0.05),
     Check("curve_change_significant", lowest=-3.0, highest=3.0),
+    Check("best_estimate_differs", highest=1.0),
     Check("pulled_askew", highest=0.05, last_season=2013),
 )
 """Every check, in the order in which flags are listed."""

@@ -85,7 +85,9 @@ def _to_declared(factors: SeasonFactors) -> pl.DataFrame:
     Returns:
         `tow_id, by_bend`, what that changes of ln Cw, and `bend_variance`, its uncertainty.
     """
-    r = pl.col("q") / (1.0 + pl.col("q")) / pl.col("factor") ** 2
+    # q is that of the log's curve where it reads the usual speed over exp(reference_ln).
+    off = pl.col("reference_ln").exp() / pl.col("factor")
+    r = pl.col("q") / (1.0 + pl.col("q")) * off**2
     away = pl.col("reference_ratio") ** 2 - 1.0
     own, boat = (
         (1.0 - q * away).clip(lower_bound=LEAST_MARGIN) for q in (r / (1.0 - r), pl.col("bend"))

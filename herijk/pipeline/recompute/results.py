@@ -34,7 +34,7 @@ from herijk.pipeline.recompute.budget import (
 from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.recompute.season_factors import tow_instruments
 from herijk.pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
-from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
+from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, NOT_SETTLED
 from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.uncertainty.propagation import combine
 from herijk.tables.frames import dtypes
@@ -254,6 +254,8 @@ def _factor_row(o: Outcome, season: int, estimated: SeasonFactors | None) -> Fac
             return (season, *known)
     nothing = np.array([np.nan])
     factor = float(log_factor(speed, nothing, nothing)[0])
+    if estimated is not None and estimated.is_refused(season, speed.source):
+        return season, factor, None, None, NOT_SETTLED
     return season, factor, None, None, "none" if factor == 1.0 else "prescribed"
 
 

@@ -1,12 +1,12 @@
 """Season factors: what the joint estimate is given, and what it gives to the tows.
 
 Every tow is first computed without any factor for the seasons whose factor is estimated; from
-those curves the factors follow, once, and are applied after (never tuned in a loop). The statistics
-are in `pipeline.season_log`.
+those curves the factors follow, twice: at the speeds as read, then at true speed. They are applied
+after. The statistics are in `pipeline.season_log`.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Final
 
@@ -82,19 +82,35 @@ def without_factor(steps: Steps) -> Steps:
 def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
     """The log factors of all seasons, from tows computed without them.
 
+    Tows of a line are compared at one true speed. A first estimate, from the speeds as read, says
+    what the logs read there. At those speeds themselves a log that is 6 % low would be compared at
+    the edge of what was towed, and all would hang on the bend.
+
     Args:
         outcomes: all batches under `without_factor`.
     """
-    return estimate_season_factors(_with_calibrations(_with_kappa(_tow_rows(outcomes))))
+    as_read = _estimate(outcomes, {})
+    known = as_read.instruments.drop_nulls("factor")
+    return _estimate(outcomes, dict(known.select("tow_id", pl.col("factor").log()).iter_rows()))
 
 
-def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
-    """One row per tow with a sound curve, at one speed per line: its median declared speed."""
+def _estimate(outcomes: Sequence[Outcome], ln_factor: Mapping[str, float]) -> SeasonFactors:
+    rows = _tow_rows(outcomes, ln_factor)
+    return estimate_season_factors(_with_calibrations(_with_kappa(rows)))
+
+
+def _tow_rows(outcomes: Sequence[Outcome], ln_factor: Mapping[str, float]) -> pl.DataFrame:
+    """One row per tow with a sound curve, at one speed per line: its median declared speed.
+
+    Args:
+        outcomes: all batches under `without_factor`.
+        ln_factor: of the logs of tows, as far as it is known; 0 of the others.
+    """
     declared = pl.concat([o.batch.tows.select(*LINE, "declared_speed_m_s") for o in outcomes])
     reference = declared.group_by(LINE, maintain_order=True).agg(
         pl.col("declared_speed_m_s").median().alias("speed")
     )
-    return pl.concat([_rows(o, reference) for o in outcomes]).drop_nulls("ln_cw")
+    return pl.concat([_rows(o, reference, ln_factor) for o in outcomes]).drop_nulls("ln_cw")
 
 
 @dataclass(frozen=True)
@@ -174,12 +190,14 @@ def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
     return pl.col("season"), log_part(source), pl.lit(source).alias("log")
 
 
-def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
-    """Per tow its curve at its line's `speed`, with uncertainty, and its GPS ratio."""
+def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -> pl.DataFrame:
+    """Per tow its curve at its line's true `speed`, with uncertainty, and its GPS ratio."""
     p = o.prepared
     batch, steps = o.batch, o.steps
     lines = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
-    speed = lines["speed"].to_numpy()
+    reference_ln = np.array([ln_factor.get(name, 0.0) for name in batch.tows["tow_id"]])
+    true_speed = lines["speed"].to_numpy()
+    speed = true_speed * np.exp(-reference_ln)
     water = _water_points(o)
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
@@ -220,7 +238,8 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         pl.lit(calibrated).alias("anchored"),
         pl.Series("temperature_known", p.temperature_known),
         force_uncertainty(batch.tows).alias("force_sd"),
-        pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / speed),
+        pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / true_speed),
+        pl.Series("reference_ln", reference_ln),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
 

@@ -28,7 +28,7 @@ h and g are what a scale error of the log does to a hyperbola exactly (`effects`
 boat are random, q about its type, and step where it was altered; theta drifts besides, a random
 walk over the seasons. lambda_k = lambda_j + trend + change + between-tow scatter. phi is the scale
 of the load cell, with what its days share; z is its zero. Faults are rare and large: each is there
-or not, and what cannot be told apart is averaged over.
+or not. h and g are taken about the factor at which ln Cw and q hold (`reference_ln`).
 """
 
 from herijk.pipeline.season_log.estimate import SeasonFactors, estimate_season_factors

@@ -64,12 +64,11 @@ def season_diagnosis(posterior: Posterior) -> pl.DataFrame:
     """
     parts = posterior.problem.network.groups["part"]
     keys: dict[Key, list[int]] = {}
-    for column, place in enumerate(posterior.places):
-        unknown = posterior.problem.unknowns[place]
+    for place, unknown in enumerate(posterior.problem.unknowns):
         if unknown.season is not None:
             part = 0 if unknown.group is None else parts[unknown.group]
-            keys.setdefault((unknown.season, part, unknown.name), []).append(column)
-    rows = [_row(posterior, key, columns) for key, columns in sorted(keys.items())]
+            keys.setdefault((unknown.season, part, unknown.name), []).append(place)
+    rows = [_row(posterior, key, of_key) for key, of_key in sorted(keys.items())]
     return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA, orient="row")
 
 
@@ -103,7 +102,7 @@ def season_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
         season = int(str(key[0]))
         of_force = {verdicts.get((season, 0, name)) for name in FORCES}
         of_log = verdicts.get((season, int(str(key[1])), LOG))
-        lost = of_log == NOT_DETERMINED or not posterior.fit.settled
+        lost = of_log in (NOT_DETERMINED, NOT_SETTLED) or not posterior.fit.settled
         hidden = verdicts.get((season, 0, FORCE)) == WOULD_NOT_SHOW
         streams = _may_be_a_stream(network, season, force)
         lost |= hidden and 2.0 * step_sd < abs(step) < USUAL_SIZES * settings.force_fault_sd
@@ -147,11 +146,12 @@ def _cause(of_force: set[str | None], lost: bool, steps: bool, may_be_a_stream: 
     return "log" if steps else "none"
 
 
-def _row(posterior: Posterior, key: Key, columns: list[int]) -> dict[str, object]:
+def _row(posterior: Posterior, key: Key, unknowns: list[int]) -> dict[str, object]:
     """One season and instrument: what all its unknowns add up to."""
     season, part, name = key
-    fit, k, network = posterior.fit, len(posterior.fit.active), posterior.problem.network
-    faults = [c - k for c in columns if c >= k]
+    fit, network = posterior.fit, posterior.problem.network
+    columns = np.flatnonzero(np.isin(posterior.places, unknowns)).tolist()
+    faults = np.flatnonzero(np.isin(posterior.problem.faults, unknowns)).tolist()
     mean = float(posterior.mean[columns].sum())
     variance = float(posterior.covariance[np.ix_(columns, columns)].sum())
     half = NORMAL * np.sqrt(max(variance, 0.0))
@@ -159,7 +159,7 @@ def _row(posterior: Posterior, key: Key, columns: list[int]) -> dict[str, object
     distance = _distance(posterior, columns)
     shows = bool(posterior.shows[faults].any())
     verdict = _verdict(network, key, chance, distance, shows) if fit.settled else NOT_SETTLED
-    confused = _confused_with(posterior, columns)
+    confused = _confused_with(posterior, columns, faults)
     if name == FORCE and verdict == FAULT and _may_be_a_stream(network, season, mean):
         confused = ", ".join(filter(None, (f"{GPS_SCALE} {season}", confused)))
     return {
@@ -183,7 +183,7 @@ def _row(posterior: Posterior, key: Key, columns: list[int]) -> dict[str, object
 def _distance(posterior: Posterior, columns: list[int]) -> float | None:
     """How far what the archive shows of an unknown that there always is lies from its prior."""
     fit, problem = posterior.fit, posterior.problem
-    always = [c for c in columns if c < len(fit.active) and fit.active[c] in problem.always]
+    always = [c for c in columns if fit.active[c] in problem.always]
     if not always or problem.unknowns[fit.active[always[0]]].name == LOG:
         return None
     prior = problem.unknowns[fit.active[always[0]]].sd ** 2
@@ -196,8 +196,7 @@ def _verdict(
 ) -> str:
     season, part, name = key
     if name == LOG:
-        mine = (network.groups["season"] == season) & (network.groups["part"] == part)
-        return "estimated" if network.determined[mine.to_numpy()].all() else NOT_DETERMINED
+        return _of_log(network, season, part)
     if chance is not None and chance >= FOUND:
         return FAULT
     if distance is not None and abs(distance) >= ALARM_SD:
@@ -207,6 +206,14 @@ def _verdict(
     if chance >= POSSIBLE:
         return CANNOT_BE_TOLD
     return SOUND if shows else WOULD_NOT_SHOW
+
+
+def _of_log(network: Network, season: int, part: int) -> str:
+    groups = network.groups
+    mine = ((groups["season"] == season) & (groups["part"] == part)).to_numpy()
+    if network.refused[mine].any():
+        return NOT_SETTLED
+    return "estimated" if network.determined[mine].all() else NOT_DETERMINED
 
 
 def _first_tow(posterior: Posterior, faults: list[int], chance: float | None) -> str | None:
@@ -238,11 +245,9 @@ def _rests_on(network: Network, season: int) -> str:
     return ", ".join(told)
 
 
-def _confused_with(posterior: Posterior, columns: list[int]) -> str | None:
+def _confused_with(posterior: Posterior, mine: list[int], faults: list[int]) -> str | None:
     """Other faults that would explain as much, likeliest first; then what would pass for them."""
-    problem, k = posterior.problem, len(posterior.fit.active)
-    faults = [c - k for c in columns if c >= k]
-    mine = [c for c in columns if c < k]
+    problem = posterior.problem
     chance: FloatArray = posterior.instead[faults].sum(axis=0) + posterior.instead[:, faults].sum(
         axis=1
     )

@@ -3,10 +3,13 @@
 Belongs here: the list of unknowns, with what is assumed of each, and the slopes of ln Cw, bend and
 ln(GPS / log) by them. Does not: any estimate.
 
-A log that reads low (y = true speed / log speed = exp lambda) turns the boat's ln Cw at a fixed
-speed and its bend q = r / (1 - r) into
+A log that reads low (y = true speed / log speed = exp lambda) turns the boat's ln Cw at a speed
+and its bend q = r / (1 - r) into
 
-    ln Cw + 2 lambda - ln m,    q y^2 / m,    m = 1 - q (y^2 - 1)
+    ln Cw + 2 lambda - ln m,    q z^2 / m,    m = 1 - q (z^2 - 1),    z = y / y0
+
+if they are taken where the log reads that speed over y0: the nearer y0 comes to y, the less the
+bend matters.
 
 A load cell that reads exp(phi) times the force adds phi to ln Cw and leaves q. One whose zero is
 off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (docs/method.md, 4).
@@ -217,23 +220,26 @@ class Slopes:
     ways: dict[str, FloatArray]
 
 
-def slopes(q: FloatArray, force_n: FloatArray, ln_factor: FloatArray) -> Slopes:
+def slopes(
+    q: FloatArray, force_n: FloatArray, ln_factor: FloatArray, reference_ln: FloatArray
+) -> Slopes:
     """Predicted numbers of tows, and how they move.
 
     Args:
         q: usual bend of the boat.
         force_n: force at the reference speed.
         ln_factor: of the log, 0 where calibrated.
+        reference_ln: ln y0.
     """
-    y2 = np.exp(2.0 * ln_factor)
-    margin = np.maximum(1.0 - q * (y2 - 1.0), LEAST_MARGIN)
-    bend = q * y2 / margin
+    z2 = np.exp(2.0 * (ln_factor - reference_ln))
+    margin = np.maximum(1.0 - q * (z2 - 1.0), LEAST_MARGIN)
+    bend = q * z2 / margin
     one, nothing = np.ones(len(q)), np.zeros(len(q))
 
     def numbers(ln_cw: FloatArray, q_log: FloatArray, gps: FloatArray) -> FloatArray:
         return np.stack([ln_cw, q_log, gps], axis=1)
 
-    by_bend = numbers((y2 - 1.0) / margin, y2 / margin**2, nothing)
+    by_bend = numbers((z2 - 1.0) / margin, z2 / margin**2, nothing)
     return Slopes(
         numbers(2.0 * ln_factor - np.log(margin), bend, ln_factor),
         np.stack([numbers(one, nothing, nothing), by_bend], axis=2),

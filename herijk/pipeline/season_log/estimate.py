@@ -1,6 +1,6 @@
 """From tows to season factors: the joint posterior and its independent check, as tables."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -18,6 +18,7 @@ from herijk.pipeline.season_log.diagnosis import (
     season_steps,
 )
 from herijk.pipeline.season_log.effects import AGEING
+from herijk.pipeline.season_log.guard import refused
 from herijk.pipeline.season_log.network import GROUP, Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem, solve
 from herijk.pipeline.season_log.tows import best_estimates, instrument_errors
@@ -91,6 +92,11 @@ class SeasonFactors:
         sources = [source for source in parts["source"] if source != GPS]
         return factor, lo, hi, sources[0] if sources else GPS
 
+    def is_refused(self, season: int, log: str) -> bool:
+        """Whether the season has a factor that is not used."""
+        own = self.factors.filter(pl.col("factor").is_null(), season=season, log=log)
+        return NOT_SETTLED in own["source"]
+
 
 def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     """Log factors of all seasons at once, from repeat tows and plain GPS.
@@ -99,8 +105,9 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
         tows: one row per sound tow:
             `tow_id, season, part, log`; `fsn_no, rowers, crew_class` (the line);
             `day` within the season (may be null);
-            `ln_cw`, ln Cw at one reference speed of the line, by the log as it reads (anchored
-            tows: as calibrated) and corrected for everything else;
+            `ln_cw`, ln Cw by the log as it reads (anchored tows: as calibrated), corrected for
+            everything else, where that log over exp(-`reference_ln`) reads the line's reference
+            speed: the nearer `reference_ln` is to the ln factor, the less rests on the bend;
             `q` = r / (1 - r) of its curve there; `ln_cw_sd, q_sd, ln_cw_q_cov`, their random part;
             `kappa`, elasticity 2 / (1 - r) of the line's true curve there, from pooled q;
             `weight_kg, waterline_length_m` (may be null);
@@ -115,7 +122,8 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
         GPS alone, `not determined` (numbers null) where neither ties it to an anchored season, and
-        `not settled` where the search did not come to rest.
+        `not settled` where the search did not come to rest, and (numbers null) where the factor
+        contradicts what needs no model (`guard`).
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
         network (0 has the anchor). `influence` is the largest change of the factor when one boat
         (`influence_boat`) is left out, and `critical_boats` how many boats would leave the season
@@ -127,12 +135,12 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     """
     _refuse_unknown(tows)
     network = Network.of(tows)
-    posterior = solve(Problem.of(network, USUAL))
+    posterior = _guarded(solve(Problem.of(network, USUAL)))
     fit = posterior.fit
     ageing = int(np.flatnonzero(posterior.names == AGEING)[0])
     ageing_per_year = float(posterior.mean[ageing])
     ageing_sd = float(np.sqrt(posterior.covariance[ageing, ageing]))
-    second = without_boats(network, (ageing_per_year, ageing_sd), USUAL)
+    second = without_boats(posterior.problem.network, (ageing_per_year, ageing_sd), USUAL)
     along = _group_means(posterior)
     covariance = along @ posterior.covariance @ along.T
     change = _without_each_boat(posterior)
@@ -173,6 +181,17 @@ def _refuse_unknown(tows: pl.DataFrame) -> None:
                 faulty[name][0],
                 faulty.height - 1,
             )
+
+
+def _guarded(posterior: Posterior) -> Posterior:
+    """The posterior, with the factors refused that contradict what needs no model."""
+    along = _group_means(posterior)
+    known = posterior.problem.network.determined
+    ln_factor, ln_sd = np.zeros(len(known)), np.zeros(len(known))
+    ln_factor[known] = along @ posterior.mean
+    ln_sd[known] = np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along))
+    network = replace(posterior.problem.network, refused=refused(posterior, ln_factor, ln_sd))
+    return replace(posterior, problem=replace(posterior.problem, network=network))
 
 
 def _group_means(posterior: Posterior) -> FloatArray:
@@ -220,12 +239,12 @@ def _described(
         column[known] = values
         return pl.Series(column, dtype=pl.Float64).fill_nan(None)
 
-    of_fit, mean = along[:, : len(fit.active)], along @ posterior.mean
+    mean = along @ posterior.mean
     critical = network.critical[:, known]
-    move = np.where(critical, np.inf, np.abs(np.expm1(change @ of_fit.T)) * np.exp(mean))
+    move = np.where(critical, np.inf, np.abs(np.expm1(change @ along.T)) * np.exp(mean))
     influence = move.max(axis=0, initial=0.0)
     boat = first_largest(move) if move.size else np.zeros(len(known))
-    ln_factor, dof = placed(mean), placed(fit.dof(of_fit))
+    ln_factor, dof = placed(mean), placed(fit.dof(along))
     sd = placed(np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along)))
     half = _half_width(sd, dof)
     other = pl.Series(np.where(second.known, second.ln_factor, np.nan)).fill_nan(None)
@@ -233,12 +252,13 @@ def _described(
     other_half = _half_width(other_sd, pl.Series(second.dof))
     by_gps_alone = (network.links == 0) & (network.has_gps | network.calibrated)
     source = np.where(by_gps_alone, GPS, ESTIMATED) if fit.settled else NOT_SETTLED
+    source = np.where(network.component == 0, source, NOT_DETERMINED)
     return network.groups.select(
         *GROUP,
         factor=ln_factor.exp(),
         lo=(ln_factor - half).exp(),
         hi=(ln_factor + half).exp(),
-        source=pl.Series(np.where(network.determined, source, NOT_DETERMINED), dtype=pl.String),
+        source=pl.Series(np.where(network.refused, NOT_SETTLED, source), dtype=pl.String),
         ln_sd=sd,
         dof=dof,
         n_tows=pl.Series(np.bincount(network.group[network.group >= 0]), dtype=pl.Int64),

@@ -42,6 +42,7 @@ class Network:
         component: connected part of the network, 0 with the anchor, shape (groups,).
         has_gps: groups with plain GPS, shape (groups,).
         calibrated: groups of whose log dGPS calibrated other tows that season, shape (groups,).
+        refused: groups whose factor contradicts what needs no model (`guard`), shape (groups,).
     """
 
     tows: pl.DataFrame
@@ -54,6 +55,7 @@ class Network:
     component: IntArray
     has_gps: BoolArray
     calibrated: BoolArray
+    refused: BoolArray
 
     @classmethod
     def of(cls, tows: pl.DataFrame) -> "Network":
@@ -75,7 +77,17 @@ class Network:
         links, component = _connect(group_index, boat, has_gps | calibrated)
         cluster = index_of(tows, ("fsn_no",))
         return cls(
-            tows, group_index, boat, cluster, groups, names, links, component, has_gps, calibrated
+            tows,
+            group_index,
+            boat,
+            cluster,
+            groups,
+            names,
+            links,
+            component,
+            has_gps,
+            calibrated,
+            np.zeros(groups.height, dtype=bool),
         )
 
     @property
@@ -88,8 +100,8 @@ class Network:
 
     @property
     def determined(self) -> BoolArray:
-        """Groups that are tied to the anchor, shape (groups,)."""
-        return np.asarray(self.component == 0)
+        """Groups that are tied to the anchor and not refused, shape (groups,)."""
+        return np.asarray((self.component == 0) & ~self.refused)
 
     @property
     def log_known(self) -> BoolArray:

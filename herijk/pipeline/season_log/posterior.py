@@ -2,10 +2,8 @@
 
 Given the alterations and faults the model is linear and Gaussian. The unknowns and the variances
 are searched by scoring (REML: Patterson & Thompson 1971; variances with log-normal priors), the
-posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time;
-where that ends depends on where it began, so it is done from two ends.
-The answer is averaged over the best model and all that differ from it by one fault more, one less,
-or one for another (Bayesian model averaging in Occam's window: Madigan & Raftery 1994).
+posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time,
+and stays by its own fit or not at all.
 """
 
 from dataclasses import dataclass, replace
@@ -57,8 +55,6 @@ MODEST: Final = 0.1
 REMEMBERED: Final = 5
 """Steps that the acceleration looks back on."""
 MOST_FAULTS: Final = 12
-WINDOW: Final = 20.0
-"""Models that are so many times less likely than the best are left out (Madigan & Raftery)."""
 ROUGH: Final = 1e-4
 """Movement at which a fit is good enough to ask which faults there are."""
 NOT_OBSERVED: Final = 1e4
@@ -76,6 +72,7 @@ class Problem:
         absent: (n, 3, 3) huge variance of numbers that a tow does not have.
         boat_level: (n,) that mean.
         q, force_n: (n,) usual bend and force.
+        reference_ln: (n,) ln factor of the log at whose true speed the numbers hold.
         unknowns: what there always is, then possible faults.
         share: (n, unknowns) how much of each a tow has.
         season, day, era: (n,) index; the last era is that of calibrated tows, whenever.
@@ -89,6 +86,7 @@ class Problem:
     boat_level: FloatArray
     q: FloatArray
     force_n: FloatArray
+    reference_ln: FloatArray
     unknowns: list[Unknown]
     share: FloatArray
     season: IntArray
@@ -112,6 +110,8 @@ class Problem:
         absent = np.zeros((len(level), 3, 3))
         absent[:, GPS, GPS] = np.where(has_gps, 0.0, NOT_OBSERVED)
         unknowns = unknowns_of(network, settings)
+        reference_ln = network.numbers("reference_ln")
+        log_speed = network.numbers("declared_speed_m_s") * np.exp(-reference_ln)
         season = network.numbers("season")
         era = np.searchsorted(settings.era_starts, season, side="right") - 1
         return cls(
@@ -128,7 +128,8 @@ class Problem:
             absent,
             mean,
             network.boat_mean(0.5 * network.numbers("kappa") - 1.0),
-            np.exp(level) * network.numbers("declared_speed_m_s") ** 2,
+            np.exp(level) * log_speed**2,
+            reference_ln,
             unknowns,
             np.stack([u.share for u in unknowns], axis=1),
             np.unique(season, return_inverse=True)[1],
@@ -160,7 +161,8 @@ class Problem:
         way = np.array([WAYS[self.unknowns[i].name] for i in active])
         speed = way == "speed"
         share = self.share[:, active]
-        slopes_of_tows = slopes(self.q, self.force_n, share[:, speed] @ value[speed])
+        ln_factor = share[:, speed] @ value[speed]
+        slopes_of_tows = slopes(self.q, self.force_n, ln_factor, self.reference_ln)
         others = np.where(speed, 0.0, value)
         return slopes_of_tows, self.observed - slopes_of_tows.predicted - self.design(
             slopes_of_tows, active
@@ -438,14 +440,13 @@ def _shares(told: list[Told], settings: Settings) -> FloatArray:
 
 @dataclass(frozen=True)
 class Posterior:
-    """What is known of all unknowns, averaged over the faults that there may be.
+    """What is known of all unknowns of the model, and of the faults that were left out of it.
 
     Attributes:
         problem: the archive, with load cells as uncertain as the days of their seasons show.
         fit: with the faults that are likelier than not.
-        places: (k + faults,) index of each unknown below: those of the fit, then every fault.
-        mean, covariance: of their values; a fault that is not there is 0.
-        chance: (faults,) probability of each fault, in the order of `Problem.faults`.
+        chance: (faults,) probability of each fault, in the order of `Problem.faults`; 0 where its
+            own fit did not bear out what one step promised.
         instead: (faults, faults) probability that the one is there and would have been taken for
             the other: what it could be confused with.
         shows: (faults,) whether a fault of the usual size would be likelier than not.
@@ -454,45 +455,55 @@ class Posterior:
 
     problem: Problem
     fit: Fit
-    places: IntArray
-    mean: FloatArray
-    covariance: FloatArray
     chance: FloatArray
     instead: FloatArray
     shows: BoolArray
     taken_for: IntArray
 
+    @property
+    def places(self) -> IntArray:
+        """Index of each unknown of the fit, (k,)."""
+        return self.fit.active
+
+    @property
+    def mean(self) -> FloatArray:
+        """Of the unknowns of the fit, (k,)."""
+        return self.fit.value
+
+    @property
+    def covariance(self) -> FloatArray:
+        """Of the unknowns of the fit, (k, k)."""
+        return self.fit.covariance
+
     @cached_property
     def names(self) -> StrArray:
-        """What each unknown is, (k + faults,)."""
+        """What each unknown of the fit is, (k,)."""
         return np.array([self.problem.unknowns[i].name for i in self.places])
 
     @cached_property
     def design(self) -> FloatArray:
-        """Slopes of each tow's numbers by all unknowns, (n, 3, k + faults)."""
+        """Slopes of each tow's numbers by the unknowns of the fit, (n, 3, k)."""
         return self.problem.design(self.fit.slopes, self.places)
 
     @cached_property
     def of_boats(self) -> BoolArray:
-        """Unknowns of boats, (k + faults,); the others are of instruments."""
+        """Unknowns of boats, (k,); the others are of instruments."""
         return np.isin(self.names, tuple(OF_BOATS))
 
     @cached_property
     def of_log(self) -> BoolArray:
-        """Unknowns that act as the scale of a log does, (k + faults,)."""
+        """Unknowns that act as the scale of a log does, (k,)."""
         return np.array([WAYS[name] == "speed" for name in self.names.tolist()])
 
 
 def solve(problem: Problem) -> Posterior:
     """The posterior of everything, with the faults that the archive shows."""
-    unchanged = _with_needed_faults(problem, None, changes=False)
-    ends = [_with_needed_faults(problem, start) for start in (None, unchanged)]
-    best = ends[int(first_largest(np.array([_ln_evidence(problem, end) for end in ends])))]
-    sharp = fit(problem, best.active, best)
+    rough = _with_needed_faults(problem, _with_needed_faults(problem, None, changes=False))
+    sharp = fit(problem, rough.active, rough)
     wider = _with_days(problem, sharp)
     last = fit(wider, sharp.active, sharp)
-    settled = all(search.settled for search in (*ends, sharp, last))
-    return _averaged(wider, replace(last, settled=settled))
+    settled = rough.settled and sharp.settled and last.settled
+    return _posterior(wider, replace(last, settled=settled))
 
 
 def _with_days(problem: Problem, fitted: Fit) -> Problem:
@@ -517,10 +528,6 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
     A fault enters by what one step from the fit promises, and leaves by a fit of its own, which
     knows more. Where the two disagree it would come and go, at one place after the other, so no
     fault leads to the kinds of faults of an earlier model.
-
-    Args:
-        start: where to begin.
-        changes: boats may have been altered, and tows pulled askew.
     """
     active = problem.always if start is None else start.active
     fitted = fit(problem, active, start, ROUGH, changes)
@@ -534,29 +541,6 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
             break
         fitted = fit(problem, chosen, fitted, ROUGH, changes)
     return replace(fitted, settled=False)
-
-
-def _ln_evidence(problem: Problem, fitted: Fit) -> float:
-    """Ln probability of all that was observed under the model of a fit, by Laplace's approximation.
-
-    The variances are taken at their mode. What is the same for all models is left out.
-    """
-    mean, precision = _prior(problem, fitted.active)
-    prior, prior_precision = _variance_prior(problem)
-    s, shares = problem.settings, fitted.state.shares
-    changes = np.array(s.change_counts) * s.change_shares
-    unchanged = np.array(s.change_counts) - changes
-    faults = np.intersect1d(fitted.active, problem.faults)
-    chance = np.array([problem.unknowns[i].chance for i in faults])
-    return float(
-        sum(told.ln_density.sum() for told in fitted.told)
-        + changes @ np.log(shares)
-        + unchanged @ np.log1p(-shares)
-        - 0.5 * precision @ (fitted.value - mean) ** 2
-        - 0.5 * prior_precision @ (fitted.state.ln_variance - prior) ** 2
-        + 0.5 * (np.log(precision).sum() + np.linalg.slogdet(fitted.covariance)[1])
-        + scipy.special.logit(chance).sum()
-    )
 
 
 @dataclass(frozen=True)
@@ -654,69 +638,27 @@ def _better(problem: Problem, fitted: Fit, fitted_before: set[tuple[int, ...]]) 
     return np.append(fitted.active, problem.faults[best]) if more[best] > 0.0 else None
 
 
-def _in_window(problem: Problem, weight: FloatArray) -> FloatArray:
-    """Weights of the models in Occam's window, 1 together.
-
-    A fault that is twenty times less likely than the best model lies in the tails that an interval
-    of 95 % leaves out. All places where one log may have changed count as one.
-    """
-    kind = problem.kinds
-    together = np.stack([np.bincount(kind, row[:-1])[kind] for row in weight])
-    kept = weight.copy()
-    kept[:, :-1][together * WINDOW < weight.max()] = 0.0
-    return np.asarray(kept / kept.sum())
-
-
-def _averaged(problem: Problem, fitted: Fit) -> Posterior:
-    """Averages over the fit and all models that differ by one fault more, less, or for another."""
+def _posterior(problem: Problem, fitted: Fit) -> Posterior:
+    """The fit, with how likely each fault is beside it or in place of one of its own."""
     candidates = _candidates(problem, fitted)
-    k, faults = len(fitted.active), len(problem.faults)
     places, ln_odds = _in_fit(problem, fitted)
-    own = [int(np.flatnonzero(problem.faults == fitted.active[p])[0]) for p in places]
-    bases = [(0.0, -1, fitted.covariance, np.zeros(k))]
-    for place, odds in zip(places.tolist(), ln_odds.tolist(), strict=True):
+    own = np.searchsorted(problem.faults, fitted.active[places])
+    more = _more(problem, candidates, fitted.covariance, np.zeros(len(fitted.active)))
+    # What the search has tried and rejected by its own fit has odds of one step still.
+    chance = np.where(more.ln_odds > 0.0, 0.0, scipy.special.expit(more.ln_odds))
+    chance[own] = scipy.special.expit(ln_odds)
+    instead = np.zeros((len(problem.faults), len(problem.faults)))
+    for place, fault, odds in zip(places.tolist(), own.tolist(), ln_odds.tolist(), strict=True):
         along = fitted.covariance[:, place] / fitted.covariance[place, place]
         without = fitted.covariance - np.outer(along, fitted.covariance[place])
-        bases.append((-odds, place, without, -along * fitted.value[place]))
-    ln_weight, models = [], []
-    for ln_base, _, covariance, away in bases:
-        more = _more(problem, candidates, covariance, away)
-        more.ln_odds[own] = -np.inf
-        ln_weight.append(np.append(ln_base + more.ln_odds, ln_base))
-        models.append(more)
-    all_weight = np.exp(np.array(ln_weight) - np.max(ln_weight))
-    all_weight /= all_weight.sum()
-    weight = _in_window(problem, all_weight)
-    mean, second = np.zeros(k + faults), np.zeros((k + faults, k + faults))
-    chance, instead = np.zeros(faults), np.zeros((faults, faults))
-    for w, all_w, more, (_, place, covariance, away) in zip(
-        weight, all_weight, models, bases, strict=True
-    ):
-        centre = np.append(fitted.value + away, np.zeros(faults))
-        spread = np.zeros_like(second)
-        spread[:k, :k] = covariance
-        # Column f of `way` is how all unknowns move with fault f.
-        way = np.vstack([-more.shift, np.eye(faults)])
-        step = w[:-1] * more.value
-        total = w.sum() * centre + way @ step
-        square = way * (w[:-1] * (more.variance + more.value**2)) @ way.T
-        cross = np.outer(centre, way @ step)
-        mean += total
-        second += w.sum() * (spread + np.outer(centre, centre)) + square + cross + cross.T
-        chance += all_w[:-1]
-        for p, fault in zip(places.tolist(), own, strict=True):
-            if p != place:
-                chance[fault] += all_w.sum()
-            else:
-                instead[fault] += all_w[:-1]
+        others = _more(problem, candidates, without, -along * fitted.value[place]).ln_odds - odds
+        others[own] = -np.inf
+        instead[fault] = scipy.special.expit(others)
     return Posterior(
         problem,
         fitted,
-        np.append(fitted.active, problem.faults),
-        mean,
-        second - np.outer(mean, mean),
         chance,
         instead,
-        models[0].shows(problem),
-        first_largest(np.abs(models[0].shift) / np.sqrt(np.diag(fitted.covariance))[:, None]),
+        more.shows(problem),
+        first_largest(np.abs(more.shift) / np.sqrt(np.diag(fitted.covariance))[:, None]),
     )

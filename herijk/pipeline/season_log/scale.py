@@ -7,24 +7,35 @@ from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.curve import LEAST_MARGIN
 
 
-def scale_effect(ln_factor: ArrayLike, r: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """What a log that reads low does to ln Cw at a fixed speed, and its slope.
+def scale_effect(
+    ln_factor: ArrayLike, r: ArrayLike, reference_ln: ArrayLike = 0.0
+) -> tuple[FloatArray, FloatArray]:
+    """What a log that reads low does to ln Cw where it reads v / y0, and its slope.
 
-    A log that must be multiplied by y = exp(ln factor) gives A y^2 and B / y. So ln Cw at the speed
-    where (v/B)^2 = r is too high by 2 ln y - ln((1 - r y^2) / (1 - r)), about kappa ln y with kappa
+    A log that must be multiplied by y = exp(ln factor) gives A y^2 and B / y. With (v/B)^2 = r and
+    z = y / y0, ln Cw is too high by 2 ln y - ln((1 - r z^2) / (1 - r)), about kappa ln y with kappa
     = 2 / (1 - r).
+
+    Args:
+        ln_factor: ln y.
+        r: (v/B)^2 of the true curve.
+        reference_ln: ln y0.
     """
-    y2 = np.exp(2.0 * np.asarray(ln_factor, dtype=np.float64))
+    ln_y, ln_y0 = (np.asarray(x, dtype=np.float64) for x in (ln_factor, reference_ln))
     bend = np.asarray(r, dtype=np.float64)
-    margin = np.maximum(1.0 - bend * y2, LEAST_MARGIN)
-    return np.log(y2) - np.log(margin / (1.0 - bend)), 2.0 / margin
+    margin = np.maximum(1.0 - bend * np.exp(2.0 * (ln_y - ln_y0)), LEAST_MARGIN)
+    return 2.0 * ln_y - np.log(margin / (1.0 - bend)), 2.0 / margin
 
 
 def linear_scale(
-    value: FloatArray, group: IntArray, r: FloatArray, ln_factor: FloatArray
+    value: FloatArray,
+    group: IntArray,
+    r: FloatArray,
+    reference_ln: FloatArray,
+    ln_factor: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
     """Observed values as linear in the ln factors, and the slope; 0 for anchored tows."""
     loose = group >= 0
     now = np.append(ln_factor, 0.0)[group]  # -1, anchored, reads the 0
-    shift, slope = scale_effect(now, r)
+    shift, slope = scale_effect(now, r, reference_ln)
     return value - np.where(loose, shift - slope * now, 0.0), np.where(loose, slope, 0.0)

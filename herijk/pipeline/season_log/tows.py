@@ -15,9 +15,11 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.quantiles import LEVEL as INTERVAL_LEVEL
 from herijk.pipeline.season_log.effects import FORCE, ZERO, ZERO_DRIFT, slopes
 from herijk.pipeline.season_log.likelihood import LEVEL, Told
-from herijk.pipeline.season_log.posterior import WINDOW, Fit, Posterior, Problem
+from herijk.pipeline.season_log.posterior import Fit, Posterior, Problem
 
 BISECTIONS: Final = 40
+LIKELY: Final = 0.05
+"""A tow that was less likely pulled askew is taken for straight: the interval leaves that out."""
 FARTHEST_SD: Final = 12.0
 LEAST_WEIGHT: Final = 0.005
 """A smaller share of what an estimate rests on is left out of the list."""
@@ -26,8 +28,7 @@ LEAST_WEIGHT: Final = 0.005
 def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     """What the instruments did to each tow.
 
-    A fault of the load cell counts from where it is likelier than not; what is less likely is in
-    the uncertainty alone.
+    A fault counts where it is likelier than not, and not at all where it is not.
 
     Args:
         change: of every unknown of the fit without each boat, (boats, unknowns).
@@ -43,17 +44,13 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     problem, network, speed = posterior.problem, posterior.problem.network, posterior.of_log
     level = np.where(posterior.of_boats, 0.0, posterior.design[:, LEVEL])
     share = problem.share[:, posterior.places]
-    corrected = np.isin(posterior.places, posterior.fit.active) & np.isin(
-        posterior.places, problem.faults
-    )
-    k = len(posterior.fit.active)
-    corrected[k:] = False
+    corrected = np.isin(posterior.places, problem.faults)
     force = corrected & (posterior.names == FORCE)
     zero = corrected & np.isin(posterior.names, (ZERO, ZERO_DRIFT))
     variance = np.maximum(((level @ posterior.covariance) * level).sum(axis=1), 0.0)
     determined = network.log_known
     known = np.sqrt(variance) / (2.0 + 2.0 * problem.q)
-    applied = np.where(speed | force | zero, level, 0.0)[:, :k]
+    applied = np.where(speed | force | zero, level, 0.0)
     others = -(applied * change[network.cluster]).sum(axis=1)
     return network.tows.select(
         "tow_id",
@@ -64,7 +61,7 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
         pl.Series("bend", problem.q),
         pl.Series("askew_ratio", _askew(posterior.fit, len(problem.q))),
         pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
-        pl.Series("dof", posterior.fit.dof(level[:, :k])),
+        pl.Series("dof", posterior.fit.dof(level)),
         _where(determined, "others_ln_ratio", others),
     )
 
@@ -79,7 +76,7 @@ def _askew(fit: Fit, tows: int) -> FloatArray:
         variance = t.patterns.excess_variance
         mean = t.patterns.excess + variance * pull
         weight = t.weight[:, :, None] * t.patterns.askew
-        weight *= weight.sum(axis=1, keepdims=True) * WINDOW > 1.0
+        weight *= weight.sum(axis=1, keepdims=True) > LIKELY
         there = (weight * (mean**2 + variance - variance**2 * own)).sum(axis=1)
         square[t.patterns.tow] = there
     return np.sqrt(square)
@@ -105,12 +102,10 @@ def best_estimates(
     """
     problem, network = posterior.problem, posterior.problem.network
     true_level = np.where(posterior.of_boats, posterior.design[:, LEVEL], 0.0)
-    away = posterior.mean.copy()
-    away[: len(posterior.fit.value)] -= posterior.fit.value
     numbers = np.zeros((len(problem.q), 4))
     shares = []
     for told in (few for every in posterior.fit.told for few in every.few()):
-        numbers[told.patterns.tow], weight = _of_boats(told, posterior, true_level, away)
+        numbers[told.patterns.tow], weight = _of_boats(told, posterior, true_level)
         tows = told.patterns.tow.shape[1]
         shares.append(
             pl.DataFrame(
@@ -121,9 +116,7 @@ def best_estimates(
                 }
             )
         )
-    base = problem.boat_level + true_level @ np.append(
-        posterior.fit.value, np.zeros(len(away) - len(posterior.fit.value))
-    )
+    base = problem.boat_level + true_level @ posterior.mean
     ln_cw, sd, lo, hi = numbers.T
     names = network.tows["tow_id"]
     lost_tows = np.flatnonzero(~network.log_known)
@@ -166,13 +159,13 @@ def _as_measured(problem: Problem, errors: pl.DataFrame) -> FloatArray:
         errors[name].fill_null(1.0).to_numpy()
         for name in ("factor", "force_factor", "force_zero_n")
     )
-    by_log = slopes(problem.q, problem.force_n, np.log(factor)).predicted[:, LEVEL]
+    by_log = slopes(problem.q, problem.force_n, np.log(factor), problem.reference_ln).predicted
     by_force = np.log(scale) - np.log1p(-zero / problem.force_n)
-    return np.asarray(problem.network.numbers("ln_cw") - by_log - by_force)
+    return np.asarray(problem.network.numbers("ln_cw") - by_log[:, LEVEL] - by_force)
 
 
 def _of_boats(
-    told: Told, posterior: Posterior, true_level: FloatArray, away: FloatArray
+    told: Told, posterior: Posterior, true_level: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Boats with the same number of tows: (boats, tows, 4) numbers, (boats, tows, tows) shares."""
     tow = told.patterns.tow
@@ -187,7 +180,7 @@ def _of_boats(
     prior = np.einsum("bpkk->bpk", level)
     variance = prior - (gain * with_level).sum(axis=3)
     by = true_level[tow][:, None] - gain @ posterior.design[tow].reshape(boats, 1, 3 * tows, -1)
-    mean = np.einsum("bpkn,bpn->bpk", with_level, told.pull) + by @ away
+    mean = np.einsum("bpkn,bpn->bpk", with_level, told.pull)
     shared = np.einsum("bpkf,fg,bpkg->bpk", by, posterior.covariance, by, optimize=True)
     variance = np.maximum(variance + shared, 1e-12)
     weight = np.repeat(told.weight[:, :, None], tows, axis=2)

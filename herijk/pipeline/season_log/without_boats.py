@@ -59,6 +59,7 @@ def without_boats(network: Network, ageing: tuple[float, float], settings: Setti
     of_kind = kinds.to_numpy().reshape(tows.height, kinds.width)  # none where all are of one
     other = np.column_stack([np.ones(tows.height), *about, of_kind])[sound]
     group, r = network.group[sound], 1.0 - 2.0 / network.numbers("kappa")[sound]
+    reference_ln = network.numbers("reference_ln")[sound]
     year = network.numbers("season")[sound] - settings.reference_year
     observed = network.numbers("ln_cw")[sound] - ageing[0] * year
     slopes = (settings.weight_elasticity, settings.length_elasticity)
@@ -69,7 +70,7 @@ def without_boats(network: Network, ageing: tuple[float, float], settings: Setti
     precision[:groups] = np.where(counts > 0, 0.0, 1.0)
     ln_factor, variance = np.zeros(groups), 1.0
     for _ in range(REGRESSIONS):
-        value, slope = linear_scale(observed, group, r, ln_factor)
+        value, slope = linear_scale(observed, group, r, reference_ln, ln_factor)
         design = np.column_stack([(group[:, None] == np.arange(groups)) * slope[:, None], other])
         normal = design.T @ design / variance + np.diag(precision)
         solution = np.linalg.solve(normal, design.T @ value / variance + precision * mean)
