@@ -163,7 +163,9 @@ run1 = pl.col("run") == 1
 back = pl.col("direction") == -1
 lower_cw = pl.col("cw_kg_m") * 0.95
 heavier = {
-    **{"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW, "cw_best_kg_m": 1.08 * CW},
+    "a_kg_m": 1.08 * A,
+    "cw_kg_m": 1.08 * CW,
+    "cw_best_kg_m": 1.08 * CW,
     **{f"cw_best_{end}_kg_m": 1.08 * CW * math.exp(x) for end, x in (("lo", -0.01), ("hi", 0.01))},
 }
 narrow = {"cw_lo_kg_m": CW * math.exp(-0.0196), "cw_hi_kg_m": CW * math.exp(0.0196)}
