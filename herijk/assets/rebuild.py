@@ -29,6 +29,7 @@ from herijk.warehouse.store.machine_faults import machine_faults_explained
 from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import DamagedFileError, Store
+from herijk.warehouse.store.unforeseen import FailedTowsError, set_aside
 from herijk.words import tell
 
 if TYPE_CHECKING:
@@ -70,11 +71,11 @@ def rebuild(
         store = Store(data)
         known = [KnownMethods.of(store).get(name) for name in methods]
         work = _Rebuild(archive, store, known, progress, settings)
-        return _mending(lambda: work.do(seasons))
+        return _mending(store, lambda: work.do(seasons))
 
 
-def _mending(work: Callable[[], Report]) -> Report:
-    """Does the work; begins again without a file that is damaged, or when the archive changed."""
+def _mending(store: Store, work: Callable[[], Report]) -> Report:
+    """Does the work; begins again without what is damaged or fails, or when the archive changed."""
     damaged: set[Place] = set()
     rounds_left = ROUNDS
     while True:
@@ -85,6 +86,8 @@ def _mending(work: Callable[[], Report]) -> Report:
                 raise
             damaged.add(error.path)
             error.path.unlink(missing_ok=True)
+        except FailedTowsError as error:
+            set_aside(store, error)
         except ArchiveChangedError:
             rounds_left -= 1
             if not rounds_left:

@@ -7,7 +7,7 @@ and a dated JSON for each that changed something.
 
 import datetime as dt
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -21,6 +21,7 @@ from herijk.dashboards.report import (
     mail,
     with_later_rebuild,
 )
+from herijk.warehouse.build.step import QUARANTINE
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.queries.change_report import (
     ChangeSummary,
@@ -30,12 +31,14 @@ from herijk.warehouse.queries.change_report import (
 )
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.unforeseen import UNFORESEEN, failures
 from herijk.words import LANGUAGE
 from herijk.words.catalogue import speaker
 
 if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
     import dagster as dg
 
+FIRST_FAILURES: Final = 5
 ERROR: Final = "ERROR"
 """Dagster's word for a check whose failing means that a table is not what it promises."""
 
@@ -79,7 +82,7 @@ def write_report(
     """
     changes = change_report(store)
     about, summary = store.read("about_archive"), summary_of(changes)
-    checks = [_check(one) for one in evaluated]
+    checks = [*(_check(one) for one in evaluated), *_unforeseen(store)]
     report = Report(
         **vars(summary),
         made_at=now.isoformat(timespec="seconds"),
@@ -107,6 +110,18 @@ def write_report(
     _write(folder / "latest.json", text)
     remember(store)
     return report
+
+
+def _unforeseen(store: Store) -> Iterator[Check]:
+    """On what Herijk itself failed: tows are set aside, anything else is an error."""
+    tows = store.read(QUARANTINE).filter(reason_code=UNFORESEEN)["tow_id"].to_list()
+    for asset, severity, failed in (
+        (QUARANTINE, "WARN", tows),
+        ("site", ERROR, failures(store.root)),
+    ):
+        if failed:
+            found = {"number": len(failed), "first": failed[:FIRST_FAILURES]}
+            yield Check(asset, "nothing_unforeseen", False, severity, found)
 
 
 def _check(evaluated: "dg.AssetCheckEvaluation") -> Check:

@@ -13,7 +13,7 @@ from herijk.tables.declare import dy
 from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, PUBLISHED
+from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, FAILED, PUBLISHED
 from herijk.warehouse.build.step import Made, Step, Summary
 from herijk.warehouse.intake.seasons import INDEXED
 
@@ -79,7 +79,7 @@ def _deps(name: str) -> Iterator[dg.AssetDep]:
     elif name in SEASON_TABLES or name == BLOCKS:
         asset = BLOCKS if name == BLOCKS else "samples"
         yield dg.AssetDep(asset, partition_mapping=dg.AllPartitionMapping())
-    elif name not in (DECISIONS, *PUBLISHED):
+    elif name not in (DECISIONS, FAILED, *PUBLISHED):
         yield dg.AssetDep(name)
 
 

@@ -5,6 +5,11 @@ from typing import Final
 ARCHIVE: Final[dict[str, str]] = {
     # Lists
     "Line {line}: {what}": "Regel {line}: {what}",
+    "Herijk itself failed on this tow ({}). Its files may be sound. Please report this to "
+    "whoever maintains Herijk, with unforeseen/{}.txt of the data folder.": (
+        "Herijk zelf liep vast op deze sleepproef ({}). De bestanden kunnen goed zijn. Meld dit "
+        "aan wie Herijk onderhoudt, met unforeseen/{}.txt uit de datamap."
+    ),
     "line {line} of {path}": "regel {line} van {path}",
     "sheet '{sheet}': {what}": "blad '{sheet}': {what}",
     "The name of '{name}' has letters that cannot be read; give it another name.": (

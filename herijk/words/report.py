@@ -86,6 +86,11 @@ REPORT: Final[dict[str, tuple[str, str]]] = {
     ),
     "failed.counts_agree": ("aantallen kloppen niet", "counts do not agree"),
     "failed.few_tows_set_aside": ("veel proeven terzijde gelegd", "many tows are set aside"),
+    "failed.nothing_unforeseen": (
+        "Herijk zelf liep vast; meld dit aan wie Herijk onderhoudt, met de map unforeseen",
+        "Herijk itself failed; report this to whoever maintains it, with the folder unforeseen",
+    ),
+    "code.nothing_unforeseen": ("niets onvoorziens", "nothing unforeseen"),
     "failed.log_factors_stayed": ("logfactoren zijn verschoven", "log factors moved"),
     "failed.boats_stayed_within_their_intervals": (
         "sloepen kwamen buiten hun marge",

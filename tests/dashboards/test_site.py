@@ -217,8 +217,8 @@ def test_a_column_and_a_code_on_a_page_have_a_text(store, site):
     with Views(store) as views:
         methods = method_names(views)
         pages_made = [
-            *shared_pages(views),
-            *boat_pages(views, methods),
+            *(page for make in shared_pages(views).values() for page in make()),
+            *(make() for _, make in boat_pages(views, methods)),
             slides_page(views, methods),
         ]
     tables = [t for page in pages_made for s in page.sections for t in s.tables]

@@ -1,8 +1,9 @@
 """One page per boat: the owner's answer, and folded below it how each number was made."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Final, NamedTuple
 
 import polars as pl
@@ -44,8 +45,8 @@ AT_ONCE: Final = 64
 """Boats whose rows are formatted in one go: each go costs time, and each boat memory."""
 
 
-def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
-    """The page of every boat that the archive lists."""
+def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Callable[[], Page]]]:
+    """Every boat that the archive lists, with what makes its page."""
     frames = _frames(views)
     editions = frames["register"]["edition"].unique().sort().to_list()
     crews = _answers(views, newest_edition(editions, draft_of(methods)), frames)
@@ -59,7 +60,7 @@ def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             }
         )
         for fsn_no in boats["fsn_no"]:
-            yield _page(fsn_no, some, methods, crews.get(fsn_no, ()))
+            yield fsn_no, partial(_page, fsn_no, some, methods, crews.get(fsn_no, ()))
 
 
 class _Boats:

@@ -1,6 +1,7 @@
 """Which page shows what. A section is there only if its table is, and holds rows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache, partial
 
 import polars as pl
 
@@ -33,24 +34,26 @@ from herijk.words.tables import TABLES_IN_DUTCH
 MENU = ("index", *CARDS)
 
 
-def shared_pages(views: Views) -> Iterator[Page]:
-    """Every page of the site but those of boats and slides."""
+def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
+    """What makes the pages of the site but those of boats and slides, by what they show."""
     methods = method_names(views)
-    changes = line_changes(views)
-    yield start_page(views, methods, changes)
-    yield _register(views, methods)
-    yield _due(views, methods)
-    yield types_page(views, methods)
-    yield from type_pages(views, methods)
-    yield _compare(views, methods)
-    yield from race_pages(views, methods)
-    yield _corrections(views, methods)
-    yield _reproducibility(views, methods)
-    yield _changes(methods, changes)
-    yield _quality(views, methods)
-    yield words_page()
-    yield from guide_pages()
-    yield from edition_pages(views)
+    changes = cache(partial(line_changes, views))
+    return {
+        "start": lambda: [start_page(views, methods, changes())],
+        "register": lambda: [_register(views, methods)],
+        "due": lambda: [_due(views, methods)],
+        "types": lambda: [types_page(views, methods)],
+        "of types": lambda: type_pages(views, methods),
+        "compare": lambda: [_compare(views, methods)],
+        "races": lambda: race_pages(views, methods),
+        "corrections": lambda: [_corrections(views, methods)],
+        "reproducibility": lambda: [_reproducibility(views, methods)],
+        "changes": lambda: [_changes(methods, changes())],
+        "quality": lambda: [_quality(views, methods)],
+        "words": lambda: [words_page()],
+        "guides": guide_pages,
+        "editions": lambda: edition_pages(views),
+    }
 
 
 def method_names(views: Views) -> list[str]:

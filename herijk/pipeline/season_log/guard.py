@@ -11,7 +11,6 @@ import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.quantiles import MAD_TO_SD
-from herijk.pipeline.season_log.effects import AGEING, slopes
 from herijk.pipeline.season_log.likelihood import LEVEL
 from herijk.pipeline.season_log.posterior import Posterior
 
@@ -31,27 +30,26 @@ def refused(posterior: Posterior, ln_factor: FloatArray, ln_sd: FloatArray) -> B
     Args:
         ln_factor, ln_sd: of the groups, as estimated.
     """
-    gap, gap_sd = _by_repeats_alone(posterior, ln_factor)
+    gap, gap_sd = _by_repeats_alone(posterior, len(ln_factor))
     far = np.abs(np.expm1(ln_factor)) > FARTHEST
     return np.asarray(far | (np.abs(gap) > FARTHEST_SD * np.hypot(gap_sd, ln_sd)))
 
 
-def _by_repeats_alone(posterior: Posterior, ln_factor: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _by_repeats_alone(posterior: Posterior, groups: int) -> tuple[FloatArray, FloatArray]:
     """What repeat tows add to each ln factor, and its standard deviation; 0 where they are few.
 
-    Of every boat that was also towed beside dGPS the difference in ln Cw, less what all boats age,
-    as a ln factor of the log; of these the median.
+    Of every boat that was also towed beside dGPS the difference in ln Cw, less what all boats
+    changed meanwhile, as a ln factor of the log; of these the median. A fault of the load cell is
+    not taken off: it is what a wrong factor hides behind.
     """
-    problem, network = posterior.problem, posterior.problem.network
-    factor = np.append(ln_factor, 0.0)[network.group]  # -1, anchored, reads the 0
-    tangent = slopes(problem.q, problem.force_n, factor, problem.reference_ln)
-    ageing = posterior.mean[posterior.names == AGEING].sum()
-    years = network.numbers("season") - problem.settings.reference_year
-    level = network.numbers("ln_cw") - tangent.predicted[:, LEVEL] - ageing * years
+    network = posterior.problem.network
+    tangent = posterior.fit.slopes
+    of_boats = np.where(posterior.of_boats, posterior.design[:, LEVEL], 0.0) @ posterior.mean
+    level = network.numbers("ln_cw") - tangent.predicted[:, LEVEL] - of_boats
     kappa = tangent.ways["speed"][:, LEVEL]
-    gap, gap_sd = np.zeros(len(ln_factor)), np.zeros(len(ln_factor))
+    gap, gap_sd = np.zeros(groups), np.zeros(groups)
     beside_gps = _mean_of_boats(posterior, level, network.group < 0)
-    for group in range(len(ln_factor)):
+    for group in range(groups):
         mine = network.group == group
         difference = _mean_of_boats(posterior, level, mine) - beside_gps
         by_log = difference / _mean_of_boats(posterior, kappa, mine)

@@ -16,6 +16,7 @@ from herijk.warehouse.archive.faults import OF_A_HEADER
 from herijk.warehouse.archive.lists.windows import outside_run
 from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
 from herijk.warehouse.build.same_samples import CONTENT, same_samples
+from herijk.warehouse.store.unforeseen import FAILED_TOWS, tow_key
 from herijk.words import say
 
 if TYPE_CHECKING:
@@ -40,9 +41,10 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     Raises:
         NothingSoundError: no tow is sound.
     """
-    index = inputs["season_index"]
+    index = _with_failed(inputs["season_index"], inputs["season_tows"], inputs[FAILED_TOWS])
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     contents = inputs.blocks("tow_id", "run", "second", *CONTENT)
+    contents = contents.join(sound, on="tow_id", how="semi", maintain_order="left")
     present = contents.group_by("tow_id", "run", maintain_order=True).agg(
         seconds=pl.col("second").max() + 1
     )
@@ -71,6 +73,19 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     if tables["tows"].is_empty():
         raise NothingSoundError(_why_nothing(tables["quarantine"]), tables)
     return tables
+
+
+def _with_failed(index: pl.DataFrame, listed: pl.DataFrame, failed: pl.DataFrame) -> pl.DataFrame:
+    """The index with the fault of the tows that make Herijk itself fail, as they are listed."""
+    if failed.is_empty():
+        return index
+    keys = [tow_key(row) for row in listed.iter_rows(named=True)]
+    mine = listed.select("tow_id", tow_key=pl.Series(keys, dtype=pl.String))
+    of_today = failed.join(mine, on=["tow_id", "tow_key"], how="semi").drop("tow_key")
+    return pl.concat(
+        [index.join(of_today, on="tow_id", how="anti", maintain_order="left"), of_today],
+        how="diagonal",
+    )
 
 
 def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:

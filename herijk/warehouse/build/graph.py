@@ -12,7 +12,7 @@ from herijk.warehouse.build.database import (
     is_whole,
     warehouse_database,
 )
-from herijk.warehouse.build.inputs import ARCHIVE_TABLES, METHOD_TABLES, PUBLISHED
+from herijk.warehouse.build.inputs import ARCHIVE_TABLES, FAILED, METHOD_TABLES, PUBLISHED
 from herijk.warehouse.build.method_tables import RUNS, method_tables, tows_without_curve_row
 from herijk.warehouse.build.recordings import recording_tables
 from herijk.warehouse.build.registers import register_tables
@@ -34,7 +34,7 @@ ARCHIVE: Final = Step(
     says="collecting boats, tows and what was set aside",
     inputs=(
         *("list_faults", "listed_boats", "listed_windows"),
-        *("season_tows", "season_runs", "season_index", "blocks"),
+        *("season_tows", "season_runs", "season_index", "blocks", FAILED),
     ),
     outputs=ARCHIVE_TABLES,
     compute=archive_tables,
@@ -44,7 +44,7 @@ ARCHIVE: Final = Step(
 RECORDINGS: Final = Step(
     name="recordings",
     says="averaging what the instruments said",
-    inputs=("blocks",),
+    inputs=("tows", "blocks"),
     outputs=("trace_seconds", "run_statistics"),
     compute=recording_tables,
 )

@@ -5,8 +5,8 @@ of what is made from it.
 """
 
 import datetime as dt
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
@@ -20,11 +20,12 @@ from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.published import published_made_from, published_tables
 from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store import decisions
+from herijk.warehouse.store import decisions, unforeseen
 from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
 BLOCKS: Final = "blocks"
+FAILED: Final = unforeseen.FAILED_TOWS
 DECISIONS: Final = "decisions"
 """The decisions of people about tows, as `decisions.decision_table` gives them."""
 
@@ -64,12 +65,14 @@ class Inputs:
         names: the declared inputs.
         methods: the methods to apply; the first is what others are compared with.
         today: the day that is noted where something is seen for the first time.
+        tows: those to work on; None for all.
     """
 
     store: Store
     names: Sequence[str]
     methods: Sequence[Method]
     today: dt.date
+    tows: frozenset[str] | None = None
     _read: dict[str, pl.DataFrame] = field(default_factory=dict, repr=False)
 
     def __getitem__(self, name: str) -> pl.DataFrame:
@@ -81,13 +84,28 @@ class Inputs:
         if name not in self.names:
             raise KeyError(f"{name} is not a declared input: {', '.join(self.names)}")
         if name not in self._read:
-            self._read[name] = _read(self, name)
+            self._read[name] = self._chosen(_read(self, name))
         return self._read[name]
 
     def made_from(self, *names: str) -> str:
         """Fingerprint of declared inputs that do not depend on methods."""
         known = {name: made_from(self.store, name, ()) for name in names}
-        return fingerprint(str(self.store.root), known)
+        return fingerprint(str(self.store.root), known, sorted(self.tows or ()))
+
+    def only(self, tows: Collection[str]) -> "Inputs":
+        """The same of some tows."""
+        return replace(self, tows=frozenset(tows), _read={})
+
+    def tow_ids(self) -> list[str]:
+        """The tows that a step works on, sorted."""
+        listed = next((name for name in ("tows", "season_tows") if name in self.names), None)
+        column = self.blocks("tow_id")["tow_id"] if listed is None else self[listed]["tow_id"]
+        return sorted(column.unique())
+
+    def _chosen(self, frame: pl.DataFrame) -> pl.DataFrame:
+        if self.tows is None or "tow_id" not in frame.columns:
+            return frame
+        return frame.filter(pl.col("tow_id").is_in(self.tows))
 
     def take(self, name: str) -> pl.DataFrame:
         """A declared input that is asked for once, and not kept."""
@@ -99,7 +117,10 @@ class Inputs:
         """Some columns of the declared input `blocks`: all are most of what a step holds."""
         if BLOCKS not in self.names:
             raise KeyError(f"{BLOCKS} is not a declared input: {', '.join(self.names)}")
-        return intake.all_blocks(self.store, columns)
+        if self.tows is None:
+            return intake.all_blocks(self.store, columns)
+        with_tows = intake.all_blocks(self.store, list(dict.fromkeys(("tow_id", *columns))))
+        return self._chosen(with_tows).select(columns)
 
     def run_blocks(self, runs: pl.DataFrame) -> RunBlocks:
         """The blocks of runs, their sums read when they are asked for."""
@@ -127,8 +148,8 @@ def _read(inputs: Inputs, name: str) -> pl.DataFrame:
         return store.read_all(name, [method.name for method in inputs.methods])
     if name in PUBLISHED:
         return inputs.published[name.removeprefix("published_")]
-    if name == DECISIONS:
-        return _decisions(store)
+    if name in _ABOUT_TOWS:
+        return _ABOUT_TOWS[name](store)
     if name in intake.INDEXED:
         return _listed(store, name)
     return _of_seasons(store, name) if name in SEASON_TABLES else store.read(name)
@@ -140,8 +161,8 @@ def made_from(store: Store, name: str, methods: Sequence[Method]) -> object:
         return {method.name: store.made_from(name, method.name) for method in methods}
     if name in PUBLISHED:
         return published_made_from(store)
-    if name == DECISIONS:
-        return table_digest(_decisions(store))
+    if name in _ABOUT_TOWS:
+        return table_digest(_ABOUT_TOWS[name](store))
     if name in intake.INDEXED or name in ARCHIVE_TABLES:
         return _content(store, name)
     if name == BLOCKS or name in SEASON_TABLES:
@@ -166,3 +187,7 @@ def _listed(store: Store, name: str) -> pl.DataFrame:
 def _decisions(store: Store) -> pl.DataFrame:
     decided = decisions.read_decisions(store.root / decisions.FILE_NAME)
     return decisions.decision_table(decided)
+
+
+_ABOUT_TOWS: Final = {DECISIONS: _decisions, FAILED: unforeseen.failed_tows}
+"""What was decided about tows: by people, and by us where we failed on them."""

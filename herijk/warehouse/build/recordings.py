@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 
 def recording_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
-    """The traces of all runs, and the tool's figures of each of their channels."""
-    blocks = inputs.blocks(*dict.fromkeys((*PLACE, *SUMS, *CHANNELS.values())))
+    """The traces of all runs of sound tows, and the tool's figures of each of their channels."""
+    of_all = inputs.blocks(*dict.fromkeys(("tow_id", *PLACE, *SUMS, *CHANNELS.values())))
+    blocks = of_all.join(inputs["tows"], on="tow_id", how="semi", maintain_order="left")
     return {"trace_seconds": second_means(blocks), "run_statistics": run_statistics(blocks)}

@@ -17,10 +17,12 @@ from herijk.pipeline.method.definition import Method
 from herijk.tables.frames import dtypes
 from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.build.archive_tables import NothingSoundError
+from herijk.warehouse.build.border import failed_tows
 from herijk.warehouse.build.database import database_without_tows
-from herijk.warehouse.build.inputs import METHOD_TABLES, Inputs, made_from
+from herijk.warehouse.build.inputs import ARCHIVE_TABLES, METHOD_TABLES, Inputs, made_from
 from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.store import Store, fingerprint
+from herijk.warehouse.store.unforeseen import failures, forget, is_unforeseen, note, traced
 
 QUARANTINE: Final = "quarantine"
 
@@ -75,6 +77,11 @@ class Step:
     def per_method(self) -> bool:
         """Whether the step is made once for every method."""
         return set(self.outputs) <= set(METHOD_TABLES)
+
+    @property
+    def may_fail(self) -> bool:
+        """Whether a rebuild goes on without its rows: without those of all tows there is none."""
+        return set(self.outputs) <= set(TABLES) and set(self.outputs).isdisjoint(ARCHIVE_TABLES)
 
     @property
     def knows_methods(self) -> bool:
@@ -136,12 +143,25 @@ class Step:
     ) -> "Made":
         made_from = self.made_from(store, methods)
         inputs = Inputs(store, self.inputs, methods, today)
+        failure = " ".join(("step", self.name, *(m.name for m in methods if self.per_method)))
         try:
             made = dict(self.compute(inputs))
         except NothingSoundError as error:
             store.write(QUARANTINE, conform(QUARANTINE, error.tables[QUARANTINE]), "")
             database_without_tows(store, error.tables)
             raise
+        except BaseException as error:
+            if not is_unforeseen(error):
+                raise
+            failed = failed_tows(self.compute, inputs, error)
+            if failed is not None:
+                raise failed from error
+            if not self.may_fail:
+                raise
+            note(store.root, failure, traced(error))
+            made = {name: TABLES[name].create_empty() for name in self.outputs}
+        else:
+            forget(store.root, failure)
         partition = self._partition(methods)
         tables = {
             name: conform(name, made.pop(name)) if name in TABLES else made.pop(name)
@@ -153,7 +173,7 @@ class Step:
         faults = {
             check: list(check.faults(inputs, tables))
             for check in self.checks
-            if check.table in tables
+            if check.table in tables and failure not in failures(store.root)
         }
         return Made({name: Summary.of(frame) for name, frame in tables.items()}, faults)
 

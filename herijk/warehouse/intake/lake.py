@@ -20,6 +20,7 @@ from herijk.tables.frames import dtypes, frame_of
 from herijk.tables.lake import SeasonIndex
 from herijk.tables.row import Row
 from herijk.warehouse.archive import (
+    Fault,
     FileHashes,
     SeasonProfile,
     fault_from,
@@ -29,6 +30,14 @@ from herijk.warehouse.archive import (
 from herijk.warehouse.archive.samples.resolution import steps_of
 from herijk.warehouse.store.code import ADDERS, FAULTS_IN_DUTCH, READERS, code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
+from herijk.warehouse.store.unforeseen import (
+    UNFORESEEN,
+    in_short,
+    is_unforeseen,
+    note,
+    sentence,
+    traced,
+)
 
 LAKE_FORM: Final = {
     "compression": "lz4",
@@ -154,9 +163,21 @@ def _bring_in(
             write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:
         _check_unchanged(root, tow, hashes)
-        fault = dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
-        return row | {name: fault[name] for name in row.keys() & fault.keys()}
+        return row | _as_fault(row, fault_from(error, tow["samples_path"], tow["tow_id"]))
+    except BaseException as error:
+        if not is_unforeseen(error):
+            raise
+        note(store.root, tow["tow_id"], traced(error))
+        message = sentence(tow["tow_id"], in_short(error))
+        return row | _as_fault(
+            row, Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
+        )
     return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}
+
+
+def _as_fault(row: Row, fault: Fault) -> Row:
+    facts = dataclasses.asdict(fault)
+    return {name: facts[name] for name in row.keys() & facts.keys()}
 
 
 class ArchiveChangedError(UnavailableError):

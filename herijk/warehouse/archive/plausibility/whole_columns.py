@@ -158,8 +158,12 @@ def check_mix_ups(runs: list[Run]) -> None:
 
 
 def _follows_log(runs: list[Run], key: str) -> bool:
-    """Whether a column is the same times log 1 in every run."""
-    ratio = [median_of(run.channels[key]) / median_of(run.channels["log1"]) for run in runs]
+    """Whether a column is the same times log 1 in every run; none is where log 1 stood still."""
+    log1 = [median_of(run.channels["log1"]) for run in runs]
+    if not all(log1):
+        return False
+    column = [median_of(run.channels[key]) for run in runs]
+    ratio = np.divide(column, log1)
     return bool(np.ptp(ratio) <= FOLLOWS_RATIO * abs(np.median(ratio)))
 
 

@@ -1,0 +1,241 @@
+"""What nobody foresaw costs one tow, one method or one page, and nothing else."""
+
+import importlib
+import inspect
+import pkgutil
+import random
+import sys
+from contextlib import contextmanager
+from types import FunctionType
+from unittest import mock
+
+import polars as pl
+import pytest
+from polars.testing import assert_frame_equal
+
+import herijk.pipeline
+import herijk.warehouse.archive
+from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.recompute.outcome import Outcome
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.archive.plausibility.run import Run
+from tests.conftest import METHODS, Workbench, shared
+
+TINY = WorldSettings(seasons=(2010, 2014), tows_per_season=11, rate_hz=10, seed=5)
+TOW = "2014-004"
+SEEDED = 60
+ROOMS = (herijk.pipeline, herijk.warehouse.archive)
+TODAY = ("first_seen", "code_version", "content_hash")
+
+
+def tows_in(value, path):
+    """Whether a value that a function is given is about the tow."""
+    if isinstance(value, pl.DataFrame):
+        return "tow_id" in value.columns and TOW in value["tow_id"]
+    if isinstance(value, Outcome):
+        return tows_in(value.batch, path)
+    if isinstance(value, Batch):
+        return tows_in(value.tows, path)
+    if isinstance(value, dict):
+        return value.get("tow_id") == TOW
+    if isinstance(value, Run):
+        return value.path == path
+    return isinstance(value, list | tuple) and any(tows_in(part, path) for part in value)
+
+
+def functions():
+    """Every function of the rooms that work on tows, by module and name."""
+    found = {}
+    for room in ROOMS:
+        for info in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+            module = importlib.import_module(info.name)
+            for name, function in inspect.getmembers(module, inspect.isfunction):
+                plain = type(function) is FunctionType and not hasattr(function, "__wrapped__")
+                if plain and function.__module__ == info.name:
+                    found[info.name, name] = function
+    return found
+
+
+@contextmanager
+def failing(module, name, path, called):
+    """Inside, a function raises where it works on the tow, wherever it was imported to."""
+    function = getattr(importlib.import_module(module), name)
+
+    def raises(*arguments, **named):
+        if any(tows_in(value, path) for value in (*arguments, *named.values())):
+            called.append(name)
+            raise ZeroDivisionError(f"planted in {name}")
+        return function(*arguments, **named)
+
+    places = [
+        other
+        for other in list(sys.modules.values())
+        if getattr(other, "__name__", "").startswith("herijk")
+        and other.__dict__.get(name) is function
+    ]
+    with (
+        mock.patch.object(places[0], name, raises)
+        if len(places) == 1
+        else _all(places, name, raises)
+    ):
+        yield
+
+
+@contextmanager
+def _all(places, name, raises):
+    patches = [mock.patch.object(place, name, raises) for place in places]
+    for patch in patches:
+        patch.start()
+    try:
+        yield
+    finally:
+        for patch in patches:
+            patch.stop()
+
+
+def comparable(bench):
+    tables = bench.tables()
+    del tables["quarantine"]
+    return {
+        name: frame.drop([c for c in TODAY if c in frame.columns])
+        for name, frame in tables.items()
+        if name not in ("about", "contents", "seasons", "quality_counts")
+    }
+
+
+def _build(root):
+    write_simulated_archive(root / "archive", simulate_world(TINY))
+    Workbench(root / "archive", root / "data").rebuild()
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    root = shared(tmp_path_factory, "tiny", _build)
+    return Workbench(root / "archive", root / "data")
+
+
+@pytest.fixture(scope="module")
+def without(tiny, tmp_path_factory):
+    """Tables of the archive whose list has the tow no more."""
+    root = tmp_path_factory.mktemp("without")
+    write_simulated_archive(root / "archive", simulate_world(TINY))
+    tow_list = root / "archive" / "sleeplijsten" / "sleeplijst_2014.csv"
+    lines = tow_list.read_text("utf-8").splitlines(keepends=True)
+    tow_list.write_text("".join(line for line in lines if TOW not in line), "utf-8")
+    bench = Workbench(root / "archive", root / "data")
+    bench.rebuild()
+    return comparable(bench)
+
+
+@pytest.fixture
+def path_of_tow(tiny):
+    return tiny.table("tows").filter(tow_id=TOW)["samples_path"][0]
+
+
+def check_without(bench, expected):
+    found = comparable(bench)
+    assert found.keys() == expected.keys()
+    for name, frame in expected.items():
+        assert (name, found[name].shape) == (name, frame.shape)
+        assert_frame_equal(found[name], frame, rel_tol=1e-9, check_exact=False)
+    faults = bench.table("quarantine").filter(tow_id=TOW)
+    assert faults["reason_code"].to_list() == ["unforeseen"]
+    assert (bench.data / "unforeseen" / f"{TOW}.txt").read_text().startswith("Traceback")
+
+
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("herijk.warehouse.archive.plausibility.whole_columns", "check_mix_ups"),
+        ("herijk.pipeline.assessment.plausibility", "plausibility"),
+        ("herijk.pipeline.recompute.season_factors", "_rows"),
+        ("herijk.pipeline.season_log.estimate", "estimate_season_factors"),
+        ("herijk.pipeline.assessment.assess", "assess"),
+    ],
+)
+def test_a_failing_tow_is_set_aside_and_the_rest_goes_on(
+    module, name, tiny, without, path_of_tow, tmp_path
+):
+    bench = Workbench(tiny.archive, tmp_path / "data")
+    called = []
+    with failing(module, name, path_of_tow, called):
+        report = bench.rebuild((*METHODS, "rebased"))
+    assert called
+    faults = bench.table("quarantine")
+    assert faults["tow_id"].to_list() == [TOW]
+    assert faults["reason_code"].to_list() == ["unforeseen"]
+    assert (TOW in bench.table("curves")["tow_id"]) is False
+    assert [c.severity for c in report.checks if c.check == "nothing_unforeseen"] == ["WARN"]
+
+
+def test_a_log_that_stood_still_fails_no_check():
+    from herijk.warehouse.archive.plausibility.whole_columns import _follows_log  # noqa: PLC0415
+
+    class Still:
+        channels = {"log1": mock.Mock(), "log2": mock.Mock()}  # noqa: RUF012
+
+    median = "herijk.warehouse.archive.plausibility.whole_columns.median_of"
+    with mock.patch(median, return_value=0.0):
+        assert not _follows_log([Still()], "log2")
+
+
+def test_a_failing_method_costs_its_rows_alone(tiny, tmp_path):
+    bench = Workbench(tiny.archive, tmp_path / "data")
+
+    def fails(method, *arguments, **named):
+        if method.name == METHODS[1]:
+            raise ZeroDivisionError("planted")
+        return real(method, *arguments, **named)
+
+    from herijk.warehouse.build import method_tables  # noqa: PLC0415
+
+    real = method_tables.recompute
+    with mock.patch.object(method_tables, "recompute", fails):
+        report = bench.rebuild()
+    assert set(bench.table("curves")["method"]) == {METHODS[0]}
+    assert_frame_equal(
+        bench.table("curves"), tiny.table("curves").filter(method=METHODS[0]), rel_tol=1e-9
+    )
+    (check,) = [c for c in report.checks if c.check == "nothing_unforeseen"]
+    assert (check.severity, check.found["first"]) == ("ERROR", [f"step method {METHODS[1]}"])
+    report = bench.rebuild()  # not tried again, and still told
+    assert [c.severity for c in report.checks] == ["ERROR"]
+
+
+def test_a_tow_is_tried_again_when_its_row_changes(tiny, path_of_tow, tmp_path):
+    bench = Workbench(tmp_path / "archive", tmp_path / "data")
+    write_simulated_archive(bench.archive, simulate_world(TINY))
+    with failing("herijk.pipeline.assessment.assess", "assess", path_of_tow, []):
+        bench.rebuild()
+    assert TOW not in bench.table("tows")["tow_id"]
+    bench.rebuild()
+    assert TOW not in bench.table("tows")["tow_id"]  # by the same code it would fail again
+    tow_list = bench.archive / "sleeplijsten" / "sleeplijst_2014.csv"
+    weight = tiny.table("tows").filter(tow_id=TOW)["weight_kg"][0]
+    text = tow_list.read_text("utf-8")
+    (line,) = (line for line in text.splitlines() if TOW in line)
+    heavier = line.replace(f",{weight:.0f},", f",{weight + 1:.0f},", 1)
+    assert heavier != line
+    tow_list.write_text(text.replace(line, heavier), "utf-8")
+    bench.rebuild()
+    assert TOW in bench.table("tows")["tow_id"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(SEEDED))
+def test_wherever_a_tow_fails_the_tables_are_those_without_it(
+    number, tiny, without, path_of_tow, tmp_path
+):
+    """Of the functions that were given the tow at all; others are drawn until one was."""
+    draw = random.Random(number)
+    names = sorted(functions())
+    for module, name in draw.sample(names, len(names)):
+        bench = Workbench(tiny.archive, tmp_path / f"{module}.{name}")
+        called = []
+        with failing(module, name, path_of_tow, called):
+            bench.rebuild()
+        if called:
+            check_without(bench, without)
+            return
+    pytest.fail("no function was given the tow")
