@@ -8,6 +8,7 @@ import pytest
 from herijk.cli.due_text import URGENCIES
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.due import NOT_RACED
+from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.queries.due import due_report
 from herijk.warehouse.store.decisions import FILE_NAME
 from herijk.words.catalogue import WORDS
@@ -65,6 +66,9 @@ def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
     assert raced["as_of"] == day
     assert raced["raced_speed_m_s"] == pytest.approx(5.0)
     assert raced["speed_reason"] != NOT_RACED
+    draft = pl.col("edition") == draft_name(METHOD)
+    for table in ("register", "register_history"):
+        assert due["tow_id"][1] not in bench.table(table).filter(draft)["tow_id"].to_list()
     assert due["tow_id"][1] not in after["tow_id"].to_list()
     assert not bench.rebuild().done.database
 

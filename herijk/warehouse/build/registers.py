@@ -1,5 +1,6 @@
 """Registers: a draft per method, what changes between them, and the published editions."""
 
+import datetime as dt
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -54,8 +55,7 @@ def register_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
 def _draft(method: Method, inputs: "Inputs") -> pl.DataFrame:
     tows = inputs["tows"]
     on_date = max(tows["tow_date"])
-    curves = inputs["curves"].filter(pl.col("method") == method.name)
-    lines = draft_register(curves, tows, inputs["listed_boats"], on_date, method.validity)
+    lines = _register(method, inputs, on_date)
     edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
     code = pl.lit(None, pl.String).alias("verification_code")
     measured = lines.join(
@@ -64,9 +64,16 @@ def _draft(method: Method, inputs: "Inputs") -> pl.DataFrame:
     return measured.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
 
 
+def _register(method: Method, inputs: "Inputs", on_date: dt.date) -> pl.DataFrame:
+    """The lines of a method on a day, after the decisions of people."""
+    curves = inputs["curves"].filter(pl.col("method") == method.name)
+    tows, crews = inputs["tows"], inputs["listed_boats"]
+    return draft_register(curves, tows, crews, on_date, method.validity, inputs["decisions"])
+
+
 def _history(method: Method, inputs: "Inputs") -> pl.DataFrame:
     curves = inputs["curves"].filter(pl.col("method") == method.name)
-    lines = lines_of_all_days(curves, inputs["tows"], method.validity)
+    lines = lines_of_all_days(curves, inputs["tows"], method.validity, inputs["decisions"])
     return history_rows(lines, draft_name(method.name), method.name)
 
 
@@ -79,10 +86,7 @@ def _due_list(inputs: "Inputs") -> pl.DataFrame:
     as_of = max([*tows["tow_date"], *results["race_date"]])
     parts = []
     for method in inputs.methods:
-        curves = inputs["curves"].filter(pl.col("method") == method.name)
-        crews, decided = inputs["listed_boats"], inputs["decisions"]
-        register = draft_register(curves, tows, crews, as_of, method.validity, decided)
-        due = due_list(register, inputs["boats"], results, as_of)
+        due = due_list(_register(method, inputs, as_of), inputs["boats"], results, as_of)
         parts.append(due.select(pl.lit(method.name).alias("method"), pl.all()))
     return pl.concat(parts)
 
