@@ -124,7 +124,9 @@ def test_who_is_heavier_is_told_apart_by_what_is_not_shared():
 def test_the_winner_of_a_race_is_counted_over_the_members(world):
     found, lines, held = register(world)
     members = ensemble.as_frame(lines, ensemble.register_ensemble(lines, held, found))
-    crews = lines.head(3).with_columns(pl.Series("power_w", [80.0, 80.0, 50.0]))
+    crews = lines.head(3).with_columns(
+        pl.Series("power_w", [80.0, 80.0, 50.0]), penalty_w=pl.lit(0.0)
+    )
     share = ensemble.share_first(members, crews)
     assert share["power_w"].to_list() == [80.0, 80.0, 50.0]
     assert share["share"].sum() == pytest.approx(1.0)
@@ -135,6 +137,47 @@ def test_the_winner_of_a_race_is_counted_over_the_members(world):
 def test_a_tow_without_members_is_refused(world):
     _, lines, _ = register(world)
     members = ensemble.as_frame(lines.head(1), np.ones((3, 1)))
-    crews = lines.head(1).with_columns(pl.lit("no-such-tow").alias("tow_id"), power_w=pl.lit(80.0))
+    crews = lines.head(1).with_columns(
+        pl.lit("no-such-tow").alias("tow_id"), power_w=pl.lit(80.0), penalty_w=None
+    )
     with pytest.raises(MissingKnowledgeError, match="no-such-tow has no members"):
         ensemble.share_first(members, crews)
+
+
+def test_a_penalty_does_not_follow_cw():
+    """All lose 20 W, whatever Cw is: 100 W by twice the Cw is 200 W less 20."""
+    crews = pl.DataFrame(
+        {
+            "tow_id": ["a", "b"],
+            "cw_kg_m": [40.0, 40.0],
+            "power_w": [80.0, 90.0],
+            "penalty_w": [20.0, None],
+        }
+    )
+    members = ensemble.as_frame(crews.select("tow_id", "cw_kg_m"), np.array([[44.0, 44.0]]))
+    # 100 x 1.1 - 20 is 90 and 90 x 1.1 is 99; with Cw 48 and 44 100 W beat 99.
+    assert ensemble.share_first(members, crews).sort("tow_id")["share"].to_list() == [0.0, 1.0]
+    members = ensemble.as_frame(crews.select("tow_id", "cw_kg_m"), np.array([[48.0, 44.0]]))
+    assert ensemble.share_first(members, crews).sort("tow_id")["share"].to_list() == [1.0, 0.0]
+
+
+def test_members_lie_around_the_number_of_the_register(world):
+    """As wide as its interval: half as wide for a best estimate with half the interval."""
+    found, lines, held = register(world)
+    measured = lines.with_columns(
+        cw_lo_kg_m=pl.col("cw_kg_m") * np.exp(-0.04), cw_hi_kg_m=pl.col("cw_kg_m") * np.exp(0.04)
+    )
+    best = pl.col("cw_kg_m") * 0.97
+    ruled = measured.with_columns(
+        best, cw_lo_kg_m=best * np.exp(-0.02), cw_hi_kg_m=best * np.exp(0.02)
+    )
+    by_own, by_best = (
+        ensemble.tow_ensemble("rebased", measured, used, held, found)
+        .group_by("tow_id", maintain_order=True)
+        .agg(middle=pl.col("cw_kg_m").log().mean(), sd=pl.col("cw_kg_m").log().std())
+        for used in (measured, ruled)
+    )
+    assert (by_best["sd"] / by_own["sd"]).to_list() == pytest.approx([0.5] * by_own.height)
+    ln_cw = measured.join(by_own, on="tow_id", maintain_order="right")["cw_kg_m"].log()
+    own, moved = by_own["middle"] - ln_cw, by_best["middle"] - ln_cw - np.log(0.97)
+    assert moved.to_list() == pytest.approx((0.5 * own).to_list())

@@ -85,7 +85,7 @@ def draft_register(
         rest of the archive rules its tows out; a person may look and prefer one. `excluded`: by
         decision, and there is no other tow.
     """
-    towed = _towed(_as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
+    towed = _towed(as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
     curved = towed.filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
     chosen = (
@@ -134,7 +134,7 @@ def lines_of_all_days(
     Returns:
         `LINE` and `CURVE_COLUMNS` of every tow that can count.
     """
-    curved = _towed(_as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
+    curved = _towed(as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
     return _in_order(sound, rule, decisions).select(*LINE, *CURVE_COLUMNS)
 
@@ -164,7 +164,7 @@ def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
     return doubted.join(_with_verdict(decisions, PREFER), on="tow_id", how="anti")
 
 
-def _as_ruled(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
+def as_ruled(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
     """Curves with the estimate that the rule asks for; A follows Cw, B stays."""
     if rule.estimate == "as_measured":
         return curves

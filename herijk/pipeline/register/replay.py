@@ -244,7 +244,7 @@ def _change_probability(
 ) -> float | None:
     named = pl.col("tow_id").fill_null(pl.concat_str(LINE, separator=" "))
     crews = results.drop_nulls("rank").select(
-        *LINE, "power_w", named, pl.col("declared_cw_kg_m").alias("cw_kg_m")
+        *LINE, "power_w", "penalty_w", named, pl.col("declared_cw_kg_m").alias("cw_kg_m")
     )
     if members.is_empty() or old_winner is None or old_winner not in crews.select(LINE).rows():
         return None

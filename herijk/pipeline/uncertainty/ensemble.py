@@ -66,17 +66,36 @@ def register_ensemble(
 
 
 def tow_ensemble(
-    method: str, curves: pl.DataFrame, budget: pl.DataFrame, estimated: "SeasonFactors | None"
+    method: str,
+    curves: pl.DataFrame,
+    ruled: pl.DataFrame,
+    budget: pl.DataFrame,
+    estimated: "SeasonFactors | None",
 ) -> pl.DataFrame:
     """Rows of the table `ensemble` of a method: members of every tow with a curve.
+
+    They lie around the number that the register uses, as wide as its interval; what tows share
+    stays what they share as measured.
 
     Args:
         method: its name.
         curves, budget: its tables `curves` and `uncertainty_budget`.
+        ruled: its curves with the estimate that the register uses.
         estimated: its season factors, as `register_ensemble` takes them.
     """
-    tows = curves.drop_nulls("cw_kg_m").select("tow_id", "cw_kg_m")
-    members = as_frame(tows, register_ensemble(tows, budget, estimated))
+    width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
+    tows = (
+        curves.drop_nulls("cw_kg_m")
+        .select("tow_id", "cw_kg_m", measured=width)
+        .join(
+            ruled.select("tow_id", used="cw_kg_m", stated=width), on="tow_id", maintain_order="left"
+        )
+        .with_columns((pl.col("stated") / pl.col("measured")).fill_null(1.0))
+    )
+    measured, used, wider = (tows[name].to_numpy() for name in ("cw_kg_m", "used", "stated"))
+    drawn = register_ensemble(tows, budget, estimated)
+    cw = used * (drawn / measured) ** wider
+    members = as_frame(tows.select("tow_id", "cw_kg_m"), cw)
     return members.with_columns(pl.lit(method).alias("method"))
 
 
@@ -100,12 +119,12 @@ def share_first(members: pl.DataFrame, results: pl.DataFrame) -> pl.DataFrame:
     """Share of the members in which each crew of a race has the highest power per rower.
 
     Power is proportional to Cw, and the error of Cw at the declared speed is taken for that at the
-    speed rowed: sound within the range in which a curve is valid.
+    speed rowed: sound within the range in which a curve is valid. A penalty does not follow Cw.
 
     Args:
         members: rows of the table `ensemble` of one method.
         results: one row per crew: `tow_id` of its boat's curve, `cw_kg_m` of that curve at the
-            declared speed, and `power_w` by it.
+            declared speed, `power_w` by it and the `penalty_w` that was taken off.
 
     Returns:
         The rows of `results` with `share`, highest power first.
@@ -114,8 +133,9 @@ def share_first(members: pl.DataFrame, results: pl.DataFrame) -> pl.DataFrame:
         MissingKnowledgeError: a tow has no members.
     """
     drawn = _members_of(members, results["tow_id"].to_list())
-    per_cw = (results["power_w"] / results["cw_kg_m"]).to_numpy()
-    first = (per_cw[:, None] * drawn).argmax(axis=0)
+    penalty = results["penalty_w"].fill_null(0.0).to_numpy()
+    per_cw = (results["power_w"].to_numpy() + penalty) / results["cw_kg_m"].to_numpy()
+    first = (per_cw[:, None] * drawn - penalty[:, None]).argmax(axis=0)
     share = np.bincount(first, minlength=results.height) / drawn.shape[1]
     return results.with_columns(pl.Series("share", share)).sort("power_w", descending=True)
 

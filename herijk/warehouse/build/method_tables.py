@@ -11,6 +11,7 @@ from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.recompute.facts import with_boats, with_hand_windows
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.recompute.run_cache import RunCache
+from herijk.pipeline.register.register import as_ruled
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ def method_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     tows = with_boats(inputs["tows"], inputs["boats"])
     with run_cache(inputs) as cache:
         made = recompute(method, tows, blocks_of(inputs), cache)
-    members = tow_ensemble(method.name, made.curves, made.uncertainty_budget, made.factors)
+    ruled = as_ruled(made.curves, method.validity)
+    members = tow_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
     return {**vars(made), "ensemble": members}
 
 

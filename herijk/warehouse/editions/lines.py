@@ -15,7 +15,7 @@ from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import RegisterRule
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.register.register import LINE, draft_register
+from herijk.pipeline.register.register import LINE, as_ruled, draft_register
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
 from herijk.tables.keys import SIZES
 from herijk.warehouse.build.published import decisions_of
@@ -122,7 +122,11 @@ def made_again(store: Store, edition: Edition) -> Again:
             lines, printed, recomputed.log_factors, about.valid_from, edition.method
         ).with_columns(as_of=pl.lit(about.valid_from))
     members = tow_ensemble(
-        edition.method.name, recomputed.curves, recomputed.uncertainty_budget, recomputed.factors
+        edition.method.name,
+        recomputed.curves,
+        as_ruled(recomputed.curves, edition.method.validity),
+        recomputed.uncertainty_budget,
+        recomputed.factors,
     )
     tables: dict[str, pl.DataFrame] = {
         name: getattr(recomputed, name) for name in MADE if name in edition.tables
