@@ -110,6 +110,7 @@ class _Rebuild:
         self.progress.step("looking at what the archive holds")
         intake.index(self.store, self.archive)
         intake.forget_unlisted_seasons(self.store)
+        _check_listed(seasons, intake.listed_seasons(self.store))
         stale = intake.stale_seasons(self.store, self.archive, seasons)
         checks: Sequence[dg.AssetCheckEvaluation] = ()
         if stale or self._is_stale():
@@ -211,6 +212,19 @@ class _Rebuild:
                 self.done.methods = [m.name for m in self.methods if m.name in made]
             self.done.database |= step is DATABASE
         work.build(tasks)
+
+
+def _check_listed(wanted: Collection[int] | None, listed: Sequence[int]) -> None:
+    """Refuses seasons of which the archive lists no tow: a typing error would pass unseen.
+
+    Raises:
+        MissingKnowledgeError: it lists none in any of them.
+    """
+    if wanted is not None and listed and not set(wanted) & set(listed):
+        raise MissingKnowledgeError(
+            "the archive lists no tow in the seasons asked for; it has tows of {}",
+            ", ".join(map(str, listed)),
+        )
 
 
 def check_apart(archive: Path, data: Path) -> None:

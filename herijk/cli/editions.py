@@ -115,10 +115,18 @@ def diff(
 def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
     from herijk.cli import editions_text as text
+    from herijk.pipeline.errors import MissingKnowledgeError
     from herijk.warehouse.editions.verify import verify as verify_editions
+    from herijk.warehouse.store.editions import edition_names
     from herijk.warehouse.store.store import Store
 
-    report = verify_editions(Store(data))
+    store = Store(data)
+    if not edition_names(store) and not store.database.exists():
+        raise MissingKnowledgeError(
+            "{} holds no editions and no tables; is it the right data folder?",
+            data,
+        )
+    report = verify_editions(store)
     show(report, text.verify, as_json)
     if report.wrong:
         raise typer.Exit(1)

@@ -141,6 +141,12 @@ ERRORS: Final[dict[str, str]] = {
     "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}": (
         "{} bevat geen uitkomsten; maak ze met: herijk rebuild --archive MAP --data {}"
     ),
+    "{} holds no editions and no tables; is it the right data folder?": (
+        "{} bevat geen edities en geen tabellen; is het de goede datamap?"
+    ),
+    "the archive lists no tow in the seasons asked for; it has tows of {}": (
+        "het archief kent geen sleepproef in de gevraagde seizoenen; het heeft die van {}"
+    ),
     "{} holds no tows; make it with: herijk rebuild --archive DIR --data {}": (
         "{} bevat geen sleepproeven; maak het met: herijk rebuild --archive MAP --data {}"
     ),

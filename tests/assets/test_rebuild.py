@@ -266,3 +266,8 @@ def test_lists_without_any_sound_row_say_so(bench, tmp_path):
     with pytest.raises(MissingKnowledgeError, match="no tow can be used"):
         fresh.rebuild()
     assert fresh.table("tows").is_empty()
+
+
+def test_seasons_that_the_archive_does_not_have_are_refused(bench):
+    with pytest.raises(MissingKnowledgeError, match="it has tows of 2009, 2014"):
+        bench.rebuild(seasons=range(2030, 2031))

@@ -88,8 +88,8 @@ def test_verify_under_other_code_says_that_what_was_published_stands(
     assert "Everything is as it was" not in out
 
 
-def test_verify_without_any_edition_says_so(herijk, tmp_path):
-    status, out, _ = herijk("verify", "--data", tmp_path)
+def test_verify_without_any_edition_says_so(herijk, built):
+    status, out, _ = herijk("verify", "--data", built.data)
     assert (status, out) == (0, "No edition has been published yet; nothing to verify.\n")
 
 
@@ -103,3 +103,9 @@ def test_lineage_goes_from_line_to_files_runs_and_seconds(herijk, published):
     status, _, err = herijk("lineage", "2014-2", "FSN000", "--data", published.data)
     assert status == 1
     assert "boat FSN000 is not in edition 2014-2" in err
+
+
+def test_verify_of_a_mistyped_folder_fails(herijk, tmp_path):
+    status, printed, said = herijk("verify", "--data", tmp_path / "typo")
+    assert (status, printed) == (1, "")
+    assert "holds no editions and no tables" in said

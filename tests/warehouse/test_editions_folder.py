@@ -36,7 +36,7 @@ def publish_and_die(store, step):
     sync = os.fsync
     os.fsync = lambda handle: (count("open", ()), sync(handle))
     sys.addaudithook(count)
-    write_folder(store, "x", CONTENTS)
+    write_folder(store, "x", lambda: CONTENTS)
 
 
 step, whole = 0, False
@@ -54,7 +54,7 @@ while not whole:
         found = {f.name: f.read_bytes() for f in (store.editions / "x").iterdir()}
         assert found == CONTENTS, step
     else:
-        write_folder(store, "x", CONTENTS)
+        write_folder(store, "x", lambda: CONTENTS)
     assert sorted(f.name for f in store.editions.iterdir() if f.is_dir()) == ["x"], step
 print(step)
 """
@@ -82,9 +82,9 @@ from herijk.warehouse.store.editions import edition_names, write_folder
 from herijk.warehouse.store.store import Store
 
 store = Store(Path(sys.argv[1]))
-write_folder(store, "old", {"file": b"small"})
+write_folder(store, "old", lambda: {"file": b"small"})
 try:
-    write_folder(store, "new", CONTENTS)
+    write_folder(store, "new", lambda: CONTENTS)
 except BrokenPromiseError as error:
     assert edition_names(store) == ["old"]
     assert sorted(f.name for f in store.editions.iterdir() if f.is_dir()) == ["old"]
@@ -126,7 +126,7 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(tmp_path):
     store = Store(tmp_path)
     store.editions.write_text("a file in the way", encoding="utf-8")
     with pytest.raises(BrokenPromiseError, match="mend the folder, and publish again"):
-        write_folder(store, "x", CONTENTS)
+        write_folder(store, "x", lambda: CONTENTS)
     store.editions.unlink()
-    write_folder(store, "x", CONTENTS)
+    write_folder(store, "x", lambda: CONTENTS)
     assert edition_names(store) == ["x"]

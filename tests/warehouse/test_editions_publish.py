@@ -21,6 +21,7 @@ from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.register.register import LINE
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.published import published_made_from, published_tables
+from herijk.warehouse.editions import publish as publish_module
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.compare import diff
 from herijk.warehouse.editions.publish import publish, publish_printed
@@ -350,6 +351,20 @@ def test_an_edition_is_never_published_twice(published):
     with pytest.raises(BrokenPromiseError, match=r"already published .* another name"):
         published.publish("2014-1", "rebased")
     assert {f.name: f.read_bytes() for f in folder(published).iterdir()} == before
+
+
+def test_two_publications_at_once_have_numbers_of_their_own(bench_of_editions, monkeypatch):
+    bench, write = bench_of_editions, publish_module.write_folder
+
+    def after_another(*arguments):
+        monkeypatch.setattr(publish_module, "write_folder", write)
+        bench.publish("2014-1")
+        return write(*arguments)
+
+    monkeypatch.setattr(publish_module, "write_folder", after_another)
+    bench.publish("2014-2")
+    first, second = (read_about(folder(bench, name)) for name in ("2014-1", "2014-2"))
+    assert (first.number, second.number, second.after_seal) == (1, 2, first.seal)
 
 
 def test_a_full_disk_leaves_nothing(bench_of_editions, monkeypatch):

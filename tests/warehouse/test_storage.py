@@ -178,7 +178,7 @@ def test_of_two_publications_under_one_name_one_stops_and_nothing_is_overwritten
     assert edition_names(store) == []
     contents = {"register.csv": b"ours", "edition.json": b"{}"}
     with pytest.raises(BrokenPromiseError, match="somebody publishes under this name"):
-        write_folder(store, "2026-2", contents)
+        write_folder(store, "2026-2", lambda: contents)
     assert [f.name for f in half.iterdir()] == ["register.csv"]
     assert (half / "register.csv").read_bytes() == b"of another"
 

@@ -9,7 +9,7 @@ import datetime as dt
 import hashlib
 import io
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import polars as pl
@@ -268,10 +268,7 @@ def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
 def _about(
     store: Store, terms: Terms, method: Method | None, inputs_digest: str, carry: str | None = None
 ) -> About:
-    head = chain_head(store)
     return About(
-        number=1 if head is None else (head.number or 0) + 1,
-        after_seal=None if head is None else head.seal,
         edition=terms.edition,
         kind="as_printed" if method is None else "recomputed",
         method=None if method is None else method.name,
@@ -315,7 +312,25 @@ def _complete(
 
 
 def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Place:
-    """Writes an edition's folder: tables, sheets, texts, and last what it says of itself."""
+    """Writes an edition's folder as the next of the chain."""
+    name = edition.about.edition
+    return write_folder(
+        store, name, lambda: _contents(store, _chained(store, edition), files, texts)
+    )
+
+
+def _chained(store: Store, edition: Edition) -> Edition:
+    """The edition with its place in the chain, after the one published last."""
+    head = chain_head(store)
+    number, seal = (0, None) if head is None else (head.number or 0, head.seal)
+    about = edition.about.model_copy(update={"number": number + 1, "after_seal": seal})
+    return replace(edition, about=about)
+
+
+def _contents(
+    store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]
+) -> dict[str, bytes]:
+    """An edition's files: tables, sheets, texts, and last what it says of itself."""
     about = edition.about
     tables = dict(edition.tables)
     previous = None
@@ -342,7 +357,7 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str,
         }
     ).sealed()
     contents[ABOUT] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
-    return write_folder(store, about.edition, contents)
+    return contents
 
 
 def _parquet(frame: pl.DataFrame) -> bytes:

@@ -11,7 +11,7 @@ import json
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -274,8 +274,10 @@ def read_table(path: Place, name: str) -> pl.DataFrame:
         ) from error
 
 
-def write_folder(store: Store, edition: str, contents: Mapping[str, bytes]) -> Place:
-    """Makes an edition of the given files, by name; `edition.json` is the last of them.
+def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str, bytes]]) -> Place:
+    """Makes an edition of files, by name; `edition.json` is the last of them.
+
+    They are asked for where no other publication is at work, since they say which came before.
 
     After an error, a full disk or a kill there is no edition of that name. What a killed
     publication left is cleared away by the next one; in a bucket nobody can know that it is dead,
@@ -290,10 +292,10 @@ def write_folder(store: Store, edition: str, contents: Mapping[str, bytes]) -> P
             target.parent.mkdir(parents=True, exist_ok=True)
             with _one_at_a_time(target.parent):
                 check_new_name(store, edition)
-                _write_beside(target, contents)
+                _write_beside(target, contents())
         else:
             check_new_name(store, edition)
-            _create_in_order(target, contents)
+            _create_in_order(target, contents())
     except OSError as error:
         raise BrokenPromiseError(
             "edition {} could not be written: {}. Nothing was published; make room "
