@@ -58,6 +58,7 @@ def fleet(
     tows = pl.DataFrame(
         {
             "tow_id": tow_id,
+            "fsn_no": [fsn[b] for b in boat],
             "tow_date": [dt.date(int(y), 2, 1) for y in season],
             "altered": [False] * n,
             "weight_kg": weights[boat],

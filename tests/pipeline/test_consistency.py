@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 import polars as pl
 import pytest
+from polars.testing import assert_frame_equal
 from scipy import optimize, stats
 
 from herijk.pipeline.consistency import mixed, reml, tow_speed
@@ -597,6 +598,28 @@ def test_no_pair_across_an_alteration():
     curves, tows, *_ = fleet(22, boats=2, seasons=(2014, 2016))
     tows = tows.with_columns((pl.col("tow_id") == "2016-001").alias("altered"))
     assert repeat_pairs(curves, tows)["tow_id"].to_list() == ["2016-000"]
+
+
+def test_a_boat_ends_at_an_alteration_in_lines_too():
+    """One boat rebuilt in between weighs as much as two boats, and no line hangs on its change."""
+    tables = fleet(31, boats=12, seasons=(2014, 2016), height_sd=0.06)
+    curves, tows, boats, run_points = tables
+    gone = ["2016-010", "2014-011"]
+    curves, tows, run_points = (
+        frame.filter(~pl.col("tow_id").is_in(gone)) for frame in (curves, tows, run_points)
+    )
+
+    def slopes(renamed, altered):
+        now = {"FSN011": "FSN010"} if renamed else {}
+        named = (frame.with_columns(pl.col("fsn_no").replace(now)) for frame in (curves, tows))
+        of_curves, of_tows = named
+        of_tows = of_tows.with_columns(altered=(pl.col("tow_id") == "2016-011") & altered)
+        lines = type_lines(observe(of_curves, of_tows, boats, run_points))[0]
+        return lines.filter(tows="all").drop("n_boats").sort("quantity", "explaining")
+
+    apart = slopes(renamed=False, altered=False)
+    assert_frame_equal(slopes(renamed=True, altered=True), apart)
+    assert not slopes(renamed=True, altered=False).equals(apart)
 
 
 def test_a_falling_curve_is_compared_at_its_own_height():

@@ -252,7 +252,7 @@ def _bend_priors(types: Sequence[tuple[Observed, float]]) -> list[tuple[float, f
     for boats, sigma in types:
         q, unit = q_at(boats, _middle_speed(boats))
         known = np.isfinite(q)
-        design = Design.of(np.ones(known.sum()), boats.table["fsn_no"].to_numpy()[known])
+        design = Design.of(np.ones(known.sum()), boats.table["hull"].to_numpy()[known])
         problems.append(Problem.of(design, q[known], unit[known] * sigma**2))
     fits = mixed.fit_all(problems, (mixed.BOAT,))
     return [(float(fit.beta[0]), fit.sd[0]) if fit else None for fit in fits]

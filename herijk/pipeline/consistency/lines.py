@@ -224,9 +224,9 @@ class _Shared:
     def __init__(self, tows: Observed) -> None:
         table = tows.table
         self.explaining = {name: _explaining(tows, name) for name in (*EXPLAINING, LN_DISPLACEMENT)}
-        self._tow, self._boat, self._crew = (
+        self._tow, self._boat, self._hull, self._crew = (
             table.select(pl.struct(by).rank("dense")).to_series().to_numpy()
-            for by in (("tow_id",), ("fsn_no",), ("rowers", "crew_class"))
+            for by in (("tow_id",), ("fsn_no",), ("hull",), ("rowers", "crew_class"))
         )
         self._class = table["crew_class"].to_numpy()
         self._made: dict[tuple[str, str, bytes], tuple[Row, _Across | None]] = {}
@@ -257,7 +257,7 @@ class _Shared:
         width = float(np.abs(centred).max())
         if width <= 1e-9 * np.abs(x).max():
             return counts | {"reason": "equal_values"}, None
-        design = Design.of(np.column_stack([crews, centred / width]), self._boat[rows])
+        design = Design.of(np.column_stack([crews, centred / width]), self._hull[rows])
         names, places, at = [], [], []
         whose = self._class[rows] if explaining in OF_THE_BOAT else np.full(len(rows), "all")
         for name in np.unique(whose):
@@ -393,9 +393,9 @@ class _Compared:
         if n_boats < x.shape[1] + FEWEST_BOATS:
             return None
         variance = unit[known] * boats.column("run_sd_ratio") ** 2
-        fsn_no = boats.table["fsn_no"].to_numpy()
+        hull = boats.table["hull"].to_numpy()
         season = boats.table["season"].to_numpy() if mixed.OTHER in choice.components else None
-        design = Design.of(x, fsn_no, season)
+        design = Design.of(x, hull, season)
         problem = Problem.of(design, y, variance)
         return cls(boats, quantity, problem)
 

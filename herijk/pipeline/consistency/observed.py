@@ -75,11 +75,18 @@ def of_trusted(frame: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 def observe(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> Observed:
-    """Join the warehouse's tables; tows whose runs determine no curve are left out."""
+    """Join the warehouse's tables; tows whose runs determine no curve are left out.
+
+    A boat ends at an alteration: `hull` is the boat as it was between two of them.
+    """
     of_tow = ("tow_date", "altered", "weight_kg", "crew_weight_kg", "waterline_length_m", "beam_m")
+    alterations = pl.col("altered").fill_null(False).cum_sum().over("fsn_no").cast(pl.String)
+    tows = tows.sort("tow_date", "tow_id").with_columns(
+        hull=pl.concat_str("fsn_no", alterations, separator="/")
+    )
     table = (
         curves.filter((pl.col("status") != "rejected") & pl.col("cw_kg_m").is_not_null())
-        .join(tows.select("tow_id", *of_tow), on="tow_id", maintain_order="left")
+        .join(tows.select("tow_id", "hull", *of_tow), on="tow_id", maintain_order="left")
         .join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left")
         .with_columns(
             pl.col("boat_type").fill_null(UNKNOWN_TYPE),

@@ -81,7 +81,7 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
 def _second_opinion(
     fleet: Observed, x: FloatArray, cw: FloatArray, variance: FloatArray
 ) -> dict[str, FloatArray]:
-    design = Design.of(x, fleet.table["fsn_no"].to_numpy(), _types(fleet))
+    design = Design.of(x, fleet.table["hull"].to_numpy(), _types(fleet))
     problem = Problem.of(design, np.log(cw), variance)
     fit = mixed.fit(problem, (mixed.BOAT, mixed.OTHER))
     left_out = fit.leave_boats_out()

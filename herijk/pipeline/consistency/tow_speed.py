@@ -105,10 +105,10 @@ def _trend(boats: Observed) -> tuple[Row, Problem | None]:
     speed = boats.table.select(median).to_series().to_numpy()
     q, unit = q_at(boats, speed)
     known = np.isfinite(q)
-    boat, boat_type = (boats.table[name].to_numpy()[known] for name in ("fsn_no", "boat_type"))
+    hull, boat_type = (boats.table[name].to_numpy()[known] for name in ("hull", "boat_type"))
     types = (boat_type[:, None] == np.unique(boat_type)).astype(np.float64)
-    n_boats = len(np.unique(boat))
-    counts = {"n": len(boat), "n_boats": n_boats}
+    n_boats = boats.table["fsn_no"].to_frame().filter(pl.Series(known)).n_unique()
+    counts = {"n": len(hull), "n_boats": n_boats}
     if n_boats < max(FEWEST_BOATS, types.shape[1] + 2):
         return counts | {"reason": "few_boats"}, None
     x = np.log(boats.column("declared_speed_m_s") / speed)[known]
@@ -116,7 +116,7 @@ def _trend(boats: Observed) -> tuple[Row, Problem | None]:
     if np.abs(centred).max() < 1e-9:
         return counts | {"reason": "equal_values"}, None
     variance = unit * boats.column("run_sd_ratio") ** 2
-    design = Design.of(np.column_stack([types, centred]), boat)
+    design = Design.of(np.column_stack([types, centred]), hull)
     return counts | {"reason": ""}, Problem.of(design, q[known], variance[known])
 
 
