@@ -9,8 +9,9 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 from scipy import optimize, stats
+from scipy.stats import binom
 
-from herijk.pipeline.consistency import mixed, reml, tow_speed
+from herijk.pipeline.consistency import mixed, reml, repeats, tow_speed
 from herijk.pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from herijk.pipeline.consistency.components import variance_components
 from herijk.pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
@@ -592,6 +593,22 @@ def test_a_pair_is_compared_by_the_instruments_of_other_boats():
     )
     own, others = (repeat_pairs(c, tows)["ln_ratio"][0] for c in (curves, by_others))
     assert others == pytest.approx(own - np.log(1.01))
+
+
+def test_pairs_that_share_a_tow_are_not_counted_as_independent():
+    """Ten tows of one boat: as independent pairs the interval covered 92 %."""
+    rng = np.random.default_rng(32)
+    tow_id = [f"{year}-1" for year in range(2009, 2019)]
+    truth, trials, covered = 0.01, 1000, 0
+    for _ in range(trials):
+        ln_ratio = np.diff(truth * rng.normal(size=10))
+        pairs = pl.DataFrame(
+            {"tow_id_before": tow_id[:-1], "tow_id": tow_id[1:], "ln_ratio": ln_ratio, "e_n": 0.0}
+        )
+        spread = repeats._spread(pairs)
+        covered += spread["lo"] <= truth <= spread["hi"]
+    low, high = binom.ppf([0.001, 0.999], trials, 0.95)
+    assert low <= covered <= high
 
 
 def test_no_pair_across_an_alteration():

@@ -83,8 +83,9 @@ def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
     """Standard deviation of one tow from repeat pairs, per method and era of the older tow.
 
     A pair differs by sqrt(2) times the deviation of one tow, so s^2 = sum(d^2) / (2 n), with a
-    chi-squared interval on n degrees of freedom: s_R of ISO 5725-2 with the season as the
-    laboratory. Beside it s_r: what the scatter of a tow's own runs does to its Cw.
+    chi-squared interval: s_R of ISO 5725-2 with the season as the laboratory. Two pairs that share
+    a tow are correlated by -1/2; with m of these there are n / (1 + m / 2 n) degrees of freedom
+    (Satterthwaite 1946). Beside it s_r: what the scatter of a tow's own runs does to its Cw.
 
     Args:
         pairs: rows of `repeat_pairs`.
@@ -133,13 +134,15 @@ def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
     if n == 0:
         return {"n_pairs": 0}
     total = float((difference**2).sum())
-    low, high = (float(scipy.special.chdtri(n, 0.5 + end * LEVEL / 2)) for end in (-1, 1))
+    chained = pairs.join(pairs, left_on="tow_id_before", right_on="tow_id", how="semi").height
+    dof = n / (1.0 + chained / (2.0 * n))
+    low, high = (float(scipy.special.chdtri(dof, 0.5 + end * LEVEL / 2)) for end in (-1, 1))
     e_n = pairs["e_n"].drop_nulls().to_numpy()
     return {
         "n_pairs": n,
         "sd_ratio": float(np.sqrt(total / (2 * n))),
-        "lo": float(np.sqrt(total / (2 * low))),
-        "hi": float(np.sqrt(total / (2 * high))),
+        "lo": float(np.sqrt(total / (2 * n) * dof / low)),
+        "hi": float(np.sqrt(total / (2 * n) * dof / high)),
         "share_within_1pct": float((np.abs(difference) < 0.01).mean()),
         "share_within_2pct": float((np.abs(difference) < 0.02).mean()),
         "share_e_n_above_1": float((np.abs(e_n) > 1).mean()) if len(e_n) else None,
