@@ -9,13 +9,11 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from herijk.pipeline import curve
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.recompute import recompute as recompute_module
 from herijk.pipeline.recompute.facts import with_expected_water
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.steps.target import above_target
@@ -407,22 +405,3 @@ def test_water_is_expected_of_the_nearest_days_that_have_a_record():
         12.0,
         8.0,
     ]
-
-
-def test_a_coefficient_that_leaves_no_curve_is_no_perfect_fit(measured, monkeypatch):
-    """Where tows lose their curve from 0.9 on, the search must not flee there."""
-    prepared = []
-    search = recompute_module._archive_coefficient
-    monkeypatch.setattr(recompute_module, "_archive_coefficient", prepared.extend)
-    recompute(shipped_method("rebased"), measured.tows, measured.blocks)
-    assert prepared
-    before = search(prepared)
-    fit = curve.fit
-
-    def losing(points):
-        curves = fit(points)
-        coefficient = np.repeat(recompute_module.ARCHIVE_GRID, len(points.used) // 13)
-        return replace(curves, converged=curves.converged & (coefficient < 0.85))
-
-    monkeypatch.setattr(curve, "fit", losing)
-    assert search(prepared).value == pytest.approx(before.value, abs=0.05)

@@ -375,18 +375,14 @@ def _best_per_run(
 
 
 def _misfits(prepared: Prepared, grid: FloatArray) -> FloatArray:
-    """Residual sum of squares / Cw^2 with each drag coefficient, shape (coefficients, tows).
-
-    A coefficient that leaves a tow no curve fits it no better than the worst of the others.
-    """
+    """Residual sum of squares / Cw^2 with each drag coefficient, shape (coefficients, tows)."""
     each = [np.full(len(prepared.batch.tow), coefficient) for coefficient in grid]
     points = [prepared.points_of(prepared.cw_of(one, one, one)) for one in each]
     curves = curve.fit(curve.Points.stack(points))
     scale = curves.cw_at(np.tile(prepared.batch.of_tow("declared_speed_m_s"), len(grid)))
-    sound = curves.converged & np.isfinite(scale) & (scale > 0.0)
+    sound = curves.converged & np.isfinite(scale)
     misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, 0.0)
-    misfit, sound = misfit.reshape(len(grid), -1), sound.reshape(len(grid), -1)
-    return np.where(sound, misfit, misfit.max(axis=0))
+    return misfit.reshape(len(grid), -1)
 
 
 def _best_per_tow(prepared: Prepared) -> FloatArray:
