@@ -25,6 +25,7 @@ def fleet(
     height_sd=0.0,
     season_sd=0.0,
     tow_sd=0.0,
+    zero_sd_n=0.0,
     weights_kg=None,
     speeds_m_s=None,
     boat_type="like",
@@ -54,6 +55,7 @@ def fleet(
     speed = v0[:, None] * RUN_RATIOS * rng.normal(1.0, 0.005, (repetitions, n, 6))
     cw = curve.cw(a[..., None], s[..., None], speed)
     cw *= 1.0 + noise * rng.normal(size=cw.shape)
+    cw += zero_sd_n * rng.normal(size=(repetitions, n, 1)) / speed**2
 
     tows = pl.DataFrame(
         {

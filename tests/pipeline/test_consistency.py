@@ -265,13 +265,23 @@ def test_like_hulls_that_are_no_hyperbolas_raise_no_more():
     assert within((p < 0.05).mean(), 0.05, TRIALS)
 
 
-def test_power_is_what_is_stated_and_enough():
-    for cv, column, least in ((0.05, "power_at_5pct", 0.5), (0.10, "power_at_10pct", 0.9)):
-        found = type_homogeneity(observe(*fleet(12, TRIALS, b_cv=cv)))
-        rejected = (found["p_value"].to_numpy() < 0.05).mean()
-        assert rejected >= least
-        # Stated with the estimated bend and noise, so a few points beside the sampling error.
-        assert abs(rejected - found[column].mean()) < 4 * np.sqrt(0.25 / TRIALS)
+@pytest.mark.parametrize("boats", [4, 14])
+def test_zeros_of_the_load_cell_make_no_hull_another(boats):
+    found = type_homogeneity(observe(*fleet(14, TRIALS, boats=boats, noise=0.008, zero_sd_n=2.0)))
+    assert within((found["p_value"].to_numpy() < 0.05).mean(), 0.05, TRIALS)
+
+
+@pytest.mark.parametrize(
+    ("boats", "cv", "least"), [(4, 0.05, 0.3), (12, 0.05, 0.5), (12, 0.10, 0.9)]
+)
+def test_power_is_what_is_stated_and_enough(boats, cv, least):
+    hulls = fleet(12, TRIALS, boats=boats, noise=0.01, zero_sd_n=2.0, b_cv=cv)
+    found = type_homogeneity(observe(*hulls))
+    rejected = (found["p_value"].to_numpy() < 0.05).mean()
+    assert rejected >= least
+    # Stated with the estimated bend and noise, so a few points beside the sampling error.
+    stated = found[f"power_at_{round(100 * cv)}pct"].mean()
+    assert abs(rejected - stated) < 3 * np.sqrt(stated * (1 - stated) / TRIALS) + 0.01
 
 
 def test_of_like_boats_noise_gives_the_whole_spread_and_a_and_b_go_together():

@@ -3,11 +3,13 @@
 Boats of a type may differ in the height of their curve; asked is whether they differ in its bend
 beyond one shape that all share and what class explains. Scatter of the runs is relative and
 pooled over the type. One row per boat and crew, its newest tow. B counts as free, also where the
-method caps it.
+method caps it. The load cell's zero differs by `ZERO_N` from tow to tow; it looks like a bend, so
+tests and power take points of a tow as correlated by it.
 """
 
 from collections.abc import Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Final, Self
 
 import numpy as np
 import polars as pl
@@ -29,6 +31,9 @@ FEWEST_BOATS: Final = 3
 POWER_AT: Final = (0.05, 0.10)
 """True coefficients of variation of B at which the power of the test is stated."""
 
+ZERO_N: Final = 2.0
+"""Standard deviation of the load cell's zero from tow to tow [N] (inferred)."""
+
 SPEED_RATIOS: Final = {"cw_085_kg_m": 0.85, "cw_kg_m": 1.0, "cw_115_kg_m": 1.15}
 
 BEND_BOUNDS: Final = (-2.0, 0.999)
@@ -36,6 +41,9 @@ BEND_BOUNDS: Final = (-2.0, 0.999)
 
 HIGHEST_POWER: Final = 6
 """Power of ln speed in the shape that equal hulls share: enough for a hump near hull speed."""
+
+TINY: Final = 1e-12
+"""Least scatter or sum of squares that is divided by."""
 
 SAME_COLUMN: Final = 1e-9
 """Columns that differ by less, relatively, are one: a single class, or speeds all alike."""
@@ -109,44 +117,105 @@ def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
     return frame_of(TypeHomogeneity, rows)
 
 
-def _same_or_own_slopes(boats: Observed) -> tuple[float, float, tuple[int, int]]:
-    """Whether boats need slopes of their own beside one shape (analysis of covariance).
+@dataclass(frozen=True)
+class _Shapes:
+    """Columns of ln Cw if boats are alike, as uncorrelated as `_whitened` makes them.
 
-    If boats are alike, ln Cw has one shape in ln speed, a polynomial, with a height for
-    each boat and, as women are lighter, a slope for each class. Against it every boat may have a
+    Shape (boats, runs) each: ln Cw has one shape in ln speed, a polynomial, with a height for each
+    boat and, as women are lighter, a slope for each class. Against it every boat may have a
     slope of its own. The shape is free in both, so that a hull that is no hyperbola counts for
     neither.
 
-    Returns:
-        Sums of squares of ln Cw that own slopes explain and that they leave; degrees of freedom.
+    Attributes:
+        slope_unit: the step of ln speed in which slopes are counted.
     """
-    used = boats.points.used
-    ln_speed, ln_cw = (
-        np.log(np.where(used, values, 1.0))
-        for values in (boats.points.speed_m_s, boats.points.cw_kg_m)
-    )
-    middle = ln_speed[used].mean()
-    x = np.where(used, (ln_speed - middle) / ln_speed[used].std(), 0.0)
-    women = (boats.table["crew_class"] == "D").to_numpy()[:, None]
-    shape = [x**power for power in range(2, HIGHEST_POWER + 1)]
-    height = used.astype(np.float64)
-    same = _rest(used, [height], [x, women * x, *shape], ln_cw)
-    own = _rest(used, [height, x], shape, ln_cw)
-    boats_in_both, points = len(used), int(used.sum())
-    dof = boats_in_both + own[1] - same[1], points - 2 * boats_in_both - own[1]
-    return max(same[0] - own[0], 0.0), own[0], dof
+
+    used: BoolArray
+    height: FloatArray
+    slope: FloatArray
+    by_class: FloatArray
+    bends: list[FloatArray]
+    ln_cw: FloatArray
+    slope_unit: float
+
+    @classmethod
+    def of(cls, boats: Observed) -> Self:
+        used = boats.points.used
+        speed, cw = (
+            np.where(used, values, 1.0) for values in (boats.points.speed_m_s, boats.points.cw_kg_m)
+        )
+        ln_speed = np.log(speed)
+        unit = float(ln_speed[used].std())
+        x = np.where(used, (ln_speed - ln_speed[used].mean()) / unit, 0.0)
+        women = (boats.table["crew_class"] == "D").to_numpy()[:, None]
+        bends = [x**power for power in range(2, HIGHEST_POWER + 1)]
+        zero = (
+            used
+            * ZERO_N
+            / (cw * speed**2 * np.maximum(boats.column("run_sd_ratio"), TINY)[:, None])
+        )
+        height, slope, by_class, ln_cw, *bends = (
+            _whitened(column, zero)
+            for column in (used.astype(np.float64), x, women * x, used * np.log(cw), *bends)
+        )
+        return cls(used, height, slope, by_class, bends, ln_cw, unit)
+
+    def test(self) -> tuple[float, float, tuple[int, int]]:
+        """Whether boats need slopes of their own beside one shape (analysis of covariance).
+
+        Returns:
+            Sums of squares of ln Cw that own slopes explain and that they leave; degrees of
+            freedom.
+        """
+        same, same_rank = self._alike(self.ln_cw[:, :, None])
+        own, own_rank = _rest(
+            self.used, [self.height, self.slope], self.bends, self.ln_cw[:, :, None]
+        )
+        boats, points = len(self.used), int(self.used.sum())
+        dof = boats + own_rank - same_rank, points - 2 * boats - own_rank
+        left = float((own**2).sum())
+        return max(float((same**2).sum()) - left, 0.0), left, dof
+
+    def weights(self, slope_sd: FloatArray) -> FloatArray:
+        """What slopes of that standard deviation add to each direction of the sum between.
+
+        Relative to ln speed, shape (boats,); the larger, the better the test sees them. Where few
+        boats share a shape, it takes a part of their slopes along.
+        """
+        own = self.slope[:, :, None] * np.diag(slope_sd * self.slope_unit)[:, None, :]
+        return np.asarray(np.linalg.svd(self._alike(own)[0], compute_uv=False) ** 2)
+
+    def slope_variance(self) -> FloatArray:
+        """Variance of each boat's own slope in ln speed for a run scatter of 1, shape (boats,)."""
+        left = _rest(self.used, [self.height], [], self.slope[:, :, None])[0]
+        row = np.nonzero(self.used)[0]
+        squares = np.bincount(row, weights=left[:, 0] ** 2, minlength=len(self.used))
+        return np.asarray(1.0 / (np.maximum(squares, TINY) * self.slope_unit**2))
+
+    def _alike(self, values: FloatArray) -> tuple[FloatArray, int]:
+        return _rest(self.used, [self.height], [self.slope, self.by_class, *self.bends], values)
+
+
+def _whitened(column: FloatArray, along: FloatArray) -> FloatArray:
+    """A column with the covariance 1 + u u' of each row taken out; u is `along`, (boats, runs)."""
+    squared = np.maximum((along**2).sum(axis=1, keepdims=True), TINY)
+    share = (1.0 - 1.0 / np.sqrt(1.0 + squared)) / squared
+    return np.asarray(column - share * (along * column).sum(axis=1, keepdims=True) * along)
 
 
 def _rest(
     used: BoolArray, own: list[FloatArray], shared: list[FloatArray], values: FloatArray
-) -> tuple[float, int]:
-    """Sum of squares that columns of each boat's own and shared ones leave; rank of the shared."""
+) -> tuple[FloatArray, int]:
+    """What columns of each boat's own and shared ones leave of values, and rank of the shared.
+
+    Values have the shape (boats, runs, k), what is left (points, k).
+    """
     basis = np.linalg.qr(np.stack(own, axis=2) * used[:, :, None])[0]
-    columns = np.stack([*shared, values], axis=2) * used[:, :, None]
+    columns = np.concatenate([*(c[:, :, None] for c in shared), values], axis=2) * used[:, :, None]
     left = (columns - basis @ (np.swapaxes(basis, 1, 2) @ columns))[used]
-    fitted = np.linalg.lstsq(left[:, :-1], left[:, -1], rcond=SAME_COLUMN)
-    residual = left[:, -1] - left[:, :-1] @ fitted[0]
-    return float((residual**2).sum()), int(fitted[2])
+    of_shared, of_values = left[:, : len(shared)], left[:, len(shared) :]
+    solution, _, rank, _ = np.linalg.lstsq(of_shared, of_values, rcond=SAME_COLUMN)
+    return of_values - of_shared @ solution, int(rank)
 
 
 def _tested(boats: Observed, boat_type: str) -> Row:
@@ -156,7 +225,8 @@ def _tested(boats: Observed, boat_type: str) -> Row:
         return counts | {"reason": "no_type"}
     if n_boats < FEWEST_BOATS:
         return counts | {"reason": "few_boats"}
-    between, within, dof = _same_or_own_slopes(boats)
+    shapes = _Shapes.of(boats)
+    between, within, dof = shapes.test()
     if within <= 1e-20 * boats.table.height:
         return counts | {"reason": "no_scatter"}
     f = between / dof[0] / (within / dof[1])
@@ -165,12 +235,13 @@ def _tested(boats: Observed, boat_type: str) -> Row:
         counts
         | {"dof_between": dof[0], "dof_within": dof[1], "f_value": f, "run_sd_ratio": sigma}
         | {"p_value": float(scipy.special.fdtrc(*dof, f)), "reason": ""}
-        | _spread(boats, shared_bend(boats), sigma, f, dof)
+        | _spread(boats, shapes, sigma, f, dof)
     )
 
 
-def _spread(boats: Observed, shared: float, sigma: float, f: float, dof: tuple[int, int]) -> Row:
+def _spread(boats: Observed, shapes: _Shapes, sigma: float, f: float, dof: tuple[int, int]) -> Row:
     """Power, share of noise, and correlation of A and B by noise alone."""
+    shared = shared_bend(boats)
     speed = _middle_speed(boats)
     r = shared * speed**2
     facts: Row = {
@@ -186,10 +257,9 @@ def _spread(boats: Observed, shared: float, sigma: float, f: float, dof: tuple[i
     b = 1.0 / np.sqrt(s[has_b])
     a = (boats.column("c0_kg_m") / (1.0 + boats.column("q")))[has_b]
     several = len(b) >= FEWEST_BOATS
-    noise = sigma * float(np.sqrt(boats.column("q_unit_variance").mean())) / (2 * q * (1 + q))
-    powers = {
-        f"power_at_{round(100 * cv)}pct": power(boats, shared, sigma, cv, dof) for cv in POWER_AT
-    }
+    noise = sigma * float(np.sqrt(shapes.slope_variance().mean())) / (4 * q * (1 + q))
+    seen = shapes.weights(_slopes_by_b(boats, shared)) / sigma**2
+    powers = {f"power_at_{round(100 * cv)}pct": power(cv**2 * seen, dof) for cv in POWER_AT}
     return (
         facts
         | powers
@@ -204,21 +274,31 @@ def _spread(boats: Observed, shared: float, sigma: float, f: float, dof: tuple[i
     )
 
 
-def power(
-    boats: Observed, shared_s2_m2: float, run_sd_ratio: float, b_cv: float, dof: tuple[int, int]
-) -> float:
-    """Chance that the test sees boats whose B truly spread with a coefficient of variation.
+def _slopes_by_b(boats: Observed, shared_s2_m2: float) -> FloatArray:
+    """How the slope of ln Cw in ln speed, 2 q at the tow speed, moves with ln B, shape (rows,).
 
-    With a normal spread tau of q the sum of squares between is (1 + tau^2 w) chi^2, w the mean
-    weight as in DerSimonian and Laird; exact for equal weights. Each boat's tau follows from its
-    own tow speed, r = s v0^2: dq = 2 q (1 + q) dB/B.
+    With r = s v0^2 and q = r / (1 - r): dq = 2 q (1 + q) dB/B.
     """
     r = np.clip(shared_s2_m2 * boats.column("declared_speed_m_s") ** 2, 0.0, 0.95)
     q = r / (1.0 - r)
-    weight = (2.0 * q * (1.0 + q)) ** 2 / (boats.column("q_unit_variance") * run_sd_ratio**2)
-    mean = (weight.sum() - (weight**2).sum() / weight.sum()) / dof[0]
+    return np.asarray(4.0 * q * (1.0 + q))
+
+
+def power(seen: FloatArray, dof: tuple[int, int]) -> float:
+    """Chance that the test sees slopes that truly differ.
+
+    Each direction of the sum of squares between is 1 + seen times chi^2; their sum is taken as one
+    chi^2 with the same mean and variance (Satterthwaite 1946).
+
+    Args:
+        seen: variance of the slopes along each direction of the sum between, as a multiple of
+            that of noise.
+    """
+    scales = 1.0 + np.sort(seen)[::-1][: dof[0]]
+    rest = dof[0] - len(scales)
+    mean, squares = scales.sum() + rest, (scales**2).sum() + rest
     limit = float(scipy.special.fdtri(*dof, 1.0 - LEVEL))
-    return float(scipy.special.fdtrc(*dof, limit / (1.0 + b_cv**2 * mean)))
+    return float(scipy.special.fdtrc(mean**2 / squares, dof[1], limit * dof[0] / mean))
 
 
 def _correlation(x: FloatArray, y: FloatArray) -> float | None:
