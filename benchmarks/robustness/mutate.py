@@ -36,10 +36,7 @@ SEEN = dt.date(2026, 11, 21)
 WHOLE = 2
 """Tows of a round that get no fault."""
 
-JUDGED = (
-    *("status", "flags", "doubts", "unusual", "list_line"),
-    *("unseen_force_ratio", "unseen_error_ratio"),
-)
+JUDGED = ("status", "flags", "doubts", "unusual", "list_line")
 """Judged against other tows, or where a row stands: no number."""
 
 

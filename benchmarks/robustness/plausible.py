@@ -216,13 +216,11 @@ class Result:
 
     Attributes:
         cw: of tows that are not set aside and have a curve.
-        seen_from: error of Cw from which the program says that it would be seen, of these tows.
         set_aside, look: tows.
         alarm: seasons whose instruments need a look.
     """
 
     cw: Mapping[str, float]
-    seen_from: Mapping[str, float]
     set_aside: set[str]
     look: set[str]
     alarm: set[int]
@@ -284,7 +282,6 @@ class Ground:
         made = recompute(shipped_method(METHOD), kept, stacked, with_bands=False)
         return Result(
             self._cw(made.curves),
-            dict(made.curves.select("tow_id", "unseen_error_ratio").drop_nulls().iter_rows()),
             set(self.tows["tow_id"]) - set(kept["tow_id"]),
             set(made.curves.filter(pl.col("flags").list.len() > 0)["tow_id"]),
             set(made.season_diagnosis.filter("alarm")["season"]),
@@ -324,8 +321,7 @@ class Ground:
             alarm = season[tow] in found.alarm - right.alarm
             if tow in mine or off > SILENT:
                 is_told = tow in told or crew[tow] in by_crew or alarm or not np.isfinite(off)
-                seen_from = right.seen_from.get(tow, np.inf)
-                rows.append((tow in mine, tow in found.set_aside, is_told, off, seen_from))
+                rows.append((tow in mine, tow in found.set_aside, is_told, off))
         return rows
 
 
@@ -354,9 +350,9 @@ def study(seed: int, part: int) -> Iterator[pl.DataFrame]:
         for group, archive, tows in groups:
             if group in kinds:
                 rows = archive.compared(fault(archive, archive.part(tows)))
-                yield pl.DataFrame(
-                    rows, ["mine", "aside", "told", "off", "seen_from"], orient="row"
-                ).select(pl.all(), kind=pl.lit(kind), size=pl.lit(size), group=pl.lit(group))
+                yield pl.DataFrame(rows, ["mine", "aside", "told", "off"], orient="row").select(
+                    pl.all(), kind=pl.lit(kind), size=pl.lit(size), group=pl.lit(group)
+                )
 
 
 def table(rows: pl.DataFrame) -> Iterator[str]:
@@ -370,19 +366,6 @@ def table(rows: pl.DataFrame) -> Iterator[str]:
         cells += [_told(part.filter("mine", group=g)) if g in groups else "" for g in GROUPS]
         cells.append(str(part.filter(~pl.col("mine") & ~pl.col("told")).height))
         yield f"| {' | '.join(cells)} |"
-
-
-def promise(rows: pl.DataFrame) -> Iterator[str]:
-    """Whether errors from the size on that a tow's curve names are told, by group."""
-    for group in ("tow", "new"):
-        mine = rows.filter("mine", group=group).filter(pl.col("off") > SILENT)
-        beyond = mine.filter(pl.col("off") > pl.col("seen_from"))
-        yield (
-            f"{group}: of {beyond.height} errors beyond their tow's `unseen_error_ratio` (median "
-            f"{mine['seen_from'].median():.0%}) {beyond['told'].mean():.0%} are told; of "
-            f"{mine.height - beyond.height} below it "
-            f"{mine.filter(pl.col('off') <= pl.col('seen_from'))['told'].mean():.0%}"
-        )
 
 
 def _told(tows: pl.DataFrame) -> str:
@@ -405,7 +388,6 @@ def main() -> None:
     clean = rows.filter(kind="none")
     print(f"{clean.height} archives; need a look without a fault: {clean['off'].mean():.1%}")
     print("\n".join(table(rows)))
-    print("\n".join(promise(rows)))
 
 
 if __name__ == "__main__":

@@ -155,7 +155,6 @@ def _certainty(line: Row, speech: Speech) -> Iterator[str]:
     if low is not None and high is not None:
         key = "answer_interval" if line["new_log_known"] else "answer_spread"
         yield speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
-    yield from unseen_error(line, speech)
     if line["change"] != "changed":
         return
     verdict = {True: "answer_exceeds", False: "answer_within", None: "answer_unknown"}
@@ -168,13 +167,6 @@ def curve_caption(line: Row, speech: Speech) -> str:
     """What the picture of the curve shows, and what its band leaves out."""
     band = "band_complete" if line["new_log_known"] else "band_runs_alone"
     return speech.say("curve_caption").format(band=speech.say(band))
-
-
-def unseen_error(line: Row, speech: Speech) -> Iterator[str]:
-    """Which error of Cw nobody would see; nothing where an edition does not say it."""
-    if line["unseen_error_ratio"] is not None:
-        percent = speech.number(100 * line["unseen_error_ratio"], 0)
-        yield speech.say("answer_unseen").format(percent=percent)
 
 
 def _best(line: Row, speech: Speech) -> Iterator[str]:

@@ -58,13 +58,6 @@ class Tows(TowFacts):
         description="checks by which it stands out among all other tows, though chance can do "
         "that: it needs a look, and its numbers stand",
     )
-    unseen_force_ratio = column.number(
-        "1",
-        "smallest relative error of its force that size, type, day and all other tows would show "
-        "in 19 of 20 cases; empty where nothing tells",
-        nullable=True,
-        min=0,
-    )
 
 
 class TowRuns(RunList):

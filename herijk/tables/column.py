@@ -34,14 +34,6 @@ empty_thwart: Final = partial(
     text, "thwart that must be left free; empty text where all are manned"
 )
 declared_speed: Final = partial(number, "m/s", "speed v0 the crew declared", min=0.5, max=6.0)
-unseen_error: Final = partial(
-    number,
-    "1",
-    "smallest relative error of Cw that other tows would show in 19 of 20 cases; empty where "
-    "nothing tells",
-    nullable=True,
-    min=0,
-)
 
 # Of these a table gives the meaning.
 waterline_length: Final = partial(number, "m", min=2.0, max=25.0)

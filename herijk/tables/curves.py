@@ -42,7 +42,6 @@ class Curves(PerTow):
     runs_used = dy.Int8(description="points the curve is fitted through", min=0)
     status = column.text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
     flags = column.texts(description="codes of what a person should look at")
-    unseen_error_ratio = column.unseen_error()
 
 
 class CurvePoints(PerTow):

@@ -58,7 +58,6 @@ class Register(_Line):
     bow_height_m = column.bow_height("height of the bow that day", nullable=True)
     weight_kg = column.boat_weight("empty boat with oars that day", nullable=True)
     flags = _FLAGS()
-    unseen_error_ratio = column.unseen_error()
     verification_code = column.text(
         "ten letters and digits that follow from all that made the line; drafts have none",
         nullable=True,
@@ -74,7 +73,6 @@ class RegisterHistory(_Line):
 
     position = dy.Int32(primary_key=True, description="the highest goes before", min=1)
     flags = _FLAGS()
-    unseen_error_ratio = column.unseen_error()
 
 
 class DueList(PerMethod):

@@ -55,12 +55,6 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "The scatter of the runs alone leaves Cw between {low} and {high} kg/m; the error of the "
         "log comes on top of that and is not known under this method.",
     ),
-    "answer_unseen": (
-        "Een fout in de meting zelf, bijvoorbeeld in de krachtmeter, zou vanaf ongeveer "
-        "{percent} % opvallen naast de andere proeven; een kleinere is niet te zien.",
-        "An error in the measurement itself, of the load cell for example, would stand out among "
-        "the other tows from about {percent} % on; a smaller one cannot be seen.",
-    ),
     "answer_best": (
         "De beste schatting uit alle proeven van het archief is {best} kg/m ({low} tot {high}); "
         "die rust voor {share} % op deze proef.",

@@ -199,7 +199,6 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.weight_changed": ("gewicht veranderd", "weight changed"),
     "code.curve_changed": ("kromme veranderd", "curve changed"),
     "code.curve_change_unexplained": ("kromme onverklaard veranderd", "unexplained curve change"),
-    "code.unseen_error": ("fout die niemand zou zien", "error that nobody would see"),
     "code.curve_change_significant": (
         "kromme meer veranderd dan de onzekerheid",
         "curve changed beyond its uncertainty",
@@ -209,6 +208,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
         "best estimate contradicts the tow",
     ),
     "code.b_at_cap": ("B op zijn bovengrens", "B at its cap"),
+    "code.water_differs": ("ander water dan die dag", "water unlike its day's"),
     "code.heavier_after": ("na de proef zwaarder", "heavier after"),
     "code.log2_differs": ("log 2 wijkt af", "log 2 differs"),
     "code.no_curve": ("geen kromme", "no curve"),

@@ -790,7 +790,6 @@ COMMAND: Final[dict[str, str]] = {
     "  {} to {}: Cw {} %{}{}": "  {} naar {}: Cw {} %{}{}",
     "standard uncertainty of Cw: {}": "standaardonzekerheid van Cw: {}",
     "no curve, {}{}": "geen kromme, {}{}",
-    "an error would be seen from {:.0f} % on": "een fout zou opvallen vanaf {:.0f} %",
     "A {:.2f} kg/m, {} ({}), Cw {:.2f} kg/m ({}: {:.2f} to {:.2f}), {:.1f} W per rower, {}{}": (
         "A {:.2f} kg/m, {} ({}), Cw {:.2f} kg/m ({}: {:.2f} tot {:.2f}), {:.1f} W per roeier, {}{}"
     ),

@@ -25,7 +25,6 @@ LINE = {
     "season": 2017, "season_before": 2013, "moved_ratio": 1.021, "best_moved_ratio": 1.004,
     "cw_best_kg_m": 31.2, "cw_best_lo_kg_m": 30.9, "cw_best_hi_kg_m": 31.5, "own_weight": 0.74,
     "log_source": "estimated", "log_factor": 1.04, "log_lo": 1.03, "log_hi": 1.05,
-    "unseen_error_ratio": 0.06,
     "tow_speed_m_s": 2.25, "speed_reason": "brought_down", "verification_code": "ABCDEFGHIJ",
 }  # fmt: skip
 RACE = {"race": "Spiegelrace", "race_date": dt.date(2018, 6, 4), "race_size": 35}
@@ -55,11 +54,6 @@ def test_what_it_is_worth_in_a_race(seconds, words):
 )
 def test_whether_it_exceeds_the_uncertainty(exceeds, words):
     assert words in said(exceeds_interval=exceeds)
-
-
-def test_which_error_nobody_would_see():
-    assert "vanaf ongeveer 6 % opvallen" in said()
-    assert "opvallen" not in said(unseen_error_ratio=None)
 
 
 def test_an_interval_that_leaves_the_log_out_says_so():

@@ -181,6 +181,7 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "gps_sd": 0.01,
         "anchored": anchored,
         "temperature_known": True,
+        "water_off_c": 0.0,
         "own_calibration_ln": None,
         "others_calibration_ln": None,
         "others_calibration_sd": None,
@@ -216,6 +217,7 @@ def register(world):
         pl.lit(True).alias("wind_measured"),
         pl.lit(0.025).alias("still_air_ratio"),
         (pl.col("season") >= 2018).alias("temperature_known"),
+        pl.lit(0.0).alias("water_off_c"),
     )
     last = world.tows.sort("season", "tow_id").unique("fsn_no", keep="last", maintain_order=True)
     lines = last.select("fsn_no", "tow_id", pl.col("ln_cw").exp().alias("cw_kg_m"))

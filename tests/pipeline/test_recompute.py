@@ -179,7 +179,7 @@ def test_a_tow_does_not_depend_on_the_other_tows(measured, name):
         for table in ("run_points", "curves"):
             both = getattr(together, table).filter(tow_id=tow_id)
             # What a tow is compared with are other tows: that may change its flags, never a number.
-            judged = [c for c in ("status", "flags", "unseen_error_ratio") if c in both.columns]
+            judged = [c for c in ("status", "flags") if c in both.columns]
             one = getattr(alone, table).drop(judged)
             assert_frame_equal(one, both.drop(judged), check_exact=True)
 
@@ -385,6 +385,22 @@ def test_water_that_nobody_measured_is_as_warm_as_other_tows_say(measured):
     assert expected.to_numpy()[lost] == pytest.approx(np.mean(water.to_numpy()[~lost]), abs=3.0)
     budget = unsaid.uncertainty_budget.filter(component="temperature")
     assert (budget["u_ratio"].to_numpy()[lost] > 0.01).all()
+
+
+def test_a_water_temperature_that_is_not_its_days_is_doubted(measured):
+    rebased = shipped_method("rebased")
+    tow = (
+        measured.tows.group_by("tow_date", maintain_order=True)
+        .all()
+        .filter(pl.col("tow_id").list.len() > 2)["tow_id"][-1][0]
+    )
+    typed = pl.when(tow_id=tow).then(pl.col("water_temperature_c") + 15.0)
+    tows = measured.tows.with_columns(typed.otherwise("water_temperature_c"))
+    made, true = (recompute(rebased, t, measured.blocks).curves for t in (tows, measured.tows))
+    made, true = (c.row(by_predicate=pl.col("tow_id") == tow, named=True) for c in (made, true))
+    assert "water_differs" in made["flags"]
+    assert made["cw_lo_kg_m"] < true["cw_kg_m"] < made["cw_hi_kg_m"]
+    assert not true["cw_lo_kg_m"] < made["cw_kg_m"] < true["cw_hi_kg_m"]
 
 
 def test_water_is_expected_of_the_nearest_days_that_have_a_record():

@@ -14,10 +14,7 @@ from herijk.pipeline.method.definition import (
 from herijk.pipeline.method.writing import method_text
 from herijk.pipeline.register.register import DECISION_SCHEMA, draft_register
 
-NUMBERS = (
-    *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
-    "unseen_error_ratio",
-)
+NUMBERS = (*("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),)
 TOWS = pl.DataFrame(
     {
         "tow_id": ["old", "middle", "new", "later"],

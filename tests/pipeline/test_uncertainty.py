@@ -28,6 +28,7 @@ def tows(**changed):
         "log_dof": np.inf, "tow_log_sd": 0.0, "stream_sd": 0.0, "stream_dof": 4,
         "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
+        "water_off_c": 0.0,
         "askew_ratio": None,
         "force_sd": None,
     }  # fmt: skip
@@ -220,6 +221,11 @@ def test_a_recorded_temperature_is_the_tows_own():
     kind = pl.col("component") == "temperature"
     assert known.filter(kind)["shared"].to_list() == ["single"]
     assert unknown.filter(kind)["shared"].to_list() == ["season"]
+
+
+def test_a_temperature_unlike_its_days_is_as_uncertain_as_it_is_far_off():
+    held = budget(tows(temperature_known=True, water_off_c=10.0))
+    assert u_of(held, "temperature") == pytest.approx(0.03, abs=0.001)
 
 
 def test_where_logs_are_estimated_unrecorded_water_is_as_uncertain_as_in_the_log_factors():

@@ -184,12 +184,9 @@ def test_a_log_replaced_within_a_season_is_seen_as_a_part_and_doubts_no_tow():
     size = {"seasons": (2010, 2015), "tows_per_season": 12, "rate_hz": 10, "seed": 3}
     world = measure(world_settings("log-replaced", **size))
     judged = plausibility(Batch.of(world.tows, world.blocks))
-    speeds = [s for s in judged.shifts if s.quantity == "speed"]
+    speeds = [s for s in judged if s.quantity == "speed"]
     assert [s.kind for s in speeds if s.clear] == ["part"]
-    assert (
-        with_doubts(world.tows, replace(judged, shifts=tuple(speeds)))["doubts"].list.len().sum()
-        == 0
-    )
+    assert with_doubts(world.tows, speeds)["doubts"].list.len().sum() == 0
 
 
 def wind_changed(world, tows: list[str], **factors: float) -> list[Shift]:
@@ -203,7 +200,7 @@ def wind_changed(world, tows: list[str], **factors: float) -> list[Shift]:
         for name, values in world.blocks.sums.items()
     }
     blocks = replace(world.blocks, sums=sums)
-    shifts = plausibility(Batch.of(world.tows, blocks)).shifts
+    shifts = plausibility(Batch.of(world.tows, blocks))
     return [s for s in shifts if s.quantity in ("wind", "vane") and s.clear]
 
 

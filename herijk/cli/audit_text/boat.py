@@ -317,14 +317,7 @@ def _result(curve: Row) -> str:
         flags,
     )
     left_out = [] if curve["interval"] == COMPLETE else [tell(RUNS_ALONE_MEANS)]
-    return "; ".join([numbers, *_unseen(curve), *left_out])
-
-
-def _unseen(curve: Row) -> list[str]:
-    """From which size on an error would have been seen."""
-    if curve["unseen_error_ratio"] is None:
-        return []
-    return [tell("an error would be seen from {:.0f} % on", 100 * curve["unseen_error_ratio"])]
+    return "; ".join([numbers, *left_out])
 
 
 def _interval_of_b(curve: Row) -> str:

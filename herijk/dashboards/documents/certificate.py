@@ -4,7 +4,7 @@ from typing import Final
 
 import segno
 
-from herijk.dashboards.answer import crew_name, curve_caption, unseen_error
+from herijk.dashboards.answer import crew_name, curve_caption
 from herijk.dashboards.documents import page, pdf
 from herijk.dashboards.pictures import curve_picture
 from herijk.dashboards.speech import Speech
@@ -86,8 +86,7 @@ def _interval(line: Row, speech: Speech) -> str:
     if low is None or high is None:
         return speech.say("certificate_no_interval")
     key = "answer_interval" if line["new_log_known"] else "answer_spread"
-    interval = speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
-    return " ".join([interval, *unseen_error(line, speech)])
+    return speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
 
 
 def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:

@@ -10,13 +10,11 @@ them reject a tow, the method says.
 from collections.abc import Sequence
 from typing import Final
 
-import numpy as np
 import polars as pl
 
 from herijk.pipeline.assessment.checks import CHECK, CHECKS, CODES, DOUBTS, UNUSUAL
 from herijk.pipeline.assessment.days import days_apart
 from herijk.pipeline.assessment.freeboard import by_freeboard
-from herijk.pipeline.assessment.mean_shift import MOSTLY
 from herijk.pipeline.assessment.season_levels import season_levels
 from herijk.pipeline.assessment.shared import (
     rising_with_speed,
@@ -24,7 +22,7 @@ from herijk.pipeline.assessment.shared import (
     ways_apart,
 )
 from herijk.pipeline.choice import SAME_SHARE
-from herijk.pipeline.quantiles import MAD_TO_SD, NORMAL
+from herijk.pipeline.quantiles import NORMAL
 from herijk.pipeline.season_log.diagnosis import FAULT
 from herijk.pipeline.season_log.effects import FLEET
 from herijk.tables.archive import Tows
@@ -90,7 +88,6 @@ def assess(
         _of_season(curves, tows, diagnosis),
         days_apart(curves, tows),
         _of_previous_curve(pairs),
-        _of_unseen_errors(pairs, tows),
         _of_like_boats(curves, tows),
     ]
     long = pl.concat([_long(frame) for frame in observed])
@@ -100,7 +97,7 @@ def assess(
 def with_status(
     curves: pl.DataFrame, assessments: pl.DataFrame, rejecting: Sequence[tuple[int, str]]
 ) -> pl.DataFrame:
-    """The curves with `status`, `flags` and `unseen_error_ratio`.
+    """The curves with `status` and `flags`.
 
     Rejected is a tow without a curve or with a flag that rejects; flagged one that somebody must
     look at; the others are accepted. Notes are not listed, unless they reject.
@@ -130,15 +127,8 @@ def with_status(
         .then(pl.lit("flagged"))
         .otherwise(pl.lit("accepted"))
     )
-    unseen = assessments.filter(check="unseen_error")
     return (
         curves.join(flagged, on="tow_id", how="left", maintain_order="left")
-        .join(
-            unseen.select("tow_id", unseen_error_ratio="observed"),
-            on="tow_id",
-            how="left",
-            maintain_order="left",
-        )
         .with_columns(status.alias("status"), pl.col("flags").fill_null([]))
         .drop("rejects")
     )
@@ -288,6 +278,7 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
         lamps_burned="lamp_ratio",
         load_cell_off=pl.col("load_cell_ratio") - 1,
         boat_list_differs=_off_boat_list(),
+        water_differs="water_off_c",
         crew_weight=pl.col("crew_weight_kg") / pl.col("rowers"),
         heavier_after=pl.col("weight_after_kg") / pl.col("weight_kg") - 1,
         freeboard_changed=pl.when(same).then(pl.max_horizontal(freeboards)),
@@ -410,37 +401,6 @@ def _of_previous_curve(pairs: pl.DataFrame) -> pl.DataFrame:
         curve_change_unexplained=pl.col("ln").exp() - 1,
         curve_change_significant=pl.col("ln") / pl.col("sd"),
     )
-
-
-def _of_unseen_errors(pairs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Smallest error of a tow's Cw that would be noticed in 19 of 20 cases.
-
-    By the tow before or after it, or by the force that all others predict.
-    """
-    limit, sds = (
-        CHECK[code].limits("H")[1]
-        for code in ("curve_change_unexplained", "curve_change_significant")
-    )
-    scatter = _scatter_of_pairs(pairs["ln"].drop_nulls())
-    told = pl.min_horizontal(pl.lit(limit).log1p(), pl.lit(sds) * pl.col("sd")) + MOSTLY * scatter
-    by_pair = pl.when(pl.col("ln").is_not_null()).then(told.exp() - 1)
-    by_next_pair = pl.col("by_pair").shift(-1).over(LINE)
-    by_force = tows.select("tow_id", "unseen_force_ratio")
-    return (
-        pairs.join(by_force, on="tow_id", maintain_order="left")
-        .with_columns(by_pair=by_pair)
-        .select(
-            "tow_id",
-            unseen_error=pl.min_horizontal("by_pair", by_next_pair, "unseen_force_ratio"),
-        )
-    )
-
-
-def _scatter_of_pairs(ln: pl.Series) -> float:
-    """Standard deviation of ln Cw / Cw before, whatever a few boats did."""
-    if len(ln) < FEWEST_PAIRS:
-        return AGREE
-    return MAD_TO_SD * float(np.median(np.abs(ln.to_numpy())))
 
 
 def _seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:

@@ -19,9 +19,6 @@ from herijk.tables.severity import Severity
 Limit: TypeAlias = float | Mapping[str, float] | None
 """One number, one for each class (`H` men, `D` women), or no limit on this side."""
 
-LARGEST_UNSEEN_RATIO: Final = 0.10
-"""Error of Cw that should not stay unseen (inferred): two tows of a boat tell one of some 6 %."""
-
 
 @dataclass(frozen=True)
 class Check:
@@ -98,6 +95,7 @@ CHECKS: Final = (
     # The boat of the day
     Check("crew_weight", lowest={"H": 81.0, "D": 64.0}, highest={"H": 114.0, "D": 90.0}, unit="kg"),
     Check("heavier_after", highest=0.02),
+    Check("water_differs", highest=3.0, unit="C"),
     Check("boat_list_differs", highest=0.05),
     Check("weight_changed", lowest=-0.02, highest=0.02),
     Check("length_changed", lowest=-0.01, highest=0.01),
@@ -107,7 +105,6 @@ CHECKS: Final = (
     Check("weight_by_freeboard", lowest=-0.2, highest=0.2, severity="note"),
     Check("balance_changed", lowest=-0.02, highest=0.02, severity="note"),
     # The curve against others
-    Check("unseen_error", highest=LARGEST_UNSEEN_RATIO, severity="note"),
     Check("curve_changed", lowest=-0.05, highest=0.05, severity="note"),
     Check("curve_change_unexplained", lowest=-0.05, highest=0.05),
     Check("curve_change_significant", lowest=-3.0, highest=3.0),

@@ -24,9 +24,6 @@ SAME_DIRECTION: Final = 1e-6
 """What is left of a direction of which so little is, was taken out with another."""
 
 FEWEST_FOR_SCALE: Final = 10
-MOSTLY: Final = 1.645
-"""A Gaussian number is less than this many standard deviations below its mean in 19 of 20 cases."""
-
 AT_A_TIME: Final = 2048
 """Candidates that are weighed together: those of ten thousand tows would take gigabytes."""
 
@@ -92,21 +89,7 @@ class Found:
     clear: bool
 
 
-@dataclass(frozen=True)
-class Shifted:
-    """What shifted, and what other shifts would have been noticed.
-
-    Attributes:
-        shifts: the shifts, the clearest first.
-        seen_from: size from which a shift of each candidate is beyond its last limit in 19 of 20
-            cases, shape (candidates,); NaN for one that was taken out, or equals one that was.
-    """
-
-    shifts: list[Found]
-    seen_from: FloatArray
-
-
-def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) -> Shifted:
+def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) -> list[Found]:
     """Shifts beyond so many standard deviations, the clearest first.
 
     Where tows scatter more or less than is assumed, the limits move with them. Shifts too large to
@@ -123,10 +106,7 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
     scales = left.scales()
     shifts += left.take_out(limit * scales, may.least, clear=True)
     limits = np.where(may.single, look * scales, np.inf)
-    shifts += left.take_out(limits, may.least, clear=False)
-    _, sd = left.sizes()
-    seen_from = np.maximum(sd * (limits + MOSTLY * scales), may.least)
-    return Shifted(shifts, np.where(left.told, seen_from, np.nan))
+    return shifts + left.take_out(limits, may.least, clear=False)
 
 
 class _Left:

@@ -24,8 +24,8 @@ from herijk.pipeline.assessment.likely_unit import Cause, instead_of, likely_cau
 from herijk.pipeline.assessment.mean_shift import (
     Candidates,
     Effects,
+    Found,
     Observations,
-    Shifted,
     find_shifts,
 )
 from herijk.pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
@@ -119,38 +119,25 @@ class Shift:
         return self.quantity == "force" and abs(self.size) > GROSS
 
 
-@dataclass(frozen=True)
-class Plausibility:
-    """What all tows together say of each one.
-
-    Attributes:
-        shifts: those of force, wind and speed that the other tows rule out, the clearest first;
-            then single tows that are only unusual.
-        force_seen_from: per tow, the smallest relative error of its force that would be noticed in
-            19 of 20 cases; a tow about which nothing can be said is missing.
-    """
-
-    shifts: tuple[Shift, ...]
-    force_seen_from: Mapping[str, float]
-
-
-def plausibility(batch: Batch) -> Plausibility:
+def plausibility(batch: Batch) -> tuple[Shift, ...]:
     """Judges every tow beside all others.
 
     Args:
         batch: all tows of the archive with their runs, in one batch.
+
+    Returns:
+        Shifts of force, wind and speed that the other tows rule out, the clearest first; then
+        single tows that are only unusual.
     """
     seen = Seen(batch)
-    of_force, force_seen_from = _of_force(seen)
-    shifts = (
+    return (
         *_in_radians(seen),
         *_turned(seen),
-        *of_force,
+        *_of_force(seen),
         *_of_one(seen, "wind", seen.wind_ahead, WIND_AHEAD, _GROUPS),
         *_of_one(seen, "vane", seen.wind_abeam, WIND_ABEAM, _GROUPS),
         *_of_one(seen, "speed", seen.speed, SPEED, ("tow", "part")),
     )
-    return Plausibility(shifts, force_seen_from)
 
 
 _RADIANS: Final = (instead_of("radians", "degrees"),)
@@ -313,16 +300,13 @@ def _of_one(
     return _named(seen, there, may, _find(observed, may))
 
 
-def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
-    """Shifts of the force's gain, and of its zero, which changes the bend in its own way.
-
-    And from which relative size on a gain of each tow would be seen.
-    """
+def _of_force(seen: Seen) -> list[Shift]:
+    """Shifts of the force's gain, and of its zero, which changes the bend in its own way."""
     known = np.isfinite(seen.level) & np.isfinite(seen.bend) & (seen.force_n > 0)
     alone = pl.when(pl.Series(seen.has_gps)).then(0).otherwise("season").alias("log_alone")
     tows = seen.batch.tows.with_columns(alone).filter(pl.Series(known))
     if tows.is_empty():
-        return [], {}
+        return []
     noise = np.concatenate(
         [np.full(tows.height, LEVEL.tow**2), BEND.tow**2 + seen.bend_sd[known] ** 2]
     )
@@ -342,16 +326,10 @@ def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
         zero = per_newton[mine]
         both = np.concatenate([mine, tows.height + mine])
         columns.append(("zero", group, both, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
-    shifted = _find(observed, columns)
-    seen_from = {
-        key: float(np.expm1(size))
-        for (quantity, (kind, key, _), *_), size in zip(columns, shifted.seen_from, strict=True)
-        if (quantity, kind) == ("force", "tow") and np.isfinite(size)
-    }
-    return _named(seen, known, columns, shifted), seen_from
+    return _named(seen, known, columns, _find(observed, columns))
 
 
-def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
+def _find(observed: Observations, columns: list[Candidate]) -> list[Found]:
     """The candidates that have shifted."""
     ends = np.cumsum([0, *(len(places) for *_, places, _ in columns)])
     places, sizes = (np.concatenate([c[k] for c in columns]) for k in (2, 3))
@@ -365,12 +343,14 @@ def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
     return find_shifts(observed, may, LIMIT, LOOK)
 
 
-def _named(seen: Seen, there: BoolArray, columns: list[Candidate], shifted: Shifted) -> list[Shift]:
+def _named(
+    seen: Seen, there: BoolArray, columns: list[Candidate], shifted: list[Found]
+) -> list[Shift]:
     """The shifts among the tows that are there, and what may have caused them."""
     tow_ids = seen.batch.tows["tow_id"].filter(pl.Series(there))
     air_share, stands_still = seen.air_share[there], seen.wind_stands_still[there]
     shifts = []
-    for one in shifted.shifts:
+    for one in shifted:
         quantity, (kind, key, places), *_ = columns[one.place]
         size = one.size
         if quantity == "force":

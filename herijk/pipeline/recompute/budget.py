@@ -381,6 +381,7 @@ def _terms_of_tows(
         pl.Series("wind_measured", batch.measured("wind")),
         pl.Series("still_air_kg_m", batch.mean(o.still_air_kg_m, p.used)),
         pl.Series("temperature_known", p.temperature_known),
+        pl.Series("water_off_c", p.water_off_c),
         force_uncertainty(batch.tows).alias("force_sd"),
     )
 

@@ -23,15 +23,19 @@ def with_boats(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
 
 
 def with_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
-    """Rows of `tows` with `expected_water_c`: what recorded temperatures say of the water of a day.
+    """Rows of `tows` with what recorded temperatures say of the water of their day.
 
-    Their mean on that day, else in that month of that year, else in that month, else in all of the
-    archive; null where none is recorded.
+    `expected_water_c`: their mean on that day, else in that month of that year, else in that month,
+    else in all of the archive; null where none is recorded. `water_off_c`: how far a tow's own lies
+    from the median of its day; 0 where it has none.
     """
     water, day = pl.col("water_temperature_c"), pl.col("tow_date")
     alike = ([day], [day.dt.year(), day.dt.month()], [day.dt.month()])
     means = [water.mean().over(group) for group in alike]
-    return tows.with_columns(expected_water_c=pl.coalesce(*means, water.mean()))
+    return tows.with_columns(
+        expected_water_c=pl.coalesce(*means, water.mean()),
+        water_off_c=(water - water.median().over(day)).abs().fill_null(0.0),
+    )
 
 
 def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:

@@ -113,6 +113,11 @@ class Prepared:
         """Mean true speed, shape (runs,)."""
         return self.means.speed_m_s * self.speed_factor
 
+    @cached_property
+    def water_off_c(self) -> FloatArray:
+        """How far the water is from its day's, where the method corrects for it, shape (tows,)."""
+        return self.batch.of_tow("water_off_c") * (self.steps.temperature.rule != "none")
+
     def by_true_speed(self, kg_m: FloatArray) -> FloatArray:
         """A coefficient of each run by log speed, now by true speed, shape (runs,)."""
         return kg_m / self.speed_factor**2

@@ -31,6 +31,7 @@ from herijk.pipeline.recompute.budget import (
     run_point_ratio,
     scatter_of,
 )
+from herijk.pipeline.recompute.facts import with_expected_water
 from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.recompute.season_factors import tow_instruments
 from herijk.pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
@@ -101,7 +102,7 @@ def as_tables(
     misfit = misfit_of(outcomes, estimated, (DECLARED,))
     curves = with_best(curves, estimated, budget.filter(at_declared), misfit)
     diagnosis = _diagnosis(estimated, outcomes)
-    assessments = assess(curves, run_points, tows, diagnosis)
+    assessments = assess(curves, run_points, with_expected_water(tows), diagnosis)
     rejecting = [
         (season, check)
         for season in tows["season"].unique().sort()

@@ -237,6 +237,7 @@ def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -
         log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
         pl.lit(calibrated).alias("anchored"),
         pl.Series("temperature_known", p.temperature_known),
+        pl.Series("water_off_c", p.water_off_c),
         force_uncertainty(batch.tows).alias("force_sd"),
         pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / true_speed),
         pl.Series("reference_ln", reference_ln),

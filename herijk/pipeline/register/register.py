@@ -29,7 +29,6 @@ CURVE_COLUMNS: Final = (
     "cw_lo_kg_m",
     "cw_hi_kg_m",
     "flags",
-    "unseen_error_ratio",
 )
 CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 DOUBTED: Final = "doubted"

@@ -281,8 +281,9 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is
             taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air
             part / Cw;
-            `temperature_known`; `askew_ratio`, by being pulled askew, null where repeat tows do not
-            tell; `force_sd`, of the load cell by its record, null without one.
+            `temperature_known`; `water_off_c`, of the water from its day's; `askew_ratio`, by being
+            pulled askew, null where repeat tows do not tell; `force_sd`, of the load cell by its
+            record, null without one.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
@@ -294,9 +295,8 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     """
     kappa, calibrated = pl.col("kappa"), pl.col("calibrated")
     known = pl.col("temperature_known")
-    temperature_c = (
-        pl.when(known).then(assumed.temperature_known_c).otherwise(assumed.temperature_unknown_c)
-    )
+    recorded_c = pl.max_horizontal(assumed.temperature_known_c, "water_off_c")
+    temperature_c = pl.when(known).then(recorded_c).otherwise(assumed.temperature_unknown_c)
     speed_ratio = (
         pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("tow_log_sd"))
     )

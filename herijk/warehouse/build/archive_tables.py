@@ -136,7 +136,7 @@ def judged_tows(
     twice = same_samples(tows, contents)
     once = tows.join(twice, on="tow_id", how="anti")
     judged = judge(once, blocks)
-    gross = gross_faults(judged.shifts, once)
+    gross = gross_faults(judged, once)
     kept = with_doubts(once.join(gross, on="tow_id", how="anti"), judged)
     return kept, pl.concat([twice, gross])
 

@@ -15,7 +15,7 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.assessment.plausibility import TURNED, Plausibility, Shift, plausibility
+from herijk.pipeline.assessment.plausibility import TURNED, Shift, plausibility
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.tables.declare import dy
@@ -37,7 +37,7 @@ _SENSOR: Final = {
 """Per quantity that can be shifted, what its reason code and its checks are named after."""
 
 
-def judge(tows: pl.DataFrame, blocks: RunBlocks) -> Plausibility:
+def judge(tows: pl.DataFrame, blocks: RunBlocks) -> tuple[Shift, ...]:
     """What an archive's tows say of each other.
 
     Args:
@@ -45,7 +45,7 @@ def judge(tows: pl.DataFrame, blocks: RunBlocks) -> Plausibility:
         blocks: their runs, and perhaps others.
     """
     if tows.is_empty():
-        return Plausibility((), {})
+        return ()
     return plausibility(Batch.of(tows, blocks))
 
 
@@ -65,23 +65,20 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Fa
     return frame_of(Faults, map(dataclasses.asdict, faults))
 
 
-def with_doubts(tows: pl.DataFrame, judged: Plausibility) -> pl.DataFrame:
-    """The tows with `doubts`, `unusual` and `unseen_force_ratio`: what all others say of them."""
+def with_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
+    """The tows with `doubts` and `unusual`: what all others say of them."""
 
     def checks(verdict: str, doubted: bool) -> pl.Series:
-        shifts = [s for s in judged.shifts if (s.clear and s.kind in _SINGLED_OUT) is doubted]
+        shifts = [s for s in judged if (s.clear and s.kind in _SINGLED_OUT) is doubted]
         codes = [
             sorted({f"{_SENSOR[s.quantity]}_{verdict}" for s in shifts if tow in s.tows})
             for tow in tows["tow_id"]
         ]
         return pl.Series(codes, dtype=pl.List(pl.String))
 
-    # To a thousandth, as no processor gives the last bits of a solved system like another.
-    seen_from = {tow: round(ratio, 3) for tow, ratio in judged.force_seen_from.items()}
     return tows.with_columns(
         checks("not_plausible", doubted=True).alias("doubts"),
         checks("unusual", doubted=False).alias("unusual"),
-        pl.Series("unseen_force_ratio", map(seen_from.get, tows["tow_id"]), pl.Float64),
     )
 
 

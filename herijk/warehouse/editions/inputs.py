@@ -14,7 +14,7 @@ from herijk.pipeline.recompute.facts import samples_files
 from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
-JUDGED: Final = ("doubts", "unusual", "unseen_force_ratio")
+JUDGED: Final = ("doubts", "unusual")
 """What all other tows say of a tow."""
 
 NOT_INPUT: Final = (

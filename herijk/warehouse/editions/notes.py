@@ -9,9 +9,7 @@ from pathlib import Path
 from typing import Final
 
 import jinja2
-import polars as pl
 
-from herijk.pipeline.assessment.checks import LARGEST_UNSEEN_RATIO
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.tables.row import Row
 from herijk.warehouse.editions.compare import (
@@ -122,10 +120,6 @@ def _facts(edition: Edition, language: Language) -> dict[str, object]:
         "carried": language.count(carried) if carried else None,
         "carried_from": about.carried_from,
         "members": None if ensemble is None else ensemble["member"].n_unique(),
-        "unseen": language.count(
-            edition.register.filter(pl.col("unseen_error_ratio") > LARGEST_UNSEEN_RATIO).height
-        ),
-        "unseen_limit": round(100 * LARGEST_UNSEEN_RATIO),
         "complete": edition.method is not None and edition.method.interval == COMPLETE,
     }
 

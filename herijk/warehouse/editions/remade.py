@@ -27,10 +27,6 @@ NEVER_TOWED: Final = "never_towed"
 FLAGS: Final = "flags"
 """They follow from what is known of other tows, which grows."""
 
-UNSEEN_ERROR: Final = "unseen_error_ratio"
-"""Follows from all tows, so it moves a little when one of them is gone. Editions of before do not
-have it: it is empty there in all rows."""
-
 _OWN: Final = ("edition", "method", "verification_code", "inputs_sha256")
 """Columns of a line that are checked elsewhere."""
 
@@ -77,9 +73,8 @@ def _differing(
         how="left",
         maintain_order="left",
     )
-    said = [name for name in _recorded(lines) if name in now.columns]
-    moved = () if reasons.same_inputs else (UNSEEN_ERROR,)
-    known = [name for name in said if name not in (*LINE, "basis", *_OWN, *moved)]
+    said = [name for name in lines.columns if name in now.columns]
+    known = [name for name in said if name not in (*LINE, "basis", *_OWN)]
     pairs = lines.select(*LINE, "basis", *known).join(
         now.select(*LINE, *known), on=LINE, how="left", suffix="_now", maintain_order="left"
     )
@@ -113,20 +108,11 @@ def _other_tables(edition: Edition, again: Again) -> Iterator[Finding]:
 
 def _unequal_columns(was: pl.DataFrame, now: pl.DataFrame, key: list[str]) -> list[str]:
     """Columns of which a value differs."""
-    shared = [name for name in _recorded(was) if name in now.columns and name != FLAGS]
+    shared = [name for name in was.columns if name in now.columns and name != FLAGS]
     if was.height != now.height:
         return shared
     one, other = (frame.select(shared).sort(key, nulls_last=True) for frame in (was, now))
     return [name for name in shared if not _equal(one[name], other[name])]
-
-
-def _recorded(frame: pl.DataFrame) -> list[str]:
-    """Columns that a table of an edition had when it was published."""
-    return [
-        name
-        for name in frame.columns
-        if name != UNSEEN_ERROR or frame[name].null_count() < frame.height
-    ]
 
 
 def _equal(was: pl.Series, now: pl.Series) -> bool:

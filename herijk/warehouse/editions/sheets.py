@@ -103,16 +103,7 @@ LINE_KEY: Final = ["fsn_nr", "roeiers", "klasse", "lege doft"]
 CODE_FIELD: Final = Field(
     CODE_HEADER, "verification_code", "string", "hash van invoer, methode en getallen van de regel"
 )
-UNSEEN_FIELD: Final = Field(
-    "fout te zien vanaf [%]",
-    "unseen_error_ratio",
-    "number",
-    "kleinste fout in Cw die in 19 van de 20 gevallen zou opvallen naast de andere proeven; een "
-    "kleinere ziet niemand. Valt niet onder de controlecode",
-    0,
-    100.0,
-)
-SHEET_FIELDS: Final = (*REGISTER_FIELDS, UNSEEN_FIELD, CODE_FIELD)
+SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 """The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
 
 INPUT_FIELDS: Final = (
