@@ -12,6 +12,7 @@ class Editions(dy.Schema):
     kind = column.text("recomputed, or as_printed", regex="^(recomputed|as_printed)$")
     method = column.text("name of the method; empty as printed", nullable=True)
     method_hash = column.sha256("its content hash", nullable=True)
+    interval = column.text("what its intervals hold, as in `methods`", nullable=True)
     valid_from = dy.Date(description="day from which it counts")
     published_on = dy.Date(description="day of publication")
     decision = column.text("by whom and where it was decided")

@@ -52,6 +52,20 @@ def test_a_certificate_says_what_the_register_says(views, contents):
     assert power == pytest.approx(float(exact), abs=0.05)
 
 
+def test_a_certificate_of_an_edition_stays_when_the_warehouse_makes_other_methods(store, contents):
+    with Views(store) as views:
+        line = lines_of(views, EDITIONS[-1]).row(0, named=True)
+        certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en")
+    with Views(store) as views:
+        views._db.execute("CREATE TEMP TABLE methods AS SELECT * FROM main.methods LIMIT 0")
+        views._db.execute(
+            "CREATE TEMP TABLE about AS SELECT key, CASE key WHEN 'code_version' THEN 'other' "
+            "ELSE value END AS value FROM main.about"
+        )
+        certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en")
+    assert contents[0] == contents[1]
+
+
 def test_a_certificate_is_a_page_too(views):
     line = lines_of(views, EDITIONS[-1]).row(0, named=True)
     text = certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en", True).decode()

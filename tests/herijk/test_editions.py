@@ -1,10 +1,12 @@
 """The commands about editions: what they print, and their exit status."""
 
 import json
+import shutil
 
 import pytest
 
 from herijk.pipeline.recompute import recompute
+from tests.conftest import Workbench
 
 DECISION = ("--decision", "ALV 12-5-2014")
 FROM = ("--valid-from", "2014-06-01", "--published-on", "2014-05-13")
@@ -22,6 +24,19 @@ def test_publish_tells_where_the_edition_is_and_only_once(herijk, published, tmp
     assert (status, out) == (1, "")
     assert "already published" in err
     assert herijk("publish", "y", *call[2:], "--json")[0] == 0
+
+
+def test_an_edition_counts_at_once(herijk, built, tmp_path):
+    copy = Workbench(built.archive, shutil.copytree(built.data, tmp_path / "data"))
+    terms = ("--method", "rebased-2015", *DECISION, "--data", copy.data)
+    for name, day in (("2014-9", "2014-06-01"), ("2014-10", "2014-07-01")):
+        assert herijk("publish", name, "--valid-from", day, *terms)[0] == 0
+    assert "2014-9" in herijk("register", "2014-9", "--data", copy.data)[1]
+    assert "2014-10" in herijk("register", "--data", copy.data)[1]
+    assert "2014-10" in herijk("register", "--as-of", "2012-06-01", "--data", copy.data)[1]
+    page = tmp_path / "certificate.html"
+    assert herijk("certificate", "--out", page, "--data", copy.data)[0] == 0
+    assert "2014-10" in page.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ def certificates(
     say = speech.say
     about = views.about()
     lines = certificate_lines(views, edition, fsn_no)
+    made_by = lines[0]["code_version"] or about.get("code_version", "")
     content = {
         "language": language,
         "title": f"{say('certificate')} {fsn_no or ''} {edition}".replace("  ", " "),
@@ -38,7 +39,7 @@ def certificates(
         "reading_title": say("certificate_reading"),
         "reading": [say(key) for key in READING],
         "checking_title": say("certificate_checking"),
-        "footing": f"{say('made_by')} {about.get('code_version', '')}",
+        "footing": f"{say('made_by')} {made_by}",
         "certificates": [_one(line, speech) for line in lines],
     }
     return page("certificate.html.j2", content) if as_page else pdf("certificate.typ", content)

@@ -93,9 +93,9 @@ def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame
 def _edition_row(edition: Edition) -> pl.DataFrame:
     """What an edition says of itself."""
     about = edition.about.model_dump(include=set(TABLES["editions"].column_names()))
-    return pl.DataFrame([about]).cast(
-        {"previous": pl.String, "method": pl.String, "method_hash": pl.String}
-    )
+    interval = edition.method and edition.method.interval
+    strings = ("previous", "method", "method_hash", "interval")
+    return pl.DataFrame([about | {"interval": interval}]).cast(dict.fromkeys(strings, pl.String))
 
 
 def lineage_rows(

@@ -36,8 +36,9 @@ def newest_edition(editions: list[str], default: str) -> str:
 
 def current_edition(views: Views) -> str:
     """The edition that people ask about: the newest that is published, or the best draft."""
-    editions = views.table("register")["edition"].unique().sort().to_list()
-    return newest_edition(editions, draft_name(STUDIED_METHOD))
+    published = views.table("editions").sort("valid_from", "published_on", "edition")["edition"]
+    drafts = set(views.table("register")["edition"]) - set(published)
+    return newest_edition([*sorted(drafts), *published], draft_name(STUDIED_METHOD))
 
 
 def line_changes(views: Views) -> pl.DataFrame:
@@ -78,10 +79,7 @@ def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
     """With the boat, and of both editions whether an interval holds the error of the log."""
     names = views.table("boats").select("fsn_no", "name", "boat_type")
     named = changes.join(names, on="fsn_no", how="left", maintain_order="left")
-    methods = views.table("register").select("edition", "method").unique()
-    known = methods.join(_log_known(views), on="method", how="left", maintain_order="left").drop(
-        "method"
-    )
+    known = _log_known(views)
     for side, edition in (("old", "from_edition"), ("new", "to_edition")):
         mine = known.rename({"edition": edition, "log_known": f"{side}_log_known"})
         named = named.join(mine, on=edition, how="left", maintain_order="left")
@@ -89,8 +87,15 @@ def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
 
 
 def _log_known(views: Views) -> pl.DataFrame:
-    """Per method whether its intervals hold the error of the log."""
-    return views.table("methods").select("method", log_known=pl.col("interval") == COMPLETE)
+    """Per edition and draft whether its intervals hold the error of the log.
+
+    An edition has it from its own method, also where the warehouse makes that no longer.
+    """
+    drafts = views.table("methods").select(
+        "interval", edition=pl.concat_str(pl.lit(DRAFT), pl.col("method"))
+    )
+    of_each = pl.concat([views.table("editions").select("interval", "edition"), drafts])
+    return of_each.select("edition", log_known=pl.col("interval") == COMPLETE)
 
 
 def _pair(views: Views, register: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
@@ -143,7 +148,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     seasons = views.table("tows").select("tow_id", "season")
     joined = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
-        .join(known, on="method", how="left", maintain_order="left")
+        .join(known, on="edition", how="left", maintain_order="left")
         .join(seasons, on="tow_id", how="left", maintain_order="left")
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
         .join(_best_estimates(views), on=["method", "tow_id"], how="left", maintain_order="left")

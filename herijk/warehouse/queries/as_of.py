@@ -1,7 +1,8 @@
 """The tables as of a day: registers, who is due and races as they stood then, by the same rules.
 
 The database judges on the day of the archive's last tow or race. Here the tables that depend on the
-day are made again for another one, and laid over those of the open database.
+day are made again for another one, and laid over those of the open database; so are those of
+editions that were published since it was made.
 """
 
 import datetime as dt
@@ -14,7 +15,9 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.due import due_list
 from herijk.pipeline.register.register import CURVE_COLUMNS, LINE, draft_name
 from herijk.tables.keys import SIZES
-from herijk.tables.schemas import TABLES
+from herijk.tables.schemas import TABLES, conform
+from herijk.warehouse.build.published import published_tables
+from herijk.warehouse.store.editions import CHANGES, edition_names
 from herijk.warehouse.store.store import Store
 
 NOT_YET: Final = "never_towed"
@@ -32,7 +35,7 @@ def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
         MissingKnowledgeError: there was no tow by then.
     """
     read = {
-        name: pl.DataFrame(db.table(f"main.{name}").pl())
+        name: pl.DataFrame(db.table(name).pl())
         for name in ("register", "register_history", "boats", "tows", "methods", "race_changes")
     }
     if not (read["tows"]["tow_date"] <= day).any():
@@ -44,9 +47,24 @@ def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
         "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
     }
     for name, frame in made.items():
-        db.register("frame", frame.select(TABLES[name].column_names()).to_arrow())
-        db.execute(f'CREATE TEMP TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
-        db.unregister("frame")
+        _lay(db, name, frame)
+
+
+def lay_published(db: duckdb.DuckDBPyConnection, store: Store) -> None:
+    """Makes a connection answer with the editions of now, where they are others than it knows."""
+    editions = pl.DataFrame(db.table("editions").pl())["edition"].to_list()
+    if set(editions) == set(edition_names(store)):
+        return
+    for name, published in published_tables(store).items():
+        edition = "to_edition" if name == CHANGES else "edition"
+        drafts = pl.DataFrame(db.table(name).pl()).filter(~pl.col(edition).is_in(editions))
+        _lay(db, name, pl.concat([conform(name, drafts), published]))
+
+
+def _lay(db: duckdb.DuckDBPyConnection, name: str, frame: pl.DataFrame) -> None:
+    db.register("frame", frame.select(TABLES[name].column_names()).to_arrow())
+    db.execute(f'CREATE OR REPLACE TEMP TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
+    db.unregister("frame")
 
 
 def register_on(

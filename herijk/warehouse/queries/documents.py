@@ -15,6 +15,7 @@ from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import no_such_edition
 
 CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64())
+OF_EDITION: Final = ("decision", "valid_from", "published_on", "code_version")
 SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
 """Speeds of the power table, as parts of the declared speed: where the curve holds."""
 
@@ -23,7 +24,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
     """The valid lines of an edition, of one boat or all, with what their certificates say.
 
     Returns:
-        Rows of `answers` with `decision`, `valid_from` and `published_on` of the edition, `powers`
+        Rows of `answers` with the columns `OF_EDITION` of the edition, `powers`
         (speed [m/s], Cw [kg/m] and power per rower [W] over the range of the curve), and the rows
         of `curve_points` and `run_points` of the tow (`curve`, `points`).
 
@@ -41,9 +42,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
             "edition {} has no valid line of {}", edition, fsn_no or "any boat"
         )
     about = views.table("editions").filter(edition=edition)
-    terms = about.select("decision", "valid_from", "published_on").to_dicts() or [
-        {"decision": None, "valid_from": None, "published_on": None}
-    ]
+    terms = about.select(OF_EDITION).to_dicts() or [dict.fromkeys(OF_EDITION)]
     curves, points = views.table("curve_points"), views.run_points()
     return [
         line

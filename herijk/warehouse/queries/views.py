@@ -9,7 +9,7 @@ from typing import Self
 
 import polars as pl
 
-from herijk.warehouse.queries.as_of import lay_over
+from herijk.warehouse.queries.as_of import lay_over, lay_published
 from herijk.warehouse.queries.chosen_tows import choose
 from herijk.warehouse.queries.due import RETOW_CHOICE
 from herijk.warehouse.store.database import open_results
@@ -24,6 +24,7 @@ class Views:
         self._contents: dict[str, int] = {}
         self._db = open_results(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
+        lay_published(self._db, store)
         if as_of is not None:
             lay_over(self._db, store, as_of)
 
