@@ -62,7 +62,7 @@ def check_text(report: "CheckReport") -> str:
     if not causes:
         return tell("Nothing is wrong: {} tows can be read.", report.tows)
     head = tell(
-        "{} causes, {} places. With what is proposed below {} tows can be read.",
+        "Causes: {}; places: {}. With what is proposed below {} tows can be read.",
         len(causes),
         sum(cause.number for cause in causes),
         report.tows,

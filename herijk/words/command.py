@@ -335,8 +335,8 @@ COMMAND: Final[dict[str, str]] = {
     "Nothing is wrong: {} tows can be read.": (
         "Er is niets mis: {} sleepproeven kunnen gelezen worden."
     ),
-    "{} causes, {} places. With what is proposed below {} tows can be read.": (
-        "{} oorzaken, {} plaatsen. Met wat hieronder wordt voorgesteld kunnen {} "
+    "Causes: {}; places: {}. With what is proposed below {} tows can be read.": (
+        "Oorzaken: {}; plaatsen: {}. Met wat hieronder wordt voorgesteld kunnen {} "
         "sleepproeven gelezen worden."
     ),
     "Write what is proposed with: herijk check {} --write-profile": (
@@ -872,7 +872,6 @@ COMMAND: Final[dict[str, str]] = {
     "n {} by {}": "n {} naar {}",
     "too few boats to judge {}": "te weinig sloepen om {} te beoordelen",
     "{} outside ({}).": "{} erbuiten ({}).",
-    "of n {}": "van n {}",
     "{} to later": "{} naar later",
     "{} ({} to {})": "{} ({} tot {})",
     "ageing is not taken out: fewer than six pairs within the last era.": (

@@ -13,6 +13,10 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
         "Concept: niet vastgesteld, en dus geen geldige meetbrief.",
         "Draft: not decided, and so no valid certificate.",
     ),
+    "certificate_expired": (
+        "Verlopen: deze meetbrief geldt niet meer.",
+        "Expired: this certificate is no longer valid.",
+    ),
     "certificate_power": ("Vermogen bij snelheid", "Power at speed"),
     "certificate_watts": ("W/roeier", "W/rower"),
     "certificate_tow": ("Sleepproef van", "Tow of"),

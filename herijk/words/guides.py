@@ -21,7 +21,7 @@ GUIDES_IN_SHORT: Final[dict[str, tuple[str, str]]] = {
   snelheid.
 - **Onzekerheid.** Bij elk getal hoort een interval van 95 %, waarin elke bekende fout zit:
   runs, log, krachtmeter, wind, temperatuur en kromme.
-- **Register.** Voor elke sloep en ploeg telt de nieuwste proef die de controles doorstaat.
+- **Register.** Voor elke sloep en ploeg telt de nieuwste proef die niet is afgekeurd.
 """,
         """This is how the method "re-based" computes; the others leave steps out or do them
 otherwise.
@@ -38,7 +38,7 @@ otherwise.
   curve Cw = A / (1 - (v/B)²). It holds from 85 to 115 % of the declared speed.
 - **Uncertainty.** Every number has a 95 % interval, which holds each known error: runs, log,
   load cell, wind, temperature and curve.
-- **Register.** For each boat and crew the newest tow counts that passes the checks.
+- **Register.** For each boat and crew the newest tow counts that is not rejected.
 """,
     ),
     "audit": (

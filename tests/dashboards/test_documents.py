@@ -80,6 +80,23 @@ def test_all_certificates_of_an_edition_are_in_one_file(views, contents):
     assert len(contents[0]["certificates"]) == lines_of(views, EDITIONS[-1]).height
 
 
+def test_an_expired_certificate_says_so(views, contents, monkeypatch):
+    line = certificate.certificate_lines(views, EDITIONS[-1], None)[0]
+    for status, said in (("expired", "geldt niet meer"), ("valid", "")):
+        monkeypatch.setattr(
+            certificate, "certificate_lines", lambda *_, s=status: [line | {"status": s}]
+        )
+        certificate.certificates(views, EDITIONS[-1], None, "nl")
+        caution = contents[-1]["certificates"][0]["caution"]
+        assert said in caution
+        assert bool(said) == bool(caution)
+
+
+def test_the_largest_changes_come_first_whatever_their_sign():
+    lines = pl.DataFrame({"cw_ratio": [1.01, 0.9, 1.05, None, 1.2], "change": ["changed"] * 5})
+    assert proposal.largest_changes(lines)["cw_ratio"].to_list() == [1.2, 0.9, 1.05, 1.01]
+
+
 def test_a_draft_is_no_certificate(views, contents):
     line = lines_of(views, "concept-as-published").row(0, named=True)
     certificate.certificates(views, "concept-as-published", line["fsn_no"], "nl")

@@ -307,7 +307,7 @@ def _outside(under: TypeStatistics) -> list[str]:
         reason = under.bends["reason"] or "few_boats"
         return [nothing(under.bends | {"reason": reason})]
     boats = [outsider(row) for row in under.outside]
-    return [tell("{} outside ({}).", len(boats) or "none", _judged(under)), *listed(boats)]
+    return [tell("{} outside ({}).", len(boats), _judged(under)), *listed(boats)]
 
 
 def _slow_title() -> str:
@@ -316,9 +316,8 @@ def _slow_title() -> str:
 
 
 def _slow(under: TypeStatistics) -> list[str]:
-    counted = tell("of n {}", under.bends["n"])
     lines = [slow_tow(row) for row in under.slow_tows]
-    return [f"{len(lines) or 'none'} {counted}.", *listed(lines)]
+    return [tell("{} of n {}", len(lines), under.bends["n"]) + ".", *listed(lines)]
 
 
 def _eras(under: Mapping[str, TypeStatistics], fleet: Mapping[str, Fleet]) -> list[str]:

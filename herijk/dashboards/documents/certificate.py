@@ -58,7 +58,7 @@ def _one(line: Row, speech: Speech) -> dict[str, object]:
             cw=number(line["cw_kg_m"], 2), speed=number(line["declared_speed_m_s"], 2)
         ),
         "interval": _interval(line, speech),
-        "caution": "" if code else say("certificate_draft"),
+        "caution": _caution(line, speech),
         "left": _numbers(line, speech),
         "right": _terms(line, speech),
         "curve": str(curve_picture(line["curve"], line["points"], speech, crew)),
@@ -80,6 +80,13 @@ def _qr(line: Row, code: str) -> str:
         return ""
     text = f"{line['edition']} {line['fsn_no']} {line['rowers']}{line['crew_class']} {code}"
     return str(segno.make(text, micro=False).svg_inline(scale=4, border=1))
+
+
+def _caution(line: Row, speech: Speech) -> str:
+    """Why a line is no valid certificate; nothing where it is one."""
+    if not line["verification_code"]:
+        return speech.say("certificate_draft")
+    return speech.say("certificate_expired") if line["status"] == "expired" else ""
 
 
 def _interval(line: Row, speech: Speech) -> str:

@@ -19,7 +19,7 @@ from herijk.words import in_per_cent
 
 Part = dict[str, object]
 
-LARGEST: Final = 10
+LARGEST: Final = 20
 """Boats named on each side."""
 
 
@@ -170,9 +170,8 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
 
 
 def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
-    """The boats that gain and lose most."""
-    known = lines.drop_nulls("cw_ratio").filter(change="changed").sort("cw_ratio")
-    shown = pl.concat([known.head(LARGEST), known.tail(LARGEST)]).unique(maintain_order=True)
+    """The boats that change most, up or down."""
+    shown = largest_changes(lines).head(LARGEST)
     heads = (
         *("boat", "column.old_cw_kg_m", "column.new_cw_kg_m", "proposal_change"),
         *("column.gain_in_two_hours_s", "column.exceeds_interval"),
@@ -182,6 +181,12 @@ def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
         head=[*map(speech.unbroken, heads)],
         rows=[_boat(line, speech) for line in shown.to_dicts()],
     )
+
+
+def largest_changes(lines: pl.DataFrame) -> pl.DataFrame:
+    """The lines that change, by the size of the change, whatever its sign."""
+    known = lines.drop_nulls("cw_ratio").filter(change="changed")
+    return known.sort(pl.col("cw_ratio").log().abs(), descending=True, maintain_order=True)
 
 
 def _boat(line: dict[str, Any], speech: Speech) -> list[str]:
