@@ -227,6 +227,9 @@ ERRORS: Final[dict[str, str]] = {
     "given twice for season {}; ranges overlap": (
         "twee keer gegeven voor seizoen {}; de reeksen overlappen"
     ),
+    "{} is no file; remove it, or put the file there": (
+        "{} is geen bestand; haal het weg, of zet het bestand er neer"
+    ),
     "{} both are in {}; keep one": "{} staan allebei in {}; houd er een",
     "{} is not empty; name a folder that is new": "{} is niet leeg; geef een nieuwe map",
     "{} exists and is not an empty folder; nothing was written. Choose another folder, or "

@@ -11,9 +11,10 @@ import polars as pl
 import pytest
 import xlsxwriter
 
+from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.archive.check.check import Checked, check_archive
 from herijk.warehouse.archive.check.report import check_report
-from herijk.warehouse.archive.profile.reading import parse_profiles
+from herijk.warehouse.archive.profile.reading import parse_profiles, read_profiles
 from herijk.warehouse.archive.sheets.sheet import read_sheets
 from herijk.warehouse.archive.sheets.unknown_columns import meanings
 from herijk.warehouse.archive.spelling.columns import Column
@@ -642,3 +643,13 @@ def test_two_headers_with_one_unit_are_not_the_same_column():
 def test_what_is_to_be_ignored_is_ignored_in_every_season(profile):
     profiles = parse_profiles(f'ignore = ["Snelheid boeg"]\n{profile}')
     assert profiles.for_season(2014).ignore == ("snelheidboeg",)
+
+
+@pytest.mark.parametrize(
+    "put", [Path.mkdir, os.mkfifo, lambda path: path.symlink_to(path.with_name("lost"))]
+)
+def test_a_profile_that_is_no_file_is_not_taken_for_none(tmp_path, put):
+    """What it said of a day would be lost without a word."""
+    put(tmp_path / "archief.toml")
+    with pytest.raises(MissingKnowledgeError, match="is no file"):
+        read_profiles(tmp_path)

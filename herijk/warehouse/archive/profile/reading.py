@@ -55,15 +55,19 @@ def _profile_path(root: Path) -> Path | None:
     """The profile, however its name is capitalised; None when there is none.
 
     Raises:
-        MissingKnowledgeError: there are two.
+        MissingKnowledgeError: there are two, or it is a folder, a pipe or a link to nothing.
     """
     if not root.is_dir():
         return None
     names = sorted(p.name for p in root.iterdir() if p.name.casefold() == PROFILE_FILE)
     if len(names) > 1:
         raise MissingKnowledgeError("{} both are in {}; keep one", " and ".join(names), root)
-    path = path_inside(root, names[0]) if names else None
-    return path if path is not None and path.is_file() else None
+    if not names:
+        return None
+    path = path_inside(root, names[0])
+    if not path.is_file():
+        raise MissingKnowledgeError("{} is no file; remove it, or put the file there", path)
+    return path
 
 
 def _explain(error: ValidationError) -> Sentence:
