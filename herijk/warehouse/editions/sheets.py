@@ -103,6 +103,16 @@ LINE_KEY: Final = ["fsn_nr", "roeiers", "klasse", "lege doft"]
 CODE_FIELD: Final = Field(
     CODE_HEADER, "verification_code", "string", "hash van invoer, methode en getallen van de regel"
 )
+WITHDRAWN_FIELD: Final = Field(
+    "fout te zien vanaf [%]",
+    "unseen_error_ratio",
+    "number",
+    "kleinste fout in Cw die zou opvallen; ingetrokken",
+    0,
+    100.0,
+)
+"""What sheets of editions up to version 1.0.0 have; its promise did not hold."""
+
 SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 """The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
 

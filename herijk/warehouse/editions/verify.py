@@ -245,9 +245,10 @@ def _expected_csv(path: Place) -> sheets.Cells:
 
 
 def _register(path: Place) -> tuple[pl.DataFrame, list[sheets.Field]]:
-    """The register of an edition, and the columns of its sheets, of which older ones have fewer."""
+    """The register of an edition, and the columns of its sheets: older ones have one more."""
     register = read_table(path, "register")
-    return register, [one for one in sheets.SHEET_FIELDS if one.column in register.columns]
+    fields = [*sheets.REGISTER_FIELDS, sheets.WITHDRAWN_FIELD, sheets.CODE_FIELD]
+    return register, [one for one in fields if one.column in register.columns]
 
 
 def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, str]]:
