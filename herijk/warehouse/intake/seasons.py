@@ -31,7 +31,7 @@ from herijk.warehouse.archive import (
 from herijk.warehouse.archive.files.hashes import RACY_SECONDS
 from herijk.warehouse.archive.profile.reading import read_profiles
 from herijk.warehouse.intake import lake
-from herijk.warehouse.store.code import FAULTS_IN_DUTCH, code_hash
+from herijk.warehouse.store.code import READING, code_hash
 from herijk.warehouse.store.store import Store, fingerprint
 
 LISTED: Final = ("boats", "tows", "runs", "windows")
@@ -93,7 +93,7 @@ def _seen(root: Path) -> str:
         path: (stat.st_mode, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns)
         for path, stat in stats.items()
     }
-    return fingerprint(str(root.resolve()), files, code_hash(__name__, FAULTS_IN_DUTCH))
+    return fingerprint(str(root.resolve()), files, code_hash(*READING))
 
 
 def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:

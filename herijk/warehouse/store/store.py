@@ -21,10 +21,12 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.machine_faults import is_machine_fault
 from herijk.warehouse.store.storage import Locations, Place, place, read_locations, written_whole
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
+CONTENTS_KEY: Final = "herijk.contents"
 _FOOTER_BYTES: Final = 1 << 16
 """Enough for most footers, so that one request brings them."""
 
@@ -117,16 +119,24 @@ class Store:
 
     def made_from(self, table: str, partition: str | None = None) -> str | None:
         """Fingerprint of what a table was made from; None if it is not there or is damaged."""
+        return self._said(table, partition).get(FINGERPRINT_KEY)
+
+    def contents(self, table: str, partition: str | None = None) -> str | None:
+        """Hash of what is in a table: equal for equal tables, whatever they were made from."""
+        return self._said(table, partition).get(CONTENTS_KEY)
+
+    def _said(self, table: str, partition: str | None) -> dict[str, str]:
+        """What the file of a table says of itself; nothing if it is not there or is damaged."""
         path = self.table_path(table, partition)
         if not path.exists():
-            return None
+            return {}
         try:
-            stored = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
-            return None if stored is None else bytes(stored).decode()
+            said = _footer(path).metadata or {}
+            return {key.decode(): value.decode() for key, value in said.items()}
         except _UNREADABLE as error:
             if is_machine_fault(error):
                 raise
-            return None
+            return {}
 
     def remove(self, table: str, partition: str) -> None:
         """Removes a partition whose season or method is no more."""
@@ -240,13 +250,16 @@ def write_parquet(
         form: how it is packed, in the words of Arrow; None for the form of tables.
     """
     table = frame.to_arrow()
-    with written_whole(path) as target:
-        pq.write_table(
-            pa.Table.from_arrays(table.columns, schema=_tight_schema(table, metadata)),
-            target,
-            write_page_checksum=True,
-            **(_table_form(table.schema) if form is None else form),
-        )
+    tight = pa.Table.from_arrays(table.columns, schema=_tight_schema(table))
+    packed = _table_form(table.schema) if form is None else form
+    with (
+        written_whole(path) as target,
+        pq.ParquetWriter(target, tight.schema, write_page_checksum=True, **packed) as writer,
+    ):
+        writer.write_table(tight)
+        if metadata is not None:
+            hashed = fingerprint(str(frame.schema), file_sha256(target))  # all but the footer
+            writer.add_key_value_metadata(metadata | {CONTENTS_KEY: hashed})
 
 
 def _table_form(schema: pa.Schema) -> dict[str, object]:
@@ -260,7 +273,7 @@ def _table_form(schema: pa.Schema) -> dict[str, object]:
     }
 
 
-def _tight_schema(table: pa.Table, metadata: dict[str, str] | None) -> pa.Schema:
+def _tight_schema(table: pa.Table) -> pa.Schema:
     """Columns without gaps as columns that cannot have any: these are read in half the time."""
     columns = zip(table.schema, table.columns, strict=True)
-    return pa.schema([f.with_nullable(c.null_count > 0) for f, c in columns], metadata)
+    return pa.schema([f.with_nullable(c.null_count > 0) for f, c in columns])
