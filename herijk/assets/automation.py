@@ -12,7 +12,7 @@ from pydantic import Field
 from herijk.assets.notify import Notifier
 from herijk.assets.rebuild import rebuild
 from herijk.assets.report import failed_checks, tell, tell_failure
-from herijk.assets.resources import Setup
+from herijk.assets.resources import LogProgress, Setup
 from herijk.assets.settings import Settings
 from herijk.pipeline.errors import (
     HerijkError,
@@ -33,26 +33,6 @@ TRY_AGAIN_S = 300
 TRIES = 3
 
 
-class LogProgress:
-    """Progress as lines in the log of a run."""
-
-    def __init__(self, context: dg.OpExecutionContext) -> None:
-        self._log = context.log
-
-    def expect(self, tows: int) -> None:
-        """How many tows will be read."""
-        self._log.info(f"{tows} tows to read")
-
-    def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        """A tow was read; only one set aside is worth a line."""
-        if set_aside:
-            self._log.warning(f"{tow_id} is set aside")
-
-    def step(self, what: str) -> None:
-        """A step begins."""
-        self._log.info(what)
-
-
 class Which(dg.Config):
     """Seasons to read; none for all."""
 
@@ -67,7 +47,7 @@ def rebuild_archive(
     notifier: dg.ResourceParam[Notifier],
 ) -> None:
     """The whole rebuild, as `herijk rebuild` does it."""
-    progress = LogProgress(context)
+    progress = LogProgress(context.log)
     data, seasons = Path(setup.data), config.seasons or None
     try:
         report = rebuild(setup.archive_root, data, setup.methods, progress, seasons)
@@ -77,8 +57,6 @@ def rebuild_archive(
         raise _failure(notifier, error) from error
     except Exception as error:  # whatever it is, it is told
         raise _failure(notifier, error) from error
-    # The archive was looked through, which counts for its freshness also when nothing changed.
-    context.log_event(dg.AssetMaterialization("archive_index"))
     for line in [*report.headlines, *tell(notifier, report)]:
         context.log.info(line)
     context.add_output_metadata(
@@ -114,7 +92,6 @@ def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
     common: dict[str, Any] = {
         "job": rebuild_job,
         "execution_timezone": settings.timezone,
-        "default_status": dg.DefaultScheduleStatus.RUNNING,
     }
     return [
         dg.ScheduleDefinition(name="nightly", cron_schedule=settings.nightly, **common),
@@ -139,7 +116,6 @@ def archive_sensor(archive: Path) -> dg.SensorDefinition:
         evaluation_fn=look,
         job=rebuild_job,
         minimum_interval_seconds=60,
-        default_status=dg.DefaultSensorStatus.RUNNING,
     )
 
 

@@ -1,12 +1,12 @@
 """What Dagster's page shows of a table besides its columns: its first rows, and its page."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 import dagster as dg
 import polars as pl
 
-from herijk.warehouse.build.step import FIRST_ROWS
+FIRST_ROWS: Final = 20
 
 PAGES: Final[Mapping[str, str]] = {
     "site": "index.html",
@@ -34,9 +34,9 @@ def columns_of(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
     return {"dagster/column_schema": dg.TableSchema(columns)}
 
 
-def preview(table: str, frame: pl.DataFrame) -> dict[str, dg.MetadataValue]:
+def preview(table: str, read: Callable[[], pl.DataFrame]) -> dict[str, dg.MetadataValue]:
     """The first rows of a table that people look for; nothing of others."""
-    if table not in PAGES or frame.is_empty():
+    if table not in PAGES or (frame := read()).is_empty():
         return {}
     with pl.Config(
         tbl_formatting="MARKDOWN",

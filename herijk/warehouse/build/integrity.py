@@ -12,7 +12,7 @@ from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.inputs import IN_DATABASE, PER_METHOD
 from herijk.warehouse.build.studies import ladders_that_do_not_multiply
 from herijk.warehouse.store.database import open_database
-from herijk.warehouse.store.store import Store, count_rows
+from herijk.warehouse.store.store import Store
 
 
 def schema_faults(store: Store) -> list[str]:
@@ -63,8 +63,8 @@ def broken_ladders(store: Store, methods: Sequence[Method]) -> list[str]:
 
 def _rows_in_lake(store: Store, name: str, methods: Sequence[Method]) -> int:
     if name not in PER_METHOD:
-        return count_rows(store.table_path(name))
-    return sum(count_rows(store.table_path(name, m.name)) for m in methods)
+        return store.count_rows(name)
+    return sum(store.count_rows(name, m.name) for m in methods)
 
 
 def set_aside_tows(store: Store) -> tuple[int, int]:

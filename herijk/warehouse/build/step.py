@@ -20,7 +20,7 @@ from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.build.archive_tables import NothingSoundError
 from herijk.warehouse.build.border import failed_tows
 from herijk.warehouse.build.database import database_without_tows
-from herijk.warehouse.build.inputs import ARCHIVE_TABLES, Scope, argument, state
+from herijk.warehouse.build.inputs import ARCHIVE_TABLES, IN_DATABASE, Scope, argument, state
 from herijk.warehouse.store.code import COMPUTING, code_hash
 from herijk.warehouse.store.store import Store, fingerprint
 from herijk.warehouse.store.unforeseen import forget, is_unforeseen, note, traced
@@ -59,6 +59,11 @@ class Step:
     def inputs(self) -> tuple[str, ...]:
         """What the step reads, as `warehouse.build.inputs` knows it."""
         return tuple(inspect.signature(self.compute).parameters)
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """The tables among them."""
+        return frozenset((*self.inputs, *(IN_DATABASE if "all_tables" in self.inputs else ())))
 
     @property
     def per_method(self) -> bool:

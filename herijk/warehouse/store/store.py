@@ -125,6 +125,10 @@ class Store:
         """Hash of what is in a table: equal for equal tables, whatever they were made from."""
         return self._said(table, partition).get(CONTENTS_KEY)
 
+    def count_rows(self, table: str, partition: str | None = None) -> int:
+        """Rows of a table or partition; raises as `read_parquet`."""
+        return count_rows(self.table_path(table, partition))
+
     def _said(self, table: str, partition: str | None) -> dict[str, str]:
         """What the file of a table says of itself; nothing if it is not there or is damaged."""
         path = self.table_path(table, partition)

@@ -1,0 +1,55 @@
+"""Everything that Dagster is given of an archive and a data folder."""
+
+from pathlib import Path
+from typing import Final
+
+import dagster as dg
+
+from herijk.assets import archive, automation, checks
+from herijk.assets.notify import notifier_of
+from herijk.assets.progress import Progress
+from herijk.assets.resources import Setup, progress_in_log
+from herijk.assets.settings import Settings
+from herijk.assets.shown import with_site
+from herijk.assets.site import site
+from herijk.assets.tables import STEP_ASSETS
+
+ASSETS: Final = [
+    *archive.OUTSIDE_SPECS,
+    archive.archive_index,
+    archive.samples,
+    archive.blocks,
+    *STEP_ASSETS,
+    site,
+]
+
+
+def assets_of(
+    setup: Setup, progress: Progress | dg.ResourceDefinition = progress_in_log, address: str = ""
+) -> dg.Definitions:
+    """Assets and checks, made one after the other in one process: it holds the lock.
+
+    Args:
+        setup: the folders and the methods.
+        progress: is told how far it is.
+        address: where the site is served, if it is: assets link to their pages.
+    """
+    return dg.Definitions(
+        assets=with_site(ASSETS, address) if address else ASSETS,
+        asset_checks=[checks.of_the_whole],
+        resources={"setup": setup, "progress": progress},
+        executor=dg.in_process_executor,
+    )
+
+
+def build_defs(archive: str, data: str, settings: Settings, address: str = "") -> dg.Definitions:
+    """The same, with the job of a rebuild, and what starts it when nobody asks."""
+    notifier = notifier_of(data, settings)
+    setup = Setup.of(Path(archive), Path(data), settings.applied, settings)
+    by_itself = dg.Definitions(
+        jobs=[automation.rebuild_job],
+        schedules=automation.schedules(settings),
+        sensors=[automation.archive_sensor(Path(archive))],
+        resources={"notifier": dg.ResourceDefinition.hardcoded_resource(notifier)},
+    )
+    return dg.Definitions.merge(assets_of(setup, address=address), by_itself)
