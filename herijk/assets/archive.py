@@ -171,9 +171,7 @@ def _most_tows_sound(store: Store) -> dg.AssetCheckResult:
     metadata=columns_of(BLOCK_SCHEMA),
     **BY_SEASON,
 )
-def blocks(
-    context: dg.AssetExecutionContext, setup: Setup
-) -> Iterator[dg.MaterializeResult]:
+def blocks(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """Sums over each second of each run of seasons."""
     store = setup.store
     asked, collected = [int(season) for season in context.partition_keys], set()

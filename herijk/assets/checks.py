@@ -17,7 +17,9 @@ from herijk.warehouse.queries.change_report import change_report
 ERROR, WARN = dg.AssetCheckSeverity.ERROR, dg.AssetCheckSeverity.WARN
 
 
-def _result(wrong: Sequence[object], severity: dg.AssetCheckSeverity = ERROR) -> dg.AssetCheckResult:
+def _result(
+    wrong: Sequence[object], severity: dg.AssetCheckSeverity = ERROR
+) -> dg.AssetCheckResult:
     """Passed where nothing is wrong; else with the first twenty rows or sentences of it."""
     lines = [" ".join(map(str, w)) if isinstance(w, tuple) else str(w) for w in wrong[:20]]
     found = {"number": len(wrong), "first": dg.MetadataValue.json(lines)}

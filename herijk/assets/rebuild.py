@@ -17,7 +17,6 @@ from herijk.assets.site_state import SITE_TABLE, site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.warehouse.build.graph import DATABASE, STEPS
-from herijk.warehouse.build.inputs import IN_DATABASE
 from herijk.warehouse.build.mending import mending
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.queries.change_report import is_reported

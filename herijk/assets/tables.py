@@ -45,9 +45,7 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         description=step.compute.__doc__,
         specs=[_spec(step, table) for table in step.outputs],
     )
-    def asset(
-        setup: Setup, progress: dg.ResourceParam[Progress]
-    ) -> Iterator[dg.MaterializeResult]:
+    def asset(setup: Setup, progress: dg.ResourceParam[Progress]) -> Iterator[dg.MaterializeResult]:
         yield from make(step, setup, progress)
 
     return asset

@@ -67,9 +67,7 @@ def archive_tables(
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
     known = [name for name in Faults.column_names() if name in index.columns]
     unsound = index.drop_nulls("reason_code").select(known)
-    set_aside = pl.concat(
-        [list_faults, beyond, unsound, losses, contradicted], how="diagonal"
-    )
+    set_aside = pl.concat([list_faults, beyond, unsound, losses, contradicted], how="diagonal")
     tables = {
         "boats": listed_boats.unique("fsn_no", keep="last", maintain_order=True),
         "seasons": _seasons(season_tows, sound, losses),

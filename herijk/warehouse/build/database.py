@@ -49,7 +49,9 @@ def database_without_tows(store: Store, tables: Mapping[str, pl.DataFrame]) -> N
     if not store.database.exists():
         empty = {name: schema.create_empty() for name, schema in TABLES.items()}
         known = {name: conform(name, frame) for name, frame in tables.items()}
-        build_database(store.database, {**empty, **known, "about": _about(store.read("about_archive"))})
+        build_database(
+            store.database, {**empty, **known, "about": _about(store.read("about_archive"))}
+        )
 
 
 def _about(about_archive: pl.DataFrame) -> pl.DataFrame:

@@ -114,9 +114,7 @@ class Blocks:
 
     def of_runs(self, runs: pl.DataFrame) -> RunBlocks:
         """The blocks of runs, their sums read when they are asked for."""
-        return stack_blocks(
-            self.columns(*PLACE), runs, lambda name: self.columns(name)[name]
-        )
+        return stack_blocks(self.columns(*PLACE), runs, lambda name: self.columns(name)[name])
 
 
 @dataclass(frozen=True)
@@ -206,7 +204,9 @@ def _cache_of(_: str) -> RunCache:
 def _rules(scope: Scope) -> object:
     """What a register takes from methods, beside what they compute."""
     said = [(m.validity, m.title, m.title_en, m.interval) for m in scope.methods]
-    return [(m.name, m.content_hash, str(rules)) for m, rules in zip(scope.methods, said, strict=True)]
+    return [
+        (m.name, m.content_hash, str(rules)) for m, rules in zip(scope.methods, said, strict=True)
+    ]
 
 
 OTHERS: Final[Mapping[str, Other]] = {

@@ -161,7 +161,9 @@ def damaged_seasons(store: Store) -> list[int]:
     return [
         season
         for season in listed_seasons(store)
-        if 0 < sum(store.made_from(t, str(season)) is None for t in SEASON_TABLES) < len(SEASON_TABLES)
+        if 0
+        < sum(store.made_from(t, str(season)) is None for t in SEASON_TABLES)
+        < len(SEASON_TABLES)
     ]
 
 
