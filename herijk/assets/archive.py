@@ -1,10 +1,10 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
 import datetime as dt
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import dagster as dg
 import polars as pl
@@ -43,16 +43,8 @@ OUTSIDE_SPECS: Final = [
     for name, meaning in OUTSIDE.items()
 ]
 
-ABOUT: Final = {
-    "group_name": "archive",
-    "kinds": {"parquet"},
-    "owners": ["team:archive"],
-    "tags": {"herijk/subject": "archive"},
-}
-BY_SEASON: Final = {
-    "partitions_def": SEASONS,
-    **ABOUT,
-}
+OWNERS: Final = ["team:archive"]
+SUBJECT: Final = {"herijk/subject": "archive"}
 LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
     warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
 )
@@ -66,7 +58,10 @@ LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
             code_version=code_hash(*READING),
             description=f"{name}: of the lists of the archive",
             freshness_policy=LOOKED_AT if name == "listed_files" else None,
-            **ABOUT,
+            group_name="archive",
+            kinds={"parquet"},
+            owners=OWNERS,
+            tags=SUBJECT,
         )
         for name in intake.INDEXED
     ]
@@ -110,7 +105,11 @@ def _observed(name: str, state: object, partition: str | None = None) -> dg.Asse
     code_version=code_hash(*READING, *ADDING),
     check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
     metadata=columns_of(SAMPLE_SCHEMA),
-    **BY_SEASON,
+    partitions_def=SEASONS,
+    group_name="archive",
+    kinds={"parquet"},
+    owners=OWNERS,
+    tags=SUBJECT,
 )
 def samples(
     context: dg.AssetExecutionContext, setup: Setup, progress: dg.ResourceParam[Progress]
@@ -169,7 +168,11 @@ def _most_tows_sound(store: Store) -> dg.AssetCheckResult:
     deps=[samples],
     code_version=code_hash(*ADDING),
     metadata=columns_of(BLOCK_SCHEMA),
-    **BY_SEASON,
+    partitions_def=SEASONS,
+    group_name="archive",
+    kinds={"parquet"},
+    owners=OWNERS,
+    tags=SUBJECT,
 )
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """Sums over each second of each run of seasons."""
@@ -191,7 +194,7 @@ def blocks(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.Mater
 
 
 def _record(
-    context: dg.AssetExecutionContext, season: int, state: object, metadata: dict[str, object]
+    context: dg.AssetExecutionContext, season: int, state: object, metadata: Mapping[str, Any]
 ) -> None:
     """Records a season once more, with a version of its own: a result has one for a whole range."""
     key, partition = context.asset_key, str(season)

@@ -22,8 +22,11 @@ def _result(
 ) -> dg.AssetCheckResult:
     """Passed where nothing is wrong; else with the first twenty rows or sentences of it."""
     lines = [" ".join(map(str, w)) if isinstance(w, tuple) else str(w) for w in wrong[:20]]
-    found = {"number": len(wrong), "first": dg.MetadataValue.json(lines)}
-    return dg.AssetCheckResult(passed=not wrong, severity=severity, metadata=found)
+    return dg.AssetCheckResult(
+        passed=not wrong,
+        severity=severity,
+        metadata={"number": len(wrong), "first": dg.MetadataValue.json(lines)},
+    )
 
 
 def tables_fit_their_schemas(setup: Setup) -> dg.AssetCheckResult:

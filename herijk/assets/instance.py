@@ -66,9 +66,8 @@ def _note(done: Done, made: dg.AssetMaterialization, methods: Sequence[str]) -> 
     match made.asset_key.to_user_string():
         case "samples":
             done.seasons = sorted({*done.seasons, int(str(made.partition))})
-        case "curves":
-            applied = {*done.methods, *new.value}
-            done.methods = [name for name in methods if name in applied]
+        case "curves" if isinstance(new.value, list):
+            done.methods = [name for name in methods if name in (*done.methods, *new.value)]
         case "warehouse_database":
             done.database = True
 

@@ -1,7 +1,8 @@
 """The steps of a build as assets: what `warehouse.build.graph` declares, as Dagster sees it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from typing import Final
 
 import dagster as dg
 
@@ -25,13 +26,13 @@ ARCHIVE, METHOD, PUBLISHER = "team:archive", "team:method", "team:register"
 """Who answers for a table."""
 OWNERS = {"archive": ARCHIVE} | dict.fromkeys(("method", "studies", "lines", "consistency"), METHOD)
 
-READ_AS = {
-    **dict.fromkeys(SEASON_TABLES, ["samples"]),
-    "blocks": ["blocks"],
-    "method": ["method_options"],
-    "first_method": ["method_options"],
-    "methods": ["method_options", "register_rules"],
-    "all_tables": list(IN_DATABASE),
+READ_AS: Final[Mapping[str, Sequence[str]]] = {
+    **dict.fromkeys(SEASON_TABLES, ("samples",)),
+    "blocks": ("blocks",),
+    "method": ("method_options",),
+    "first_method": ("method_options",),
+    "methods": ("method_options", "register_rules"),
+    "all_tables": IN_DATABASE,
     **dict.fromkeys(("run_cache", "quarantine_before", "today", "store"), ()),
 }
 """The assets behind what a step reads, where that is no asset of the same name."""
@@ -53,7 +54,8 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
 
 def make(step: Step, setup: Setup, progress: Progress) -> Iterator[dg.MaterializeResult]:
     """Makes the tables of a step, or confirms them where what they are made of is unchanged."""
-    store, methods, new = setup.store, setup.chosen_methods, []
+    store, methods = setup.store, setup.chosen_methods
+    new: list[str] = []
 
     def work() -> None:
         stale = step.stale(store, methods)
@@ -65,14 +67,14 @@ def make(step: Step, setup: Setup, progress: Progress) -> Iterator[dg.Materializ
     mending(store, work, again=partial(catch_up, store, setup.archive_root, methods, step))
     scope = Scope(store, methods)
     for table in step.outputs:
-        partitions = scope.partitions(table) or [None]
+        partitions: Sequence[str | None] = scope.partitions(table) or [None]
         yield dg.MaterializeResult(
             asset_key=table,
             data_version=dg.DataVersion(fingerprint(state_of_table(scope, table))),
             metadata={
                 "dagster/row_count": sum(store.count_rows(table, p) for p in partitions),
                 "new": list(dict.fromkeys(new)),
-                **preview(table, lambda table=table: read_table(scope, table)),
+                **preview(table, partial(read_table, scope, table)),
             },
         )
 
@@ -100,7 +102,7 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
 
 def _assets_read(step: Step) -> Iterator[str]:
     for name in step.inputs:
-        yield from READ_AS.get(name, [name])
+        yield from READ_AS.get(name, (name,))
 
 
 def _dep(asset: str) -> dg.AssetDep:

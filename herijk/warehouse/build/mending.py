@@ -1,4 +1,4 @@
-"""What a rebuild mends by itself, and goes on: damaged files, tows we fail on, a changed archive."""
+"""What a rebuild mends by itself: damaged files, tows we fail on, an archive that changed."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
