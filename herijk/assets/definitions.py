@@ -3,8 +3,27 @@
 import os
 from pathlib import Path
 
-from herijk.assets.location import build_defs
-from herijk.assets.settings import read_settings
+import dagster as dg
+
+from herijk.assets import automation
+from herijk.assets.location import assets_of
+from herijk.assets.notify import notifier_of
+from herijk.assets.resources import Setup
+from herijk.assets.settings import Settings, read_settings
+
+
+def build_defs(archive: str, data: str, settings: Settings, address: str = "") -> dg.Definitions:
+    """The same, with the job of a rebuild, and what starts it when nobody asks."""
+    notifier = notifier_of(data, settings)
+    setup = Setup.of(Path(archive), Path(data), settings.applied, settings)
+    by_itself = dg.Definitions(
+        jobs=[automation.rebuild_job],
+        schedules=automation.schedules(settings),
+        sensors=[automation.archive_sensor(Path(archive))],
+        resources={"notifier": dg.ResourceDefinition.hardcoded_resource(notifier)},
+    )
+    return dg.Definitions.merge(assets_of(setup, address=address), by_itself)
+
 
 defs = build_defs(
     os.environ.get("HERIJK_ARCHIVE", "archive"),

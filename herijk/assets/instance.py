@@ -14,9 +14,9 @@ import yaml  # type: ignore[import-untyped]
 from herijk.assets.archive import SEASONS
 from herijk.assets.location import assets_of
 from herijk.assets.progress import Progress
-from herijk.assets.rebuild import Stale
 from herijk.assets.report import Done
 from herijk.assets.resources import QUIET_LOG, Setup
+from herijk.assets.stale import Stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.files import written_beside

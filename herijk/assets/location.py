@@ -1,20 +1,18 @@
-"""Everything that Dagster is given of an archive and a data folder."""
+"""The assets and checks of an archive and a data folder."""
 
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Final
 
 import dagster as dg
 
-from herijk.assets import archive, automation, checks
-from herijk.assets.notify import notifier_of
+from herijk.assets import archive, checks
 from herijk.assets.progress import Progress
 from herijk.assets.resources import Setup, progress_in_log
-from herijk.assets.settings import Settings
 from herijk.assets.shown import with_site
 from herijk.assets.site import site
 from herijk.assets.tables import STEP_ASSETS
 
-ASSETS: Final = [
+ASSETS: Final[Sequence[dg.AssetsDefinition | dg.AssetSpec]] = [
     *archive.OUTSIDE_SPECS,
     archive.archive_index,
     archive.samples,
@@ -40,16 +38,3 @@ def assets_of(
         resources={"setup": setup, "progress": progress},
         executor=dg.in_process_executor,
     )
-
-
-def build_defs(archive: str, data: str, settings: Settings, address: str = "") -> dg.Definitions:
-    """The same, with the job of a rebuild, and what starts it when nobody asks."""
-    notifier = notifier_of(data, settings)
-    setup = Setup.of(Path(archive), Path(data), settings.applied, settings)
-    by_itself = dg.Definitions(
-        jobs=[automation.rebuild_job],
-        schedules=automation.schedules(settings),
-        sensors=[automation.archive_sensor(Path(archive))],
-        resources={"notifier": dg.ResourceDefinition.hardcoded_resource(notifier)},
-    )
-    return dg.Definitions.merge(assets_of(setup, address=address), by_itself)

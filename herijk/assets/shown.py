@@ -51,7 +51,9 @@ def preview(table: str, read: Callable[[], pl.DataFrame]) -> dict[str, dg.Metada
         return {"preview": dg.MetadataValue.md(str(frame.head(FIRST_ROWS)))}
 
 
-def with_site(assets: Sequence[dg.AssetsDefinition], address: str) -> Sequence[dg.AssetsDefinition]:
+def with_site(
+    assets: Sequence[dg.AssetsDefinition | dg.AssetSpec], address: str
+) -> Sequence[dg.AssetsDefinition | dg.AssetSpec]:
     """Assets that link to their pages of the site, where it is served."""
     return dg.map_asset_specs(
         lambda spec: spec.merge_attributes(metadata=_link(spec.key, address)), assets

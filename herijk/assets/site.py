@@ -6,10 +6,10 @@ from typing import Final
 import dagster as dg
 import polars as pl
 
+from herijk.assets import workers
 from herijk.assets.progress import Progress
 from herijk.assets.resources import Setup
 from herijk.assets.site_state import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
-from herijk.assets.workers import workers
 from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.code import code_hash
@@ -47,7 +47,7 @@ def make_site(setup: Setup) -> None:
     """Makes the pages, with pictures drawn by other processes, and remembers from what."""
     from herijk.dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
 
-    build_site(setup.store, workers(setup.dask))
+    build_site(setup.store, workers.workers(setup.dask))
     setup.store.write(SITE_TABLE, pl.DataFrame(), site_made_from(setup.store))
 
 

@@ -47,12 +47,6 @@ def workers(scheduler: str | None) -> Executor:
         raise UnavailableError("there is no Dask scheduler at {}: {}", scheduler, error) from error
 
 
-def let_go() -> None:
-    """Ends the processes, if there are any."""
-    if workers.cache_info().currsize:
-        workers.cache_clear()
-
-
 def in_parallel(
     work: Callable[[T], R], tasks: Sequence[T], scheduler: str | None = None
 ) -> Iterator[tuple[T, R]]:

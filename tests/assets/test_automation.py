@@ -13,10 +13,10 @@ import pytest
 from dagster._core.test_utils import create_test_daemon_workspace_context, freeze_time
 from dagster._core.workspace.load_target import ModuleTarget
 from dagster._daemon.sensor import execute_sensor_iteration
+from herijk.assets.runs import INSTANCE_SETTINGS
 
 from herijk.assets.automation import archive_sensor, schedules
 from herijk.assets.definitions import build_defs, defs
-from herijk.assets.runs import INSTANCE_SETTINGS
 from herijk.assets.settings import Settings
 from tests.conftest import METHODS
 

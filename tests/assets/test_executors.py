@@ -2,10 +2,10 @@
 
 import dagster as dg
 import pytest
+from herijk.assets.runs import prepare_home
 
 from herijk.assets import checks
 from herijk.assets.definitions import build_defs
-from herijk.assets.runs import prepare_home
 from herijk.assets.settings import Settings
 from herijk.warehouse.build.graph import STEPS
 from tests.assets.test_rebuild import assert_same_tables
