@@ -82,8 +82,11 @@ def rebuild_job() -> None:
     rebuild_archive()
 
 
-def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
-    """Everything, every night; and in the months of towing, the season of that year."""
+def schedules(settings: Settings, is_served: bool) -> list[dg.ScheduleDefinition]:
+    """Everything, every night; and in the months of towing, the season of that year.
+
+    They run where `herijk serve` serves; anybody else has to switch them on.
+    """
 
     def of_the_year(context: dg.ScheduleEvaluationContext) -> dict[str, Any]:
         season = context.scheduled_execution_time.year
@@ -92,6 +95,9 @@ def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
     common: dict[str, Any] = {
         "job": rebuild_job,
         "execution_timezone": settings.timezone,
+        "default_status": dg.DefaultScheduleStatus.RUNNING
+        if is_served
+        else dg.DefaultScheduleStatus.STOPPED,
     }
     return [
         dg.ScheduleDefinition(name="nightly", cron_schedule=settings.nightly, **common),
@@ -101,7 +107,7 @@ def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
     ]
 
 
-def archive_sensor(archive: Path) -> dg.SensorDefinition:
+def archive_sensor(archive: Path, is_served: bool) -> dg.SensorDefinition:
     """The sensor that asks for a rebuild when the files of the archive change."""
 
     def look(context: dg.SensorEvaluationContext) -> dg.SensorResult | dg.SkipReason:
@@ -116,6 +122,9 @@ def archive_sensor(archive: Path) -> dg.SensorDefinition:
         evaluation_fn=look,
         job=rebuild_job,
         minimum_interval_seconds=60,
+        default_status=dg.DefaultSensorStatus.RUNNING
+        if is_served
+        else dg.DefaultSensorStatus.STOPPED,
     )
 
 

@@ -18,8 +18,8 @@ def build_defs(archive: str, data: str, settings: Settings, address: str = "") -
     setup = Setup.of(Path(archive), Path(data), settings.applied, settings)
     by_itself = dg.Definitions(
         jobs=[automation.rebuild_job],
-        schedules=automation.schedules(settings),
-        sensors=[automation.archive_sensor(Path(archive))],
+        schedules=automation.schedules(settings, bool(address)),
+        sensors=[automation.archive_sensor(Path(archive), bool(address))],
         resources={"notifier": dg.ResourceDefinition.hardcoded_resource(notifier)},
     )
     return dg.Definitions.merge(assets_of(setup, address=address), by_itself)

@@ -8,7 +8,7 @@ import polars as pl
 import pytest
 
 from herijk.tables.schemas import ABOUT, TABLES
-from herijk.warehouse.build.graph import LAKE_ONLY
+from herijk.warehouse.build.inputs import LAKE_ONLY
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.package import Origin, Rights, package_is_whole, write_package
 from tests.conftest import Workbench

@@ -20,7 +20,14 @@ from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.build.archive_tables import NothingSoundError
 from herijk.warehouse.build.border import failed_tows
 from herijk.warehouse.build.database import database_without_tows
-from herijk.warehouse.build.inputs import ARCHIVE_TABLES, IN_DATABASE, Scope, argument, state
+from herijk.warehouse.build.inputs import (
+    ARCHIVE_TABLES,
+    IN_DATABASE,
+    OTHERS,
+    Scope,
+    argument,
+    state,
+)
 from herijk.warehouse.store.code import COMPUTING, code_hash
 from herijk.warehouse.store.store import Store, fingerprint
 from herijk.warehouse.store.unforeseen import forget, is_unforeseen, note, traced
@@ -63,7 +70,8 @@ class Step:
     @cached_property
     def reads(self) -> frozenset[str]:
         """The tables among them."""
-        return frozenset((*self.inputs, *(IN_DATABASE if "all_tables" in self.inputs else ())))
+        tables = {name for name in self.inputs if name == "blocks" or name not in OTHERS}
+        return frozenset(tables | {*(IN_DATABASE if "all_tables" in self.inputs else ())})
 
     @property
     def per_method(self) -> bool:

@@ -4,6 +4,7 @@ What a page or command says of many tows together is in a table too. The sums ar
 `pipeline.studies.summaries`, `pipeline.studies.claims` and `pipeline.register.replay`.
 """
 
+from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
@@ -16,9 +17,9 @@ from herijk.tables.register import RaceChanges
 EDITIONS: Final = ("from_edition", "to_edition")
 
 
-def season_changes(curves: pl.DataFrame, first_method: Method) -> dict[str, pl.DataFrame]:
+def season_changes(curves: pl.DataFrame, methods: Sequence[Method]) -> dict[str, pl.DataFrame]:
     """What each method changes in each season, compared with the first."""
-    return {"season_changes": summaries.season_changes(curves, first_method.name)}
+    return {"season_changes": summaries.season_changes(curves, methods[0].name)}
 
 
 def season_ladder(correction_steps: pl.DataFrame, tows: pl.DataFrame) -> dict[str, pl.DataFrame]:
