@@ -45,8 +45,7 @@ def look(
         if others or not again.isdisjoint(step.reads) or step.stale(store, methods):
             again.update(step.outputs)
             made += step.outputs
-    is_unreported = not is_reported(store)
-    if is_unreported and not again.intersection(DATABASE.outputs):
+    if again.isdisjoint(DATABASE.outputs) and not is_reported(store):
         made += DATABASE.outputs
     if made or site_is_stale(store):
         made += [*intake.INDEXED, SITE_TABLE]
