@@ -25,7 +25,7 @@ def main(host: str, port: str, rights: str) -> None:
         with listen(host, int(port)) as listening:
             guarded(app, host).run(sockets=[listening])
 
-    command = create_dagster_webserver_cli()
+    command = create_dagster_webserver_cli()  # type: ignore[no-untyped-call]
     arguments = ["-m", "herijk.assets.definitions", "-h", host, "-p", port]
     # It hands its application to Uvicorn: the only place where a guard can be put before it.
     with mock.patch("uvicorn.run", behind_the_guard):

@@ -9,6 +9,7 @@ from pathlib import Path
 import dagster as dg
 import pytest
 from dagster._core.definitions.data_version import CachingStaleStatusResolver
+from dagster._core.loader import LoadingContextForTest
 from polars.testing import assert_frame_equal
 
 import herijk.assets.instance
@@ -69,7 +70,7 @@ def stale_in_dagster(instance, bench, methods=METHODS):
     """Assets, or seasons of them, that Dagster calls stale."""
     setup = Setup.of(bench.archive, bench.data, methods, Settings())
     graph = assets_of(setup).resolve_asset_graph()
-    resolver = CachingStaleStatusResolver(instance, graph)
+    resolver = CachingStaleStatusResolver(instance, graph, LoadingContextForTest(instance))
     found = set()
     for key in graph.materializable_asset_keys:
         seasons = map(str, SMALL.seasons) if graph.get(key).is_partitioned else (None,)
