@@ -70,12 +70,11 @@ def rebuild_archive(
     progress = LogProgress(context)
     data, seasons = Path(setup.data), config.seasons or None
     try:
-        report = rebuild(setup.archive_root, data, setup.methods, progress, seasons)
-    except UnavailableError as error:
-        if context.retry_number < TRIES:
-            raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error
-        raise _failure(notifier, error) from error
+        names = [method.name for method in setup.chosen_methods]
+        report = rebuild(setup.archive_root, data, names, progress, seasons)
     except Exception as error:  # whatever it is, it is told
+        if isinstance(error, UnavailableError) and context.retry_number < TRIES:
+            raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error
         raise _failure(notifier, error) from error
     # The archive was looked through, which counts for its freshness also when nothing changed.
     context.log_event(dg.AssetMaterialization("archive_index"))
@@ -94,8 +93,7 @@ def rebuild_archive(
 
 def _failure(notifier: Notifier, error: Exception) -> dg.Failure:
     what = str(error) if isinstance(error, HerijkError) else unexpected(error)
-    problems = tell_failure(notifier, what)
-    return dg.Failure("; ".join([what, *problems]), allow_retries=False)
+    return dg.Failure("; ".join([what, *tell_failure(notifier, what)]), allow_retries=False)
 
 
 @dg.job(name="rebuild", tags=ONE_AT_A_TIME | {"dagster/max_runtime": str(LONGEST_S)})
