@@ -67,11 +67,10 @@ def rebuild_archive(
     notifier: dg.ResourceParam[Notifier],
 ) -> None:
     """The whole rebuild, as `herijk rebuild` does it."""
-    progress = LogProgress(context)
     data, seasons = Path(setup.data), config.seasons or None
     try:
         names = [method.name for method in setup.chosen_methods]
-        report = rebuild(setup.archive_root, data, names, progress, seasons)
+        report = rebuild(setup.archive_root, data, names, LogProgress(context), seasons)
     except Exception as error:  # whatever it is, it is told
         if isinstance(error, UnavailableError) and context.retry_number < TRIES:
             raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error

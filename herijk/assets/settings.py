@@ -21,8 +21,7 @@ class Settings(BaseModel):
     """What `beheer.toml` can say.
 
     Attributes:
-        methods: names of the methods that a rebuild applies, the first to compare the others with;
-            see `warehouse.store.methods.methods_to_apply`.
+        methods: names of the methods that a rebuild applies; see `methods_to_apply`.
         nightly: when everything is looked at; a cron line.
         campaign: when the season of that year is looked at, while it is towed.
         timezone: of both.

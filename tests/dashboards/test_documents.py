@@ -15,7 +15,6 @@ from herijk.warehouse.store.methods import KnownMethods
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
 
-
 OF_TODAY = ("boats", "curves", "curve_points", "run_points", "due_list", "log_factors")
 """Tables that another rebuild makes anew."""
 

@@ -116,12 +116,15 @@ def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str
 
 def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
     say = speech.say
+    method = say(f"method.{line['method']}") if line["method"] else None
+    if line["basis"] == "printed_rebased":
+        method = f"{method} ({say('code.printed_rebased')})"
     rows = [
         ("certificate_tow", line["tow_date"]),
         ("column.valid_from", line["valid_from"]),
         ("certificate_until", line["valid_until"]),
         ("column.edition", speech.edition(line["edition"])),
-        ("column.method", say(f"method.{line['method']}") if line["method"] else None),
+        ("column.method", method),
         ("column.decision", line["decision"]),
         ("column.empty_thwart", line["empty_thwart"] or say("code.none")),
     ]

@@ -113,7 +113,8 @@ def _side_by_side(old: pl.DataFrame, new: pl.DataFrame, changes: pl.DataFrame) -
 
 def _steps(views: Views, old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """What each step does to a tow, from the method of one register to that of the other."""
-    methods = {"from_method": old["method"][0], "to_method": new["method"][0]}
+    first, last = (side.sort("tow_id", nulls_last=True)["method"][0] for side in (old, new))
+    methods = {"from_method": first, "to_method": last}
     same = old.join(new, on=[*LINE, "tow_id"], how="semi").select("tow_id")
     steps = views.table("correction_steps").filter(**methods).join(same, on="tow_id", how="semi")
     return steps.filter(pl.col("position") > 0)
