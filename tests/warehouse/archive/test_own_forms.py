@@ -174,7 +174,6 @@ def other_names(archive: Archive) -> None:
     shutil.move(root / TOWS, root / "lijsten/Proeven 2014.csv")
     (root / "ruw").mkdir()
     shutil.move(root / "meetdata_2014", root / "ruw/2014")
-    (root / "Notulen.docx").write_bytes(b"PK")
 
 
 def other_headers(archive: Archive) -> None:
@@ -228,15 +227,6 @@ def times_of_another_name(archive: Archive) -> None:
         header, *lines = path.read_text("utf-8").splitlines()
         rows = [f"{i % 1000 / 20:.2f}{line[1:]}" for i, line in enumerate(lines)]
         path.write_text("\n".join([header.replace("run;", "Tid;", 1), *rows, ""]))
-
-
-def in_a_language_nobody_knows(archive: Archive) -> None:
-    """Files and columns can be recognised by their content alone."""
-    root = archive.root
-    header = "Nummer;Alus;Nimi;Tyyppi;Pituus [m];Leveys [m];Korkeus [m];Paino [kg];Soutajat;Luokka"
-    archive.edit(BOATS, lambda text: "\n".join([header, *text.split("\n")[1:]]))
-    shutil.move(root / BOATS, root / "Veneet.csv")
-    shutil.move(root / "meetdata_2014", root / "mittaukset 2014")
 
 
 def cells_with_words(archive: Archive) -> None:
@@ -351,15 +341,6 @@ def test_without_a_column_of_ids_day_boat_and_crew_are_the_id(archive: Archive) 
     ]
 
 
-def test_files_in_a_language_nobody_knows_are_guessed_by_what_is_in_them(archive: Archive) -> None:
-    in_a_language_nobody_knows(archive)
-    checked = check_archive(archive.root)
-    lines = [p.line for cause in checked.causes for p in cause.proposals]
-    assert '[files] "Veneet.csv" = "sloependata"' in lines
-    assert '# "Veneet.csv" = "sloependata"' in str(checked.profile)
-    assert not any("ignore" in line for line in lines if "Veneet" in line)
-
-
 def test_faults_behind_a_fault_come_out_in_the_same_round(archive: Archive) -> None:
     other_channels(archive)
     archive.edit(TOWS, lambda t: t.replace(";H;", ";?;").replace(";D;", ";?;"))
@@ -411,9 +392,7 @@ def test_a_sheet_that_is_not_there_is_told_with_those_that_are(archive: Archive)
 def test_a_workbook_of_photographs_is_nothing(tmp_path: Path, archive: Archive) -> None:
     pl.DataFrame({"a": [1]}).write_csv(archive.root / "cijfers.csv")
     causes = check_archive(archive.root).causes
-    assert [(c.reason_code, c.proposals[0].line) for c in causes] == [
-        ("unrecognised_file", 'ignore = ["cijfers.csv"]')
-    ]
+    assert [(c.reason_code, c.proposals) for c in causes] == [("unrecognised_file", ())]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems refuse such names")
@@ -643,6 +622,18 @@ def test_two_headers_with_one_unit_are_not_the_same_column():
 def test_what_is_to_be_ignored_is_ignored_in_every_season(profile):
     profiles = parse_profiles(f'ignore = ["Snelheid boeg"]\n{profile}')
     assert profiles.for_season(2014).ignore == ("snelheidboeg",)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '[[profile]]\nseasons = "2014"\ncolumns.force = "pull_lbf"',
+        '[headers]\ngewicht_lbs = "gewicht"',
+    ],
+)
+def test_a_unit_that_is_hidden_in_a_name_is_refused(text):
+    with pytest.raises(MissingKnowledgeError, match="has a unit"):
+        parse_profiles(text)
 
 
 @pytest.mark.parametrize(

@@ -85,7 +85,7 @@ def _loosen(profile: Any) -> None:
     if isinstance(columns, InlineTable):
         profile.remove("columns")
         for name, value in columns.items():
-            profile.add(tomlkit.key(["columns", name]), value)
+            profile.add(tomlkit.key(["columns", name]), value.unwrap())
 
 
 def _covers(seasons: str, season: int) -> bool:

@@ -161,7 +161,8 @@ def _of_columns(keys: Sequence[str], header: Sequence[Any], season: int) -> Iter
     for key in keys:
         column = _SAMPLES[key]
         fitting = [cell for cell in header if _can_be(cell, column) and not _anothers(cell, key)]
-        near = [cell for cell in fitting if _is_like(cell, column)] or fitting
+        is_told = key != "log2" or "log1" in keys  # any speed could be it otherwise: a target
+        near = [cell for cell in fitting if _is_like(cell, column)] or fitting * is_told
         left = _own_log_first(key, [cell for cell in near if cell in free])
         if left:
             free.remove(left[0])  # of several, only a person can tell which is which
@@ -237,14 +238,10 @@ def _of_plan(_: str, values: Any, season: int) -> Iterator[Proposal]:
     yield Proposal("plan", json.dumps(list(targets)), directions, season, is_active=False)
 
 
-def _of_stranger(path: str, values: Any, _: int) -> Iterator[Proposal]:
-    """A file or folder of another name: what it can be; what can hold no data is to be ignored."""
+def _of_stranger(_: str, values: Any, __: int) -> Iterator[Proposal]:
+    """A file or folder of another name: what it can be."""
     for file, stands_for in values.get("can_be", ()):
         yield Proposal("files", file, stands_for)
-    for file, stands_for in values.get("guesses", ()):
-        yield Proposal("files", file, stands_for, is_active=False)
-    if values.get("is_other"):
-        yield Proposal("ignore", "", path)
 
 
 def _is_like(cell: str, column: Column) -> bool:
