@@ -22,10 +22,6 @@ from herijk.words import say
 
 _BY_CONTENT: Final = frozenset({"use_runs", "crew_class"})
 """Columns that need not be there, and that are recognised by their content."""
-_SELDOM: Final = frozenset(
-    {"weight_after_kg", "freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m"}
-)
-"""Columns that few lists have."""
 _DISTINCT: Final = frozenset({"tow_id", "file"})
 
 Cells = Mapping[str, Sequence[str]]
