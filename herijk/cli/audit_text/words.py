@@ -60,7 +60,7 @@ def step_of(quantity: str, explaining: str) -> tuple[float, str]:
     if quantity == "q":
         return 1000.0, "1000 kg"
     _, step, unit = AGAINST[explaining]
-    return step, unit
+    return step, tell(unit)
 
 
 def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:
@@ -150,7 +150,7 @@ def heading(facts: TypeFacts) -> str:
 
 def apart(era: Row) -> str:
     """The verdict on an era."""
-    return {True: "apart", False: tell("none seen"), None: "-"}[era["apart"]]
+    return {True: tell("apart"), False: tell("none seen"), None: "-"}[era["apart"]]
 
 
 def explained(row: Row) -> str:

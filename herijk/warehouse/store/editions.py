@@ -30,6 +30,7 @@ from herijk.tables.register import Register
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, sync
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store
+from herijk.words import say
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.bucket import BucketPath
@@ -164,7 +165,7 @@ def edition_path(store: Store, edition: str) -> Place:
         MissingKnowledgeError: there is none of that name.
     """
     if edition not in edition_names(store):
-        known = ", ".join(edition_names(store)) or "none yet"
+        known = ", ".join(edition_names(store)) or say("none yet")
         raise MissingKnowledgeError("there is no edition {}; published: {}", edition, known)
     return store.editions / edition
 

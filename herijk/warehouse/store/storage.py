@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.settings_file import read_settings_file
+from herijk.words import say
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.bucket import BucketPath
@@ -24,7 +25,7 @@ Place: TypeAlias = "Path | BucketPath"
 
 FILE_NAME: Final = "opslag.toml"
 _BUCKET: Final = r"^s3://[a-z0-9][a-z0-9.-]+(/[A-Za-z0-9._=-]+)+$"
-_MAY_HOLD: Final = "lake and editions, each as 's3://bucket/prefix' without a name or password"
+_MAY_HOLD: Final = say("lake and editions, each as 's3://bucket/prefix' without a name or password")
 
 
 class Locations(BaseModel):
