@@ -27,7 +27,6 @@ from herijk.warehouse.queries.change_report import is_reported
 from herijk.warehouse.store.lock import only_writer
 from herijk.warehouse.store.machine_faults import machine_faults_explained
 from herijk.warehouse.store.methods import KnownMethods
-from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import DamagedFileError, Store
 from herijk.warehouse.store.unforeseen import FailedTowsError, set_aside
 from herijk.words import tell
@@ -76,7 +75,7 @@ def rebuild(
 
 def _mending(store: Store, work: Callable[[], Report]) -> Report:
     """Does the work; begins again without what is damaged or fails, or when the archive changed."""
-    damaged: set[Place] = set()
+    damaged: set[Path] = set()
     rounds_left = ROUNDS
     while True:
         try:

@@ -27,18 +27,6 @@ ERRORS: Final[dict[str, str]] = {
         "om op {} te lezen is een bibliotheek nodig die ontbreekt; installeer die met: "
         "pip install 'herijk[dask]'"
     ),
-    "{} needs a library that is not there; install it with: pip install 'herijk[s3]'": (
-        "voor {} is een bibliotheek nodig die ontbreekt; installeer die met: pip install "
-        "'herijk[s3]'"
-    ),
-    "{} cannot be reached: {}. Look at the network, at AWS_ENDPOINT_URL, and at "
-    "AWS_ACCESS_KEY_ID and the rights that go with it": (
-        "{} is niet te bereiken: {}. Kijk naar het netwerk, naar AWS_ENDPOINT_URL, en naar "
-        "AWS_ACCESS_KEY_ID en de rechten die daarbij horen"
-    ),
-    "{}: there is no bucket {}; make it, or mend opslag.toml": (
-        "{}: er is geen bucket {}; maak hem, of verbeter opslag.toml"
-    ),
     "{} ended by itself with status {}; what it said is above": (
         "{} stopte vanzelf met status {}; wat het meldde staat hierboven"
     ),
@@ -176,9 +164,6 @@ ERRORS: Final[dict[str, str]] = {
     "{}: {}: {}; it may hold {}": "{}: {}: {}; er mag in staan: {}",
     "[[besluit]], each with sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
         "[[besluit]], elk met sleep_id, oordeel (uitsluiten of voorkeur), reden, wie en datum"
-    ),
-    "lake and editions, each as 's3://bucket/prefix' without a name or password": (
-        "lake en editions, elk als 's3://bucket/prefix' zonder naam of wachtwoord"
     ),
     "{}: more than one decision about {}": "{}: meer dan een besluit over {}",
     # TOML that people write
@@ -436,13 +421,6 @@ ERRORS: Final[dict[str, str]] = {
     "folder, and publish again": (
         "editie {} kon niet geschreven worden: {}. Er is niets uitgegeven; maak ruimte of "
         "herstel de map, en geef opnieuw uit"
-    ),
-    "{} is there already: somebody publishes under this name just now, or did not finish. "
-    "Nothing was published; publish under another name, or remove what lies under {} when "
-    "nobody is publishing": (
-        "{} bestaat al: iemand geeft op dit moment onder deze naam uit, of is niet "
-        "klaargekomen. Er is niets uitgegeven; kies een andere naam, of haal weg wat onder "
-        "{} ligt wanneer niemand uitgeeft"
     ),
     # Simulated archives
     "there is no world {}; there are: {}": "er is geen wereld {}; er zijn: {}",

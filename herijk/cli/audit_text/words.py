@@ -150,7 +150,7 @@ def heading(facts: TypeFacts) -> str:
 
 def apart(era: Row) -> str:
     """The verdict on an era."""
-    return {True: tell("apart"), False: tell("none seen"), None: "-"}[era["apart"]]
+    return {True: "apart", False: tell("none seen"), None: "-"}[era["apart"]]
 
 
 def explained(row: Row) -> str:

@@ -10,6 +10,7 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Final
 
 import polars as pl
@@ -68,7 +69,6 @@ from herijk.warehouse.store.editions import (
 )
 from herijk.warehouse.store.ensemble import read_ensemble
 from herijk.warehouse.store.package import Rights
-from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
 PRINTED_METHOD: Final = "as-printed"
@@ -98,7 +98,7 @@ class Terms:
     published_on: dt.date
 
 
-def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Place:
+def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Path:
     """Freezes the register of a method as an edition.
 
     Args:
@@ -125,7 +125,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
     return _write(store, edition, input_files(store, edition.tables["tows"]), texts)
 
 
-def publish_printed(store: Store, season: int, terms: Terms) -> Place:
+def publish_printed(store: Store, season: int, terms: Terms) -> Path:
     """Freezes a register of the archive, as printed that year, as an edition.
 
     Raises:
@@ -226,7 +226,7 @@ class Published:
     to_look_at: list[Row]
 
 
-def published(store: Store, folder: Place) -> Published:
+def published(store: Store, folder: Path) -> Published:
     """What there is to say about an edition that was just published."""
     edition = read_edition(store, folder.name)
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
@@ -311,7 +311,7 @@ def _complete(
     return coded
 
 
-def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Place:
+def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:
     """Writes an edition's folder as the next of the chain."""
     name = edition.about.edition
     return write_folder(
