@@ -216,8 +216,8 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
     names = dict(views.table("boats").select("fsn_no", "name").rows())
     return _part(
         say("proposal_races").format(year=last["race_date"][0].year),
-        say("proposal_moved").format(moved=moved[0], results=moved[1])
-        + stretched_fatigue(_times(views, last), speech),
+        *filter(None, [stretched_fatigue(_times(views, last), speech).strip()]),
+        say("proposal_moved").format(moved=moved[0], results=moved[1]),
         head=[
             say("column.race"),
             say("proposal_old"),
