@@ -264,10 +264,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Among the {people} {new} wins instead of {old}.",
     ),
     "fatigue_stretched": (
-        " Waar een ander wint, berust dat mede op de uitputtingscorrectie, die voor 2 tot 3 uur roeien "
-        "is gemaakt en hier ook daarbuiten is gebruikt ({low} tot {high}).",
-        " Where another wins, that rests in part on the correction for fatigue, which was made for 2 "
-        "to 3 hours and is used outside them here ({low} to {high}).",
+        " Waar een ander wint, berust dat mede op de uitputtingscorrectie, die voor 2 tot 3 uur "
+        "roeien is gemaakt en hier ook daarbuiten is gebruikt ({low} tot {high}).",
+        " Where another wins, that rests in part on the correction for fatigue, which was made for "
+        "2 to 3 hours and is used outside them here ({low} to {high}).",
     ),
     "head_no_places": (
         "Bij de {people} heeft geen van de {all} ploegen op die dag in beide edities een geldige "
