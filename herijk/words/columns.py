@@ -219,6 +219,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.confused_with": ("Of anders", "Or else"),
     "column.cause": ("Oorzaak", "Cause"),
     "column.era": ("Tijdvak", "Era"),
+    "column.shift_ratio": ("Cw nieuw / oud", "Cw new / old"),
     "column.shift_percent": ("Cw, van oud naar nieuw [%]", "Cw, old to new [%]"),
     "column.lo_percent": ("Laagst [%]", "Lowest [%]"),
     "column.hi_percent": ("Hoogst [%]", "Highest [%]"),
