@@ -72,3 +72,9 @@ def test_without_a_list_all_that_ship_are_applied_and_those_that_are_there(tmp_p
     assert methods_to_apply(built.store, ("rebased",)) == ["rebased"]
     setup = Setup(archive="", data=str(built.data), methods=[])
     assert [method.name for method in setup.chosen_methods] == list(shipped_methods())
+
+
+def test_a_file_that_is_no_toml_is_named_as_such(herijk, tmp_path):
+    script = tmp_path / "cmp.py"
+    script.write_text("print(1)")
+    assert f"{script} is no method file" in herijk("methods", "check", script)[2]
