@@ -11,7 +11,6 @@ import pytest
 from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.channels import SAMPLE_SCHEMA
-from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import Defects, WorldSettings, simulate_tow, simulate_world
 from tests.pipeline.methods import method
@@ -96,16 +95,6 @@ def test_oblique_wind(clean):
     assert 0.02 < head.max() < 0.1
     # The wind is simulated 20 times a second, so at 20 Hz the samples are all there is.
     assert error(cw_of(windy, wind=OBLIQUE % ""), clean).max() < EXACT
-
-
-def test_a_coefficient_that_leaves_no_curve_is_no_perfect_fit():
-    """In 14 m/s of wind a drag coefficient far from the true 0.5 takes off more than there is."""
-    gale = Defects(wind_m_s=14.0, wind_turbulence=0.25)
-    measured = measure(WorldSettings((2016,), 10, 20, 4, defects=lambda season: gale))
-    made = recompute(shipped_method("rebased"), measured.tows, measured.blocks, with_bands=False)
-    assert made.curves["cw_kg_m"].null_count() == 0
-    found = made.run_points["wind_coefficient_ahead"].to_numpy()
-    assert np.abs(found / 0.5 - 1.0).max() < 0.01
 
 
 def test_averaging_of_the_wind_against_a_jittering_vane(clean):
