@@ -375,10 +375,7 @@ def _best_per_run(
 
 
 def _misfits(prepared: Prepared, grid: FloatArray) -> FloatArray:
-    """Residual sum of squares / Cw^2 with each drag coefficient, shape (coefficients, tows).
-
-    Infinite where a coefficient leaves no curve through all points.
-    """
+    """Residuals' squares / Cw^2, (coefficients, tows); infinite without a curve of all points."""
     each = [np.full(len(prepared.batch.tow), coefficient) for coefficient in grid]
     points = [prepared.points_of(prepared.cw_of(one, one, one)) for one in each]
     curves = curve.fit(curve.Points.stack(points))
@@ -404,19 +401,16 @@ def _archive_coefficient(prepared: list[Prepared]) -> ArchiveCoefficient | None:
     standard deviation is the sandwich over tows (Huber 1967): what is odd about one tow is shared
     by its runs.
     """
-    misfits = [_misfits(p, ARCHIVE_GRID)[:, p.batch.trusted] for p in prepared]
+    misfits = (_misfits(p, ARCHIVE_GRID)[:, p.batch.trusted] for p in prepared)
     each = np.concatenate([np.empty((len(ARCHIVE_GRID), 0)), *misfits], axis=1)
-    each = each[:, np.isfinite(each).all(axis=0)]
-    if not each.size:
+    if not (each := each[:, np.isfinite(each).all(axis=0)]).size:
         return None
     best = int(np.clip(each.sum(axis=1).argmin(), 1, len(ARCHIVE_GRID) - 2))
     below, here, above = each[best - 1 : best + 2]
     bends = below - 2.0 * here + above
-    bend = bends.sum()
-    if bend <= 0:
+    if (bend := bends.sum()) <= 0:
         return ArchiveCoefficient(float(ARCHIVE_GRID[best]), Assumed().wind_coefficient)
-    step = ARCHIVE_GRID[1] - ARCHIVE_GRID[0]
-    shift = 0.5 * (below - above).sum() / bend
+    step, shift = ARCHIVE_GRID[1] - ARCHIVE_GRID[0], 0.5 * (below - above).sum() / bend
     slopes = 0.5 * (above - below) + bends * shift
     value = np.clip(ARCHIVE_GRID[best] + step * shift, ARCHIVE_GRID[0], ARCHIVE_GRID[-1])
     return ArchiveCoefficient(float(value), float(step * np.sqrt((slopes**2).sum()) / bend))
