@@ -157,9 +157,9 @@ COMMAND: Final[dict[str, str]] = {
     "Folder with everything Herijk writes.": "Map met alles wat Herijk schrijft.",
     "Print the result as JSON.": "Geef de uitkomst als JSON.",
     "Judge on this day, as if nothing later were known; without: on the day of the "
-    "archive's last tow.": (
+    "archive's last tow or race.": (
         "Beoordeel op deze dag, alsof van later niets bekend is; anders op de dag van de "
-        "laatste proef van het archief."
+        "laatste proef of wedstrijd van het archief."
     ),
     "Write what is proposed to archief.toml.": "Schrijf het voorstel naar archief.toml.",
     "Folder to make.": "Map die gemaakt wordt.",
@@ -549,10 +549,10 @@ COMMAND: Final[dict[str, str]] = {
         "Zij verandert nooit meer. Dat controleert u met: herijk verify"
     ),
     "no lines": "geen regels",
-    "Gain (more power for the same race): {}\nLose: {}\nLarger than the intervals of both: "
-    "{}; interval not known for {}.": (
-        "Winst (meer vermogen in dezelfde wedstrijd): {}\nVerlies: {}\nGroter dan beide "
-        "intervallen: {}; interval niet bekend bij {}."
+    "Gain (more power for the same race): {}\nLose: {}\nLarger than the uncertainty: {}; "
+    "uncertainty not known for {}.": (
+        "Winst (meer vermogen in dezelfde wedstrijd): {}\nVerlies: {}\nGroter dan de "
+        "onzekerheid: {}; onzekerheid niet bekend bij {}."
     ),
     "The interval of {} is the spread of the runs alone: the log's error is not in it.": (
         "Het interval van {} is alleen de spreiding van de runs: de fout van de log zit er niet in."
