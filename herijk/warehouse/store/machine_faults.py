@@ -5,14 +5,15 @@ anywhere in the chain of causes, or the few words by which SQLite, DuckDB and Po
 """
 
 import errno
+import importlib
 import shutil
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
 from herijk.pipeline.errors import HerijkError, UnavailableError
+from herijk.warehouse.store.files import WINDOWS
 from herijk.words import say
 
 _FULL: Final = (
@@ -137,11 +138,10 @@ def _is_full(root: Path) -> bool:
 
 def _is_limited() -> bool:
     """Whether the system lets this process write files of some size only."""
-    if sys.platform == "win32":
+    if WINDOWS:
         return False
-    import resource  # noqa: PLC0415 - not everywhere
-
-    return resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
+    resource = importlib.import_module("resource")  # not every system has it
+    return bool(resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY)
 
 
 def is_machine_fault(error: BaseException) -> bool:
