@@ -332,12 +332,12 @@ COMMAND: Final[dict[str, str]] = {
         "GESIMULEERD archief: gemaakt met `herijk simulate`, geen metingen van de federatie."
     ),
     # Check, init, doctor, pages, workbench, serve
-    "Nothing is wrong: {} tows can be read.": (
-        "Er is niets mis: {} sleepproeven kunnen gelezen worden."
+    "Nothing is wrong in the lists and headers of {} tows.": (
+        "Er is niets mis in de lijsten en kopregels van {} sleepproeven."
     ),
-    "Causes: {}; places: {}. With what is proposed below {} tows can be read.": (
-        "Oorzaken: {}; plaatsen: {}. Met wat hieronder wordt voorgesteld kunnen {} "
-        "sleepproeven gelezen worden."
+    "Causes: {}; places: {}. With what is proposed {} tows are left for a rebuild to judge.": (
+        "Oorzaken: {}; plaatsen: {}. Met wat is voorgesteld blijven {} sleepproeven over, die bij "
+        "het herbouwen worden beoordeeld."
     ),
     "Write what is proposed with: herijk check {} --write-profile": (
         "Schrijf het voorstel met: herijk check {} --write-profile"
