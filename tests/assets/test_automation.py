@@ -43,9 +43,9 @@ def archive(tmp_path):
 class Ticks:
     """The sensor, asked again and again with the cursor it gave."""
 
-    def __init__(self, archive):
+    def __init__(self, archive, instance):
         self.sensor, self.cursor = archive_sensor(archive), None
-        self.instance = dg.DagsterInstance.ephemeral()
+        self.instance = instance
 
     def tick(self):
         """How many rebuilds a tick asks for."""
@@ -61,10 +61,11 @@ class Ticks:
 @pytest.fixture
 def ticks(archive):
     """The sensor after it saw the archive for the first time."""
-    found = Ticks(archive)
-    assert found.tick() == 0
-    assert found.tick() == 1
-    return found
+    with dg.DagsterInstance.ephemeral() as instance:
+        found = Ticks(archive, instance)
+        assert found.tick() == 0
+        assert found.tick() == 1
+        yield found
 
 
 @pytest.mark.parametrize(
