@@ -60,9 +60,9 @@ def check_text(report: "CheckReport") -> str:
     """A check in words: a paragraph per cause."""
     causes = report.causes
     if not causes:
-        return tell("Nothing is wrong: {} tows can be read.", report.tows)
+        return tell("Nothing is wrong in the lists and headers of {} tows.", report.tows)
     head = tell(
-        "Causes: {}; places: {}. With what is proposed below {} tows can be read.",
+        "Causes: {}; places: {}. With what is proposed {} tows are left for a rebuild to judge.",
         len(causes),
         sum(cause.number for cause in causes),
         report.tows,

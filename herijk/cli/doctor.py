@@ -108,7 +108,7 @@ def _title(known: "KnownMethods", name: str) -> str:
 
 def _taken(lock: AbstractContextManager[None]) -> str:
     with lock:
-        return "free"
+        return tell("free")
 
 
 def _tows(report: "RebuildReport") -> str:
@@ -118,6 +118,6 @@ def _tows(report: "RebuildReport") -> str:
 
 def _text(report: Findings) -> str:
     return "\n".join(
-        f"{tell('ok' if f.sound else 'WRONG'):5}  {tell(f.what)}: {tell(f.found)}"
+        f"{tell('ok' if f.sound else 'WRONG'):5}  {tell(f.what)}: {f.found}"
         for f in report.findings
     )

@@ -91,11 +91,12 @@ def _headline(line: Row, speech: Speech) -> str:
     new = speech.number(line["cw_kg_m"], 2)
     if line["cw_ratio"] is None:
         return speech.say("answer_number").format(new=new)
-    if line["change"] == "same":
+    ratio = line["cw_kg_m"] / line["old_cw_kg_m"]  # of the two that are shown, each at its speed
+    if abs(ratio - 1) <= SHOWN:
         return speech.say("answer_same").format(new=new)
-    key = "answer_lower" if line["cw_ratio"] < 1 else "answer_higher"
+    key = "answer_lower" if ratio < 1 else "answer_higher"
     old = speech.number(line["old_cw_kg_m"], 2)
-    by = speech.number(100 * abs(line["cw_ratio"] - 1), 1)
+    by = speech.number(100 * abs(ratio - 1), 1)
     return speech.say(key).format(old=old, new=new, by=by)
 
 
@@ -123,6 +124,7 @@ def _change(line: Row, speech: Speech) -> Iterator[str]:
         yield speech.say("answer_other_speed").format(
             old=speech.number(line["old_declared_speed_m_s"], 2),
             new=speech.number(line["declared_speed_m_s"], 2),
+            by=speech.per_cent(line["cw_ratio"]),
         )
     if line["change"] == "same":
         return
@@ -158,7 +160,9 @@ def _certainty(line: Row, speech: Speech) -> Iterator[str]:
     if line["change"] != "changed":
         return
     verdict = {True: "answer_exceeds", False: "answer_within", None: "answer_unknown"}
-    yield speech.say(verdict[line["exceeds_interval"]])
+    key = verdict[line["exceeds_interval"]]
+    of_one_tow = key != "answer_unknown" and line["old_tow_id"] == line["tow_id"]
+    yield speech.say(f"{key}_old" if of_one_tow else key)
     if line["exceeds_interval"] is not None and not line["old_log_known"]:
         yield speech.say("answer_old_spread")
 

@@ -148,12 +148,12 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "Every crew was towed once: there is nothing to compare.",
     ),
     "slide.apart": (
-        "Proeven van {era} tegen de volgende van dezelfde sloep: {before}; {after}.",
-        "Tows of {era} against the next of the same boat: {before}; {after}.",
+        "Van een proef van {era} naar de volgende van dezelfde sloep: {before}; {after}.",
+        "From a tow of {era} to the next of the same boat: {before}; {after}.",
     ),
     "slide.is_apart": (
-        "{method} wijken ze af, Cw {shift} ({lo} tot {hi})",
-        "{method} they stand apart, Cw {shift} ({lo} to {hi})",
+        "{method} wijkt die af, Cw {shift} ({lo} tot {hi})",
+        "{method} it stands apart, Cw {shift} ({lo} to {hi})",
     ),
     "slide.not_apart": (
         "{method} is geen afwijking gezien, {shift} ({lo} tot {hi})",

@@ -9,7 +9,7 @@ from pypdf import PdfReader
 from herijk.dashboards.documents import certificate, proposal
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.races.race import power_per_rower_w
-from herijk.warehouse.queries.answers import replayed
+from herijk.warehouse.queries.answers import compared, replayed
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.methods import KnownMethods
 from tests.conftest import METHODS
@@ -128,6 +128,23 @@ def test_a_proposal_counts_every_line_that_changes(views, contents):
     by_type = parts["For whom: by type"]["rows"]
     assert sum(int(row[1]) for row in by_type) == lines.drop_nulls("cw_ratio").height
     assert contents[0]["annexes"][0]["text"].count("[") > 1
+
+
+def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, contents, monkeypatch):
+    """A flag of a tow that a newer one superseded is about no line."""
+    lines = compared(views, EDITIONS[0], f"concept-{METHODS[1]}")
+    tows = lines.drop_nulls("new_cw_kg_m")["new_tow_id"]
+    flagged = pl.DataFrame({"method": METHODS[1], "tow_id": [tows[0], tows[0], "superseded"]})
+    monkeypatch.setattr(Views, "flagged_boats", lambda _: flagged)
+    proposed(views, [METHODS[1]], EDITIONS[0], "en")
+    said = [s for part in contents[0]["parts"] for s in part["sentences"]]
+    assert any(f"still has to look at: 1 of {tows.len()}." in sentence for sentence in said)
+
+
+def test_drafts_and_the_due_list_judge_on_one_day(views):
+    drafts = views.table("register").filter(pl.col("edition").str.starts_with("concept-"))
+    days = {*drafts["as_of"], *views.table("due_list")["as_of"]}
+    assert days == {max(*views.table("tows")["tow_date"], *views.races()["race_date"])}
 
 
 def test_several_methods_make_a_ballot(views, contents):

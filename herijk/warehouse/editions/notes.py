@@ -54,7 +54,7 @@ LARGEST_HEAD: Final = (
     ("ploeg", "crew"),
     ("Cw oud [kg/m]", "Cw old [kg/m]"),
     ("Cw nieuw [kg/m]", "Cw new [kg/m]"),
-    ("vermogen", "power"),
+    ("verschil", "change"),
     ("in twee uur", "in two hours"),
 )
 WHY_HEAD: Final = ("oorzaken", "causes")
@@ -163,6 +163,7 @@ def _changes(difference: DiffReport | None, language: Language) -> dict[str, obj
         "cause_table": table(cause_head, named) if named else "",
         "gain": _group(difference.gain, language),
         "loss": _group(difference.loss, language),
+        "known": unknown < difference.changes.get("changed", 0),
         "exceeding": language.count(difference.exceeds_interval),
         "unknown": language.count(unknown) if unknown else "",
         "runs_alone": difference.runs_alone,
@@ -202,6 +203,6 @@ def _largest(line: Row, language: Language) -> tuple[str, ...]:
         f"{line['rowers']}{line['crew_class']}",
         language.number(line["old_cw_kg_m"]),
         language.number(line["new_cw_kg_m"]),
-        language.per_cent(line["power_ratio"]),
+        language.per_cent(line["new_cw_kg_m"] / line["old_cw_kg_m"]),
         language.seconds(line["gain_in_two_hours_s"]),
     )

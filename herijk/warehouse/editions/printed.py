@@ -19,6 +19,7 @@ from herijk.warehouse.archive import Fault, read_published_registers
 from herijk.warehouse.editions.inputs import INPUTS_HASH
 from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, archive_root, fingerprint
+from herijk.words import say
 
 AS_PRINTED, REBASED = "printed", "printed_rebased"
 NO_VALID_CURVE: Final = "no_valid_curve"
@@ -34,7 +35,7 @@ def printed_path(store: Store, season: int) -> str:
     registers, faults = _registers(store)
     paths = registers.filter(pl.col("season") == season)["path"].unique().sort()
     if paths.is_empty():
-        known = ", ".join(str(s) for s in registers["season"].unique().sort()) or "none"
+        known = ", ".join(str(s) for s in registers["season"].unique().sort()) or say("none")
         raise MissingKnowledgeError(
             "the archive holds no readable register printed in {}; it holds: {}", season, known
         )

@@ -13,6 +13,7 @@ from herijk.tables.row import Row
 from herijk.warehouse.queries.answers import answers
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import no_such_edition
+from herijk.words import say
 
 CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64())
 OF_EDITION: Final = ("decision", "valid_from", "published_on", "code_version")
@@ -39,7 +40,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
         wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())
     if wanted.is_empty():
         raise MissingKnowledgeError(
-            "edition {} has no valid line of {}", edition, fsn_no or "any boat"
+            "edition {} has no valid line of {}", edition, fsn_no or say("any boat")
         )
     about = views.table("editions").filter(edition=edition)
     terms = about.select(OF_EDITION).to_dicts() or [dict.fromkeys(OF_EDITION)]

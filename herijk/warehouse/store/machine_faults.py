@@ -79,7 +79,7 @@ _BY_WORDS: Final = {
 _LITTLE: Final = 1 << 20
 """Bytes: with less a disk is full."""
 
-REASSURANCE: Final = "What was there before is whole, and what was finished is kept."
+REASSURANCE: Final = say("What was there before is whole, and what was finished is kept.")
 
 
 @contextmanager
