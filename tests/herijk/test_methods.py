@@ -48,3 +48,9 @@ def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
     terms = ("--method", "ours", "--valid-from", "2015-01-01", "--decision", "ALV")
     assert herijk("publish", "2015-1", *terms, "--data", bench.data)[0] == 0
     assert herijk("verify", "--data", bench.data)[0] == 0
+
+
+def test_a_file_that_is_no_toml_is_named_as_such(herijk, tmp_path):
+    script = tmp_path / "cmp.py"
+    script.write_text("print(1)")
+    assert f"{script} is no method file" in herijk("methods", "check", script)[2]

@@ -89,6 +89,10 @@ class KnownMethods:
         """
         file = Path(name_or_file)
         if file.suffix != SUFFIX:
+            if file.suffix and file.is_file():
+                raise MissingKnowledgeError(
+                    "{} is no method file: the name of one ends in {}", file, SUFFIX
+                )
             return self.get(name_or_file)
         return parse_method(text_of_file(file), str(file), self.text)
 
