@@ -75,6 +75,12 @@ ERRORS: Final[dict[str, str]] = {
         "er is te weinig geheugen. Sta meer toe (ulimit -v unlimited; in systemd MemoryMax=), "
         "sluit andere programma's, of lees met --seasons minder seizoenen tegelijk"
     ),
+    "stopped, as it was told to. {} Run it again to go on": (
+        "gestopt, zoals gevraagd. {} Start opnieuw om verder te gaan"
+    ),
+    "no archive can be made in {}: {}. Name another folder": (
+        "in {} is geen archief te maken: {}. Kies een andere map"
+    ),
     "{} is no method file: the name of one ends in {}": (
         "{} is geen methodebestand: de naam daarvan eindigt op {}"
     ),
