@@ -13,7 +13,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test slow lint wheel docs bench growth scale accuracy accuracy-parts survive fuzz plausible full-scale clean
+.PHONY: help env demo test slow lint wheel docs bench growth accuracy accuracy-parts survive fuzz plausible full-scale clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
@@ -24,7 +24,6 @@ help:
 	@echo "make docs   make the documents and the reference as pages, in docs/_build"
 	@echo "make bench  measure speed and memory"
 	@echo "make growth measure them from one to ten thousand tows"
-	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
 	@echo "make accuracy-parts  the same for season factors, methods and the consistency analysis apart"
 	@echo "make survive  kill $(KILLS) rebuilds, and other commands, at random moments and look what is lost"
@@ -115,9 +114,6 @@ bench: $(DEVELOP)
 # From one to ten thousand tows: an hour.
 growth: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.growth --write docs/growth.md
-
-scale: $(DEVELOP)
-	@PYTHONPATH=. $(BIN)/python -m benchmarks.scale --tows-per-season $(TOWS)
 
 # Every named world: two hours on two cores for 20 archives each. A first look: make accuracy SEEDS=2
 SEEDS ?= 20

@@ -199,12 +199,3 @@ def bench(built: Workbench, tmp_path: Path) -> Workbench:
     shutil.copytree(built.archive, tmp_path / "archive")
     shutil.copytree(built.data, tmp_path / "data")
     return Workbench(tmp_path / "archive", tmp_path / "data")
-
-
-@pytest.fixture(scope="session")
-def s3() -> Iterator[None]:
-    """An S3 server with a bucket, empty at first; each test uses a prefix of its own."""
-    from tests.elsewhere import s3_server  # noqa: PLC0415 - moto takes a second to import
-
-    with s3_server():
-        yield

@@ -1,4 +1,4 @@
-"""An S3 server and a Dask cluster on loopback, and whether what they made is what is made here."""
+"""A Dask cluster on loopback, and whether what they made is what is made here."""
 
 import hashlib
 import json
@@ -7,60 +7,19 @@ import subprocess
 import sys
 import tempfile
 import time
-import urllib.request
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from unittest import mock
 
 from polars.testing import assert_frame_equal
 
 from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.intake.seasons import INDEXED
-from herijk.warehouse.store import bucket
-from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, read_parquet
 
 ROOT = Path(__file__).parents[1]
-BUCKET = "herijk-test"
 PATIENCE_S = 120.0
-
-
-@contextmanager
-def s3_server() -> Iterator[subprocess.Popen[str]]:
-    """An S3 server with an empty bucket; the environment of this process leads there."""
-    command = [sys.executable, "-m", "tests.s3"]
-    with (
-        subprocess.Popen(
-            command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-        ) as server,
-        mock.patch.dict(os.environ),
-    ):
-        assert server.stdout is not None
-        address = server.stdout.readline().strip()
-        make = urllib.request.Request(f"{address}/{BUCKET}", method="PUT")  # noqa: S310
-        urllib.request.urlopen(make).close()  # noqa: S310 - our own server
-        os.environ |= {
-            "AWS_ENDPOINT_URL": address,
-            "AWS_ALLOW_HTTP": "true",
-            "AWS_REGION": "us-east-1",
-            "AWS_ACCESS_KEY_ID": "loopback",
-            "AWS_SECRET_ACCESS_KEY": "not-a-secret",
-        }
-        bucket._client.cache_clear()  # of a server before this one
-        try:
-            yield server
-        finally:
-            server.kill()
-
-
-def lie_in_bucket(data: Path, prefix: str) -> None:
-    """Settles that lake and editions of a data folder lie in the bucket."""
-    data.mkdir(parents=True, exist_ok=True)
-    places = {name: f"s3://{BUCKET}/{prefix}/{name}" for name in ("lake", "editions")}
-    text = "".join(f'{name} = "{url}"\n' for name, url in places.items())
-    (data / "opslag.toml").write_text(text, encoding="utf-8")
 
 
 @dataclass(frozen=True)
@@ -139,9 +98,9 @@ def assert_same_lake(one: Store, other: Store) -> None:
         assert one.made_from(table, partition) == other.made_from(table, partition), table
 
 
-def _files_below(folder: Place, above: str = "") -> dict[str, Place]:
+def _files_below(folder: Path, above: str = "") -> dict[str, Path]:
     """Parquet files at any depth below a folder, by path."""
-    found: dict[str, Place] = {}
+    found: dict[str, Path] = {}
     for below in folder.iterdir():
         if below.name.endswith(".parquet"):
             found[above + below.name] = below

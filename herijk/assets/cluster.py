@@ -2,7 +2,7 @@
 
 The process of the rebuild holds the lock and decides what is stale, as always; the workers read
 seasons and do nothing else. Scheduler, workers and this process hand each other pickles, so they
-have to trust each other. How to start them is in docs/scale.md.
+have to trust each other. How to start them is in docs/operations.md.
 """
 
 import secrets

@@ -27,18 +27,6 @@ ERRORS: Final[dict[str, str]] = {
         "om op {} te lezen is een bibliotheek nodig die ontbreekt; installeer die met: "
         "pip install 'herijk[dask]'"
     ),
-    "{} needs a library that is not there; install it with: pip install 'herijk[s3]'": (
-        "voor {} is een bibliotheek nodig die ontbreekt; installeer die met: pip install "
-        "'herijk[s3]'"
-    ),
-    "{} cannot be reached: {}. Look at the network, at AWS_ENDPOINT_URL, and at "
-    "AWS_ACCESS_KEY_ID and the rights that go with it": (
-        "{} is niet te bereiken: {}. Kijk naar het netwerk, naar AWS_ENDPOINT_URL, en naar "
-        "AWS_ACCESS_KEY_ID en de rechten die daarbij horen"
-    ),
-    "{}: there is no bucket {}; make it, or mend opslag.toml": (
-        "{}: er is geen bucket {}; maak hem, of verbeter opslag.toml"
-    ),
     "{} ended by itself with status {}; what it said is above": (
         "{} stopte vanzelf met status {}; wat het meldde staat hierboven"
     ),
@@ -76,6 +64,25 @@ ERRORS: Final[dict[str, str]] = {
     "LimitNOFILE=1024) and run it again": (
         "dit proces mag niet meer bestanden openen. Sta er meer toe (ulimit -n 1024; in "
         "systemd LimitNOFILE=1024) en start opnieuw"
+    ),
+    "this process may not write files as large as it needs. Allow larger ones (ulimit -f "
+    "unlimited; in systemd LimitFSIZE=infinity) and run it again": (
+        "dit proces mag geen bestanden schrijven van de grootte die nodig is. Sta grotere toe "
+        "(ulimit -f unlimited; in systemd LimitFSIZE=infinity) en start opnieuw"
+    ),
+    "there is not enough memory. Allow more (ulimit -v unlimited; in systemd MemoryMax=), "
+    "close other programs, or read fewer seasons at a time with --seasons": (
+        "er is te weinig geheugen. Sta meer toe (ulimit -v unlimited; in systemd MemoryMax=), "
+        "sluit andere programma's, of lees met --seasons minder seizoenen tegelijk"
+    ),
+    "stopped, as it was told to. {} Run it again to go on": (
+        "gestopt, zoals gevraagd. {} Start opnieuw om verder te gaan"
+    ),
+    "no archive can be made in {}: {}. Name another folder": (
+        "in {} is geen archief te maken: {}. Kies een andere map"
+    ),
+    "{} is no method file: the name of one ends in {}": (
+        "{} is geen methodebestand: de naam daarvan eindigt op {}"
     ),
     "the disk under {root} gives errors. Look in the system's log, and replace it": (
         "de schijf onder {root} geeft fouten. Kijk in het logboek van het systeem en vervang hem"
@@ -176,9 +183,6 @@ ERRORS: Final[dict[str, str]] = {
     "{}: {}: {}; it may hold {}": "{}: {}: {}; er mag in staan: {}",
     "[[besluit]], each with sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
         "[[besluit]], elk met sleep_id, oordeel (uitsluiten of voorkeur), reden, wie en datum"
-    ),
-    "lake and editions, each as 's3://bucket/prefix' without a name or password": (
-        "lake en editions, elk als 's3://bucket/prefix' zonder naam of wachtwoord"
     ),
     "{}: more than one decision about {}": "{}: meer dan een besluit over {}",
     # TOML that people write
@@ -436,13 +440,6 @@ ERRORS: Final[dict[str, str]] = {
     "folder, and publish again": (
         "editie {} kon niet geschreven worden: {}. Er is niets uitgegeven; maak ruimte of "
         "herstel de map, en geef opnieuw uit"
-    ),
-    "{} is there already: somebody publishes under this name just now, or did not finish. "
-    "Nothing was published; publish under another name, or remove what lies under {} when "
-    "nobody is publishing": (
-        "{} bestaat al: iemand geeft op dit moment onder deze naam uit, of is niet "
-        "klaargekomen. Er is niets uitgegeven; kies een andere naam, of haal weg wat onder "
-        "{} ligt wanneer niemand uitgeeft"
     ),
     # Simulated archives
     "there is no world {}; there are: {}": "er is geen wereld {}; er zijn: {}",

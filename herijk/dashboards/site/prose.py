@@ -1,6 +1,7 @@
 """Pages that are read: the method, how to read an audit, and what goes with an edition."""
 
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Final
 
 from markupsafe import Markup
@@ -12,7 +13,6 @@ from herijk.dashboards.site.parts import Page, Section, edition_page
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, edition_path
-from herijk.warehouse.store.storage import Place
 from herijk.words import LANGUAGES
 from herijk.words.guides import GUIDES_IN_SHORT
 
@@ -53,7 +53,7 @@ def edition_pages(views: Views) -> Iterator[Page]:
         )
 
 
-def _texts(folder: Place, files: tuple[str, str]) -> tuple[str, str]:
+def _texts(folder: Path, files: tuple[str, str]) -> tuple[str, str]:
     dutch, english = ((folder / file).read_bytes().decode() for file in files)
     return dutch, english
 

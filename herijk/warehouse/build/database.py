@@ -1,6 +1,7 @@
 """The database that readers use: all tables in one file, made from the lake."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import polars as pl
@@ -33,14 +34,23 @@ MEANINGS: Final = str(
 
 
 def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:
-    """All tables in one DuckDB file, and each as Parquet; both swapped in whole."""
+    """All tables in one DuckDB file, swapped in whole; then those of the lake are described."""
     tables = {name: ordered(name, inputs.take(name)) for name in inputs.names if name in TABLES}
     tables["about"] = _about(inputs.store)
     tables["contents"] = _contents(tables)
     build_database(inputs.store.database, tables)
-    write_package(inputs.store.root, tables, TABLES | ABOUT, _origin(tables))
+    files = _files(inputs.store, tables)
+    write_package(inputs.store.table_folder, files, _origin(tables))
     sha256 = pl.lit(file_sha256(inputs.store.database)).alias("sha256")
     return {DATABASE_TABLE: tables["contents"].select("table", "rows", sha256)}
+
+
+def _files(store: Store, tables: Mapping[str, pl.DataFrame]) -> dict[Path, type[dy.Schema]]:
+    """The files of the lake with the tables; of those with a file per method, the applied ones."""
+    known = TABLES.keys() & tables.keys()
+    methods = [None, *tables["methods"]["method"]]
+    paths = {store.table_path(name, method): TABLES[name] for name in known for method in methods}
+    return {path: schema for path, schema in paths.items() if path.exists()}
 
 
 def database_without_tows(store: Store, tables: Mapping[str, pl.DataFrame]) -> None:
@@ -94,4 +104,4 @@ def is_whole(store: Store) -> bool:
     made = store.read(DATABASE_TABLE)["sha256"][0]
     left = left_wal(store.database).exists()  # a reader would replay it
     whole = store.database.exists() and not left and made == file_sha256(store.database)
-    return whole and package_is_whole(store.root)
+    return whole and package_is_whole(store.table_folder)

@@ -13,6 +13,7 @@ from herijk.pipeline.register.register import (
     draft_name,
     draft_register,
     lines_of_all_days,
+    reference_day,
 )
 from herijk.tables.editions import Editions
 from herijk.tables.keys import SIZES
@@ -28,9 +29,7 @@ if TYPE_CHECKING:
 def register_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Draft registers, who is due, what changes between registers, and lineage.
 
-    Validity is judged on the day of the archive's last tow, not today: so the same archive gives
-    the same tables. Drafts are compared with the first method's. The published editions stand
-    beside the drafts.
+    Drafts are compared with the first method's. The published editions stand beside the drafts.
     """
     methods = inputs.methods
     drafts = [_draft(method, inputs) for method in methods]
@@ -54,8 +53,7 @@ def register_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
 
 def _draft(method: Method, inputs: "Inputs") -> pl.DataFrame:
     tows = inputs["tows"]
-    on_date = max(tows["tow_date"])
-    lines = _register(method, inputs, on_date)
+    lines = _register(method, inputs, reference_day(tows, inputs["listed_races"]))
     edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
     code = pl.lit(None, pl.String).alias("verification_code")
     measured = lines.join(
@@ -78,12 +76,9 @@ def _history(method: Method, inputs: "Inputs") -> pl.DataFrame:
 
 
 def _due_list(inputs: "Inputs") -> pl.DataFrame:
-    """Rows of the table `due_list` of every method.
-
-    Looked at on the day of the last tow or race, not today: the same archive gives the same table.
-    """
-    tows, results = inputs["tows"], inputs["listed_races"]
-    as_of = max([*tows["tow_date"], *results["race_date"]])
+    """Rows of the table `due_list` of every method."""
+    results = inputs["listed_races"]
+    as_of = reference_day(inputs["tows"], results)
     parts = []
     for method in inputs.methods:
         due = due_list(_register(method, inputs, as_of), inputs["boats"], results, as_of)

@@ -10,6 +10,7 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Final
 
 import polars as pl
@@ -43,7 +44,13 @@ from herijk.warehouse.editions.lines import (
     SAME_NUMBER,
     method_lines,
 )
-from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
+from herijk.warehouse.editions.printed import (
+    NOT_REBASED,
+    PRINTED_METHOD,
+    printed_lines,
+    printed_path,
+    with_carried,
+)
 from herijk.warehouse.editions.sheets import CODE_FIELD
 from herijk.warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
 from herijk.warehouse.store import decisions as decided
@@ -68,10 +75,8 @@ from herijk.warehouse.store.editions import (
 )
 from herijk.warehouse.store.ensemble import read_ensemble
 from herijk.warehouse.store.package import Rights
-from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
-PRINTED_METHOD: Final = "as-printed"
 LINE_SCHEMA: Final = {
     **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
     **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
@@ -98,7 +103,7 @@ class Terms:
     published_on: dt.date
 
 
-def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Place:
+def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Path:
     """Freezes the register of a method as an edition.
 
     Args:
@@ -125,7 +130,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
     return _write(store, edition, input_files(store, edition.tables["tows"]), texts)
 
 
-def publish_printed(store: Store, season: int, terms: Terms) -> Place:
+def publish_printed(store: Store, season: int, terms: Terms) -> Path:
     """Freezes a register of the archive, as printed that year, as an edition.
 
     Raises:
@@ -226,7 +231,7 @@ class Published:
     to_look_at: list[Row]
 
 
-def published(store: Store, folder: Place) -> Published:
+def published(store: Store, folder: Path) -> Published:
     """What there is to say about an edition that was just published."""
     edition = read_edition(store, folder.name)
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
@@ -296,7 +301,10 @@ def _complete(
         maintain_order="left",
     ).with_columns(
         pl.lit(terms.edition).alias("edition"),
-        pl.lit(method).alias("method"),
+        pl.when(basis=NOT_REBASED)
+        .then(pl.lit(PRINTED_METHOD))
+        .otherwise(pl.lit(method))
+        .alias("method"),
         pl.lit(terms.valid_from).alias("as_of"),
     )
     missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
@@ -311,7 +319,7 @@ def _complete(
     return coded
 
 
-def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Place:
+def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:
     """Writes an edition's folder as the next of the chain."""
     name = edition.about.edition
     return write_folder(

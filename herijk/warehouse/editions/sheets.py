@@ -13,6 +13,7 @@ import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Final, Literal
 
 import polars as pl
@@ -24,7 +25,6 @@ from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.warehouse.editions.words import STATUSES
 from herijk.warehouse.store.editions import CSV, INPUTS, About
 from herijk.warehouse.store.package import Rights
-from herijk.warehouse.store.storage import Place
 
 A4: Final = 9
 """The paper's number in a spreadsheet."""
@@ -40,6 +40,7 @@ BASIS_WORDS: Final = {
     "measured": "herrekend",
     "printed": "gedrukt",
     "printed_rebased": "gedrukt, omgerekend",
+    "printed_not_rebased": "gedrukt, niet herijkt",
 }
 
 
@@ -163,7 +164,7 @@ def read_csv_cells(content: bytes) -> Cells:
     return list(csv.reader(io.StringIO(text, newline=""), delimiter=";"))
 
 
-def read_inputs(edition: Place) -> list[tuple[str, str, str]]:
+def read_inputs(edition: Path) -> list[tuple[str, str, str]]:
     """File, kind and SHA-256 of what an edition was made from.
 
     A row of another width was changed, which is found where the files themselves are looked at.

@@ -5,7 +5,6 @@ archive's files those it was made from; and do archive and code of today give th
 Nothing is ever mended here.
 """
 
-import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -38,7 +37,7 @@ from herijk.warehouse.store.editions import (
     read_edition,
     read_table,
 )
-from herijk.warehouse.store.storage import Place
+from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store, archive_root, table_digest
 from herijk.words import say
 
@@ -110,10 +109,10 @@ def verify(store: Store, afresh: bool = True) -> Verification:
 # Was a file of the edition changed by hand?
 
 
-def _altered(store: Store, path: Place, about: About) -> Iterator[Finding]:
+def _altered(store: Store, path: Path, about: About) -> Iterator[Finding]:
     yield from _folder(path, about)
     known = about.files.keys() & {f.name for f in path.iterdir()}
-    intact = {file for file in known if _sha256(path / file) == about.files[file]}
+    intact = {file for file in known if file_sha256(path / file) == about.files[file]}
     for file in sorted(known - intact):
         yield Finding(path.name, "altered", file, say("{} was changed after publication", file))
         for where, said in _where(path, about, file, intact):
@@ -125,7 +124,7 @@ def _altered(store: Store, path: Place, about: About) -> Iterator[Finding]:
         yield from _texts(store, path, about, intact)
 
 
-def _folder(path: Place, about: About) -> Iterator[Finding]:
+def _folder(path: Path, about: About) -> Iterator[Finding]:
     """The folder's name and seal, and files that are links, were added or are gone."""
     name, present = path.name, {f.name for f in path.iterdir()}
     if about.edition != name:
@@ -133,10 +132,9 @@ def _folder(path: Place, about: About) -> Iterator[Finding]:
         yield Finding(name, "altered", ABOUT, message)
     if about.seal != about.expected_seal:
         yield Finding(name, "altered", ABOUT, say("{} was changed: its seal does not fit", ABOUT))
-    if isinstance(path, Path):
-        for link in sorted(f.name for f in (path, *path.iterdir()) if f.is_symlink()):
-            message = say("{} is a link to somewhere else; an edition holds its files itself", link)
-            yield Finding(name, "altered", link, message)
+    for link in sorted(f.name for f in (path, *path.iterdir()) if f.is_symlink()):
+        message = say("{} is a link to somewhere else; an edition holds its files itself", link)
+        yield Finding(name, "altered", link, message)
     for file in sorted(present - {*about.files, ABOUT}):
         message = say("{} was added after publication", file)
         yield Finding(name, "notice", file, message, wrong=False)
@@ -144,11 +142,7 @@ def _folder(path: Place, about: About) -> Iterator[Finding]:
         yield Finding(name, "missing", file, say("{} is gone; put it back from a copy", file))
 
 
-def _sha256(file: Place) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
-
-
-def _codes(path: Place, about: About) -> Iterator[Finding]:
+def _codes(path: Path, about: About) -> Iterator[Finding]:
     """Lines whose verification code does not fit their inputs, method and numbers."""
     try:
         register = read_table(path, "register")
@@ -169,7 +163,7 @@ def _codes(path: Place, about: About) -> Iterator[Finding]:
             )
 
 
-def _sheets(path: Place, about: About, intact: set[str]) -> Iterator[Finding]:
+def _sheets(path: Path, about: About, intact: set[str]) -> Iterator[Finding]:
     """Sheets that do not say what the register says, though their hashes were made to fit.
 
     Those of an earlier form, with other columns, cannot be compared cell by cell.
@@ -187,7 +181,7 @@ def _sheets(path: Place, about: About, intact: set[str]) -> Iterator[Finding]:
             yield Finding(path.name, "altered", where, message)
 
 
-def _texts(store: Store, path: Place, about: About, intact: set[str]) -> Iterator[Finding]:
+def _texts(store: Store, path: Path, about: About, intact: set[str]) -> Iterator[Finding]:
     """Notices and lists that do not say what the tables say, though their hashes were made to fit.
 
     Texts that another version wrote may say the same in other words, and are not looked at.
@@ -209,7 +203,7 @@ def _texts(store: Store, path: Place, about: About, intact: set[str]) -> Iterato
         yield from _inputs(path, edition.tables["tows"])
 
 
-def _inputs(path: Place, tows: pl.DataFrame) -> Iterator[Finding]:
+def _inputs(path: Path, tows: pl.DataFrame) -> Iterator[Finding]:
     stated = {(file, sha256) for file, kind, sha256 in sheets.read_inputs(path) if kind == SAMPLES}
     known = set(samples_files(tows).select("path", "sha256").rows())
     for file in sorted({name for name, _ in stated ^ known}):
@@ -217,7 +211,7 @@ def _inputs(path: Place, tows: pl.DataFrame) -> Iterator[Finding]:
         yield Finding(path.name, "altered", INPUTS, message)
 
 
-def _where(path: Place, about: About, file: str, intact: set[str]) -> list[tuple[str, str]]:
+def _where(path: Path, about: About, file: str, intact: set[str]) -> list[tuple[str, str]]:
     """Places within a changed file, as far as an intact copy of its content tells."""
     try:
         if file == CSV and "register.parquet" in intact:
@@ -239,12 +233,12 @@ def _where(path: Place, about: About, file: str, intact: set[str]) -> list[tuple
     return []
 
 
-def _expected_csv(path: Place) -> sheets.Cells:
+def _expected_csv(path: Path) -> sheets.Cells:
     register, fields = _register(path)
     return [[field.header for field in fields], *sheets.printed_cells(register, fields)]
 
 
-def _register(path: Place) -> tuple[pl.DataFrame, list[sheets.Field]]:
+def _register(path: Path) -> tuple[pl.DataFrame, list[sheets.Field]]:
     """The register of an edition, and the columns of its sheets: older ones have one more."""
     register = read_table(path, "register")
     fields = [*sheets.REGISTER_FIELDS, sheets.WITHDRAWN_FIELD, sheets.CODE_FIELD]
@@ -271,7 +265,7 @@ def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, s
     return _not_too_many(file, problems)
 
 
-def _xlsx_cells(path: Place, about: About) -> list[tuple[str, str]]:
+def _xlsx_cells(path: Path, about: About) -> list[tuple[str, str]]:
     was = sheets.read_xlsx_cells(sheets.xlsx_bytes(*_register(path), about))
     now = sheets.read_xlsx_cells((path / XLSX).read_bytes())
     places = sorted(p for p in was.keys() | now.keys() if was.get(p) != now.get(p))
@@ -312,7 +306,7 @@ class _Archive:
         return index_archive(self.root, self.hashes.hash_file)
 
 
-def _archive(archive: _Archive | None, path: Place, about: About) -> Iterator[Finding]:
+def _archive(archive: _Archive | None, path: Path, about: About) -> Iterator[Finding]:
     name = path.name
     if archive is None:
         yield Finding(
@@ -345,7 +339,7 @@ def _archive(archive: _Archive | None, path: Place, about: About) -> Iterator[Fi
         yield from _list_rows(path, archive)
 
 
-def _list_rows(path: Place, archive: _Archive) -> Iterator[Finding]:
+def _list_rows(path: Path, archive: _Archive) -> Iterator[Finding]:
     """Tows of the edition whose rows in the lists are no longer what they were."""
     try:
         index = archive.index

@@ -1,1 +1,1 @@
-"""Where things lie: the lake of Parquet files, buckets, locks, safe writing, the database."""
+"""Where things lie: the lake of Parquet files, locks, safe writing, the database."""

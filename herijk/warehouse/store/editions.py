@@ -1,8 +1,7 @@
 """The folder of an edition: what it consists of, made whole or not at all, and read again.
 
-On a disk everything is written beside, synced and renamed; in a bucket `edition.json` comes last,
-and without it there is no edition. A second edition of the same name is refused. What goes into the
-files, and whether they are still what they were, belongs to `warehouse.editions`.
+Everything is written beside, synced and renamed. A second edition of the same name is refused. What
+goes into the files, and whether they are still what they were, belongs to `warehouse.editions`.
 """
 
 import datetime as dt
@@ -15,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import polars as pl
 from filelock import FileLock
@@ -28,11 +27,8 @@ from herijk.tables.curves import Curves
 from herijk.tables.declare import dy
 from herijk.tables.register import Register
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, sync
-from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store
-
-if TYPE_CHECKING:
-    from herijk.warehouse.store.bucket import BucketPath
+from herijk.words import say
 
 Kind = Literal["recomputed", "as_printed"]
 
@@ -148,23 +144,17 @@ class Edition:
 
 def edition_names(store: Store) -> list[str]:
     """The published editions, sorted, without any that is still being written."""
-    return sorted(f.name for f in store.editions.glob("[!.]*") if _is_published(f))
+    return sorted(f.name for f in store.editions.glob("[!.]*") if f.is_dir())
 
 
-def _is_published(path: Place) -> bool:
-    if isinstance(path, Path):
-        return path.is_dir()
-    return (path / ABOUT).exists()
-
-
-def edition_path(store: Store, edition: str) -> Place:
+def edition_path(store: Store, edition: str) -> Path:
     """The folder of a published edition.
 
     Raises:
         MissingKnowledgeError: there is none of that name.
     """
     if edition not in edition_names(store):
-        known = ", ".join(edition_names(store)) or "none yet"
+        known = ", ".join(edition_names(store)) or say("none yet")
         raise MissingKnowledgeError("there is no edition {}; published: {}", edition, known)
     return store.editions / edition
 
@@ -183,7 +173,7 @@ def check_new_name(store: Store, edition: str) -> None:
             "drafts",
             edition,
         )
-    if _is_published(store.editions / edition):
+    if (store.editions / edition).is_dir():
         raise BrokenPromiseError(
             "edition {} was already published and is never changed; publish under "
             "another name, for example with a higher number",
@@ -191,7 +181,7 @@ def check_new_name(store: Store, edition: str) -> None:
         )
 
 
-def read_about(path: Place) -> About:
+def read_about(path: Path) -> About:
     """What an edition says about itself.
 
     Raises:
@@ -258,7 +248,7 @@ def method_of_edition(store: Store, edition: str) -> Method:
     return method
 
 
-def read_table(path: Place, name: str) -> pl.DataFrame:
+def read_table(path: Path, name: str) -> pl.DataFrame:
     """A table of an edition.
 
     Raises:
@@ -274,28 +264,23 @@ def read_table(path: Place, name: str) -> pl.DataFrame:
         ) from error
 
 
-def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str, bytes]]) -> Place:
-    """Makes an edition of files, by name; `edition.json` is the last of them.
+def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str, bytes]]) -> Path:
+    """Makes an edition of files, by name.
 
     They are asked for where no other publication is at work, since they say which came before.
 
     After an error, a full disk or a kill there is no edition of that name. What a killed
-    publication left is cleared away by the next one; in a bucket nobody can know that it is dead,
-    so there a person does it.
+    publication left is cleared away by the next one.
 
     Raises:
         BrokenPromiseError: the name is taken, or the folder could not be written.
     """
     target = store.editions / edition
     try:
-        if isinstance(target, Path):
-            target.parent.mkdir(parents=True, exist_ok=True)
-            with _one_at_a_time(target.parent):
-                check_new_name(store, edition)
-                _write_beside(target, contents())
-        else:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with _one_at_a_time(target.parent):
             check_new_name(store, edition)
-            _create_in_order(target, contents())
+            _write_beside(target, contents())
     except OSError as error:
         raise BrokenPromiseError(
             "edition {} could not be written: {}. Nothing was published; make room "
@@ -304,21 +289,6 @@ def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str,
             error.strerror or error,
         ) from error
     return target
-
-
-def _create_in_order(target: "BucketPath", contents: Mapping[str, bytes]) -> None:
-    """Creates every object where there is none, so of two publications one stops at the first."""
-    for name, content in contents.items():
-        try:
-            (target / name).create_bytes(content)
-        except FileExistsError as error:
-            raise BrokenPromiseError(
-                "{} is there already: somebody publishes under this name just now, "
-                "or did not finish. Nothing was published; publish under another "
-                "name, or remove what lies under {} when nobody is publishing",
-                error,
-                target,
-            ) from error
 
 
 def _write_beside(path: Path, contents: Mapping[str, bytes]) -> None:

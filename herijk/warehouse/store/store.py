@@ -2,9 +2,8 @@
 
 The lake holds Parquet: the samples and the blocks of each tow, written once and named by content,
 and the tables, one file per table or per partition of it (a season, a method). Each table file
-carries the fingerprint of what it was made from, so that a rebuild does only what changed. Lake and
-editions may lie in a bucket instead of the data folder (`warehouse.store.storage`). What a table
-means is in `tables.schemas`; the database that readers use is `warehouse.store.database`.
+carries the fingerprint of what it was made from, so that a rebuild does only what changed. What a
+table means is in `tables.schemas`; the database that readers use is `warehouse.store.database`.
 """
 
 import hashlib
@@ -12,7 +11,6 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Final, Self
 
@@ -21,12 +19,10 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.machine_faults import is_machine_fault
-from herijk.warehouse.store.storage import Locations, Place, place, read_locations, written_whole
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
-_FOOTER_BYTES: Final = 1 << 16
-"""Enough for most footers, so that one request brings them."""
 
 
 def fingerprint(*parts: object) -> str:
@@ -49,19 +45,15 @@ class Store:
 
     root: Path
 
-    @cached_property
-    def _locations(self) -> Locations:
-        return read_locations(self.root)
-
-    @cached_property
-    def lake(self) -> Place:
+    @property
+    def lake(self) -> Path:
         """Samples, blocks and tables."""
-        return place(self._locations.lake, self.root / "lake")
+        return self.root / "lake"
 
-    @cached_property
-    def editions(self) -> Place:
+    @property
+    def editions(self) -> Path:
         """The published editions, each under its name."""
-        return place(self._locations.editions, self.root / "editions")
+        return self.root / "editions"
 
     @property
     def database(self) -> Path:
@@ -76,26 +68,30 @@ class Store:
     @property
     def file_hashes(self) -> Path:
         """Content hashes of archive files already seen: a cache, of this machine only."""
-        return self.root / "lake" / "file_hashes.json"
+        return self.lake / "file_hashes.json"
 
-    def samples_path(self, season: int, key: str) -> Place:
+    def samples_path(self, season: int, key: str) -> Path:
         """The samples of one tow."""
         return self.lake / "samples" / f"season={season}" / f"{key}.parquet"
 
-    def blocks_path(self, season: int, key: str) -> Place:
+    def blocks_path(self, season: int, key: str) -> Path:
         """The blocks of one tow."""
         return self.lake / "blocks" / f"season={season}" / f"{key}.parquet"
 
-    def table_path(self, table: str, partition: str | None = None) -> Place:
+    @property
+    def table_folder(self) -> Path:
+        """The tables."""
+        return self.lake / "tables"
+
+    def table_path(self, table: str, partition: str | None = None) -> Path:
         """A table, or one partition of it."""
-        folder = self.lake / "tables"
         if partition is None:
-            return folder / f"{table}.parquet"
-        return folder / table / f"{partition}.parquet"
+            return self.table_folder / f"{table}.parquet"
+        return self.table_folder / table / f"{partition}.parquet"
 
     def partitions(self, table: str) -> list[str]:
         """The partitions of a table that have been written, sorted."""
-        folder = self.lake / "tables" / table
+        folder = self.table_folder / table
         return sorted(f.stem for f in folder.glob("[!.]*.parquet"))
 
     def write(
@@ -117,16 +113,7 @@ class Store:
 
     def made_from(self, table: str, partition: str | None = None) -> str | None:
         """Fingerprint of what a table was made from; None if it is not there or is damaged."""
-        path = self.table_path(table, partition)
-        if not path.exists():
-            return None
-        try:
-            stored = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
-            return None if stored is None else bytes(stored).decode()
-        except _UNREADABLE as error:
-            if is_machine_fault(error):
-                raise
-            return None
+        return metadata_of(self.table_path(table, partition), FINGERPRINT_KEY)
 
     def remove(self, table: str, partition: str) -> None:
         """Removes a partition whose season or method is no more."""
@@ -152,7 +139,7 @@ def archive_root(store: Store) -> Path | None:
 class DamagedFileError(BrokenPromiseError):
     """A file that Herijk wrote cannot be read any more; it can be made again."""
 
-    def __init__(self, path: Place) -> None:
+    def __init__(self, path: Path) -> None:
         super().__init__(
             "{} is damaged. It can be made again: run herijk rebuild; when that comes back, look "
             "at the disk",
@@ -160,7 +147,7 @@ class DamagedFileError(BrokenPromiseError):
         )
         self.path = path
 
-    def __reduce__(self) -> tuple[type[Self], tuple[Place]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[Path]]:
         return type(self), (self.path,)  # a helping process hands it over by its path
 
 
@@ -174,7 +161,7 @@ _UNREADABLE: Final = (
 
 
 def read_parquet(
-    path: Place, columns: Sequence[str] | None = None, use_threads: bool = True
+    path: Path, columns: Sequence[str] | None = None, use_threads: bool = True
 ) -> pl.DataFrame:
     """A frame that was written with `write_parquet`, its checksums verified.
 
@@ -187,32 +174,32 @@ def read_parquet(
         FileNotFoundError: it is not there.
         DamagedFileError: it was changed since, by a failing disk or by hand.
     """
-    with _damage_named(path):
-        source = path if isinstance(path, Path) else pa.BufferReader(path.read_bytes())
-        # Not read_table: it imports Arrow's data sets, and with them pandas if that is there.
-        with pq.ParquetFile(source, page_checksum_verification=True) as file:
-            return pl.DataFrame(pl.from_arrow(file.read(columns, use_threads=use_threads)))
+    # Not read_table: it imports Arrow's data sets, and with them pandas if that is there.
+    with _damage_named(path), pq.ParquetFile(path, page_checksum_verification=True) as file:
+        return pl.DataFrame(pl.from_arrow(file.read(columns, use_threads=use_threads)))
 
 
-def count_rows(path: Place) -> int:
+def metadata_of(path: Path, key: str) -> str | None:
+    """What a file says of itself under a key; None if it is not there or damaged, or silent."""
+    if not path.exists():
+        return None
+    try:
+        stored = (pq.read_metadata(path).metadata or {}).get(key.encode())
+        return None if stored is None else bytes(stored).decode()
+    except _UNREADABLE as error:
+        if is_machine_fault(error):
+            raise
+        return None
+
+
+def count_rows(path: Path) -> int:
     """Rows of a frame that was written with `write_parquet`; raises as `read_parquet`."""
     with _damage_named(path):
-        return int(_footer(path).num_rows)
-
-
-def _footer(path: Place) -> pq.FileMetaData:
-    """What a Parquet file says of itself at its end; the rest is not fetched."""
-    if isinstance(path, Path):
-        return pq.read_metadata(path)
-    end = path.read_end(_FOOTER_BYTES)
-    size = int.from_bytes(end[-8:-4], "little") + 8  # the footer, its length and the mark "PAR1"
-    if size > len(end):
-        end = path.read_end(size)
-    return pq.read_metadata(pa.BufferReader(end))
+        return int(pq.read_metadata(path).num_rows)
 
 
 @contextmanager
-def _damage_named(path: Place) -> Iterator[None]:
+def _damage_named(path: Path) -> Iterator[None]:
     try:
         yield
     except FileNotFoundError:
@@ -225,7 +212,7 @@ def _damage_named(path: Place) -> Iterator[None]:
 
 def write_parquet(
     frame: pl.DataFrame,
-    path: Place,
+    path: Path,
     metadata: dict[str, str] | None = None,
     form: Mapping[str, object] | None = None,
 ) -> None:
@@ -240,7 +227,7 @@ def write_parquet(
         form: how it is packed, in the words of Arrow; None for the form of tables.
     """
     table = frame.to_arrow()
-    with written_whole(path) as target:
+    with written_beside(path) as target:
         pq.write_table(
             pa.Table.from_arrays(table.columns, schema=_tight_schema(table, metadata)),
             target,
