@@ -3,6 +3,7 @@
 The job runs the same rebuild as the command. It makes drafts; publishing is not among the jobs.
 """
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,12 @@ ONE_AT_A_TIME = {"herijk/rebuild": "data folder"}
 LONGEST_S = 12 * 3600
 """A run that takes longer hangs, and is ended so that the next can begin."""
 
+LISTING = "herijk/listing"
+"""The tag of a run that the sensor asked for: the digest of the listing that it saw."""
+
+ASK_AGAIN_S = 3600
+"""A change of which the run failed is asked for again so long after it."""
+
 TRY_AGAIN_S = 300
 TRIES = 3
 
@@ -47,15 +54,14 @@ def rebuild_archive(
     notifier: dg.ResourceParam[Notifier],
 ) -> None:
     """The whole rebuild, as `herijk rebuild` does it."""
-    progress = LogProgress(context.log)
     data, seasons = Path(setup.data), config.seasons or None
     try:
-        report = rebuild(setup.archive_root, data, setup.methods, progress, seasons)
-    except UnavailableError as error:
-        if context.retry_number < TRIES:
-            raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error
-        raise _failure(notifier, error) from error
+        names = [method.name for method in setup.chosen_methods]
+        report = rebuild(setup.archive_root, data, names, LogProgress(context.log), seasons)
     except Exception as error:  # whatever it is, it is told
+        passes = isinstance(error, UnavailableError) or _is_away(setup.archive_root)
+        if passes and context.retry_number < TRIES:
+            raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error
         raise _failure(notifier, error) from error
     for line in [*report.headlines, *tell(notifier, report)]:
         context.log.info(line)
@@ -70,10 +76,18 @@ def rebuild_archive(
         raise dg.Failure("; ".join(failed), allow_retries=False)
 
 
+def _is_away(archive: Path) -> bool:
+    """Whether nothing lies there: a disk that is not mounted comes back."""
+    try:
+        listing(archive)
+    except MissingKnowledgeError:
+        return True
+    return False
+
+
 def _failure(notifier: Notifier, error: Exception) -> dg.Failure:
     what = str(error) if isinstance(error, HerijkError) else unexpected(error)
-    problems = tell_failure(notifier, what)
-    return dg.Failure("; ".join([what, *problems]), allow_retries=False)
+    return dg.Failure("; ".join([what, *tell_failure(notifier, what)]), allow_retries=False)
 
 
 @dg.job(name="rebuild", tags=ONE_AT_A_TIME | {"dagster/max_runtime": str(LONGEST_S)})
@@ -112,9 +126,10 @@ def archive_sensor(archive: Path, is_served: bool) -> dg.SensorDefinition:
 
     def look(context: dg.SensorEvaluationContext) -> dg.SensorResult | dg.SkipReason:
         try:  # a digest of the listing, since a cursor is kept for every tick
-            return _look(fingerprint(listing(archive)), context.cursor or "")
+            now = fingerprint(listing(archive))
         except MissingKnowledgeError as error:
             return dg.SkipReason(str(error))
+        return _look(now, context.cursor or "", _failed_before(context.instance, now))
 
     return dg.SensorDefinition(
         name="archive_changed",
@@ -128,16 +143,25 @@ def archive_sensor(archive: Path, is_served: bool) -> dg.SensorDefinition:
     )
 
 
-def _look(now: str, cursor: str) -> dg.SensorResult:
+def _failed_before(instance: dg.DagsterInstance, now: str) -> bool:
+    """Whether the last run for this state of the archive failed, a while ago."""
+    asked = dg.RunsFilter(job_name=rebuild_job.name, tags={LISTING: now})
+    for record in instance.get_run_records(asked, limit=1):
+        failed = record.dagster_run.status == dg.DagsterRunStatus.FAILURE
+        return failed and time.time() - (record.end_time or 0.0) > ASK_AGAIN_S
+    return False
+
+
+def _look(now: str, cursor: str, failed: bool) -> dg.SensorResult:
     """The cursor holds the digests of the listings of the last request and of the last tick.
 
     A change counts when two ticks see the same listing: so no clock is asked, and no half copy is
-    read.
+    read. A change stays open until a run succeeded.
     """
     asked, _, before = cursor.partition(" ")
-    if now == asked:
+    if now == asked and not failed:
         return dg.SensorResult(skip_reason="no file of the archive changed", cursor=cursor)
     if now != before:
         skip = "files changed; waiting until the archive is left alone"
         return dg.SensorResult(skip_reason=skip, cursor=f"{asked} {now}")
-    return dg.SensorResult(run_requests=[dg.RunRequest()], cursor=f"{now} {now}")
+    return dg.SensorResult(run_requests=[dg.RunRequest(tags={LISTING: now})], cursor=f"{now} {now}")

@@ -15,7 +15,7 @@ from herijk.assets.settings import Settings, read_settings
 def build_defs(archive: str, data: str, settings: Settings, address: str = "") -> dg.Definitions:
     """The same, with the job of a rebuild, and what starts it when nobody asks."""
     notifier = notifier_of(data, settings)
-    setup = Setup.of(Path(archive), Path(data), settings.applied, settings)
+    setup = Setup.of(Path(archive), Path(data), settings.methods, settings)
     by_itself = dg.Definitions(
         jobs=[automation.rebuild_job],
         schedules=automation.schedules(settings, bool(address)),

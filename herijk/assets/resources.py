@@ -10,11 +10,11 @@ from pydantic import Field
 
 from herijk.assets.settings import Settings
 from herijk.assets.workers import in_parallel
-from herijk.pipeline.method.definition import Method, shipped_methods
+from herijk.pipeline.method.definition import Method
 from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.store.lock import only_writer
 from herijk.warehouse.store.machine_faults import machine_faults_explained
-from herijk.warehouse.store.methods import KnownMethods
+from herijk.warehouse.store.methods import KnownMethods, methods_to_apply
 from herijk.warehouse.store.store import Store
 
 T = TypeVar("T")
@@ -33,8 +33,8 @@ class Setup(dg.ConfigurableResource["Setup"]):
     archive: str = Field(description="the archive folder")
     data: str = Field(description="the data folder, made if it is not there")
     methods: list[str] = Field(
-        default_factory=lambda: list(shipped_methods()),
-        description="methods to apply; the first is what the others are compared with",
+        default_factory=list,
+        description="methods to apply; the others are compared with the first",
     )
     set_aside_share: float = Settings().set_aside_share
     factor_jump: float = Settings().factor_jump
@@ -70,9 +70,9 @@ class Setup(dg.ConfigurableResource["Setup"]):
 
     @property
     def chosen_methods(self) -> list[Method]:
-        """The methods to apply."""
+        """The methods to apply; the first is what the others are compared with."""
         known = KnownMethods.of(self.store)
-        return [known.get(name) for name in self.methods]
+        return [known.get(name) for name in methods_to_apply(self.store, self.methods)]
 
     @property
     def scope(self) -> Scope:

@@ -8,6 +8,7 @@ from herijk.assets.site_state import SITE_TABLE, site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.warehouse.build.graph import DATABASE, STEPS
+from herijk.warehouse.build.inputs import forget_other_methods
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.queries.change_report import is_reported
 from herijk.warehouse.store.store import Store
@@ -36,6 +37,7 @@ def look(
     """
     intake.index(store, archive)
     intake.forget_unlisted_seasons(store)
+    forget_other_methods(store, {method.name for method in methods})
     _check_listed(wanted, intake.listed_seasons(store))
     seasons = intake.stale_seasons(store, archive, wanted)
     made: list[str] = ["samples", "blocks"] if seasons else []

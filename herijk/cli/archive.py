@@ -8,6 +8,7 @@ import typer
 
 from herijk.cli.arguments import AsJson, show, show_files
 from herijk.cli.text import place
+from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
@@ -50,7 +51,12 @@ def init(
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
     from herijk.warehouse.archive.files.empty_archive import write_templates
 
-    write_templates(directory)
+    try:
+        write_templates(directory)
+    except OSError as error:
+        raise MissingKnowledgeError(
+            "no archive can be made in {}: {}. Name another folder", directory, error.strerror
+        ) from error
     files = sorted(file for file in directory.rglob("*") if file.is_file())
     said = tell("An empty archive is in {}; begin with LEESMIJ.md.", directory)
     show_files(files, as_json, said)
@@ -60,9 +66,9 @@ def check_text(report: "CheckReport") -> str:
     """A check in words: a paragraph per cause."""
     causes = report.causes
     if not causes:
-        return tell("Nothing is wrong: {} tows can be read.", report.tows)
+        return tell("Nothing is wrong in the lists and headers of {} tows.", report.tows)
     head = tell(
-        "Causes: {}; places: {}. With what is proposed below {} tows can be read.",
+        "Causes: {}; places: {}. With what is proposed {} tows are left for a rebuild to judge.",
         len(causes),
         sum(cause.number for cause in causes),
         report.tows,

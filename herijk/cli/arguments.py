@@ -63,6 +63,6 @@ AsOf = Annotated[
         parser=read_day,
         metavar="DATE",
         help="Judge on this day, as if nothing later were known; without: on the day of the "
-        "archive's last tow.",
+        "archive's last tow or race.",
     ),
 ]

@@ -63,7 +63,7 @@ def doctor(
 def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     from importlib.metadata import version
 
-    from herijk.assets.settings import read_settings
+    from herijk.assets.settings import applied
     from herijk.cli.methods import known_methods
     from herijk.warehouse.queries.reports import rebuild_report
     from herijk.warehouse.store.lock import only_writer
@@ -72,7 +72,7 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     yield Finding("Herijk", True, version("herijk"))
     yield Finding("Python", True, sys.version.split()[0])
     yield _space(data)
-    yield _tried("settings", lambda: tell("applies {}", ", ".join(read_settings(data).applied)))
+    yield _tried("settings", lambda: tell("applies {}", ", ".join(applied(data))))
     known = known_methods(data)
     for name in known.own:
         yield _tried(tell("method {}", name), partial(_title, known, name))
@@ -108,7 +108,7 @@ def _title(known: "KnownMethods", name: str) -> str:
 
 def _taken(lock: AbstractContextManager[None]) -> str:
     with lock:
-        return "free"
+        return tell("free")
 
 
 def _tows(report: "RebuildReport") -> str:
@@ -118,6 +118,6 @@ def _tows(report: "RebuildReport") -> str:
 
 def _text(report: Findings) -> str:
     return "\n".join(
-        f"{tell('ok' if f.sound else 'WRONG'):5}  {tell(f.what)}: {tell(f.found)}"
+        f"{tell('ok' if f.sound else 'WRONG'):5}  {tell(f.what)}: {f.found}"
         for f in report.findings
     )

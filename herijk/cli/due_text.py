@@ -34,7 +34,7 @@ def due(report: "DueReport") -> str:
             "Due list as of {}{}; curves of method {}. {} boats and crews: {} expired, "
             "{} expire this year, {} without a curve.",
             report.as_of,
-            "" if report.asked else LAST_DAY,
+            "" if report.asked else tell(LAST_DAY),
             report.method,
             len(report.lines),
             *(counts[urgency] for urgency in ("expired", "this_year", "without_curve")),
@@ -93,7 +93,7 @@ def _choice(choice: list["Row"]) -> str:
     head = ("", "boat", "name", "crew", "towed in", "valid until", "tow at m/s", "uncertainty then")
     before = 100 * choice[0]["factor_sd_before_ratio"]
     after = 100 * choice[-1]["factor_sd_after_ratio"]
-    worth = "It is not worth it for that alone." if after >= WORTH * before else ""
+    worth = tell("It is not worth it for that alone.") if after >= WORTH * before else ""
     return tell(
         "{}.\nAll of them together bring the uncertainty of a season's log error from "
         "{:.3f} % to {:.3f} % of speed (standard\ndeviation); the last column says "
@@ -101,6 +101,6 @@ def _choice(choice: list["Row"]) -> str:
         title,
         before,
         after,
-        tell(worth),
+        worth,
         table(head, rows),
     )

@@ -130,11 +130,11 @@ def diff(report: "DiffReport") -> str:
     parts = [
         f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.",
         tell(
-            "Gain (more power for the same race): {}\nLose: {}\nLarger than the intervals "
-            "of both: {}; interval not known for {}.",
+            "Gain (more power for the same race): {}\nLose: {}\nLarger than the "
+            "uncertainty: {}; uncertainty not known for {}.",
             _group(report.gain),
             _group(report.loss),
-            report.exceeds_interval,
+            _exceeding(report),
             report.interval_unknown,
         ),
     ]
@@ -164,6 +164,12 @@ def diff(report: "DiffReport") -> str:
     return page([*parts, every_line + _lines(report.rows), _races(report)], report.simulated)
 
 
+def _exceeding(report: "DiffReport") -> str:
+    """How many lines moved by more than their uncertainty, where that is known of any."""
+    known = report.changes.get("changed", 0) > report.interval_unknown
+    return str(report.exceeds_interval) if known else tell("not known")
+
+
 def _group(group: "Group") -> str:
     if not group.lines:
         return tell("no lines")
@@ -178,7 +184,7 @@ def _group(group: "Group") -> str:
 def _lines(rows: list[Row]) -> str:
     head = (
         *("boat", "name", "crew", "change", "A old", "new", "B old", "new", "Cw old", "new"),
-        *("W old", "new", "Cw %", "in 2 h", "rank", "new", "causes"),
+        *("W old", "new", "W %", "in 2 h", "rank", "new", "causes"),
     )
     return table(head, [_line(row) for row in rows])
 
@@ -196,7 +202,7 @@ def _line(row: Row) -> tuple[object, ...]:
         if row["change"] != "removed"
         else tell("removed: {}", _words().word(STATUSES, row["new_status"] or "gone")),
         *pairs,
-        _per_cent(row["cw_ratio"]),
+        _per_cent(row["power_ratio"]),
         _seconds(row["gain_in_two_hours_s"]),
         row["old_rank"],
         row["new_rank"],
@@ -300,7 +306,10 @@ def verify(report: "Verification") -> str:
     ]
     if report.findings:
         findings = [
-            (f.edition, "WRONG" if f.wrong else "notice", f.kind, f.where, f.message)
+            (
+                *(f.edition, tell("WRONG" if f.wrong else "notice"), tell(f.kind)),
+                *(f.where, f.message),
+            )
             for f in report.findings
         ]
         parts.append(table(("edition", "", "kind", "where", "what"), findings))
@@ -320,7 +329,7 @@ def verify(report: "Verification") -> str:
 def _verdict(findings: list["Finding"]) -> str:
     wrong = sum(f.wrong for f in findings)
     if wrong:
-        return tell("{} {} wrong.", wrong, "thing is" if wrong == 1 else "things are")
+        return tell("{} {} wrong.", wrong, tell("thing is") if wrong == 1 else tell("things are"))
     otherwise = sum(f.kind == "differs" for f in findings)
     if otherwise:
         return tell(
@@ -338,7 +347,7 @@ def lineage(report: "Lineage") -> str:
         "Edition {}, valid from {}, method {} ({}), code {}. Decision: {}",
         about["edition"],
         about["valid_from"],
-        about["method"] or "as printed",
+        about["method"] or tell("as printed"),
         (about["method_hash"] or "-")[:12],
         about["code_version"],
         about["decision"],
@@ -360,7 +369,7 @@ def _line_history(line: "LineLineage") -> str:
             window(run),
             run["speed_m_s"],
             run["cw_kg_m"],
-            "yes" if run["used"] else tell("no: {}", run["reason"]),
+            tell("yes") if run["used"] else tell("no: {}", code(run["reason"])),
         )
         for run in line.runs
     ]

@@ -274,7 +274,7 @@ def _changed_line() -> Fields:
         **NAME,
         **{f"{side}_{name}": own for side in ("old", "new") for name, own in in_either.items()},
         "gain_in_two_hours_s": number("what it gains in a race of two hours [s]", maybe=True),
-        "exceeds_interval": flag("it moved by more than both intervals", maybe=True),
+        "exceeds_interval": flag("it moved by more than its interval", maybe=True),
         "causes": rows("what moved it", cause),
     }
 

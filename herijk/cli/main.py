@@ -1,8 +1,8 @@
 """The command `herijk`: arguments in, results out. Messages go to stderr, results to stdout.
 
 Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
-arguments. What a command does is in `assets`, `warehouse` and `pipeline`; how a result looks
-as text, in `cli.text`.
+arguments, 130 stopped. What a command does is in `assets`, `warehouse` and `pipeline`; how a result
+looks as text, in `cli.text`.
 
 A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster take seconds
 together, and `herijk --help` needs none of them.
@@ -10,6 +10,7 @@ together, and `herijk --help` needs none of them.
 
 import os
 import re
+import signal
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -26,6 +27,7 @@ from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError, unexpected
+from herijk.warehouse.store.machine_faults import REASSURANCE, machine_faults_explained
 from herijk.words import LANGUAGE, say, spoken, tell
 
 if TYPE_CHECKING:
@@ -51,6 +53,9 @@ app.command()(doctor)
 
 MOST_TYPES: Final = 2
 
+INTERRUPTED: Final = 130
+"""The exit status after Ctrl-C or SIGTERM: 128 and the number of SIGINT."""
+
 BLAS_THREADS: Final = "OPENBLAS_NUM_THREADS"
 """Read when NumPy is imported. Both processes of a rebuild work on small matrices: more threads in
 each only wait for each other (5.4 s instead of 3.2 for the consistency of 1,020 tows)."""
@@ -66,16 +71,28 @@ def main() -> None:
     os.environ.setdefault(ARROW_MEMORY, "system")
     if sys.getfilesystemencoding() != "utf-8":
         _begin_in_utf8()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C; it is what systemd sends
     try:
-        app()
+        with machine_faults_explained(Path(os.environ.get("HERIJK_DATA", "data"))):
+            app()
     except HerijkError as error:
         typer.echo(f"herijk: {spoken(error, LANGUAGE.get())}", err=True)
         sys.exit(1)
-    except (KeyboardInterrupt, SystemExit):
+    except SystemExit as ending:
+        if ending.code == INTERRUPTED:
+            _tell_stopped()
         raise
     except BaseException as error:  # a panic of a library in Rust is no Exception
+        if type(error).__name__ == "DagsterExecutionInterruptedError":
+            _tell_stopped()
+            sys.exit(INTERRUPTED)
         typer.echo(f"herijk: {_written_down(error)}", err=True)
         sys.exit(1)
+
+
+def _tell_stopped() -> None:
+    said = say("stopped, as it was told to. {} Run it again to go on", REASSURANCE)
+    typer.echo(f"herijk: {said.spoken(LANGUAGE.get())}", err=True)
 
 
 def _begin_in_utf8() -> NoReturn:
@@ -144,8 +161,8 @@ def rebuild(
         list[str] | None,
         typer.Option(
             metavar="METHOD_OR_FILE",
-            help="Method to apply; repeat for more. A file is kept in the data folder. "
-            "Default: all that ship, or those in beheer.toml.",
+            help="Method to add to those of the data folder, or to renew; repeat for more. A file "
+            "is kept there. Default: those that beheer.toml lists, or all that ship.",
         ),
     ] = None,
     seasons: Annotated[
@@ -158,7 +175,7 @@ def rebuild(
     from herijk.assets.notify import notifier_of
     from herijk.assets.rebuild import rebuild as run
     from herijk.assets.report import failed_checks, tell
-    from herijk.assets.settings import read_settings
+    from herijk.assets.settings import applied, read_settings
     from herijk.cli.progress import TerminalProgress
     from herijk.dashboards.report import headlines
     from herijk.warehouse.queries import reports
@@ -166,7 +183,7 @@ def rebuild(
     from herijk.words.catalogue import speaker
 
     known = methods.known_methods(data)
-    chosen = [known.kept(name) for name in method or read_settings(data).applied]
+    chosen = applied(data, [known.kept(name) for name in method or ()])
     try:
         with TerminalProgress() as progress:
             news = run(archive, data, chosen, progress, seasons)
@@ -217,7 +234,6 @@ def serve(
     from herijk.assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
     from herijk.warehouse.store.lock import only_server
-    from herijk.warehouse.store.machine_faults import machine_faults_explained
     from herijk.warehouse.store.store import Store
 
     def tell(line: str) -> None:
@@ -406,7 +422,6 @@ def simulate(
     from herijk.cli.progress import TerminalProgress
     from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
-    from herijk.warehouse.store.machine_faults import machine_faults_explained
 
     if worlds:
         typer.echo("\n".join(f"{name:18s}{tell(named.about)}" for name, named in WORLDS.items()))

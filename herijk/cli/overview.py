@@ -23,7 +23,7 @@ from typer.main import get_command
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.toml_text import decoded, parse_toml
-from herijk.words import LANGUAGE, LANGUAGES, spoken, tell
+from herijk.words import LANGUAGE, LANGUAGES, tell
 
 if TYPE_CHECKING:
     from typer._click import Command
@@ -127,7 +127,7 @@ USAGE: Final = (
 
 def _usage_in_words(error: ClickException) -> str:
     """What is wrong with the arguments."""
-    own: dict[str, str] = {str(error.message): spoken(error.message, LANGUAGE.get())}
+    own: dict[str, str] = {str(error.message): tell(str(error.message))}
 
     def in_words(said: str) -> str:
         for text in USAGE:

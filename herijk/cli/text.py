@@ -29,7 +29,7 @@ def page(parts: Iterable[str], simulated: bool) -> str:
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Columns lined up, their heads and what they say in words; numbers to the right."""
+    """Columns lined up, their heads in words; numbers to the right."""
     cells = [[_cell(value) for value in row] for row in rows]
     columns = zip([tell(title) for title in head], *cells, strict=True)
     lines = zip(*map(_lined_up, columns), strict=True)
@@ -99,8 +99,8 @@ def rebuild(report: "RebuildReport", done: "Done", headlines: list[str]) -> str:
 def _work_done(done: "Done") -> str:
     if not done.database:
         return tell("Nothing changed: no file was read again, all tables are up to date.")
-    seasons = ", ".join(str(s) for s in done.seasons) or "none"
-    methods = ", ".join(done.methods) or "none"
+    seasons = ", ".join(str(s) for s in done.seasons) or tell("none")
+    methods = ", ".join(done.methods) or tell("none")
     return tell("Seasons read: {}. Methods applied: {}.", seasons, methods)
 
 

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from math import exp
 from typing import Final
 
-import polars as pl
 from markupsafe import Markup
 
 from herijk.dashboards.pictures import curve_picture, waterfall_picture
 from herijk.dashboards.speech import Speech
 from herijk.tables.row import Row
+from herijk.warehouse.queries.documents import Curve
 
 FEW: Final = 2
 """A place among fewer says nothing."""
@@ -29,15 +29,13 @@ class Answer:
     Attributes:
         line: a row of `warehouse.queries.answers.answers`.
         races: rows of `own_races` of this boat and crew.
-        curve: rows of `curve_points` of the tow that counts.
-        points: rows of `run_points` of that tow.
+        curve: its curve, as `warehouse.queries.documents.curve_of` gives it.
         faults: rows of `season_diagnosis` of its season that a person should look at.
     """
 
     line: Row
     races: Sequence[Row]
-    curve: pl.DataFrame
-    points: pl.DataFrame
+    curve: Curve
     faults: Sequence[Row] = ()
 
 
@@ -50,7 +48,6 @@ class Told:
         headline: the number, or why there is none.
         sentences: the rest, in order of what people ask.
         waterfall, curve: pictures; empty where there is nothing to draw.
-        curve_caption: what the picture of the curve shows.
         certificate: key by which the certificate can be asked for.
     """
 
@@ -59,7 +56,6 @@ class Told:
     sentences: Sequence[str]
     waterfall: Markup
     curve: Markup
-    curve_caption: str
 
 
 def told(answer: Answer, speech: Speech) -> Told:
@@ -72,10 +68,7 @@ def told(answer: Answer, speech: Speech) -> Told:
         headline=_headline(line, speech),
         sentences=list(_sentences(answer, speech)),
         waterfall=_waterfall(line, speech, title),
-        curve=curve_picture(
-            answer.curve, answer.points, speech, f"{speech.say('boat_curve')}: {title}"
-        ),
-        curve_caption=curve_caption(line, speech),
+        curve=curve_picture(answer.curve, line, speech, f"{speech.say('boat_curve')}: {title}"),
     )
 
 
@@ -91,11 +84,12 @@ def _headline(line: Row, speech: Speech) -> str:
     new = speech.number(line["cw_kg_m"], 2)
     if line["cw_ratio"] is None:
         return speech.say("answer_number").format(new=new)
-    if line["change"] == "same":
+    ratio = line["cw_kg_m"] / line["old_cw_kg_m"]  # of the two that are shown, each at its speed
+    if abs(ratio - 1) <= SHOWN:
         return speech.say("answer_same").format(new=new)
-    key = "answer_lower" if line["cw_ratio"] < 1 else "answer_higher"
+    key = "answer_lower" if ratio < 1 else "answer_higher"
     old = speech.number(line["old_cw_kg_m"], 2)
-    by = speech.number(100 * abs(line["cw_ratio"] - 1), 1)
+    by = speech.number(100 * abs(ratio - 1), 1)
     return speech.say(key).format(old=old, new=new, by=by)
 
 
@@ -123,6 +117,7 @@ def _change(line: Row, speech: Speech) -> Iterator[str]:
         yield speech.say("answer_other_speed").format(
             old=speech.number(line["old_declared_speed_m_s"], 2),
             new=speech.number(line["declared_speed_m_s"], 2),
+            by=speech.per_cent(line["cw_ratio"]),
         )
     if line["change"] == "same":
         return
@@ -158,15 +153,11 @@ def _certainty(line: Row, speech: Speech) -> Iterator[str]:
     if line["change"] != "changed":
         return
     verdict = {True: "answer_exceeds", False: "answer_within", None: "answer_unknown"}
-    yield speech.say(verdict[line["exceeds_interval"]])
+    key = verdict[line["exceeds_interval"]]
+    of_one_tow = key != "answer_unknown" and line["old_tow_id"] == line["tow_id"]
+    yield speech.say(f"{key}_old" if of_one_tow else key)
     if line["exceeds_interval"] is not None and not line["old_log_known"]:
         yield speech.say("answer_old_spread")
-
-
-def curve_caption(line: Row, speech: Speech) -> str:
-    """What the picture of the curve shows, and what its band leaves out."""
-    band = "band_complete" if line["new_log_known"] else "band_runs_alone"
-    return speech.say("curve_caption").format(band=speech.say(band))
 
 
 def _best(line: Row, speech: Speech) -> Iterator[str]:

@@ -4,12 +4,13 @@ A page that reaches it by a name of its own (DNS rebinding) is refused by its Ho
 sends a form or a script, by its Origin and type. Which pages there are is not decided here.
 """
 
+import asyncio
 import socket
 from typing import Final
 
 import uvicorn
 from starlette.responses import PlainTextResponse
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from herijk.pipeline.errors import UnavailableError
@@ -18,6 +19,10 @@ LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
 MOST_CONNECTIONS: Final = 100
 FIRST_REQUEST_S: Final = 10.0
 """A connection on which nothing is asked for so long is closed."""
+
+LARGEST_BODY: Final = 1 << 20
+"""Bytes that a request may bring: a method with all its options has a few thousand."""
+LONGEST_BODY_S: Final = 10.0
 
 _READING: Final = ("GET", "HEAD", "OPTIONS")
 
@@ -36,12 +41,29 @@ class Guard:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Passes a request on, or refuses it with 403."""
         refusal = None if scope["type"] == "lifespan" else self._refusal(scope)
-        if refusal is None:
+        if refusal is None and scope["type"] == "http" and scope["method"] not in _READING:
+            await self._with_body(scope, receive, send)
+        elif refusal is None:
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 1008})
         else:
             await PlainTextResponse(refusal, 403)(scope, receive, send)
+
+    async def _with_body(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Passes a request on when its body is here whole, neither too large nor too slow."""
+        try:
+            first = await asyncio.wait_for(_whole_body(receive), LONGEST_BODY_S)
+        except TimeoutError:
+            return await _refuse_body(408, "the request took too long")(scope, receive, send)
+        if first is None:
+            return await _refuse_body(413, "the request is too large")(scope, receive, send)
+        came = [first]
+
+        async def received() -> Message:
+            return came.pop() if came else await receive()
+
+        return await self._app(scope, received, send)
 
     def _refusal(self, scope: Scope) -> str | None:
         """Why a request is not answered; None where it is."""
@@ -53,12 +75,31 @@ class Guard:
             # Whatever is asked there: `%71uery=` is a query too, and any page can have it fetched.
             asks = scope["path"].rstrip("/").endswith("/graphql") and scope["query_string"]
             return "a query is posted" if asks else None
-        if sent.get("origin", "").partition("://")[2] != host:
+        # No browser leaves it out where it matters; Dagster's own client for scripts does.
+        if "origin" in sent and sent["origin"].partition("://")[2] != host:
             return "only its own pages may ask"
         kind = sent.get("content-type", "").partition(";")[0].strip()
         if scope["type"] == "http" and kind != "application/json":
             return "JSON is needed"
         return None
+
+
+async def _whole_body(receive: Receive) -> Message | None:
+    """All parts of a body as one; None where they are more than is allowed."""
+    body, more = b"", True
+    while more:
+        part = await receive()
+        if part["type"] != "http.request":
+            return part
+        body, more = body + part.get("body", b""), part.get("more_body", False)
+        if len(body) > LARGEST_BODY:
+            return None
+    return {"type": "http.request", "body": body, "more_body": False}
+
+
+def _refuse_body(status: int, why: str) -> PlainTextResponse:
+    """A refusal that ends the connection: what is still to come is not waited for."""
+    return PlainTextResponse(why, status, headers={"Connection": "close"})
 
 
 def _name(host: str) -> str:

@@ -28,19 +28,30 @@ def register(lines: pl.DataFrame) -> Headline:
 def changes(lines: pl.DataFrame) -> Headline:
     """How many lines change, by more than their uncertainty, and mostly why."""
     changed = lines.filter(pl.col("change") == "changed")
-    beyond = int(changed["exceeds_interval"].fill_null(False).sum())
     causes = Counter(filter(None, (_largest(text) for text in changed["causes"].to_list())))
 
     def sentence(speech: Speech) -> str:
         text = _from_to(lines, speech) + speech.say("head_changes").format(
-            changed=changed.height, lines=lines.height, beyond=beyond or speech.say("code.none")
+            changed=changed.height, lines=lines.height
         )
+        text += beyond_interval(changed, speech)
         if causes:
-            cause = speech.say(f"code.{causes.most_common(1)[0][0]}")
-            text += speech.say("head_mostly").format(cause=cause)
+            cause = causes.most_common(1)[0][0]
+            key = "head_printed" if cause == "printed" else "head_mostly"
+            text += speech.say(key).format(cause=speech.say(f"code.{cause}"))
         return f"{text}.{_log_unknown(changed, speech)}"
 
     return sentence
+
+
+def beyond_interval(changed: pl.DataFrame, speech: Speech) -> str:
+    """How many lines change by more than their uncertainty, and of how many that is not known."""
+    known = changed["exceeds_interval"].drop_nulls()
+    if known.is_empty():
+        return speech.say("head_beyond_unknown") if changed.height else ""
+    text = speech.say("head_beyond").format(beyond=known.sum() or speech.say("code.none"))
+    unknown = changed.height - known.len()
+    return text + (speech.say("head_beyond_some").format(unknown=unknown) if unknown else "")
 
 
 def _log_unknown(changed: pl.DataFrame, speech: Speech) -> str:

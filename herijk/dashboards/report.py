@@ -66,7 +66,7 @@ def mail(changes: ChangeSummary, checks: Sequence[Check], simulated: bool) -> tu
 
 def _line(line: Row) -> str:
     """A changed line of a register, on a line of text."""
-    ratio = "" if line["cw_ratio"] is None else f"Cw x {line['cw_ratio']:.4f}"
+    ratio = "" if line["cw_ratio"] is None else f"Cw {100 * (line['cw_ratio'] - 1):+z.2f} %"
     crew = f"{line['rowers']}{line['crew_class']}"
     return f"  {line['to_edition']}: {line['fsn_no']} {crew} {line['change']} {ratio}".rstrip()
 
@@ -111,6 +111,8 @@ def _moved(changes: ChangeSummary, say: Say) -> Iterable[str]:
         yield say("report_first")
     if changes.seasons_gone:
         yield f"{say('report_seasons_gone')}: {', '.join(map(str, changes.seasons_gone))}"
+    for row in changes.methods:
+        yield f"{say('report_method')} {row['method']}: {say('code.' + row['what'])}"
     counted = (("report_tows", changes.tows), ("report_set_aside", changes.set_aside))
     for title, rows in counted:
         by_what: dict[str, int] = {}

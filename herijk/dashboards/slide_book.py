@@ -293,14 +293,13 @@ class Book:
             yield Slide("eras", "eras", rows, self.say("slide.eras"), said)
 
     def _apart(self, row: Row) -> str:
-        """Whether an era's tows stand apart from the next of the same boats, and by how much."""
-        ends = sorted(1.0 / row[end] - 1.0 for end in ("shift_ratio", "lo", "hi"))
+        """Whether the next tow of the same boats stands apart from those of an era, old to new."""
         key = "slide.is_apart" if row["apart"] else "slide.not_apart"
         return self.say(key).format(
             method=self.method(row["method"]),
-            shift=self._signed(1.0 / row["shift_ratio"] - 1.0),
-            lo=self._signed(ends[0]),
-            hi=self._signed(ends[-1]),
+            shift=self._signed(row["shift_ratio"] - 1.0),
+            lo=self._signed(row["lo"] - 1.0),
+            hi=self._signed(row["hi"] - 1.0),
         )
 
     def boat(self, fsn_no: str) -> Iterator[Slide]:

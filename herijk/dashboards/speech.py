@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import Final, TypeAlias
+from typing import Final, TypeAlias, cast
 
+import polars as pl
 from markupsafe import Markup, escape
 
+from herijk.pipeline.races.race import FATIGUE_REFERENCE
 from herijk.words import DECIMALS
 from herijk.words.catalogue import speaker, unbroken
 
@@ -51,6 +53,19 @@ def duration(seconds: float) -> str:
     """A time rowed as people say it: 1:55:11."""
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"
+
+
+def stretched_fatigue(times_s: pl.Series, speech: Speech) -> str:
+    """That the correction for fatigue is used for times that it was not made for, where it is."""
+    (first, _), (last, _) = FATIGUE_REFERENCE
+    beyond = times_s.filter(~times_s.is_between(first, last))
+    if beyond.is_empty():
+        return ""
+    ends = {
+        name: duration(cast(float, time))
+        for name, time in zip(("low", "high"), (times_s.min(), times_s.max()), strict=True)
+    }
+    return speech.say("fatigue_stretched").format(**ends)
 
 
 Headline: TypeAlias = Callable[[Speech], str]

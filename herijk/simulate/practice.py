@@ -46,9 +46,8 @@ Floats = NDArray[np.float64]
 class Practice:
     """How a year computed; the default is that of the years until 2013."""
 
-    trimmed: bool = False
-    calibrated: bool = False
-    oblique: bool = False
+    improved: bool = False
+    """Trimmed, calibrated on dGPS, oblique wind, B capped, no runs at 120 %."""
     temperature: bool = False
 
 
@@ -56,8 +55,7 @@ def practice_of(season: int, printed_in: int) -> Practice:
     """The practice by which a register printed a tow; that of 2014 was recomputed in 2015."""
     if season <= 2013 or printed_in <= 2014:
         return Practice()
-    later = season >= 2015
-    return Practice(trimmed=True, calibrated=True, oblique=later, temperature=season >= 2018)
+    return Practice(improved=True, temperature=season >= 2018)
 
 
 def practices(season: int) -> tuple[Practice, ...]:
@@ -82,10 +80,10 @@ def printed_curve(
 ) -> tuple[float, float]:
     """A [kg/m] and B [m/s] by a practice."""
     used = [_run(samples, run, practice) for run in runs if _is_used(run, tow)]
-    y = _calibration(used) if practice.calibrated else 1.0
+    y = _calibration(used) if practice.improved else 1.0
     speed = np.array([y * run.log_m_s.mean() for run in used])
     gross = np.array([(run.force_n / (y * run.log_m_s) ** 2).mean() for run in used])
-    if practice.oblique:
+    if practice.improved:
         counted = speed <= FASTEST_OF_2015 * tow.declared_speed_m_s
         air = np.array([_oblique_kg_m(run, y, tow) for run in used])
         speed, cw = (
@@ -97,7 +95,7 @@ def printed_curve(
     if practice.temperature:
         cw = cw + _to_reference(tow, speed)
     highest_b = HULL_SPEEDS * 1.25 * np.sqrt(tow.boat.waterline_length_m)
-    return _fit(speed, cw, float(highest_b) if practice.oblique else HIGHEST_B_M_S)
+    return _fit(speed, cw, float(highest_b) if practice.improved else HIGHEST_B_M_S)
 
 
 def _is_used(run: RunTruth, tow: Tow) -> bool:
@@ -113,7 +111,7 @@ def _run(samples: pl.DataFrame, run: RunTruth, practice: Practice) -> _Run:
     rate_hz = mine.height / 50.0
     first, last = (
         (int(run.undisturbed_start_s * rate_hz), int(run.undisturbed_end_s * rate_hz))
-        if practice.trimmed
+        if practice.improved
         else (0, mine.height)
     )
     mine = mine.slice(first, last - first).filter(

@@ -49,8 +49,8 @@ class Register(_Line):
 
     status = column.text("valid, or why there is no valid curve")
     as_of = dy.Date(
-        description="day on which validity was judged: that of the archive's last tow, or from "
-        "which an edition counts",
+        description="day on which validity was judged: that of the archive's last tow or race, or "
+        "from which an edition counts",
         nullable=True,
     )
     waterline_length_m = column.waterline_length("length on the waterline that day", nullable=True)

@@ -29,10 +29,10 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "Compared: \u201c{new}\u201d with \u201c{old}\u201d.",
     ),
     "answer_other_speed": (
-        "De opgegeven snelheid is een andere: {new} in plaats van {old} m/s. Het percentage geldt "
-        "bij de oude snelheid.",
-        "The declared speed is another one: {new} instead of {old} m/s. The percentage holds at "
-        "the old speed.",
+        "De opgegeven snelheid is een andere: {new} in plaats van {old} m/s. Bij de oude snelheid "
+        "verandert Cw {by}; daarover gaat wat volgt.",
+        "The declared speed is another one: {new} instead of {old} m/s. At the old speed Cw "
+        "changes by {by}; what follows is about that.",
     ),
     "answer_causes": ("Waardoor: {causes}.", "Why: {causes}."),
     "answer_slower": (
@@ -103,6 +103,14 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
     "answer_within": (
         "De verandering valt binnen de onzekerheid van beide getallen samen.",
         "The change lies within the uncertainty of both numbers together.",
+    ),
+    "answer_exceeds_old": (
+        "Beide getallen zijn van dezelfde proef; het nieuwe ligt buiten het interval van het oude.",
+        "Both numbers come from the same tow; the new one lies outside the interval of the old.",
+    ),
+    "answer_within_old": (
+        "Beide getallen zijn van dezelfde proef; het nieuwe ligt binnen het interval van het oude.",
+        "Both numbers come from the same tow; the new one lies within the interval of the old.",
     ),
     "answer_unknown": (
         "Of de verandering groter is dan de onzekerheid, is niet te zeggen: van een van beide "

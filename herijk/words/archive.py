@@ -201,8 +201,8 @@ ARCHIVE: Final[dict[str, str]] = {
     "'{path}' is not read: samples are read from text. Save the sheet as CSV.": (
         "'{path}' wordt niet gelezen: metingen worden uit tekst gelezen. Bewaar het blad als CSV."
     ),
-    "'{path}' is not read: it is not recognised.": (
-        "'{path}' wordt niet gelezen: het is niet herkend."
+    "'{path}' is not recognised. It may be put under ignore in archief.toml.": (
+        "'{path}' is niet herkend. Het mag onder ignore in archief.toml."
     ),
     "'{path}' leads outside the archive, where nothing is read.": (
         "'{path}' leidt naar buiten het archief; daar wordt niets gelezen."
@@ -238,6 +238,9 @@ ARCHIVE: Final[dict[str, str]] = {
     ),
     "Column '{header}' has unit [{unit}]; known here: {known}.": (
         "Kolom '{header}' heeft eenheid [{unit}]; bekend zijn hier: {known}."
+    ),
+    "'{end}' at the end of '{name}' is no known unit of it; put the unit in brackets.": (
+        "'{end}' achter '{name}' is er geen bekende eenheid van; zet de eenheid tussen haken."
     ),
     "Column '{header}' can be more than one thing; write its unit behind it: {known}.": (
         "Kolom '{header}' kan van alles zijn; schrijf de eenheid erachter: {known}."

@@ -220,6 +220,9 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.cause": ("Oorzaak", "Cause"),
     "column.era": ("Tijdvak", "Era"),
     "column.shift_ratio": ("Cw nieuw / oud", "Cw new / old"),
+    "column.shift_percent": ("Cw, van oud naar nieuw [%]", "Cw, old to new [%]"),
+    "column.lo_percent": ("Laagst [%]", "Lowest [%]"),
+    "column.hi_percent": ("Hoogst [%]", "Highest [%]"),
     "column.apart": ("Staat apart", "Stands apart"),
     "column.ageing_per_year": ("Veroudering per jaar", "Ageing a year"),
     # Columns of charts, as a table

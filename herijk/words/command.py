@@ -157,16 +157,16 @@ COMMAND: Final[dict[str, str]] = {
     "Folder with everything Herijk writes.": "Map met alles wat Herijk schrijft.",
     "Print the result as JSON.": "Geef de uitkomst als JSON.",
     "Judge on this day, as if nothing later were known; without: on the day of the "
-    "archive's last tow.": (
+    "archive's last tow or race.": (
         "Beoordeel op deze dag, alsof van later niets bekend is; anders op de dag van de "
-        "laatste proef van het archief."
+        "laatste proef of wedstrijd van het archief."
     ),
     "Write what is proposed to archief.toml.": "Schrijf het voorstel naar archief.toml.",
     "Folder to make.": "Map die gemaakt wordt.",
-    "Method to apply; repeat for more. A file is kept in the data folder. Default: all "
-    "that ship, or those in beheer.toml.": (
-        "Toe te passen methode; herhaal voor meer. Een bestand wordt in de datamap "
-        "bewaard. Standaard: alle meegeleverde, of die in beheer.toml."
+    "Method to add to those of the data folder, or to renew; repeat for more. A file is kept "
+    "there. Default: those that beheer.toml lists, or all that ship.": (
+        "Methode die erbij komt of opnieuw wordt toegepast; herhaal voor meer. Een bestand wordt "
+        "in de datamap bewaard. Standaard: die in beheer.toml staan, of alle meegeleverde."
     ),
     "Read these seasons only.": "Lees alleen deze seizoenen.",
     "Seasons, both ends included.": "Seizoenen, eerste en laatste meegerekend.",
@@ -332,12 +332,12 @@ COMMAND: Final[dict[str, str]] = {
         "GESIMULEERD archief: gemaakt met `herijk simulate`, geen metingen van de federatie."
     ),
     # Check, init, doctor, pages, workbench, serve
-    "Nothing is wrong: {} tows can be read.": (
-        "Er is niets mis: {} sleepproeven kunnen gelezen worden."
+    "Nothing is wrong in the lists and headers of {} tows.": (
+        "Er is niets mis in de lijsten en kopregels van {} sleepproeven."
     ),
-    "Causes: {}; places: {}. With what is proposed below {} tows can be read.": (
-        "Oorzaken: {}; plaatsen: {}. Met wat hieronder wordt voorgesteld kunnen {} "
-        "sleepproeven gelezen worden."
+    "Causes: {}; places: {}. With what is proposed {} tows are left for a rebuild to judge.": (
+        "Oorzaken: {}; plaatsen: {}. Met wat is voorgesteld blijven {} sleepproeven over, die bij "
+        "het herbouwen worden beoordeeld."
     ),
     "Write what is proposed with: herijk check {} --write-profile": (
         "Schrijf het voorstel met: herijk check {} --write-profile"
@@ -549,10 +549,10 @@ COMMAND: Final[dict[str, str]] = {
         "Zij verandert nooit meer. Dat controleert u met: herijk verify"
     ),
     "no lines": "geen regels",
-    "Gain (more power for the same race): {}\nLose: {}\nLarger than the intervals of both: "
-    "{}; interval not known for {}.": (
-        "Winst (meer vermogen in dezelfde wedstrijd): {}\nVerlies: {}\nGroter dan beide "
-        "intervallen: {}; interval niet bekend bij {}."
+    "Gain (more power for the same race): {}\nLose: {}\nLarger than the uncertainty: {}; "
+    "uncertainty not known for {}.": (
+        "Winst (meer vermogen in dezelfde wedstrijd): {}\nVerlies: {}\nGroter dan de "
+        "onzekerheid: {}; onzekerheid niet bekend bij {}."
     ),
     "The interval of {} is the spread of the runs alone: the log's error is not in it.": (
         "Het interval van {} is alleen de spreiding van de runs: de fout van de log zit er niet in."

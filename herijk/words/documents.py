@@ -76,10 +76,10 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
     "proposal_seconds": (
         "In 2 uur: seconden die een ploeg bij hetzelfde vermogen langer (+) mag doen over een "
         "wedstrijd van twee uur, of sneller (\u2212) moet zijn. Laatste kolom: hoeveel regels meer "
-        "veranderen dan de onzekerheid van beide getallen samen.",
+        "veranderen dan de onzekerheid.",
         "In 2 h: seconds that a crew may take longer (+) over a race of two hours at the same "
         "power, or has to be faster (\u2212). Last column: how many lines change by more than the "
-        "uncertainty of both numbers together.",
+        "uncertainty.",
     ),
     "proposal_boats": ("De grootste veranderingen", "The largest changes"),
     "proposal_old": ("Oud", "Old"),
@@ -105,10 +105,11 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
         "Of every line it can be told whether the change is larger than the uncertainty.",
     ),
     "proposal_unsure": (
-        "Bij {flagged} sloepen staat een waarschuwing waar de commissie nog naar moet kijken. Oude "
-        "getallen hebben vaak een te kleine onzekerheid: de fout van de log zit er niet in.",
-        "{flagged} boats carry a flag that the committee still has to look at. Old numbers often "
-        "have too small an uncertainty: the error of the log is not in it.",
+        "Regels met een waarschuwing waar de commissie nog naar moet kijken: {flagged} van de "
+        "{lines}. Oude getallen hebben vaak een te kleine onzekerheid: de fout van de log zit er "
+        "niet in.",
+        "Lines with a flag that the committee still has to look at: {flagged} of {lines}. Old "
+        "numbers often have too small an uncertainty: the error of the log is not in it.",
     ),
     "proposal_check": ("Controleren en bezwaar maken", "Checking, and objecting"),
     "proposal_checking": (

@@ -65,6 +65,25 @@ ERRORS: Final[dict[str, str]] = {
         "dit proces mag niet meer bestanden openen. Sta er meer toe (ulimit -n 1024; in "
         "systemd LimitNOFILE=1024) en start opnieuw"
     ),
+    "this process may not write files as large as it needs. Allow larger ones (ulimit -f "
+    "unlimited; in systemd LimitFSIZE=infinity) and run it again": (
+        "dit proces mag geen bestanden schrijven van de grootte die nodig is. Sta grotere toe "
+        "(ulimit -f unlimited; in systemd LimitFSIZE=infinity) en start opnieuw"
+    ),
+    "there is not enough memory. Allow more (ulimit -v unlimited; in systemd MemoryMax=), "
+    "close other programs, or read fewer seasons at a time with --seasons": (
+        "er is te weinig geheugen. Sta meer toe (ulimit -v unlimited; in systemd MemoryMax=), "
+        "sluit andere programma's, of lees met --seasons minder seizoenen tegelijk"
+    ),
+    "stopped, as it was told to. {} Run it again to go on": (
+        "gestopt, zoals gevraagd. {} Start opnieuw om verder te gaan"
+    ),
+    "no archive can be made in {}: {}. Name another folder": (
+        "in {} is geen archief te maken: {}. Kies een andere map"
+    ),
+    "{} is no method file: the name of one ends in {}": (
+        "{} is geen methodebestand: de naam daarvan eindigt op {}"
+    ),
     "the disk under {root} gives errors. Look in the system's log, and replace it": (
         "de schijf onder {root} geeft fouten. Kijk in het logboek van het systeem en vervang hem"
     ),

@@ -42,13 +42,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "cite": ("Bronvermelding", "Cite"),
     "how_made": ("Hoe deze getallen tot stand kwamen", "How these numbers were made"),
     "curve_caption": (
-        "Cw tegen snelheid: kromme met {band}; rond heen, driehoek terug, open telt niet",
-        "Cw against speed: curve with {band}; round out, triangle back, open does not count",
-    ),
-    "band_complete": ("95 %-band", "95 % band"),
-    "band_runs_alone": (
-        "de spreiding van de runs alleen (de fout van de log zit er niet in)",
-        "the spread of the runs alone (the log's error is not in it)",
+        "Cw tegen snelheid, uit A en B; de balk is de marge bij de opgegeven snelheid",
+        "Cw against speed, from A and B; the bar is the interval at the declared speed",
     ),
     "skip": ("Naar de inhoud", "Skip to content"),
     "pages": ("Pagina's", "Pages"),
@@ -175,10 +170,24 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "head_from_to": ("Van “{old}” naar “{new}”: ", "From “{old}” to “{new}”: "),
     "head_changes": (
-        "{changed} van {lines} regels veranderen; {beyond} met meer dan de onzekerheid van beide "
-        "getallen samen",
-        "{changed} of {lines} lines change; {beyond} by more than the uncertainty of both numbers "
-        "together",
+        "{changed} van {lines} regels veranderen",
+        "{changed} of {lines} lines change",
+    ),
+    "head_beyond": (
+        "; {beyond} met meer dan de onzekerheid",
+        "; {beyond} by more than the uncertainty",
+    ),
+    "head_beyond_some": (
+        ", en van {unknown} is dat niet te zeggen",
+        ", and of {unknown} that is not known",
+    ),
+    "head_beyond_unknown": (
+        "; of dat meer is dan de onzekerheid, is van geen enkele te zeggen",
+        "; whether by more than the uncertainty is not known of any",
+    ),
+    "head_printed": (
+        "; waardoor is niet bekend, want hoe het gedrukte register is gerekend, staat nergens",
+        "; why is not known, as how the printed register was computed is not recorded",
     ),
     "head_old_spread": (
         " In de onzekerheid van {editions} zit de fout van de log niet: in werkelijkheid is die "
@@ -248,6 +257,12 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "head_winner_other": (
         "Bij de {people} wint {new} in plaats van {old}.",
         "Among the {people} {new} wins instead of {old}.",
+    ),
+    "fatigue_stretched": (
+        " Waar een ander wint, berust dat mede op de uitputtingscorrectie, die voor 2 tot 3 uur "
+        "roeien is gemaakt en hier ook daarbuiten is gebruikt ({low} tot {high}).",
+        " Where another wins, that rests in part on the correction for fatigue, which was made for "
+        "2 to 3 hours and is used outside them here ({low} to {high}).",
     ),
     "head_no_places": (
         "Bij de {people} heeft geen van de {all} ploegen op die dag in beide edities een geldige "

@@ -83,7 +83,7 @@ def say(template: str, *in_order: object, **named: object) -> Sentence:
 
 
 def tell(template: str, *in_order: object, **named: object) -> str:
-    """A text in the language of this command, with the values filled in, in words too."""
+    """A text in the language of this command, with the values filled in, sentences in it too."""
     language = LANGUAGE.get()
     by_name = {name: spoken(value, language) for name, value in named.items()}
     return _filled(template, language, tuple(spoken(v, language) for v in in_order), by_name)
@@ -112,12 +112,10 @@ def _printable(value: object) -> object:
 
 
 def spoken(text: Any, language: str) -> Any:
-    """A sentence or an error in the language asked for; what has no words, unchanged."""
+    """A sentence or an error in the language asked for; any other text is data, and stays."""
     if isinstance(text, Exception):
         text = text.args[0] if text.args and isinstance(text.args[0], Sentence) else str(text)
-    if isinstance(text, Sentence):
-        return text.spoken(language)
-    return dutch().get(text, text) if language == "nl" and isinstance(text, str) else text
+    return text.spoken(language) if isinstance(text, Sentence) else text
 
 
 def innermost(text: str) -> str:

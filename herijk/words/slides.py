@@ -148,12 +148,12 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "Every crew was towed once: there is nothing to compare.",
     ),
     "slide.apart": (
-        "Proeven van {era} tegen de volgende van dezelfde sloep: {before}; {after}.",
-        "Tows of {era} against the next of the same boat: {before}; {after}.",
+        "Van een proef van {era} naar de volgende van dezelfde sloep: {before}; {after}.",
+        "From a tow of {era} to the next of the same boat: {before}; {after}.",
     ),
     "slide.is_apart": (
-        "{method} wijken ze af, Cw {shift} ({lo} tot {hi})",
-        "{method} they stand apart, Cw {shift} ({lo} to {hi})",
+        "{method} wijkt die af, Cw {shift} ({lo} tot {hi})",
+        "{method} it stands apart, Cw {shift} ({lo} to {hi})",
     ),
     "slide.not_apart": (
         "{method} is geen afwijking gezien, {shift} ({lo} tot {hi})",
@@ -235,10 +235,10 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slides_hull_speed": ("Is B de rompsnelheid?", "Is B hull speed?"),
     "slides_2014": ("2014 opnieuw berekend", "2014 recomputed"),
     "slides_2014_note": (
-        "De proeven van 2014 zoals ze dat jaar uitkwamen, begin 2015 herrekend met afkappen en "
-        "dGPS, en na alle verbeteringen.",
-        "The tows of 2014 as they came out that year, recomputed early in 2015 with trimming and "
-        "dGPS, and after all improvements.",
+        "De proeven van 2014 zoals ze dat jaar uitkwamen, begin 2015 herrekend na alle "
+        "verbeteringen, en zoals ze nu worden berekend.",
+        "The tows of 2014 as they came out that year, recomputed early in 2015 after all "
+        "improvements, and as computed today.",
     ),
     "slides_raced": (
         "Traag gesleept, hard geroeid",

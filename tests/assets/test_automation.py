@@ -14,7 +14,13 @@ from dagster._core.test_utils import create_test_daemon_workspace_context, freez
 from dagster._core.workspace.load_target import ModuleTarget
 from dagster._daemon.sensor import execute_sensor_iteration
 
-from herijk.assets.automation import archive_sensor, schedules
+from herijk.assets.automation import (
+    ASK_AGAIN_S,
+    TRIES,
+    archive_sensor,
+    rebuild_job,
+    schedules,
+)
 from herijk.assets.definitions import build_defs, defs
 from herijk.assets.instance import INSTANCE_SETTINGS
 from herijk.assets.settings import Settings
@@ -37,27 +43,29 @@ def archive(tmp_path):
 class Ticks:
     """The sensor, asked again and again with the cursor it gave."""
 
-    def __init__(self, archive):
+    def __init__(self, archive, instance):
         self.sensor, self.cursor = archive_sensor(archive, is_served=True), None
+        self.instance = instance
 
     def tick(self):
         """How many rebuilds a tick asks for."""
-        with dg.DagsterInstance.ephemeral() as instance:
-            context = dg.build_sensor_context(instance, cursor=self.cursor)
-            found = self.sensor.evaluate_tick(context)
+        context = dg.build_sensor_context(self.instance, cursor=self.cursor)
+        found = self.sensor.evaluate_tick(context)
         self.cursor = found.cursor or self.cursor
+        self.requests = found.run_requests or []
         self.said = found.skip_message
         assert len(self.cursor or "") < 200  # it is kept for every tick
-        return len(found.run_requests or [])
+        return len(self.requests)
 
 
 @pytest.fixture
 def ticks(archive):
     """The sensor after it saw the archive for the first time."""
-    found = Ticks(archive)
-    assert found.tick() == 0
-    assert found.tick() == 1
-    return found
+    with dg.DagsterInstance.ephemeral() as instance:
+        found = Ticks(archive, instance)
+        assert found.tick() == 0
+        assert found.tick() == 1
+        yield found
 
 
 @pytest.mark.parametrize(
@@ -93,6 +101,39 @@ def test_an_archive_whose_disk_is_gone_asks_for_nothing(ticks, archive):
     archive.with_name("away").rename(archive)
     assert ticks.tick() == 0
     assert ticks.said == "no file of the archive changed"
+
+
+def test_a_change_stays_open_until_a_run_succeeded(ticks, archive, monkeypatch):
+    (archive / "meetdata_2009/c.csv").write_text("y")
+    assert (ticks.tick(), ticks.tick()) == (0, 1)
+    (request,) = ticks.requests
+    clock = dt.datetime(2026, 11, 21, 3, tzinfo=dt.UTC).timestamp()
+    monkeypatch.setattr("time.time", lambda: clock)
+    run = ticks.instance.create_run_for_job(rebuild_job, tags=request.tags)
+    assert ticks.tick() == 0  # it is in the queue
+    ticks.instance.report_run_failed(run)
+    assert ticks.tick() == 0
+    clock += ASK_AGAIN_S + 1
+    assert ticks.tick() == 1
+    run = ticks.instance.create_run_for_job(rebuild_job, tags=ticks.requests[0].tags)
+    ticks.instance.handle_new_event(_ended_well(run))
+    clock += ASK_AGAIN_S + 1
+    assert ticks.tick() == 0
+
+
+def _ended_well(run):
+    event = dg.DagsterEvent(dg.DagsterEventType.RUN_SUCCESS.value, run.job_name)
+    return dg.EventLogEntry(None, "info", "", run.run_id, 0.0, dagster_event=event)
+
+
+def test_a_run_whose_archive_is_away_is_tried_again(tmp_path, monkeypatch):
+    monkeypatch.setattr("herijk.assets.automation.TRY_AGAIN_S", 0)
+    location = build_defs(str(tmp_path / "gone"), str(tmp_path / "data"), Settings(methods=METHODS))
+    with dg.DagsterInstance.ephemeral() as instance:
+        result = location.resolve_job_def("rebuild").execute_in_process(
+            instance=instance, raise_on_error=False
+        )
+    assert len([e for e in result.all_events if e.event_type_value == "STEP_UP_FOR_RETRY"]) == TRIES
 
 
 def test_hidden_files_and_links_are_not_followed(ticks, archive, tmp_path):

@@ -65,6 +65,8 @@ def test_a_full_disk_leaves_the_old_tables_and_the_next_run_goes_on(bench, built
         (errno.EACCES, "cannot be written"),
         (errno.EMFILE, "may not open more files"),
         (errno.EIO, "the disk under"),
+        (errno.EFBIG, "ulimit -f"),
+        (errno.ENOMEM, "not enough memory"),
     ],
 )
 def test_each_machine_fault_is_a_sentence_with_a_way_out(number, words, tmp_path):
@@ -272,6 +274,35 @@ def test_a_full_disk_that_sqlite_calls_an_error_of_the_disk_is_called_full(tmp_p
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
     with pytest.raises(UnavailableError, match="no room left"), machine_faults_explained(tmp_path):
         raise OSError("disk I/O error")
+
+
+LIMITED_FILES = """
+import resource, sys
+from pathlib import Path
+from herijk.warehouse.store.machine_faults import machine_faults_explained
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+with machine_faults_explained(Path(sys.argv[1])):
+    raise RuntimeError("disk I/O error")  # what SQLite calls it
+"""
+
+
+def test_a_limit_to_files_is_no_broken_disk(tmp_path):
+    run = subprocess.run(
+        [sys.executable, "-c", LIMITED_FILES, tmp_path],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert "ulimit -f unlimited" in run.stderr.splitlines()[-1]
+
+
+@pytest.mark.parametrize(
+    "error", [MemoryError(), ImportError("x.so: failed to map segment from shared object")]
+)
+def test_too_little_memory_is_a_sentence(error, tmp_path):
+    with (
+        pytest.raises(UnavailableError, match="not enough memory"),
+        machine_faults_explained(tmp_path),
+    ):
+        raise error
 
 
 @pytest.mark.parametrize("text", ["storage: [\n : :", "no_such_key: 1\n"])

@@ -5,9 +5,9 @@ import datetime as dt
 import email
 import email.policy
 import json
-import shutil
 import socketserver
 import threading
+from contextlib import contextmanager
 from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from typing import ClassVar
@@ -26,7 +26,8 @@ from herijk.dashboards.report import Check, headlines
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.change_report import (
     change_report,
-    reported_database,
+    remember,
+    reported_path,
     summary_of,
 )
 from herijk.words.catalogue import both, speaker
@@ -84,12 +85,14 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     assert [row["what"] for row in report.tow_rows] == ["new"]
 
 
-def reported(bench) -> duckdb.DuckDBPyConnection:
-    """What was last reported on, as a copy of today's tables that may be changed."""
-    there = reported_database(bench.store)
-    there.unlink()  # it may be the same file as today's
-    shutil.copyfile(bench.store.database, there)
-    return duckdb.connect(there)
+@contextmanager
+def reported(bench):
+    """What was last reported on, to be changed by changing today's tables for a moment."""
+    today = bench.store.database.read_bytes()
+    with duckdb.connect(bench.store.database) as db:
+        yield db
+    remember(bench.store)
+    bench.store.database.write_bytes(today)
 
 
 def test_a_log_factor_that_shows_the_same_did_not_move(bench):
@@ -97,6 +100,19 @@ def test_a_log_factor_that_shows_the_same_did_not_move(bench):
         db.execute("UPDATE log_factors SET factor = factor * 1.00004 WHERE season = 2009")
         db.execute("UPDATE log_factors SET factor = factor * 1.00006 WHERE season = 2014")
     assert change_report(bench.store).factors["season"].unique().to_list() == [2014]
+
+
+def test_what_is_compared_is_small_and_not_a_second_database(built):
+    kept = reported_path(built.store).stat().st_size
+    assert kept < built.store.database.stat().st_size / 10
+    assert [f.name for f in built.data.rglob("*.duckdb")] == ["warehouse.duckdb"]
+
+
+@pytest.mark.parametrize("spoilt", [b"", b"PAR1"])
+def test_a_damaged_memory_of_the_last_report_makes_the_next_the_first(bench, spoilt):
+    reported_path(bench.store).write_bytes(spoilt)
+    assert bench.rebuild().first
+    assert bench.rebuild().nothing_changed
 
 
 def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):

@@ -8,7 +8,8 @@ import polars as pl
 import pytest
 
 from herijk.dashboards import headlines
-from herijk.dashboards.answer import Answer, curve_caption, told
+from herijk.dashboards.answer import Answer, told
+from herijk.dashboards.site import races
 from herijk.dashboards.speech import Speech, duration
 
 NL, EN = Speech("nl"), Speech("en")
@@ -22,17 +23,18 @@ LINE = {
     "gain_in_two_hours_s": -79.2, "exceeds_interval": False, "old_log_known": True,
     "new_log_known": True, "old_type_place": 3, "new_type_place": 2, "type_size": 5,
     "status": "valid", "tow_date": dt.date(2017, 3, 10), "valid_until": dt.date(2022, 12, 31),
+    "tow_id": "2017-1", "old_tow_id": "2015-1",
     "season": 2017, "season_before": 2013, "moved_ratio": 1.021, "best_moved_ratio": 1.004,
     "cw_best_kg_m": 31.2, "cw_best_lo_kg_m": 30.9, "cw_best_hi_kg_m": 31.5, "own_weight": 0.74,
     "log_source": "estimated", "log_factor": 1.04, "log_lo": 1.03, "log_hi": 1.05,
     "tow_speed_m_s": 2.25, "speed_reason": "brought_down", "verification_code": "ABCDEFGHIJ",
 }  # fmt: skip
 RACE = {"race": "Spiegelrace", "race_date": dt.date(2018, 6, 4), "race_size": 35}
-EMPTY = pl.DataFrame(schema=["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"])
+CURVE = [(1.96, 29.8, 60.0), (2.31, 31.01, 90.0), (2.66, 32.6, 140.0)]
 
 
 def said(speech=NL, races=(), faults=(), **other):
-    found = told(Answer(LINE | other, races, EMPTY, EMPTY, faults), speech)
+    found = told(Answer(LINE | other, races, CURVE, faults), speech)
     return "\n".join([found.headline, *found.sentences])
 
 
@@ -62,9 +64,6 @@ def test_an_interval_that_leaves_the_log_out_says_so():
     assert "95 %" not in text
     assert "de fout van de log komt daar nog bij" in text
     assert "zit de fout van de log niet" in said(old_log_known=False)
-    caption = curve_caption({"new_log_known": False}, Speech("nl"))
-    assert "de fout van de log zit er niet in" in caption
-    assert "95 %" not in caption
 
 
 def test_the_place_in_a_race_is_not_the_place_at_equal_power():
@@ -93,8 +92,54 @@ def test_valid_comes_with_its_day():
     assert "telde tot en met 2022-12-31" in said(status="expired", cw_kg_m=None, cw_ratio=None)
 
 
-def test_another_declared_speed_is_told():
-    assert "2,31 in plaats van 2,40" in said(old_declared_speed_m_s=2.40)
+def test_a_percentage_beside_two_numbers_is_that_of_the_two():
+    text = said(old_declared_speed_m_s=2.40, old_cw_kg_m=28.92, cw_kg_m=29.98, cw_ratio=1.041)
+    assert "van 28,92 naar 29,98 kg/m: 3,7 % hoger" in text
+    assert "2,31 in plaats van 2,40 m/s. Bij de oude snelheid verandert Cw +4,1" in text
+
+
+def test_two_numbers_of_one_tow_are_held_against_the_old_interval_alone():
+    for exceeds, words in ((True, "buiten"), (False, "binnen")):
+        text = said(exceeds_interval=exceeds, old_tow_id=LINE["tow_id"])
+        assert f"van dezelfde proef; het nieuwe ligt {words} het interval van het oude" in text
+        assert "beide getallen samen" not in text
+
+
+CHANGED = {
+    "from_edition": "2014-1", "to_edition": "2015-1", "change": "changed",
+    "old_log_known": False, "new_log_known": True,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("exceeds", "words"),
+    [
+        ([None, None], "of dat meer is dan de onzekerheid, is van geen enkele te zeggen"),
+        ([False, None], "geen met meer dan de onzekerheid, en van 1 is dat niet te zeggen"),
+        ([True, False], "1 met meer dan de onzekerheid."),
+    ],
+)
+def test_unknown_is_neither_none_nor_another_cause(exceeds, words):
+    causes = '[{"cause": "printed", "factor": 0.97}]' if None in exceeds else "[]"
+    rows = [CHANGED | {"exceeds_interval": e, "causes": causes} for e in exceeds]
+    schema = {"exceeds_interval": pl.Boolean}
+    text = headlines.changes(pl.DataFrame(rows, schema_overrides=schema))(NL)
+    assert words in text
+    assert ("hoe het gedrukte register is gerekend" in text) == (None in exceeds)
+    assert "andere proef" not in text
+
+
+def test_another_winner_by_a_stretched_curve_of_fatigue_says_so():
+    columns = ("name", "rowing_time_s", "old_rank", "new_rank")
+    for times, stretched in (((7300.0, 7400.0), False), ((6060.0, 7400.0), True)):
+        for ranks in ((1, 2), (2, 1)):
+            rows = [("Look", times[0], 1, ranks[0]), ("Vlet", times[1], 2, ranks[1])]
+            frame = pl.DataFrame(rows, schema=columns, orient="row").with_columns(
+                race=pl.lit("R"), race_date=pl.lit(dt.date(2017, 6, 4)), crew_class=pl.lit("H"),
+                old_power_w=1.0, new_power_w=1.0,
+            )  # fmt: skip
+            text = races._winners(frame, {})(NL)
+            assert ("2 tot 3 uur" in text) == (stretched and ranks == (2, 1))
 
 
 def test_both_estimates_stand_beside_each_other_where_they_are_known():
@@ -134,7 +179,7 @@ def test_how_to_object_names_boat_and_code():
 
 
 def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
-    picture = told(Answer(LINE, (), EMPTY, EMPTY), NL).waterfall
+    picture = told(Answer(LINE, (), CURVE), NL).waterfall
     # A bar for a number would have to begin at zero.
     assert (picture.count("<rect"), picture.count("<path")) == (2, 2)
     assert re.search(r'aria-label="[^"]*Tr\w+wes', picture)
@@ -142,13 +187,13 @@ def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
 
 def test_the_waterfall_ends_at_the_new_number_though_small_causes_have_no_bar():
     causes = json.dumps([{"cause": "tow", "factor": 0.9674}, {"cause": "code", "factor": 0.9996}])
-    picture = told(Answer(LINE | {"causes": causes}, (), EMPTY, EMPTY), NL).waterfall
+    picture = told(Answer(LINE | {"causes": causes}, (), CURVE), NL).waterfall
     assert picture.count("<rect") == 1
     assert ">31,01<" in picture
 
 
 def test_names_in_pictures_are_escaped():
-    picture = told(Answer(LINE | {"name": "<script>"}, (), EMPTY, EMPTY), NL).waterfall
+    picture = told(Answer(LINE | {"name": "<script>"}, (), CURVE), NL).waterfall
     assert "<script>" not in picture
 
 

@@ -9,11 +9,14 @@ from pypdf import PdfReader
 from herijk.dashboards.documents import certificate, proposal
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.races.race import power_per_rower_w
-from herijk.warehouse.queries.answers import replayed
+from herijk.warehouse.queries.answers import compared, replayed
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.methods import KnownMethods
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
+
+OF_TODAY = ("boats", "curves", "curve_points", "run_points", "due_list", "log_factors")
+"""Tables that another rebuild makes anew."""
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +65,8 @@ def test_a_certificate_of_an_edition_stays_when_the_warehouse_makes_other_method
             "CREATE TEMP TABLE about AS SELECT key, CASE key WHEN 'code_version' THEN 'other' "
             "ELSE value END AS value FROM main.about"
         )
+        for table in OF_TODAY:
+            views._db.execute(f"CREATE TEMP TABLE {table} AS FROM main.{table} LIMIT 0")
         certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en")
     assert contents[0] == contents[1]
 
@@ -128,6 +133,23 @@ def test_a_proposal_counts_every_line_that_changes(views, contents):
     by_type = parts["For whom: by type"]["rows"]
     assert sum(int(row[1]) for row in by_type) == lines.drop_nulls("cw_ratio").height
     assert contents[0]["annexes"][0]["text"].count("[") > 1
+
+
+def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, contents, monkeypatch):
+    """A flag of a tow that a newer one superseded is about no line."""
+    lines = compared(views, EDITIONS[0], f"concept-{METHODS[1]}")
+    tows = lines.drop_nulls("new_cw_kg_m")["new_tow_id"]
+    flagged = pl.DataFrame({"method": METHODS[1], "tow_id": [tows[0], tows[0], "superseded"]})
+    monkeypatch.setattr(Views, "flagged_boats", lambda _: flagged)
+    proposed(views, [METHODS[1]], EDITIONS[0], "en")
+    said = [s for part in contents[0]["parts"] for s in part["sentences"]]
+    assert any(f"still has to look at: 1 of {tows.len()}." in sentence for sentence in said)
+
+
+def test_drafts_and_the_due_list_judge_on_one_day(views):
+    drafts = views.table("register").filter(pl.col("edition").str.starts_with("concept-"))
+    days = {*drafts["as_of"], *views.table("due_list")["as_of"]}
+    assert days == {max(*views.table("tows")["tow_date"], *views.races()["race_date"])}
 
 
 def test_several_methods_make_a_ballot(views, contents):

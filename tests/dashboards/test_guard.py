@@ -4,9 +4,11 @@ import asyncio
 from pathlib import Path
 
 import pytest
+from starlette.requests import Request
 from starlette.responses import PlainTextResponse
 
 from herijk import dashboards
+from herijk.dashboards import guard
 from herijk.dashboards.guard import Guard
 from herijk.warehouse.editions.sheets import FORMULA
 
@@ -26,7 +28,8 @@ JSON = {"content-type": "application/json"}
         ("POST", "/graphql", OWN | JSON, 200),
         ("POST", "/graphql", OWN | {"content-type": "text/plain"}, 403),
         ("POST", "/graphql", OWN | JSON | {"origin": "http://evil.example"}, 403),
-        ("POST", "/graphql", JSON | {"host": "127.0.0.1:3000"}, 403),
+        ("POST", "/graphql", OWN | JSON | {"origin": "null"}, 403),
+        ("POST", "/graphql", JSON | {"host": "127.0.0.1:3000"}, 200),  # Dagster's own client
     ],
 )
 def test_only_the_pages_own_requests_are_answered(method, path, headers, status):
@@ -38,13 +41,47 @@ def test_only_the_pages_own_requests_are_answered(method, path, headers, status)
         "query_string": query.encode(),
         "headers": [(name.encode(), value.encode()) for name, value in headers.items()],
     }
-    sent = []
+    assert asyncio.run(answer(scope, [b""]))["status"] == status
+
+
+async def answer(scope, parts):
+    """How the response to a request begins; a body without end where a part is None."""
+    sent, left = [], iter(parts)
 
     async def send(message):
         sent.append(message)
 
-    asyncio.run(Guard(PlainTextResponse("ok"), "127.0.0.1")(scope, None, send))
-    assert sent[0]["status"] == status
+    async def receive():
+        part = next(left, b"")
+        if part is None:
+            await asyncio.Event().wait()
+        return {"type": "http.request", "body": part, "more_body": part != b""}
+
+    async def echo(scope, receive, send):
+        body = b"" if scope["method"] == "GET" else await Request(scope, receive).body()
+        await PlainTextResponse(body)(scope, receive, send)
+
+    await Guard(echo, "127.0.0.1")(scope, receive, send)
+    return sent[0] | {"body": sent[1].get("body")}
+
+
+def test_a_body_is_bounded_in_size_and_time(monkeypatch):
+    monkeypatch.setattr(guard, "LONGEST_BODY_S", 0.1)
+    sent = [(name.encode(), value.encode()) for name, value in (OWN | JSON).items()]
+    scope = {
+        "type": "http",
+        "method": "POST",
+        "path": "/save",
+        "query_string": b"",
+        "headers": sent,
+    }
+    part = bytes([1]) * (guard.LARGEST_BODY // 2)
+    whole = asyncio.run(answer(scope, [part, part]))
+    assert (whole["status"], whole["body"]) == (200, part + part)
+    for parts, status in (([part, part, part], 413), ([part, None], 408)):
+        refused = asyncio.run(answer(scope, parts))
+        assert refused["status"] == status
+        assert (b"connection", b"close") in refused["headers"]
 
 
 @pytest.mark.parametrize("script", ["site/static/site.js", "workbench/static/tables.js"])

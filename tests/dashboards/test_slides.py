@@ -71,6 +71,13 @@ def test_pages_say_of_every_choice_and_type_how_many_tows_it_rests_on(built):
         assert re.search(rf"\b{row['n']} (proef|proeven) van {row['n_boats']} sloep", row["nl"])
 
 
+def test_an_era_is_told_from_old_to_new_in_per_cent(built):
+    row = {"method": "rebased", "shift_ratio": 0.877, "lo": 0.85, "hi": 0.9, "apart": True}
+    with Views(built.store) as views:
+        said = book.Book(views, speaker("en"))._apart(row)
+    assert "-12.3 % (-15.0 % to -10.0 %)" in said
+
+
 def test_a_type_or_choice_of_tows_that_is_not_there_is_told(built):
     with Views(built.store) as views:
         for types, tows in ((["Galjas"], "all"), ([], "1999")):

@@ -286,7 +286,6 @@ def test_a_page_that_comes_under_another_name_is_refused(url, path, host):
     [
         {"Origin": "http://evil.example"},
         {"Origin": "null"},
-        {"Origin": None},
         {"Origin": "http://127.0.0.1:1"},
         {"Content-Type": "text/plain"},
         {"Content-Type": "application/x-www-form-urlencoded"},

@@ -254,3 +254,10 @@ def test_simulate_refuses_to_overwrite(herijk, built):
     status, out, err = herijk("simulate", built.archive, "--rate", "20")
     assert (status, out) == (1, "")
     assert "nothing was written" in err
+
+
+def test_an_archive_where_none_can_be_is_refused_in_a_sentence(herijk, tmp_path):
+    (tmp_path / "file").write_text("")
+    status, _, err = herijk("init", tmp_path / "file" / "archief")
+    assert status == 1
+    assert "no archive can be made in" in err

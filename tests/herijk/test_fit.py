@@ -30,6 +30,15 @@ def test_a_drag_without_a_bend_has_no_b(herijk):
     assert "there is no B" in out
 
 
+@pytest.mark.parametrize(("unit", "a"), [("lbf", 31.28), ("N", 7.03), ("links", None), ("x", None)])
+def test_a_unit_in_the_name_of_a_column_is_read_or_refused(herijk, tmp_path, unit, a):
+    table = tmp_path / "points.csv"
+    table.write_text(f"speed;pull_{unit}\n2;28.13\n3;63.29\n4;112.5\n", encoding="utf-8")
+    status, out, err = herijk("fit", table, "--force", f"pull_{unit}", "--json")
+    assert status == (a is None)
+    assert "brackets" in err if a is None else round(json.loads(out)["a_kg_m"], 2) == a
+
+
 @pytest.mark.parametrize(
     ("text", "what"),
     [

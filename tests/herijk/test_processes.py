@@ -44,6 +44,29 @@ def test_a_fresh_process_with_other_threads_gives_the_same_tables(built: Workben
         assert table_digest(made[name].drop(days)) == table_digest(frame.drop(days)), name
 
 
+STOPPED = """
+import os, signal, time
+import herijk.assets.settings
+from herijk.cli.main import main
+
+def stopped(data):
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(10)
+
+herijk.assets.settings.read_settings = stopped
+main()
+"""
+
+
+def test_what_systemd_stops_says_so(tmp_path: Path):
+    run = subprocess.run(
+        [sys.executable, "-c", STOPPED, "rebuild", "--archive", tmp_path, "--data", tmp_path / "d"],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 130
+    assert run.stderr.startswith("herijk: stopped, as it was told to. What was there before")
+
+
 def test_names_of_files_are_utf8_in_an_old_locale(tmp_path: Path):
     locale = {"LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     run = subprocess.run(

@@ -78,14 +78,20 @@ def test_a_stream_that_changes_from_run_to_run_widens_the_interval_of_its_tow():
     assert drift.filter(pl.col("u_ratio") > 0.02)["tow_id"].to_list() == ["2014-003"]
 
 
-def test_a_tow_whose_water_part_is_less_than_nothing_has_no_curve_and_stops_no_other():
-    """So it is with a force in kgf once the wind is taken off."""
+@pytest.mark.parametrize(("share", "no_curve"), [(0.07, []), (0.02, ["2014-003"])])
+def test_a_tow_of_next_to_no_force_stops_no_other_and_decides_nothing(share, no_curve):
+    """So it is with a force in kgf once the wind is taken off: of the water there is no part."""
     world = measure(WorldSettings((2012, 2014), 6, 10, 4))
     mine = world.blocks.runs["tow_id"].eq("2014-003").to_numpy()[:, None]
     sums = {
-        name: np.where(mine & (name == "force" or name.endswith("_cw")), 0.07, 1.0) * values
+        name: np.where(mine & (name == "force" or name.endswith("_cw")), share, 1.0) * values
         for name, values in world.blocks.sums.items()
     }
     blocks = replace(world.blocks, sums=sums)
-    made = recompute(shipped_method("rebased"), world.tows, blocks, with_bands=False)
-    assert made.curves.filter(pl.col("cw_kg_m").is_null())["tow_id"].to_list() == ["2014-003"]
+    method = shipped_method("rebased")
+    made = recompute(method, world.tows, blocks, with_bands=False)
+    assert made.curves.filter(pl.col("cw_kg_m").is_null())["tow_id"].to_list() == no_curve
+    sound = world.tows.filter(pl.col("tow_id") != "2014-003")
+    without = recompute(method, sound, world.blocks, with_bands=False)
+    found, expected = (one.run_points["wind_coefficient_ahead"][0] for one in (made, without))
+    assert found == pytest.approx(expected, rel=0.01)

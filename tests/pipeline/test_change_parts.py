@@ -124,9 +124,24 @@ def test_side_by_side_in_watt_seconds_and_rank():
 def test_a_change_is_held_against_the_intervals_of_both(width, exceeds):
     """ln 1.1 is 0.0953; two half widths of 0.09 make 0.127."""
     old, new = (
-        edition(name, ("FSN1", "H", a, 5.0, width)) for name, a in (("o", 40.0), ("n", 44.0))
+        edition(name, ("FSN1", "H", a, 5.0, width)).with_columns(tow_id=pl.lit(name))
+        for name, a in (("o", 40.0), ("n", 44.0))
     )
     assert side_by_side(old, new)["exceeds_interval"].item() is exceeds
+
+
+@pytest.mark.parametrize(("width", "exceeds"), [(0.09, True), (0.1, False), (None, None)])
+def test_two_numbers_of_one_tow_are_no_matter_of_both_intervals(width, exceeds):
+    """They share the tow's errors: whether the old interval of 0.09 holds ln 1.1, 0.0953."""
+    old = edition("o", ("FSN1", "H", 40.0, 5.0, width))
+    new = edition("n", ("FSN1", "H", 44.0, 5.0, 0.5))
+    assert side_by_side(old, new)["exceeds_interval"].item() is exceeds
+
+
+@pytest.mark.parametrize(("tow", "cause"), [("t", "method"), ("u", "tow"), (None, "printed")])
+def test_a_line_that_names_no_tow_is_not_said_to_rest_on_another(tow, cause):
+    old = OLD.with_columns(tow_id=pl.lit(tow, pl.String))
+    assert json.loads(register_changes(old, NEW)["causes"].item())[0]["cause"] == cause
 
 
 def test_a_new_curve_that_ends_below_the_old_speed_gives_no_ratio():

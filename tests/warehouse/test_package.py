@@ -8,19 +8,22 @@ import polars as pl
 import pytest
 
 from herijk.tables.schemas import ABOUT, TABLES
-from herijk.warehouse.build.inputs import LAKE_ONLY
+from herijk.warehouse.build.inputs import LAKE_ONLY, PER_METHOD
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.package import Origin, Rights, package_is_whole, write_package
-from tests.conftest import Workbench
+from herijk.warehouse.store.store import write_parquet
+from tests.conftest import METHODS, Workbench
 
-NAMES = sorted({*TABLES, *ABOUT} - {*LAKE_ONLY})
+ONCE = {*TABLES} - {*PER_METHOD}
+EACH = {*PER_METHOD} - {*LAKE_ONLY}
+NAMES = sorted([*ONCE, *(f"{name}.{method}" for name in EACH for method in METHODS)])
 RIGHTS = Rights("The federation", "https://example.org/licence")
 MEASURED = Origin("1", False, RIGHTS, (("a", "0" * 64),))
 
 
 @pytest.fixture(scope="module")
 def folder(built: Workbench) -> Path:
-    return built.data / "tables"
+    return built.store.table_folder
 
 
 def _read(path: Path) -> dict:
@@ -33,10 +36,10 @@ def test_the_folder_is_a_data_package(folder: Path):
 
     package = frictionless.Package(str(folder / "datapackage.json"))
     misread = frictionless.Checklist(skip_errors=["type-error", "constraint-error"])
-    for name in ("boats", "curves", "register"):
+    for name in ("boats", f"curves.{METHODS[0]}", "register"):
         report = package.get_resource(name).validate(misread)
         assert report.valid, report.flatten(["type", "message"])
-    assert [resource.name for resource in package.resources] == NAMES
+    assert sorted(resource.name for resource in package.resources) == NAMES
     for resource in package.resources:
         assert resource.hash == f"sha256:{file_sha256(folder / resource.path)}"
     assert package.licenses == [{"name": "CC0-1.0"}]
@@ -53,12 +56,15 @@ def test_other_programs_read_what_the_database_holds(built: Workbench, folder: P
     for resource in _read(folder / "datapackage.json")["resources"]:
         path = folder / resource["path"]
         frame = pl.read_parquet(path)
-        assert frame.equals(built.table(resource["name"])), path
+        table, _, method = resource["name"].partition(".")
+        held = built.table(table)
+        of_file = held.filter(method=method) if method else held
+        assert frame.equals(of_file), path
         key = resource["schema"]["primaryKey"]
         assert not key or not frame.select(key).is_duplicated().any(), path
         assert [f["name"] for f in resource["schema"]["fields"]] == frame.columns
         assert resource["rowcount"] == frame.height
-    path = folder / "curves.parquet"
+    path = folder / "register.parquet"
     assert pd.read_parquet(path)["cw_kg_m"].tolist() == pl.read_parquet(path)["cw_kg_m"].to_list()
     assert duckdb.read_parquet(str(path)).fetchall() == pl.read_parquet(path).rows()
 
@@ -73,34 +79,38 @@ def test_catalogues_find_the_same_files(folder: Path):
     assert catalogue["dct:license"] == {"@id": "https://spdx.org/licenses/CC0-1.0"}
 
 
-def test_only_changed_tables_are_written_again(tmp_path):
-    frames = {name: schema.create_empty() for name, schema in ABOUT.items()}
-    write_package(tmp_path, frames, ABOUT, MEASURED)
-    before = {f.name: f.stat().st_ino for f in (tmp_path / "tables").iterdir()}
-    frames["about"] = pl.DataFrame({"key": ["simulated"], "value": ["false"]})
-    write_package(tmp_path, frames, ABOUT, MEASURED)
-    after = {f.name: f.stat().st_ino for f in (tmp_path / "tables").iterdir()}
-    assert {name for name in before if before[name] == after[name]} == {"contents.parquet"}
-    assert [f.name for f in tmp_path.iterdir()] == ["tables"]
-    package = _read(tmp_path / "tables" / "datapackage.json")
+def described(folder: Path, origin: Origin = MEASURED) -> dict:
+    """The description of a folder with the tables of a database about itself, empty."""
+    files = {folder / f"{name}.parquet": schema for name, schema in ABOUT.items()}
+    for path, schema in files.items():
+        write_parquet(schema.create_empty(), path)
+    write_package(folder, files, origin)
+    return _read(folder / "datapackage.json")
+
+
+def test_publisher_and_licence_are_those_of_the_archive(tmp_path):
+    package = described(tmp_path)
     assert package["licenses"] == [{"path": "https://example.org/licence"}]
     assert package["contributors"] == [{"title": "The federation", "roles": ["publisher"]}]
 
 
-def test_a_damaged_file_is_noticed_and_made_again(tmp_path):
-    frames = {name: schema.create_empty() for name, schema in ABOUT.items()}
-    write_package(tmp_path, frames, ABOUT, MEASURED)
+def test_a_damaged_file_is_noticed_and_described_again(tmp_path):
+    described(tmp_path)
     assert package_is_whole(tmp_path)
-    (tmp_path / "tables" / "contents.parquet").write_bytes(b"PAR1")
+    (tmp_path / "contents.parquet").write_bytes(b"PAR1")
     assert not package_is_whole(tmp_path)
-    write_package(tmp_path, frames, ABOUT, MEASURED)
+    described(tmp_path)
     assert package_is_whole(tmp_path)
+
+
+def test_the_lake_holds_the_only_copy(built: Workbench):
+    """No table is a Parquet file twice."""
+    paths = [f for f in built.data.rglob("*.parquet") if f.name.startswith("register")]
+    assert {f.parent for f in paths} == {built.store.table_folder}
 
 
 def test_without_a_declared_licence_none_is_given(tmp_path):
-    frames = {name: schema.create_empty() for name, schema in ABOUT.items()}
-    write_package(tmp_path, frames, ABOUT, Origin("1", False, Rights(), ()))
-    package = _read(tmp_path / "tables" / "datapackage.json")
+    package = described(tmp_path, Origin("1", False, Rights(), ()))
     assert "licenses" not in package
     assert "declares no licence" in package["description"]
-    assert "dct:license" not in _read(tmp_path / "tables" / "dcat.jsonld")
+    assert "dct:license" not in _read(tmp_path / "dcat.jsonld")

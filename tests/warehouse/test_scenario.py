@@ -65,7 +65,7 @@ def test_tows_of_types_are_those_of_the_warehouse(scenario, built):
 def test_remembered_windows_change_nothing(history):
     method = shipped_method("rebased")
     fresh = History(
-        history.tows, history.boats, history.crews, history.blocks, simulated=True
+        history.tows, history.boats, history.crews, history.blocks, history.last_day, simulated=True
     ).under(method)
     again = history.under(method), history.under(method)
     for draft in again:

@@ -11,6 +11,7 @@ from typer.main import get_command
 import herijk
 from herijk.cli.main import app, main
 from herijk.cli.overview import SECTIONS, USAGE, language_of
+from herijk.cli.text import table
 from herijk.pipeline import errors
 from herijk.pipeline.toml_text import PROBLEMS
 from herijk.words import LANGUAGE, dutch, say, spoken, tell
@@ -123,6 +124,17 @@ def test_an_error_within_a_sentence_is_said_in_its_language():
     outer = errors.HerijkError("{}: {}", "b.toml", inner)
     assert str(outer) == "b.toml: there is no file a.csv"
     assert spoken(outer, "nl") == "b.toml: er is geen bestand a.csv"
+
+
+def test_data_is_never_translated():
+    """A boat may be called as a text is: `Look`, a heading of the help, is `Bekijken`."""
+    assert DUTCH["Look"] == "Bekijken"
+    assert spoken("Look", "nl") == "Look"
+    assert say("{}, n {} pairs", "Look", 3).spoken("nl") == "Look, n 3 paren"
+    before = LANGUAGE.set("nl")
+    assert tell("{}, n {} pairs", "Look", 3) == "Look, n 3 paren"
+    assert table(["boat"], [["Look"]]) == "  sloep\n  Look"
+    LANGUAGE.reset(before)
 
 
 def commands(command):

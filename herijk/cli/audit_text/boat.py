@@ -81,7 +81,9 @@ def boat_page(report: BoatAudit) -> list[str]:
 
 
 def _boat_title(boat: Row, tows: list[Row]) -> str:
-    title = tell("{} {}, type {}", boat["fsn_no"], boat["name"], boat["boat_type"] or "not known")
+    title = tell(
+        "{} {}, type {}", boat["fsn_no"], boat["name"], boat["boat_type"] or tell("not known")
+    )
     crews = sorted({f"{tow['rowers']}{tow['crew_class']}" for tow in tows})
     if len(crews) < 2:
         return title

@@ -83,7 +83,7 @@ def one_type(report: TypesAudit) -> list[str]:
 
 def _in_short_title(tows: str) -> str:
     whole = tows in ("all", "newest")
-    return tell("In short, over all tows of {}", "all seasons" if whole else tows)
+    return tell("In short, over all tows of {}", tell("all seasons") if whole else tows)
 
 
 def _in_short(under: TypeStatistics) -> list[str]:
@@ -106,7 +106,7 @@ def _in_short(under: TypeStatistics) -> list[str]:
 
 
 def _verdict(line: Row) -> str:
-    letter, against = LETTERS[line["quantity"]], AGAINST[line["explaining"]][0]
+    letter, against = LETTERS[line["quantity"]], tell(AGAINST[line["explaining"]][0])
     seen = (
         tell("{} follows {}", letter, against)
         if line["follows"]
@@ -133,7 +133,7 @@ def _first_title(under: Mapping[str, TypeStatistics]) -> str:
     speeds = {
         tell("{:.2f} m/s", x["standard_speed_m_s"]) for x in lines if "standard_speed_m_s" in x
     }
-    at = tell(" at a standard {}", " or ".join(sorted(speeds))) if speeds else ""
+    at = tell(" at a standard {}", tell(" or ").join(sorted(speeds))) if speeds else ""
     return tell("1. Do A [kg/m] and B [m/s] follow weight or tow speed, q weight? Cw [kg/m]{}?", at)
 
 
@@ -152,7 +152,7 @@ def _lines(under: Mapping[str, TypeStatistics]) -> list[str]:
     """The table of lines, what is not claimed, and which quantity lies closest together."""
     cells, silent = [], []
     for quantity, explaining in LINES:
-        letter, against = LETTERS[quantity], AGAINST[explaining][0]
+        letter, against = LETTERS[quantity], tell(AGAINST[explaining][0])
         label = tell("{} per {}", letter, step_of(quantity, explaining)[1])
         for method, figures in under.items():
             line = line_of(figures, quantity, explaining)
@@ -286,7 +286,7 @@ def _shared(under: Mapping[str, TypeStatistics]) -> list[str]:
         b = shared["median_b_m_s"]
         spreads = [share(row["b_sd_ratio"], 1) for row in (own, part)]
         moves = [share(shared[f"most_{at}"], 1) for at in ("085", "100", "115")]
-        place = "none" if b is None else tell("{:.2f} m/s", b)
+        place = tell("none") if b is None else tell("{:.2f} m/s", b)
         cells.append((method, place, *spreads, *moves, shared["most_fsn_no"], shared["n"]))
     head = ("method", "shared B", "own B spread", "in part", "85 %", "100 %", "115 %", "boat", "n")
     return ([table(head, cells)] if cells else []) + _silent(silent)
@@ -360,7 +360,7 @@ def _agreement(fleet: Mapping[str, Fleet]) -> list[str]:
     cells = [
         (
             method if row["scope"] == figures.reproducibility[0]["scope"] else "",
-            row["scope"],
+            code(row["scope"]),
             share(row["within_sd_ratio"], 1),
             _between(row),
             *(share(row[f"share_{which}"]) for which in ("within_1pct", "within_2pct")),

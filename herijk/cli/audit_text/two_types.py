@@ -37,7 +37,7 @@ class TableRow(NamedTuple):
 def _headline(eras: list[str]) -> list[TableRow]:
     lines = [
         TableRow(
-            tell("{} against {}", letter, against),
+            tell("{} against {}", letter, tell(against)),
             f"{quantity} {explaining}",
             _line(quantity, explaining),
         )
@@ -46,15 +46,17 @@ def _headline(eras: list[str]) -> list[TableRow]:
     ]
     return [
         *lines,
-        TableRow("q against weight", "q weight_kg", _line("q", "weight_kg")),
-        TableRow("spread about weight", "closest", _spread),
-        TableRow("equal bends possible", "bends", _bends),
-        TableRow("q per 10 % tow speed", "speed_trend", _trend),
-        TableRow("boats outside", "", _outside),
-        TableRow("slow tows", "", lambda u: tell("{} of n {}", len(u.slow_tows), u.bends["n"])),
+        TableRow(tell("q against weight"), "q weight_kg", _line("q", "weight_kg")),
+        TableRow(tell("spread about weight"), "closest", _spread),
+        TableRow(tell("equal bends possible"), "bends", _bends),
+        TableRow(tell("q per 10 % tow speed"), "speed_trend", _trend),
+        TableRow(tell("boats outside"), "", _outside),
+        TableRow(
+            tell("slow tows"), "", lambda u: tell("{} of n {}", len(u.slow_tows), u.bends["n"])
+        ),
         *(TableRow(tell("{}, next tow", era), era, _era(i)) for i, era in enumerate(eras)),
-        TableRow("repeats: s_R", "", _repeat),
-        TableRow("off from dimensions", "", _prediction),
+        TableRow(tell("repeats: s_R"), "", _repeat),
+        TableRow(tell("off from dimensions"), "", _prediction),
     ]
 
 
@@ -90,7 +92,7 @@ def _bends(under: TypeStatistics) -> str:
     test = under.bends
     if test["reason"]:
         return _nothing(test)
-    word = {True: "yes", False: "no", None: tell("not claimed")}[test["equal_possible"]]
+    word = {True: tell("yes"), False: tell("no"), None: tell("not claimed")}[test["equal_possible"]]
     return tell(
         "{}, p {:.3f}, noise {}, n {}", word, test["p_value"], share(test["noise_share"]), test["n"]
     )

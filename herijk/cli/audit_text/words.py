@@ -60,7 +60,7 @@ def step_of(quantity: str, explaining: str) -> tuple[float, str]:
     if quantity == "q":
         return 1000.0, "1000 kg"
     _, step, unit = AGAINST[explaining]
-    return step, unit
+    return step, tell(unit)
 
 
 def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:

@@ -10,7 +10,7 @@ import polars as pl
 
 from herijk.dashboards import headlines
 from herijk.dashboards.documents import pdf
-from herijk.dashboards.speech import Speech
+from herijk.dashboards.speech import Speech, stretched_fatigue
 from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.queries.answers import compared, replayed
 from herijk.warehouse.queries.views import Views
@@ -78,7 +78,7 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
             [
                 speech.say(f"method.{method}"),
                 str(changes.filter(change="changed").height),
-                str(_beyond(changes)),
+                _beyond(changes["exceeds_interval"], speech),
                 *(speech.per_cent(ratio) for ratio in _middle_and_ends(known)),
             ]
         )
@@ -99,8 +99,10 @@ def _middle_and_ends(changes: pl.DataFrame) -> tuple[float, float, float]:
     return middle, low, high
 
 
-def _beyond(changes: pl.DataFrame) -> int:
-    return int(changes["exceeds_interval"].fill_null(False).sum())
+def _beyond(exceeds: pl.Series, speech: Speech) -> str:
+    """How many lines change by more than their uncertainty; none of them need be known."""
+    known = exceeds.drop_nulls()
+    return speech.say("unknown_word") if known.is_empty() else str(known.sum())
 
 
 def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
@@ -117,8 +119,10 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
     yield _races(views, lines, speech)
     unknown = int(lines["exceeds_interval"].null_count())
     sure = say("proposal_unknown").format(unknown=unknown) if unknown else say("proposal_known")
-    flagged = views.flagged_boats().filter(method=method)["fsn_no"].n_unique()
-    yield _part(say("proposal_undecided"), sure, say("proposal_unsure").format(flagged=flagged))
+    flagged = views.flagged_boats().filter(method=method)["tow_id"].implode()
+    voted = lines.drop_nulls("new_cw_kg_m").select(pl.col("new_tow_id").is_in(flagged))
+    flags = say("proposal_unsure").format(flagged=voted.to_series().sum(), lines=voted.height)
+    yield _part(say("proposal_undecided"), sure, flags)
 
 
 def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
@@ -144,7 +148,7 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
             number=pl.len(),
             ratio=pl.col("cw_ratio").median(),
             seconds=pl.col("gain_in_two_hours_s").median(),
-            beyond=pl.col("exceeds_interval").fill_null(False).sum(),
+            beyond=pl.col("exceeds_interval"),
         )
         .sort("boat_type", "crew_class", descending=[False, True])
     )
@@ -162,7 +166,7 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
                 str(number),
                 speech.per_cent(ratio),
                 speech.number(seconds, 0, "+"),
-                str(beyond),
+                _beyond(pl.Series(beyond), speech),
             ]
             for boat_type, crew_class, number, ratio, seconds, beyond in by_type.rows()
         ],
@@ -196,7 +200,7 @@ def _boat(line: dict[str, Any], speech: Speech) -> list[str]:
         " · ".join(filter(None, (line["name"], line["fsn_no"], crew))),
         speech.number(line["old_cw_kg_m"], 2),
         speech.number(line["new_cw_kg_m"], 2),
-        speech.per_cent(line["cw_ratio"]),
+        speech.per_cent(line["new_cw_kg_m"] / line["old_cw_kg_m"]),
         speech.number(line["gain_in_two_hours_s"], 0, "+"),
         speech.say(beyond),
     ]
@@ -212,6 +216,7 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
     names = dict(views.table("boats").select("fsn_no", "name").rows())
     return _part(
         say("proposal_races").format(year=last["race_date"][0].year),
+        *filter(None, [stretched_fatigue(_times(views, last), speech).strip()]),
         say("proposal_moved").format(moved=moved[0], results=moved[1]),
         head=[
             say("column.race"),
@@ -229,6 +234,13 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
             for race in last.to_dicts()
         ],
     )
+
+
+def _times(views: Views, winners: pl.DataFrame) -> pl.Series:
+    """The times rowed in races of which a winner changes."""
+    races = winners.filter("winner_changed").select("race", "race_date")
+    results = views.store.read("listed_races")
+    return results.join(races, on=["race", "race_date"], how="semi")["rowing_time_s"]
 
 
 def _chance(chance: float | None, speech: Speech) -> str:

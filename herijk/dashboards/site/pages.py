@@ -72,7 +72,7 @@ def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> 
 
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "tow_date"),
-    *("valid_until", "status"),
+    *("valid_until", "status", "method"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
     *("waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
     "verification_code",
@@ -206,7 +206,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
 
 AGREEMENT = {
     "reproducibility": "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
-    "eras": "method boat_type era n shift_ratio lo hi apart ageing_per_year",
+    "eras": "method boat_type era n shift_percent lo_percent hi_percent apart ageing_per_year",
     "repeats": "name fsn_no rowers crew_class season_before season cw_ratio e_n",
     "components": "method scope component n n_boats sd_ratio lo hi share",
     "predicted": "name fsn_no boat_type rowers crew_class cw_kg_m predicted_cw_kg_m disagrees",
@@ -217,7 +217,7 @@ AGREEMENT = {
 def _reproducibility(views: Views, methods: list[str]) -> Page:
     frames = {
         "reproducibility": views.table("reproducibility"),
-        "era_shifts": views.table("era_shifts").drop_nulls("shift_ratio"),
+        "era_shifts": _in_per_cent(views.table("era_shifts").drop_nulls("shift_ratio")),
         "repeat_pairs": with_page(views.repeat_pairs()),
         "variance_components": views.table("variance_components").drop_nulls("sd_ratio"),
         "predicted_cw": with_page(views.predicted()),
@@ -238,6 +238,12 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         selects=[methods_select(methods)],
         data={name: [frame] for name, frame in drawn.items()},
     )
+
+
+def _in_per_cent(eras: pl.DataFrame) -> pl.DataFrame:
+    """With the change of Cw from an era to later in per cent, as it is said everywhere."""
+    ends = {"shift_percent": "shift_ratio", "lo_percent": "lo", "hi_percent": "hi"}
+    return eras.with_columns(**{name: 100 * (pl.col(of) - 1) for name, of in ends.items()})
 
 
 def _changes(methods: Sequence[str], changes: pl.DataFrame) -> Page:

@@ -15,7 +15,7 @@ from herijk.dashboards.site.parts import (
     race_path,
     with_page,
 )
-from herijk.dashboards.speech import Headline, Speech
+from herijk.dashboards.speech import Headline, Speech, stretched_fatigue
 from herijk.warehouse.queries.answers import newest_edition, race_chances
 from herijk.warehouse.queries.views import Views
 from herijk.words import in_per_cent
@@ -95,6 +95,8 @@ def _winner(
     key = "head_winner_same" if old[0] == new[0] else "head_winner_other"
     people = speech.say(f"crew.{crew_class}")
     text = speech.say(key).format(people=people, old=old[0], new=new[0])
+    if old[0] != new[0]:
+        text += stretched_fatigue(rows.drop_nulls("new_rank")["rowing_time_s"], speech)
     if few:
         return few + text  # who else might have won is not known of the others
     chance = chances.get((f"{rows['race'][0]} {rows['race_date'][0]}", crew_class))

@@ -4,6 +4,8 @@ from typing import Final
 
 import numpy as np
 
+from herijk.words import say
+
 TOLERANCE: Final = 0.12
 """How far a logarithm that is known exactly may lie from that of an exchange."""
 
@@ -26,7 +28,7 @@ _EXCHANGES: Final[dict[str, dict[Cause, float]]] = {
     },
     "wind": {
         instead_of("km/h", "m/s"): 3.6,
-        instead_of("knots", "m/s"): 1.9438445,
+        instead_of(say("knots"), "m/s"): 1.9438445,
         instead_of("mph", "m/s"): 2.2369363,
         instead_of("ft/s", "m/s"): 3.2808399,
     },

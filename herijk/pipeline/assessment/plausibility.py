@@ -31,6 +31,7 @@ from herijk.pipeline.assessment.mean_shift import (
 from herijk.pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
 from herijk.pipeline.blocks.batch import Batch
 from herijk.tables.keys import LINE
+from herijk.words import say
 
 LIMIT: Final = 4.5
 """Standard deviations from which a shift is not chance: one in 300,000, as thousands are tried."""
@@ -140,7 +141,7 @@ def plausibility(batch: Batch) -> tuple[Shift, ...]:
     )
 
 
-_RADIANS: Final = (instead_of("radians", "degrees"),)
+_RADIANS: Final = (instead_of(say("radians"), say("degrees")),)
 TURNED: Final = (("a vane that is turned",),)
 _TURNED_DEG: Final = {"season": 45.0, "tow": 90.0}
 """Where the wind out and back together comes from at least, for the vane to be turned (inferred):

@@ -419,6 +419,6 @@ def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
     if estimated is not None:
         assumed = assumed.beside_repeats(estimated.tow_sd, estimated.calibration_sd)
     assumed = replace(assumed, unmeasured_wind=o.prepared.expected_wind.sd)
-    if o.steps.wind.coefficients == "archive":
+    if o.steps.wind.coefficients == "archive" and np.isfinite(o.coefficient_sd):
         assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
     return assumed

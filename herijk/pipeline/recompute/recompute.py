@@ -375,13 +375,14 @@ def _best_per_run(
 
 
 def _misfits(prepared: Prepared, grid: FloatArray) -> FloatArray:
-    """Residual sum of squares / Cw^2 with each drag coefficient, shape (coefficients, tows)."""
+    """Residuals' squares / Cw^2, (coefficients, tows); infinite without a curve of all points."""
     each = [np.full(len(prepared.batch.tow), coefficient) for coefficient in grid]
     points = [prepared.points_of(prepared.cw_of(one, one, one)) for one in each]
     curves = curve.fit(curve.Points.stack(points))
     scale = curves.cw_at(np.tile(prepared.batch.of_tow("declared_speed_m_s"), len(grid)))
-    sound = curves.converged & np.isfinite(scale)
-    misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, 0.0)
+    runs = np.tile(prepared.batch.count(prepared.in_fit), len(grid))
+    sound = curves.converged & np.isfinite(scale) & (curves.n_points == runs)
+    misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, np.inf)
     return misfit.reshape(len(grid), -1)
 
 
@@ -394,23 +395,22 @@ def _best_per_tow(prepared: Prepared) -> FloatArray:
 def _archive_coefficient(prepared: list[Prepared]) -> ArchiveCoefficient | None:
     """One coefficient for the whole archive: the least misfit of all tows together.
 
-    Out and back feel different wind, so a wrong coefficient drives their points apart. The misfit
-    is a parabola in the coefficient, near its minimum; None without tows. The standard deviation
-    is the sandwich over tows (Huber 1967): what is odd about one tow is shared by its runs.
+    Out and back feel different wind, so a wrong coefficient drives their points apart. Tows that
+    one of the coefficients leaves without a curve take no part, so that every sum is of the same
+    tows. The misfit is a parabola in the coefficient, near its minimum; None without tows. The
+    standard deviation is the sandwich over tows (Huber 1967): what is odd about one tow is shared
+    by its runs.
     """
-    if not prepared:
+    misfits = (_misfits(p, ARCHIVE_GRID)[:, p.batch.trusted] for p in prepared)
+    each = np.concatenate([np.empty((len(ARCHIVE_GRID), 0)), *misfits], axis=1)
+    if not (each := each[:, np.isfinite(each).all(axis=0)]).size:
         return None
-    each = np.concatenate(
-        [np.where(p.batch.trusted, _misfits(p, ARCHIVE_GRID), 0.0) for p in prepared], axis=1
-    )
     best = int(np.clip(each.sum(axis=1).argmin(), 1, len(ARCHIVE_GRID) - 2))
     below, here, above = each[best - 1 : best + 2]
     bends = below - 2.0 * here + above
-    bend = bends.sum()
-    if bend <= 0:
+    if (bend := bends.sum()) <= 0:
         return ArchiveCoefficient(float(ARCHIVE_GRID[best]), Assumed().wind_coefficient)
-    step = ARCHIVE_GRID[1] - ARCHIVE_GRID[0]
-    shift = 0.5 * (below - above).sum() / bend
+    step, shift = ARCHIVE_GRID[1] - ARCHIVE_GRID[0], 0.5 * (below - above).sum() / bend
     slopes = 0.5 * (above - below) + bends * shift
     value = np.clip(ARCHIVE_GRID[best] + step * shift, ARCHIVE_GRID[0], ARCHIVE_GRID[-1])
     return ArchiveCoefficient(float(value), float(step * np.sqrt((slopes**2).sum()) / bend))

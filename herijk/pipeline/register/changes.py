@@ -57,8 +57,8 @@ def register_changes(
     Args:
         old, new: rows of the table `register`, each of one edition.
         parts: what is known of the causes, in order; `PART_SCHEMA`.
-        grounds: per line the `ground` of what the parts do not explain; without it `tow` where
-            another tow counts, else `method`.
+        grounds: per line the `ground` of what the parts do not explain; without it `printed` where
+            a line names no tow, `tow` where another one counts, else `method`.
 
     Returns:
         Rows of the table `register_changes`. `causes` is JSON: a list of `cause`, `factor` and,
@@ -119,14 +119,18 @@ def side_by_side(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         Per line with a curve in either: tow, A, B, Cw, declared speed and rank in both; the power
         per rower at the old declared speed. Also the seconds that the new register gives in a
         two-hour race; more time for the same power counts as gain. Also whether the change is
-        larger than the 95 % intervals of both, null where an interval is not known. The rank is
-        among all boats of the class with a curve: 1 is the fastest at equal power per rower.
+        larger than the 95 % intervals of both together; of two numbers from one tow, which share
+        its errors, whether it is larger than that of the old one. Null where an interval is not
+        known. The rank is among all boats of the class with a curve: 1 is the fastest at equal
+        power per rower.
     """
     pairs = _pairs(_ranked(old), _ranked(new))
     cw_ratio, time_ratio = _ratios(pairs)
     known = pairs["both"].to_numpy() & np.isfinite(cw_ratio)
     power = power_per_rower_w(pairs["cw_kg_m"], pairs["declared_speed_m_s"], pairs["rowers"])
-    width = np.hypot(_half_width(pairs, ""), _half_width(pairs, "_new"))
+    of_one_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False).to_numpy()
+    of_old = _half_width(pairs, "")
+    width = np.where(of_one_tow, of_old, np.hypot(of_old, _half_width(pairs, "_new")))
     exceeds = np.abs(np.log(np.where(known, cw_ratio, 1.0))) > width
     numbers = {
         "new_power_w": power * cw_ratio,
@@ -231,8 +235,8 @@ def _causes(
 
 def _grounds(pairs: pl.DataFrame, grounds: pl.DataFrame | None) -> list[str]:
     if grounds is None:
-        same_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False)
-        return ["method" if same else "tow" for same in same_tow]
+        grounds_by_tow = {None: "printed", True: "method", False: "tow"}
+        return [grounds_by_tow[same] for same in pairs["tow_id"] == pairs["tow_id_new"]]
     named = pairs.select(LINE).join(grounds, on=LINE, how="left", maintain_order="left")
     return named["ground"].to_list()
 

@@ -60,6 +60,15 @@ def valid_until(tow_date: pl.Expr, rule: RegisterRule) -> pl.Expr:
     return pl.date(year + years, 12, 31)
 
 
+def reference_day(tows: pl.DataFrame, results: pl.DataFrame) -> dt.date:
+    """The day on which drafts and the due list judge validity: that of the last tow or race.
+
+    Not today: the same archive gives the same tables.
+    """
+    day: dt.date = max([*tows["tow_date"], *results["race_date"]])
+    return day
+
+
 def draft_register(
     curves: pl.DataFrame,
     tows: pl.DataFrame,

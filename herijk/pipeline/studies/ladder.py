@@ -1,7 +1,8 @@
 """The ladder: what each step of a method changes, one at a time, in factors that multiply.
 
 From one method to another the options of one step after the other are exchanged, in a fixed order,
-and everything is recomputed: so the factor of a step is what it does on top of those before it.
+and every tow is recomputed, with what both ends estimate of instruments: so the factor of a step
+is what it does on top of those before it.
 What a step does is in its own module.
 """
 

@@ -168,7 +168,7 @@ def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) ->
 def _why_nothing(set_aside: pl.DataFrame) -> str:
     """Why no tow can be used, by cause, and what to do."""
     if set_aside.is_empty():
-        return (
+        return say(
             "no tow can be used: the tow lists hold none in the seasons that were read; "
             "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
         )

@@ -1,6 +1,7 @@
 """The database that readers use: all tables in one file, made from the lake."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Final
 
 import polars as pl
@@ -30,18 +31,24 @@ MEANINGS: Final = str(
 
 
 def warehouse_database(
-    all_tables: Mapping[str, pl.DataFrame],
-    about_archive: pl.DataFrame,
-    store: Store,
+    all_tables: Mapping[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
 ) -> dict[str, pl.DataFrame]:
-    """All tables in one DuckDB file, and each as Parquet; both swapped in whole."""
+    """All tables in one DuckDB file, swapped in whole; then those of the lake are described."""
     tables = {name: ordered(name, all_tables[name]) for name in all_tables}
     tables["about"] = _about(about_archive)
     tables["contents"] = _contents(tables)
     build_database(store.database, tables)
-    write_package(store.root, tables, TABLES | ABOUT, _origin(tables))
+    write_package(store.table_folder, _files(store, tables), _origin(tables))
     sha256 = pl.lit(file_sha256(store.database)).alias("sha256")
     return {DATABASE_TABLE: tables["contents"].select("table", "rows", sha256)}
+
+
+def _files(store: Store, tables: Mapping[str, pl.DataFrame]) -> dict[Path, type[dy.Schema]]:
+    """The files of the lake with the tables; of those with a file per method, the applied ones."""
+    known = TABLES.keys() & tables.keys()
+    methods = [None, *tables["methods"]["method"]]
+    paths = {store.table_path(name, method): TABLES[name] for name in known for method in methods}
+    return {path: schema for path, schema in paths.items() if path.exists()}
 
 
 def database_without_tows(store: Store, tables: Mapping[str, pl.DataFrame]) -> None:
@@ -97,4 +104,4 @@ def is_whole(store: Store) -> bool:
     made = store.read(DATABASE_TABLE)["sha256"][0]
     left = left_wal(store.database).exists()  # a reader would replay it
     whole = store.database.exists() and not left and made == file_sha256(store.database)
-    return whole and package_is_whole(store.root)
+    return whole and package_is_whole(store.table_folder)

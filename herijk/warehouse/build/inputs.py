@@ -53,6 +53,13 @@ RUNS: Final = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
 """What a method is applied to."""
 
 
+def forget_other_methods(store: Store, applied: Collection[str]) -> None:
+    """Removes the tables of methods that are not applied any more."""
+    for table in PER_METHOD:
+        for name in set(store.partitions(table)) - set(applied):
+            store.remove(table, name)
+
+
 @dataclass(frozen=True)
 class Scope:
     """For whom a step is made.

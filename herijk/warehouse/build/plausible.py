@@ -85,11 +85,11 @@ def with_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
 def _sentence(shift: Shift) -> str:
     """What is seen, what it may be, and what to do, for a volunteer."""
     whose = {
-        "tow": "This tow",
+        "tow": say("This tow"),
         "day": say("All {} tows of {}", len(shift.tows), shift.key),
         "some": say("{} tows of season {}", len(shift.tows), shift.key),
         "season": say("All {} tows of season {}", len(shift.tows), shift.key),
-        "archive": "All tows of the archive",
+        "archive": say("All tows of the archive"),
     }[shift.kind]
     return say("{}: {}. {}", whose, _seen(shift), _way_out(shift))
 
@@ -112,12 +112,14 @@ def _seen(shift: Shift) -> str:
             "boat's own speed, from straight ahead",
             shift.size,
         )
-    return "all wind angles lie between -3.14 and 6.28, as angles in radians do"
+    return say("all wind angles lie between -3.14 and 6.28, as angles in radians do")
 
 
 def _way_out(shift: Shift) -> str:
     if not shift.causes:
-        return "Check whether these are this boat's samples, and what the load cell was set to."
+        return say(
+            "Check whether these are this boat's samples, and what the load cell was set to."
+        )
     if shift.causes == TURNED:
         return say(
             "If the vane is turned, or counts from another 0, declare wind_zero_deg = {:.0f} under "

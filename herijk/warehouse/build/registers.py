@@ -12,6 +12,7 @@ from herijk.pipeline.register.register import (
     draft_name,
     draft_register,
     lines_of_all_days,
+    reference_day,
 )
 from herijk.tables.editions import Editions
 from herijk.tables.keys import SIZES
@@ -25,18 +26,17 @@ def register_tables(
     curves: pl.DataFrame,
     tows: pl.DataFrame,
     listed_boats: pl.DataFrame,
+    listed_races: pl.DataFrame,
     decisions: pl.DataFrame,
     published: Mapping[str, pl.DataFrame],
     methods: Sequence[Method],
 ) -> dict[str, pl.DataFrame]:
     """Draft registers, what changes between registers, and lineage.
 
-    Validity is judged on the day of the archive's last tow, not today: so the same archive gives
-    the same tables. Drafts are compared with the first method's. The published editions stand
-    beside the drafts.
+    Drafts are compared with the first method's. The published editions stand beside the drafts.
     """
-    on_date, known = max(tows["tow_date"]), (curves, tows, listed_boats, decisions)
-    drafts = [_draft(method, lines_on(method, *known, on_date), tows) for method in methods]
+    as_of, known = reference_day(tows, listed_races), (curves, tows, listed_boats, decisions)
+    drafts = [_draft(method, lines_on(method, *known, as_of), tows) for method in methods]
     histories = [_history(method, curves, tows, decisions) for method in methods]
     register = pl.concat(drafts)
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
@@ -63,11 +63,8 @@ def due_list(
     decisions: pl.DataFrame,
     methods: Sequence[Method],
 ) -> dict[str, pl.DataFrame]:
-    """Who is due to be towed, under every method.
-
-    Looked at on the day of the last tow or race, not today: the same archive gives the same table.
-    """
-    as_of = max([*tows["tow_date"], *listed_races["race_date"]])
+    """Who is due to be towed, under every method."""
+    as_of = reference_day(tows, listed_races)
     parts = []
     for method in methods:
         lines = lines_on(method, curves, tows, listed_boats, decisions, as_of)

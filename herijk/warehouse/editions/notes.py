@@ -19,7 +19,7 @@ from herijk.warehouse.editions.compare import (
     Group,
     report,
 )
-from herijk.warehouse.editions.printed import REBASED
+from herijk.warehouse.editions.printed import NOT_REBASED, REBASED
 from herijk.warehouse.editions.words import (
     CHANGES,
     CREWS,
@@ -54,7 +54,7 @@ LARGEST_HEAD: Final = (
     ("ploeg", "crew"),
     ("Cw oud [kg/m]", "Cw old [kg/m]"),
     ("Cw nieuw [kg/m]", "Cw new [kg/m]"),
-    ("vermogen", "power"),
+    ("verschil", "change"),
     ("in twee uur", "in two hours"),
 )
 WHY_HEAD: Final = ("oorzaken", "causes")
@@ -107,7 +107,9 @@ def summary(edition: Edition) -> str:
 def _facts(edition: Edition, language: Language) -> dict[str, object]:
     about = edition.about
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
-    carried = edition.register.filter(basis=REBASED).height
+    carried, as_it_was = (
+        edition.register.filter(basis=basis).height for basis in (REBASED, NOT_REBASED)
+    )
     ensemble = edition.tables.get("ensemble")
     return {
         "edition": about.edition,
@@ -121,6 +123,7 @@ def _facts(edition: Edition, language: Language) -> dict[str, object]:
             f"{count} {language.word(STATUSES, status)}" for status, count in counts.rows()
         ),
         "carried": language.count(carried) if carried else None,
+        "not_rebased": language.count(as_it_was) if as_it_was else None,
         "carried_from": about.carried_from,
         "members": None if ensemble is None else ensemble["member"].n_unique(),
         "complete": edition.method is not None and edition.method.interval == COMPLETE,
@@ -166,6 +169,7 @@ def _changes(difference: DiffReport | None, language: Language) -> dict[str, obj
         "cause_table": table(cause_head, named) if named else "",
         "gain": _group(difference.gain, language),
         "loss": _group(difference.loss, language),
+        "known": unknown < difference.changes.get("changed", 0),
         "exceeding": language.count(difference.exceeds_interval),
         "unknown": language.count(unknown) if unknown else "",
         "runs_alone": difference.runs_alone,
@@ -205,6 +209,6 @@ def _largest(line: Row, language: Language) -> tuple[str, ...]:
         f"{line['rowers']}{line['crew_class']}",
         language.number(line["old_cw_kg_m"]),
         language.number(line["new_cw_kg_m"]),
-        language.per_cent(line["power_ratio"]),
+        language.per_cent(line["new_cw_kg_m"] / line["old_cw_kg_m"]),
         language.seconds(line["gain_in_two_hours_s"]),
     )

@@ -19,8 +19,12 @@ from herijk.warehouse.archive import Fault, read_published_registers
 from herijk.warehouse.editions.inputs import INPUTS_HASH
 from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, archive_root, fingerprint
+from herijk.words import say
 
-AS_PRINTED, REBASED = "printed", "printed_rebased"
+AS_PRINTED, REBASED, NOT_REBASED = "printed", "printed_rebased", "printed_not_rebased"
+PRINTED_METHOD: Final = "as-printed"
+"""What stands for the method of a line that none was applied to."""
+
 NO_VALID_CURVE: Final = "no_valid_curve"
 
 
@@ -34,7 +38,7 @@ def printed_path(store: Store, season: int) -> str:
     registers, faults = _registers(store)
     paths = registers.filter(pl.col("season") == season)["path"].unique().sort()
     if paths.is_empty():
-        known = ", ".join(str(s) for s in registers["season"].unique().sort()) or "none"
+        known = ", ".join(str(s) for s in registers["season"].unique().sort()) or say("none")
         raise MissingKnowledgeError(
             "the archive holds no readable register printed in {}; it holds: {}", season, known
         )
@@ -133,7 +137,7 @@ def _carried(printed: Edition, log_factors: pl.DataFrame, method: Method) -> pl.
         pl.Series("a_kg_m", a),
         pl.Series("b_m_s", b),
         pl.Series("cw_kg_m", cw(a, s_of_b(b), lines["declared_speed_m_s"])),
-        pl.Series("basis", np.where(y == 1.0, AS_PRINTED, REBASED), pl.String),
+        pl.Series("basis", np.where(y == 1.0, NOT_REBASED, REBASED), pl.String),
     )
 
 

@@ -1,22 +1,19 @@
 """What changed since the last report: tows, what is set aside, log factors, lines of the drafts.
 
-The database that was last reported on is kept beside the reports, so a rebuild that was killed
-before its report is reported on by the next. Where and how a report is shown is not decided here.
+What is compared is kept beside the reports, in one small file with the hash of the database that it
+is of, so a rebuild that was killed before its report is reported on by the next. Where and how a
+report is shown is not decided here.
 """
 
 import json
-import os
-import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-import duckdb
 import polars as pl
 
-from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by_side
 from herijk.pipeline.register.register import LINE, draft_name, with_empty_thwart
@@ -25,13 +22,22 @@ from herijk.tables.schemas import TABLES
 from herijk.warehouse.editions.compare import ground_of
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, with_input_hashes
 from herijk.warehouse.store.database import open_database
-from herijk.warehouse.store.files import file_sha256, written_beside
-from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.files import file_sha256
+from herijk.warehouse.store.store import (
+    DamagedFileError,
+    Store,
+    metadata_of,
+    read_parquet,
+    write_parquet,
+)
 
 NEEDED: Final = (
     *("about", "boats", "tows", "tow_runs", "hand_windows", "quarantine"),
     *("log_factors", "methods", "register"),
 )
+REPORTED_ON: Final = "herijk.database"
+"""What the summary says at its end: the hash of the database that it is of."""
+
 FAULT: Final = ("path", "tow_id", "line", "reason_code", "message")
 FACTOR: Final = ("method", "season")
 SAME_FACTOR: Final = 5e-5
@@ -52,6 +58,7 @@ class ChangeReport:
         tows: `tow_id`, `fsn_no`, `season`, `what`: new, samples (its files changed), list (its row
             in a list changed) or gone.
         seasons_gone: seasons that had tows, and have none now.
+        methods: `method` and `what`: new, or gone.
         set_aside: new faults (`what` is new) and those that are gone (mended).
         factors: log factors that moved: `method`, `season`, `old_factor`, `new_factor`, `ratio`.
         lines: lines of draft registers that changed, with the columns of `register_changes` and of
@@ -61,6 +68,7 @@ class ChangeReport:
     first: bool
     tows: pl.DataFrame
     seasons_gone: list[int]
+    methods: pl.DataFrame
     set_aside: pl.DataFrame
     factors: pl.DataFrame
     lines: pl.DataFrame
@@ -68,7 +76,7 @@ class ChangeReport:
     @property
     def nothing(self) -> bool:
         """Whether nothing changed."""
-        frames = (self.tows, self.set_aside, self.factors, self.lines)
+        frames = (self.tows, self.methods, self.set_aside, self.factors, self.lines)
         return not self.first and all(frame.is_empty() for frame in frames)
 
 
@@ -82,6 +90,7 @@ class ChangeSummary:
         tows, set_aside, register: how many (`number`) of each kind.
         tow_rows, set_aside_rows, factors, lines: rows of the change report.
         seasons_gone: seasons that had tows, and have none now.
+        methods: those that are new or gone.
         beyond_interval: lines that move by more than both intervals.
     """
 
@@ -96,32 +105,32 @@ class ChangeSummary:
     beyond_interval: int
     lines: list[Row]
     seasons_gone: list[int] = field(default_factory=list)
+    methods: list[Row] = field(default_factory=list)
 
 
-def reported_database(store: Store) -> Path:
-    """The database that the last report was about."""
-    return store.root / "report" / "reported.duckdb"
+def reported_path(store: Store) -> Path:
+    """What the last report was about."""
+    return store.root / "report" / "reported.parquet"
 
 
 def change_report(store: Store) -> ChangeReport:
     """What changed in the database since the last report."""
     if is_reported(store):
         return _nothing()
-    reported, now = reported_database(store), store.database
-    before = file_sha256(reported) if reported.exists() else ""
-    return _between(reported, now, (before, file_sha256(now)))
+    return _between(store, _reported_on(store), file_sha256(store.database))
 
 
 @lru_cache(maxsize=1)
-def _between(reported: Path, database: Path, _: tuple[str, str]) -> ChangeReport:
+def _between(store: Store, *_: str | None) -> ChangeReport:
     """What changed from one database to another; kept by their hashes, as several ask."""
-    now, was = _tables(database), _reported(reported)
+    now, was = _tables(store.database), _reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
     return ChangeReport(
         first=was is None,
         tows=_tows(before, now),
         seasons_gone=sorted({*before["tows"]["season"]} - {*now["tows"]["season"]}),
-        set_aside=_faults(before["quarantine"], now["quarantine"]),
+        methods=_came_and_went(before["methods"], now["methods"], ("method",), "gone"),
+        set_aside=_came_and_went(before["quarantine"], now["quarantine"], FAULT, "mended"),
         factors=_factors(before["log_factors"], now["log_factors"]),
         lines=_lines(before, now),
     )
@@ -129,55 +138,64 @@ def _between(reported: Path, database: Path, _: tuple[str, str]) -> ChangeReport
 
 def _nothing() -> ChangeReport:
     """No changes."""
-    keys = {name: TABLES[name].create_empty() for name in ("tows", "quarantine", "log_factors")}
+    names = ("tows", "methods", "quarantine")
     what = pl.lit(None, pl.String).alias("what")
-    tows, faults = (keys[name].with_columns(what) for name in ("tows", "quarantine"))
-    factors = _factors(keys["log_factors"], keys["log_factors"])
-    return ChangeReport(False, tows, [], faults, factors, _no_lines())
+    tows, methods, faults = (TABLES[n].create_empty().with_columns(what) for n in names)
+    factor = TABLES["log_factors"].create_empty()
+    return ChangeReport(False, tows, [], methods, faults, _factors(factor, factor), _no_lines())
 
 
 def is_reported(store: Store) -> bool:
     """Whether the database is the one that was reported on."""
-    reported, now = reported_database(store), store.database
-    if not reported.exists():
-        return False
-    return reported.samefile(now) or file_sha256(reported) == file_sha256(now)
+    reported_on = _reported_on(store)
+    return reported_on is not None and reported_on == file_sha256(store.database)
+
+
+def _reported_on(store: Store) -> str | None:
+    """Hash of the database that was reported on; None where there is none."""
+    return metadata_of(reported_path(store), REPORTED_ON)
 
 
 def remember(store: Store) -> None:
-    """Keeps the database as the one reported on; it costs no room until a new one is made."""
-    if is_reported(store):
-        return
-    with written_beside(reported_database(store)) as beside:
-        beside.unlink()
-        try:
-            os.link(store.database, beside)
-        except OSError:
-            shutil.copyfile(store.database, beside)
+    """Keeps what the next report compares with: one row, in which each table is a list of rows."""
+    if not is_reported(store):
+        tables = {name: [frame.to_struct()] for name, frame in _tables(store.database).items()}
+        about = {REPORTED_ON: file_sha256(store.database)}
+        write_parquet(pl.DataFrame(tables), reported_path(store), about, {"compression": "zstd"})
 
 
-def _reported(path: Path) -> Tables | None:
+def _reported(store: Store) -> Tables | None:
     """Tables of the last report; None where there is none, or it is damaged."""
-    if not path.exists():
-        return None
     try:
-        tables = _tables(path)
-        return tables | {"register": with_empty_thwart(tables["register"])}
-    except (UnavailableError, duckdb.Error):
+        kept = read_parquet(reported_path(store))
+    except (FileNotFoundError, DamagedFileError):
         return None
+    tables = {name: kept[name][0].struct.unnest() for name in kept.columns}
+    return tables | {"register": with_empty_thwart(tables["register"])}
 
 
 def _tables(path: Path) -> Tables:
+    """What a report compares, of a database."""
     with open_database(path) as db:
         db.execute("SET threads = 1")
-        return {t: pl.DataFrame(db.sql(f'SELECT * FROM "{t}"').pl()) for t in NEEDED}  # noqa: S608
+        tables = {t: pl.DataFrame(db.sql(f'SELECT * FROM "{t}"').pl()) for t in NEEDED}  # noqa: S608
+    windows, boats = tables.pop("hand_windows"), tables["boats"]
+    return tables | {
+        "boats": boats.select("fsn_no", "name"),
+        "tows": with_boat_types(tables["tows"], boats),
+        "tow_runs": with_hand_windows(tables["tow_runs"], windows),
+        "quarantine": tables["quarantine"].select(FAULT),
+        "log_factors": tables["log_factors"].select(*FACTOR, "factor"),
+        "methods": tables["methods"].select("method", "content_hash"),
+        "register": tables["register"].filter(pl.col("edition").str.starts_with(draft_name(""))),
+    }
 
 
 # Tows and what is set aside
 
 
 def _tows(was: Tables, now: Tables) -> pl.DataFrame:
-    same = same_tows(_measured(was), _measured(now))
+    same = same_tows(was, now)
     facts = ("tow_id", "fsn_no", "season")
     files = ("samples_sha256", "second_sha256")
     pairs = (
@@ -210,23 +228,17 @@ def _tows(was: Tables, now: Tables) -> pl.DataFrame:
     ).sort("tow_id")
 
 
-def _measured(tables: Tables) -> Tables:
-    """Tows with the type of their boat, and runs with the windows given by hand."""
-    return {
-        "tows": with_boat_types(tables["tows"], tables["boats"]),
-        "tow_runs": with_hand_windows(tables["tow_runs"], tables["hand_windows"]),
-    }
-
-
-def _faults(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
-    came = now.select(FAULT).join(was, on=FAULT, how="anti", nulls_equal=True)
-    went = was.select(FAULT).join(now, on=FAULT, how="anti", nulls_equal=True)
+def _came_and_went(
+    was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str], went: str
+) -> pl.DataFrame:
+    """Rows by their key that are new, and those that are there no more; `what` says which."""
+    parts = ((now, was, "new"), (was, now, went))
     return pl.concat(
-        [
-            came.with_columns(pl.lit("new").alias("what")),
-            went.with_columns(pl.lit("mended").alias("what")),
-        ]
-    ).sort("what", *FAULT)
+        mine.select(key)
+        .join(other, on=key, how="anti", nulls_equal=True)
+        .with_columns(pl.lit(what).alias("what"))
+        for mine, other, what in parts
+    ).sort("what", *key)
 
 
 def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
@@ -295,8 +307,7 @@ def _grounds(
 
 
 def _input_hashes(tables: Tables) -> dict[str, str]:
-    measured = _measured(tables)
-    hashed = with_input_hashes(measured["tows"], measured["tow_runs"])
+    hashed = with_input_hashes(tables["tows"], tables["tow_runs"])
     return dict(hashed.select("tow_id", INPUTS_HASH).rows())
 
 
@@ -330,6 +341,7 @@ def summary_of(report: ChangeReport) -> ChangeSummary:
         beyond_interval=int(report.lines["exceeds_interval"].fill_null(False).sum()),
         lines=report.lines.to_dicts(),
         seasons_gone=report.seasons_gone,
+        methods=[] if report.first else report.methods.to_dicts(),
     )
 
 

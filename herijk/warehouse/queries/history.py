@@ -20,7 +20,7 @@ from herijk.pipeline.method.definition import Method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.recompute.results import Recomputed
 from herijk.pipeline.recompute.run_cache import RunCache
-from herijk.pipeline.register.register import draft_name, draft_register
+from herijk.pipeline.register.register import draft_name, draft_register, reference_day
 from herijk.warehouse.intake.seasons import run_blocks, typed_tows
 from herijk.warehouse.queries.chosen_tows import chosen
 from herijk.warehouse.store.store import Store
@@ -38,6 +38,7 @@ class History:
         boats: the table `boats`.
         crews: listed boats with their crews, also those never towed.
         blocks: the runs of `tows`.
+        last_day: the day of the last tow or race, on which drafts judge what is valid.
         simulated: the archive says that it is simulated.
         cache: what was found of the runs so far.
     """
@@ -46,6 +47,7 @@ class History:
     boats: pl.DataFrame
     crews: pl.DataFrame
     blocks: RunBlocks
+    last_day: dt.date
     simulated: bool
     cache: RunCache = field(default_factory=RunCache)
 
@@ -62,19 +64,15 @@ class History:
                 store.root,
                 store.root,
             )
+        tows = typed_tows(store)
         return cls(
-            tows=typed_tows(store),
+            tows=tows,
+            last_day=reference_day(tows, store.read("listed_races")),
             boats=store.read("boats"),
             crews=store.read("listed_boats"),
             blocks=run_blocks(store),
             simulated=bool(store.read("about_archive")["simulated"][0]),
         )
-
-    @property
-    def last_day(self) -> dt.date:
-        """The day of the last tow, on which drafts judge what is valid."""
-        day: dt.date = max(self.tows["tow_date"])
-        return day
 
     def under(self, method: Method) -> "Draft":
         """All tows recomputed, without the bands of their curves, and the register that follows.

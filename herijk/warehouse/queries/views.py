@@ -180,7 +180,7 @@ class Views:
         return self.frame(RETOW_CHOICE)
 
     def flagged_boats(self) -> pl.DataFrame:
-        """Every flag of every curve with the boat it is about: `method, flag, name, tow_date`."""
+        """Every flag of every curve with its tow and boat: `method, flag, tow_id, name`."""
         return self.frame(_FLAGGED_BOATS)
 
     def type_names(self) -> list[str]:
@@ -252,7 +252,7 @@ ORDER BY c.fsn_no, t.tow_date, c.tow_id, c.method
 """
 
 _FLAGGED_BOATS = """
-SELECT c.method, c.flag, b.name, c.fsn_no, c.rowers, c.crew_class, t.tow_date
+SELECT c.method, c.flag, c.tow_id, b.name, c.fsn_no, c.rowers, c.crew_class, t.tow_date
 FROM (SELECT *, unnest(flags) AS flag FROM curves) AS c JOIN tows AS t USING (tow_id)
 LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
 ORDER BY c.method, c.flag, lower(b.name), c.fsn_no, t.tow_date

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.0 opens the file; the newest form would shut out programs of last year."""
 
-_HELD: Final = (
+_HELD: Final = say(
     "another program has it open for writing. Close that program, or let it open the file to "
     "read only, and try again"
 )
-_SPOILT: Final = (
+_SPOILT: Final = say(
     "it is damaged, or another program wrote in it. Make it again with herijk rebuild, which knows "
     "the archive"
 )
@@ -134,7 +134,7 @@ def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
 
 
-NO_TOW: Final = (
+NO_TOW: Final = say(
     "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "
     "quarantine say why"
 )

@@ -17,10 +17,11 @@ from pydantic import BaseModel, ConfigDict, Field
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.register import DECISION_SCHEMA, EXCLUDE, PREFER
 from herijk.warehouse.store.settings_file import read_settings_file
+from herijk.words import say
 
 FILE_NAME: Final = "besluiten.toml"
 VERDICTS: Final = {"uitsluiten": EXCLUDE, "voorkeur": PREFER}
-_MAY_HOLD: Final = (
+_MAY_HOLD: Final = say(
     "[[besluit]], each with sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum"
 )
 

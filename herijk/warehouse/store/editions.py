@@ -28,6 +28,7 @@ from herijk.tables.declare import dy
 from herijk.tables.register import Register
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, sync
 from herijk.warehouse.store.store import Store
+from herijk.words import say
 
 Kind = Literal["recomputed", "as_printed"]
 
@@ -153,7 +154,7 @@ def edition_path(store: Store, edition: str) -> Path:
         MissingKnowledgeError: there is none of that name.
     """
     if edition not in edition_names(store):
-        known = ", ".join(edition_names(store)) or "none yet"
+        known = ", ".join(edition_names(store)) or say("none yet")
         raise MissingKnowledgeError("there is no edition {}; published: {}", edition, known)
     return store.editions / edition
 

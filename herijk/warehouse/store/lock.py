@@ -24,7 +24,7 @@ from herijk.words import say
 LOCK_FILE: Final = "rebuild.lock"
 SERVER_LOCK_FILE: Final = "serve.lock"
 OWNER_SUFFIX: Final = ".owner.json"
-WAIT: Final = "Wait until that is done, or stop that process; its lock goes with it"
+WAIT: Final = say("Wait until that is done, or stop that process; its lock goes with it")
 _NOT_OURS: Final = {"audit", "dagster", "editions", "outbox"}
 """Folders of the data folder in which others write, without the lock."""
 
@@ -67,7 +67,10 @@ def only_server(root: Path) -> Iterator[None]:
     root.mkdir(parents=True, exist_ok=True)
     file = root.resolve() / SERVER_LOCK_FILE
     with _locked(
-        file, wait=False, taken=say("{} is served already", root), way_out="Stop that one first"
+        file,
+        wait=False,
+        taken=say("{} is served already", root),
+        way_out=say("Stop that one first"),
     ):
         yield
 
@@ -109,7 +112,7 @@ def _owner(signature: Path) -> str:
         owner: dict[str, object] = json.loads(signature.read_text(encoding="utf-8"))
         return say("process {} on {} since {}", owner["pid"], owner["host"], owner["since"])
     except (OSError, ValueError, KeyError, TypeError):
-        return "a process that has just begun"
+        return say("a process that has just begun")
 
 
 def remove_leftovers(root: Path) -> None:

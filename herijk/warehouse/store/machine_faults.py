@@ -5,6 +5,7 @@ anywhere in the chain of causes, or the few words by which SQLite, DuckDB and Po
 """
 
 import errno
+import importlib
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from herijk.pipeline.errors import HerijkError, UnavailableError
+from herijk.warehouse.store.files import WINDOWS
 from herijk.words import say
 
 _FULL: Final = (
@@ -30,6 +32,14 @@ _HANDLES: Final = (
     "LimitNOFILE=1024) and run it again"
 )
 _BROKEN_DISK: Final = "the disk under {root} gives errors. Look in the system's log, and replace it"
+_LIMITED: Final = (
+    "this process may not write files as large as it needs. Allow larger ones (ulimit -f "
+    "unlimited; in systemd LimitFSIZE=infinity) and run it again"
+)
+_NO_MEMORY: Final = (
+    "there is not enough memory. Allow more (ulimit -v unlimited; in systemd MemoryMax=), close "
+    "other programs, or read fewer seasons at a time with --seasons"
+)
 
 _DAMAGED_RECORDS: Final = (
     "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no table, only "
@@ -49,19 +59,20 @@ _NO_DRAWING: Final = (
 _BY_NUMBER: Final = {
     errno.ENOSPC: _FULL,
     errno.EDQUOT: _FULL,
-    errno.EFBIG: _FULL,
+    errno.EFBIG: _LIMITED,
     errno.EROFS: _FORBIDDEN,
     errno.EACCES: _FORBIDDEN,
     errno.EPERM: _FORBIDDEN,
     errno.EMFILE: _HANDLES,
     errno.ENFILE: _HANDLES,
     errno.EIO: _BROKEN_DISK,
+    errno.ENOMEM: _NO_MEMORY,
 }
 
 _BY_WORDS: Final = {
     "no space left": _FULL,
     "disk is full": _FULL,
-    "file too large": _FULL,
+    "file too large": _LIMITED,
     "quota exceeded": _FULL,
     "read-only file system": _FORBIDDEN,
     "readonly database": _FORBIDDEN,
@@ -74,12 +85,16 @@ _BY_WORDS: Final = {
     "file is not a database": _DAMAGED_RECORDS,
     "disk image is malformed": _DAMAGED_RECORDS,
     "no such table": _DAMAGED_RECORDS,
+    "out of memory": _NO_MEMORY,
+    "cannot allocate memory": _NO_MEMORY,
+    "failed to map segment": _NO_MEMORY,
+    "can't start new thread": _NO_MEMORY,
 }
 
 _LITTLE: Final = 1 << 20
 """Bytes: with less a disk is full."""
 
-REASSURANCE: Final = "What was there before is whole, and what was finished is kept."
+REASSURANCE: Final = say("What was there before is whole, and what was finished is kept.")
 
 
 @contextmanager
@@ -108,15 +123,25 @@ def _said(fault: str, error: BaseException, root: Path) -> str:
         path = next(names, None)
         if path is not None and not Path(path).absolute().is_relative_to(root.absolute()):
             return say(_ELSEWHERE, path=path)
-    if fault == _BROKEN_DISK and _is_full(root):
+    if fault == _BROKEN_DISK and _is_full(root):  # SQLite calls both an error of the disk
         fault = _FULL
+    elif fault == _BROKEN_DISK and _is_limited():
+        fault = _LIMITED
     return say(fault, root=root)
 
 
 def _is_full(root: Path) -> bool:
-    """Whether no room is left: SQLite calls that an error of the disk."""
+    """Whether no room is left."""
     folder = next((p for p in (root, *root.absolute().parents) if p.is_dir()), None)
     return folder is not None and shutil.disk_usage(folder).free < _LITTLE
+
+
+def _is_limited() -> bool:
+    """Whether the system lets this process write files of some size only."""
+    if WINDOWS:
+        return False
+    resource = importlib.import_module("resource")  # not every system has it
+    return bool(resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY)
 
 
 def is_machine_fault(error: BaseException) -> bool:
@@ -128,10 +153,12 @@ def _machine_fault(error: BaseException) -> str | None:
     for one in _causes(error):
         if isinstance(one, OSError) and one.errno in _BY_NUMBER:
             return _BY_NUMBER[one.errno]
+        if isinstance(one, MemoryError):
+            return _NO_MEMORY
         text = str(one).casefold()
-        for words, kind in _BY_WORDS.items():
+        for words, fault in _BY_WORDS.items():
             if words in text:
-                return kind
+                return fault
     return None
 
 

@@ -1,12 +1,11 @@
-"""The tables as files that any program opens: Parquet, described as a data package and for DCAT.
+"""The tables of the lake described for any program: as a data package, and for DCAT.
 
-`tables/` in the data folder can be copied and passed on as it is: one Parquet file per table.
-`datapackage.json` (Frictionless Data Package, version 2) gives columns, keys, licence, sources and
-hashes; `dcat.jsonld` (DCAT 3) says the same to catalogues. The folder is replaced at once.
+`lake/tables/` can be copied and passed on as it is. Of its Parquet files, one per table or per
+method, `datapackage.json` (Frictionless Data Package, version 2) gives columns, keys, licence,
+sources and hashes; `dcat.jsonld` (DCAT 3) says the same to catalogues. Both are written last.
 """
 
 import hashlib
-import io
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,13 +14,12 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 import polars as pl
 
-from herijk.warehouse.store.files import file_sha256, folder_written_beside
-from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.files import file_sha256, written_beside
+from herijk.warehouse.store.store import Store, count_rows
 
 if TYPE_CHECKING:
     from herijk.tables.declare import dy
 
-FOLDER: Final = "tables"
 DESCRIPTOR: Final = "datapackage.json"
 CATALOGUE: Final = "dcat.jsonld"
 _PARQUET: Final = "application/vnd.apache.parquet"
@@ -76,36 +74,24 @@ class Origin:
     sources: tuple[tuple[str, str], ...]
 
 
-def write_package(
-    root: Path,
-    tables: Mapping[str, pl.DataFrame],
-    schemas: "Mapping[str, type[dy.Schema]]",
-    origin: Origin,
-) -> None:
-    """Writes the tables and their description; a file that did not change stays the same file.
+def write_package(folder: Path, files: "Mapping[Path, type[dy.Schema]]", origin: Origin) -> None:
+    """Describes tables that lie there.
 
     Args:
-        root: the data folder.
-        tables: frames by table name.
-        schemas: what each of them was declared to be.
+        folder: holds the files, and their description.
+        files: the declared table of each file.
         origin: where they come from.
     """
-    target = root / FOLDER
-    with folder_written_beside(target) as beside:
-        resources = [
-            _resource(beside, target, name, frame, schemas[name])
-            for name, frame in sorted(tables.items())
-        ]
-        package = _package(resources, origin)
-        catalogue = _catalogue(package, origin, beside)
-        for name, text in ((DESCRIPTOR, package), (CATALOGUE, catalogue)):
-            json_text = json.dumps(text, indent=1, ensure_ascii=False)
-            (beside / name).write_text(json_text, encoding="utf-8")
+    resources = [_resource(folder, path, schema) for path, schema in sorted(files.items())]
+    package = _package(resources, origin)
+    for name, said in ((DESCRIPTOR, package), (CATALOGUE, _catalogue(package, origin, folder))):
+        with written_beside(folder / name) as beside:
+            text = json.dumps(said, indent=1, ensure_ascii=False)
+            beside.write_text(text, encoding="utf-8")
 
 
-def package_is_whole(root: Path) -> bool:
+def package_is_whole(folder: Path) -> bool:
     """Whether every file is there as it was described."""
-    folder = root / FOLDER
     try:
         package = json.loads((folder / DESCRIPTOR).read_text(encoding="utf-8"))
         described = {resource["path"]: resource["hash"] for resource in package["resources"]}
@@ -116,42 +102,24 @@ def package_is_whole(root: Path) -> bool:
         return False
 
 
-def _resource(
-    beside: Path, older: Path, name: str, frame: pl.DataFrame, schema: "type[dy.Schema]"
-) -> dict[str, object]:
-    """Writes one table, and describes it."""
-    content = io.BytesIO()
-    frame.write_parquet(content, compression="zstd")
-    data = content.getvalue()
-    sha256 = hashlib.sha256(data).hexdigest()
-    _put(beside / f"{name}.parquet", older / f"{name}.parquet", data, sha256)
+def _resource(folder: Path, path: Path, schema: "type[dy.Schema]") -> dict[str, object]:
+    """Describes one file; that of a method is named `table.method`."""
+    within = path.relative_to(folder)
     return {
-        "name": name,
+        "name": ".".join(within.with_suffix("").parts),
         "type": "table",
-        "path": f"{name}.parquet",
+        "path": within.as_posix(),
         "format": "parquet",
         "mediatype": _PARQUET,
         "description": schema.__doc__,
-        "hash": f"sha256:{sha256}",
-        "rowcount": frame.height,
+        "hash": f"sha256:{file_sha256(path)}",
+        "rowcount": count_rows(path),
         "schema": {
             "fields": [_field(*column) for column in schema.columns().items()],
             "primaryKey": schema.primary_key(),
             "missingValues": [],
         },
     }
-
-
-def _put(path: Path, older: Path, data: bytes, sha256: str) -> None:
-    """A file with this content: the older one under a second name, where it is the same."""
-    if older.exists() and file_sha256(older) == sha256:
-        try:
-            path.hardlink_to(older)
-        except OSError:  # a file system without such names
-            path.unlink(missing_ok=True)
-        else:
-            return
-    path.write_bytes(data)
 
 
 def _field(name: str, column: "dy.Column") -> dict[str, object]:
@@ -183,7 +151,7 @@ def _field_type(dtype: pl.DataType) -> str:
 
 
 def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
-    """The descriptor; its `id` is a hash of all tables, so equal tables have equal ids."""
+    """The descriptor; its `id` is a hash of those of all files."""
     hashes = "".join(resource["hash"] for resource in resources)
     said = [_SIMULATED] if origin.simulated else []
     said += [] if origin.rights.licence else [_NO_LICENCE]
@@ -192,7 +160,9 @@ def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
         "name": "herijk",
         "id": f"urn:sha256:{hashlib.sha256(hashes.encode()).hexdigest()}",
         "title": "Tow tests, curves and registers of Dutch rowing sloops, recomputed by Herijk",
-        "description": " ".join([*said, "One file per table; SI units, named in each field."]),
+        "description": " ".join(
+            [*said, "A file per table or method; SI units, named in each field."]
+        ),
         "version": origin.version,
         "sources": [{"title": title, "sha256": sha256} for title, sha256 in origin.sources],
         **origin.rights.described,

@@ -30,7 +30,7 @@ def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
     except ValidationError as error:
         shown = not model.model_config.get("hide_input_in_errors")
         first = error.errors(include_input=shown)[0]
-        where = f"'{'.'.join(map(str, first['loc']))}'"  # quoted: a key is never translated
+        where = f"'{'.'.join(map(str, first['loc']))}'"
         raise MissingKnowledgeError(
             "{}: {}: {}; it may hold {}", path, where, problem_in_words(first), may_hold
         ) from error

@@ -79,16 +79,20 @@ class Store:
         """The blocks of one tow."""
         return self.lake / "blocks" / f"season={season}" / f"{key}.parquet"
 
+    @property
+    def table_folder(self) -> Path:
+        """The tables."""
+        return self.lake / "tables"
+
     def table_path(self, table: str, partition: str | None = None) -> Path:
         """A table, or one partition of it."""
-        folder = self.lake / "tables"
         if partition is None:
-            return folder / f"{table}.parquet"
-        return folder / table / f"{partition}.parquet"
+            return self.table_folder / f"{table}.parquet"
+        return self.table_folder / table / f"{partition}.parquet"
 
     def partitions(self, table: str) -> list[str]:
         """The partitions of a table that have been written, sorted."""
-        folder = self.lake / "tables" / table
+        folder = self.table_folder / table
         return sorted(f.stem for f in folder.glob("[!.]*.parquet"))
 
     def write(
@@ -110,28 +114,15 @@ class Store:
 
     def made_from(self, table: str, partition: str | None = None) -> str | None:
         """Fingerprint of what a table was made from; None if it is not there or is damaged."""
-        return self._said(table, partition).get(FINGERPRINT_KEY)
+        return metadata_of(self.table_path(table, partition), FINGERPRINT_KEY)
 
     def contents(self, table: str, partition: str | None = None) -> str | None:
         """Hash of what is in a table: equal for equal tables, whatever they were made from."""
-        return self._said(table, partition).get(CONTENTS_KEY)
+        return metadata_of(self.table_path(table, partition), CONTENTS_KEY)
 
     def count_rows(self, table: str, partition: str | None = None) -> int:
         """Rows of a table or partition; raises as `read_parquet`."""
         return count_rows(self.table_path(table, partition))
-
-    def _said(self, table: str, partition: str | None) -> dict[str, str]:
-        """What the file of a table says of itself; nothing if it is not there or is damaged."""
-        path = self.table_path(table, partition)
-        if not path.exists():
-            return {}
-        try:
-            said = pq.read_metadata(path).metadata or {}
-            return {key.decode(): value.decode() for key, value in said.items()}
-        except _UNREADABLE as error:
-            if is_machine_fault(error):
-                raise
-            return {}
 
     def remove(self, table: str, partition: str) -> None:
         """Removes a partition whose season or method is no more."""
@@ -195,6 +186,19 @@ def read_parquet(
     # Not read_table: it imports Arrow's data sets, and with them pandas if that is there.
     with _damage_named(path), pq.ParquetFile(path, page_checksum_verification=True) as file:
         return pl.DataFrame(pl.from_arrow(file.read(columns, use_threads=use_threads)))
+
+
+def metadata_of(path: Path, key: str) -> str | None:
+    """What a file says of itself under a key; None if it is not there or damaged, or silent."""
+    if not path.exists():
+        return None
+    try:
+        stored = (pq.read_metadata(path).metadata or {}).get(key.encode())
+        return None if stored is None else bytes(stored).decode()
+    except _UNREADABLE as error:
+        if is_machine_fault(error):
+            raise
+        return None
 
 
 def count_rows(path: Path) -> int:

@@ -39,6 +39,26 @@ def test_a_sound_archive_has_nothing(archive: Archive) -> None:
     assert checked.tows == 3
 
 
+def test_what_settles_nothing_is_not_proposed(archive: Archive) -> None:
+    """A rate of 0, a target speed as the second log; a tow that falls out is not promised."""
+    profile = '[[profile]]\nseasons = "2014"\ncolumns = { force = "trek" }\n'
+    (archive.root / "archief.toml").write_text(profile)
+    for path in (FIRST, SECOND, THIRD):
+        archive.replace(path, "log2 [m/s]", "doel [m/s]")
+        archive.replace(path, "kracht", "trek")
+    header, *rows = (archive.root / FIRST).read_text("utf-8").splitlines()
+    rows = [f"{i % 1000 * 4};{row}" for i, row in enumerate(rows)]
+    (archive.root / FIRST).write_text("\n".join([f"tijd;{header}", *rows, ""]), "utf-8")
+    (archive.root / "tweede boot.xlsx").write_bytes(b"of a tow, maybe")
+    checked = check_archive(archive.root)
+    lines = {p.line for cause in checked.causes for p in cause.proposals}
+    assert lines == {'[[profile]] seasons = "2014": absent = ["log2"]'}
+    assert checked.tows == 2
+    added = 'columns.force = "trek"\n# absent = ["log2"]\n'
+    assert str(checked.profile) == profile.replace('columns = { force = "trek" }\n', added)
+    parse_profiles(str(checked.profile).replace("# ", ""))
+
+
 def test_one_round_finds_every_cause_and_its_profile_settles_them(
     archive: Archive, good_scan: Scan
 ) -> None:

@@ -14,12 +14,14 @@ from typing import Final
 
 import polars as pl
 
+from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedTows
 from herijk.warehouse.archive.check.headers_and_samples import faults_in_headers, faults_in_samples
 from herijk.warehouse.archive.check.merged_profile import merged
 from herijk.warehouse.archive.check.proposals import Proposal, propose
 from herijk.warehouse.archive.faults import Fault
+from herijk.warehouse.archive.files.names import PARTS
 from herijk.warehouse.archive.index.index import ArchiveIndex, index_archive
 from herijk.warehouse.archive.index.unread_files import missing_lists, strangers
 from herijk.warehouse.archive.lists.races import read_races
@@ -53,7 +55,8 @@ class Checked:
     """What a check found.
 
     Attributes:
-        tows: tows that would be read as the archive is, or with the proposals.
+        tows: tows in which nothing was found that would cost them, as the archive is or with the
+            proposals; most samples are judged by the rebuild only.
         causes: what is wrong, the most frequent first.
         profile: `archief.toml` with the proposals; None where there are none.
     """
@@ -72,22 +75,49 @@ def check_archive(root: Path) -> Checked:
     written = profile_text(root)
     text = written
     seen: dict[Fault, tuple[Proposal, ...]] = {}
-    proposals: dict[Proposal, None] = {}
+    tried: set[Proposal] = set()
     for _ in range(ROUNDS):
         profiles = parse_profiles(text)
         index, faults = _faults(root, profiles)
         new: dict[Proposal, None] = {}
         for fault in faults:
             offered = propose(fault, profiles.wording.files, index.seasons if index else {})
-            seen[fault] = seen.get(fault) or offered
-            new |= dict.fromkeys(p for p in offered if p not in proposals)
+            seen[fault] = tuple(p for p in offered if p not in tried)  # else it settled nothing
+            new |= dict.fromkeys(seen[fault])
         if not new:
             break
-        proposals |= new
-        text = merged(written, (replace(p, is_active=True) for p in proposals))
+        tried |= new.keys()
+        text, valid = _applied(text, tuple(new))
+        seen |= {fault: tuple(p for p in seen[fault] if p in valid) for fault in faults}
     tows = index.tows if index else frame_of(ListedTows, [])
+    proposals = dict.fromkeys(p for offered in seen.values() for p in offered)
     profile = merged(written, _doubted(proposals, seen.values(), tows)) if proposals else None
-    return Checked(tows.height, _grouped(seen), profile)
+    return Checked(_readable(tows, faults), _grouped(seen), profile)
+
+
+def _applied(text: str, proposals: Sequence[Proposal]) -> tuple[str, Sequence[Proposal]]:
+    """A profile with those of some proposals that leave it valid, and these."""
+    together = merged(text, (replace(p, is_active=True) for p in proposals))
+    try:
+        parse_profiles(together)
+    except MissingKnowledgeError:
+        half = len(proposals) // 2
+        if not half:
+            return text, ()
+        text, first = _applied(text, proposals[:half])
+        text, second = _applied(text, proposals[half:])
+        return text, (*first, *second)
+    return together, proposals
+
+
+def _readable(tows: pl.DataFrame, faults: Iterable[Fault]) -> int:
+    """How many listed tows have no fault that costs the tow."""
+    costly = [fault for fault in faults if fault.lost is None]
+    lost = {f.tow_id for f in costly} | {f.path for f in costly}
+    files = tows.select("tow_id", "samples_path", "second_path").iter_rows()
+    return sum(
+        lost.isdisjoint(f"{tow}{PARTS}{one}{PARTS}{two}".split(PARTS)) for tow, one, two in files
+    )
 
 
 def _doubted(

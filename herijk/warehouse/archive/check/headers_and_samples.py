@@ -1,12 +1,12 @@
 """What a look into the samples files shows: every header, and one tow of each season whole."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import polars as pl
 
-from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS, SECOND_FILE_OFFSET
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, fault_from
@@ -15,7 +15,6 @@ from herijk.warehouse.archive.files.names import PARTS, as_one_run, kind_of
 from herijk.warehouse.archive.index.index import ArchiveIndex
 from herijk.warehouse.archive.plausibility.judge import judge_in_files
 from herijk.warehouse.archive.profile.definition import Profiles
-from herijk.warehouse.archive.profile.plan import STANDARD
 from herijk.warehouse.archive.profile.season import SeasonProfile
 from herijk.warehouse.archive.samples.file import (
     check_header,
@@ -99,9 +98,8 @@ def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> 
         yield _with_columns_of_runs(fault_from(error, file.path), root, profile)
         return
     planned = list(profiles.plan_of("", season).runs)
-    in_file = _mean_speeds(samples)
-    if season and named is None and in_file["run"].to_list() != planned:
-        yield _not_planned(file.path, in_file, planned, in_file["log1_m_s"].mean())
+    if season and named is None and samples["run"].unique().sort().to_list() != planned:
+        yield _not_planned(file.path, samples, planned)
 
 
 def _differ(one: float, other: float) -> bool:
@@ -150,60 +148,21 @@ def _other_rate(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault |
 
 
 def _other_plan(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault | None:
-    """That the file has other runs than are planned, with what their targets can be."""
-    in_file = _mean_speeds(samples)
-    runs = index.runs.filter(tow_id=tow["tow_id"])
-    present = set(in_file["run"])
+    """That the file has other runs than are planned."""
+    runs, present = index.runs.filter(tow_id=tow["tow_id"]), set(samples["run"])
     lacking = set(runs.filter("selected")["run"]) - present
     if not (lacking or present - set(runs["run"])):
         return None
     first = pl.col("run") < SECOND_FILE_OFFSET
-    planned, speed = runs.filter(first)["run"], tow["declared_speed_m_s"]
-    in_two = tow["second_path"] is not None
-    lasts = float(in_file["rows"].min() or 0) / tow["sample_rate_hz"]  # type: ignore[arg-type]
-    return _not_planned(tow["samples_path"], in_file.filter(first), planned, speed, in_two, lasts)
+    return _not_planned(tow["samples_path"], samples.filter(first), runs.filter(first)["run"])
 
 
-def _mean_speeds(samples: pl.DataFrame) -> pl.DataFrame:
-    return (
-        samples.group_by("run", maintain_order=True)
-        .agg(pl.col("log1_m_s").mean(), rows=pl.len())
-        .sort("run")
-    )
-
-
-def _not_planned(
-    path: str,
-    in_file: pl.DataFrame,
-    planned: Iterable[int],
-    speed: object,
-    in_two: bool = False,
-    lasts: float = STANDARD.seconds,
-) -> Fault:
-    """The fault of other runs than are planned.
-
-    Args:
-        path: the file.
-        in_file: its runs and their speeds.
-        planned: runs of one file.
-        speed: that of a target of 1.
-        in_two: the tow has a second file.
-        lasts: seconds of the shortest run.
-    """
-    present = in_file["run"].to_list()
-    ratios = in_file["log1_m_s"] / speed
+def _not_planned(path: str, samples: pl.DataFrame, planned: Iterable[int]) -> Fault:
+    """The fault of other runs in a file than are planned."""
     said = say(
         "Runs {present} are in the file and runs {planned} are planned. Give the targets and "
         "directions of all runs under [[plan]] in archief.toml.",
-        present=", ".join(map(str, present)),
+        present=", ".join(map(str, samples["run"].unique().sort())),
         planned=", ".join(map(str, planned)),
-        targets=tuple(round(20 * ratio) / 20 for ratio in ratios) if is_plan(present) else (),
-        in_two=in_two,
-        seconds=int(lasts),
     )
     return Fault(path, None, None, "run_not_planned", said)
-
-
-def is_plan(runs: Sequence[int]) -> bool:
-    """Whether these can be all the runs of a plan: 1, 2, 3 and on."""
-    return FEWEST_RUNS <= len(runs) <= MOST_RUNS and list(runs) == list(range(1, len(runs) + 1))

@@ -15,22 +15,11 @@ def merged(text: str, proposals: Iterable[Proposal]) -> str:
     for proposal in proposals:
         if proposal.section == "ignore":
             _add(document, "ignore", proposal.value)
-        elif proposal.section == "plan":
-            _add_plan(document, proposal)
         elif proposal.season:
             _in_profile(document, proposal)
         else:
             _in_section(document, proposal)
     return str(tomlkit.dumps(document))
-
-
-def _add_plan(document: Any, proposal: Proposal) -> None:
-    plan = f'seasons = "{proposal.season}"\ntargets = {proposal.key}\ndirections = {proposal.value}'
-    if proposal.is_active:
-        document.setdefault("plan", tomlkit.aot()).append(tomlkit.parse(plan))
-        return
-    for line in ("[[plan]]", *plan.split("\n")):
-        document.add(tomlkit.comment(line))
 
 
 def _in_section(document: Any, proposal: Proposal) -> None:
@@ -85,7 +74,7 @@ def _loosen(profile: Any) -> None:
     if isinstance(columns, InlineTable):
         profile.remove("columns")
         for name, value in columns.items():
-            profile.add(tomlkit.key(["columns", name]), value)
+            profile.add(tomlkit.key(["columns", name]), value.unwrap())
 
 
 def _covers(seasons: str, season: int) -> bool:

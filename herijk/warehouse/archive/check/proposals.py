@@ -4,7 +4,6 @@ A proposal is for a person to look at. One that would be a guess (is 1/3 in Janu
 written as a comment, with its choices.
 """
 
-import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +11,6 @@ from typing import Any, Final
 
 from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.files.names import PARTS
-from herijk.warehouse.archive.profile.plan import STANDARD
 from herijk.warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS
 from herijk.warehouse.archive.spelling.columns import Column
 from herijk.warehouse.archive.spelling.headers import split_header
@@ -42,7 +40,7 @@ class Proposal:
     """One line for `archief.toml`.
 
     Attributes:
-        section: `words`, `headers`, `ignore`, `dates`, `decimals`, `files`, `plan`, or `columns`,
+        section: `words`, `headers`, `ignore`, `dates`, `decimals`, `files`, or `columns`,
             `absent`, `reversed`, `sample_rate_hz` of a season.
         key: its key there; empty for `ignore`, `absent` and `reversed`.
         value: its value.
@@ -69,10 +67,6 @@ class Proposal:
     @property
     def line(self) -> str:
         """Key and value on one line, with their table before them."""
-        if self.section == "plan":
-            directions = self.value.replace("\n", ", ")
-            plan = f"targets = {self.key}, directions = {directions}"
-            return f'[[plan]] seasons = "{self.season}": {plan}'
         if self.season:
             return f'[[profile]] seasons = "{self.season}": {self.assignment}'
         return (
@@ -161,7 +155,8 @@ def _of_columns(keys: Sequence[str], header: Sequence[Any], season: int) -> Iter
     for key in keys:
         column = _SAMPLES[key]
         fitting = [cell for cell in header if _can_be(cell, column) and not _anothers(cell, key)]
-        near = [cell for cell in fitting if _is_like(cell, column)] or fitting
+        is_told = key != "log2" or "log1" in keys  # any speed could be it otherwise: a target
+        near = [cell for cell in fitting if _is_like(cell, column)] or fitting * is_told
         left = _own_log_first(key, [cell for cell in near if cell in free])
         if left:
             free.remove(left[0])  # of several, only a person can tell which is which
@@ -217,34 +212,10 @@ def _of_sign(_: str, values: Any, season: int) -> Iterator[Proposal]:
         yield Proposal("reversed", "", "force", season, is_active=False)
 
 
-def _of_plan(_: str, values: Any, season: int) -> Iterator[Proposal]:
-    """Runs of another plan; equal neighbours go out and back, otherwise the first half goes out.
-
-    Of two files the first goes out and the second back.
-    """
-    targets = values.get("targets", ())
-    if not season or not targets:
-        return
-    half = (len(targets) + 1) // 2
-    in_pairs = targets[::2] == targets[1::2]
-    ways = ["back" if (i % 2 if in_pairs else i >= half) else "out" for i in range(len(targets))]
-    directions = json.dumps(ways)
-    if values.get("in_two"):
-        out, back = (json.dumps([way] * len(targets)) for way in ("out", "back"))
-        directions = f"{out}\nsecond_directions = {back}"
-    if 5 <= values["seconds"] < STANDARD.seconds:
-        directions += f"\nseconds = {values['seconds']}"
-    yield Proposal("plan", json.dumps(list(targets)), directions, season, is_active=False)
-
-
-def _of_stranger(path: str, values: Any, _: int) -> Iterator[Proposal]:
-    """A file or folder of another name: what it can be; what can hold no data is to be ignored."""
+def _of_stranger(_: str, values: Any, __: int) -> Iterator[Proposal]:
+    """A file or folder of another name: what it can be."""
     for file, stands_for in values.get("can_be", ()):
         yield Proposal("files", file, stands_for)
-    for file, stands_for in values.get("guesses", ()):
-        yield Proposal("files", file, stands_for, is_active=False)
-    if values.get("is_other"):
-        yield Proposal("ignore", "", path)
 
 
 def _is_like(cell: str, column: Column) -> bool:
@@ -296,7 +267,6 @@ _RULES: Final = {
     "bad_time": _of_times,
     "short_run": _of_times,
     "unknown_unit": _of_unit,
-    "run_not_planned": _of_plan,
     "negative_force": _of_sign,
     "unrecognised_file": _of_stranger,
     "bad_list_row": _of_value,

@@ -7,7 +7,7 @@ from typing import IO, Final
 import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive.files.names import COMPRESSION
+from herijk.warehouse.archive.files.names import COMPRESSION, TEXT_SUFFIXES, kind_of
 from herijk.warehouse.archive.limits import MOST_ROWS, too_many_rows
 from herijk.words import say
 
@@ -46,14 +46,17 @@ def _first_bytes(path: Path, most: int) -> bytes:
     try:
         with path.open("rb") as raw:
             if compression is None:
-                return raw.read(min(os.fstat(raw.fileno()).st_size, most))
-            return _unpack(raw, compression, most)
+                content = raw.read(min(os.fstat(raw.fileno()).st_size, most))
+            else:
+                content = _unpack(raw, compression, most)
     except FileNotFoundError as error:
         said = say("'{name}' is not there any more.", name=path.name)
         raise DefectiveInputError("samples_missing", said) from error
     except (OSError, pa.ArrowException) as error:
         said = say("'{name}' cannot be read or unpacked: {error}.", name=path.name, error=error)
         raise DefectiveInputError("unreadable_file", said) from error
+    has_old_ends = kind_of(path) in TEXT_SUFFIXES and b"\n" not in content  # CR, of old Macs
+    return content.replace(b"\r", b"\n") if has_old_ends else content
 
 
 def _unpack(raw: IO[bytes], compression: str, most: int) -> bytes:

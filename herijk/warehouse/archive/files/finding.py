@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Final
 
+from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.files.list_kinds import BOATS, LIST_KINDS, ListKind
 from herijk.warehouse.archive.files.names import (
@@ -49,17 +50,19 @@ def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[Arc
 
     Hidden files are left out. The order is that of the names.
 
+    Raises:
+        MissingKnowledgeError: one is a folder, a pipe or a link to nothing.
+
     Args:
         root: the archive.
         kind: which lists.
         named: what other files, sheets and folders stand for, by their path (`[files]`).
     """
-    matches = ((e, _match_list(kind, e.name)) for e in _entries_of(root, kind.folder))
-    files = [
-        _archive_file(root, entry, int(match[1] or 0))
-        for entry, match in matches
-        if match is not None and (entry.is_file() or entry.is_symlink())
-    ]
+    matches = [(e, m) for e in _entries_of(root, kind.folder) if (m := _match_list(kind, e.name))]
+    for entry, _ in matches:
+        if not entry.is_file():
+            raise MissingKnowledgeError("{} is no file; remove it, or put the file there", entry)
+    files = [_archive_file(root, entry, int(match[1] or 0)) for entry, match in matches]
     for path, name, season in _named(named):
         file = root / split_sheet(path)[0]
         if name == kind.name and file.is_file():

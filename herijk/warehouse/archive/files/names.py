@@ -55,12 +55,6 @@ def kind_of(path: Path) -> str:
     return name[name.rfind(".") :]
 
 
-def can_hold_data(path: Path) -> bool:
-    """Whether a file has the suffix of a list or of samples, or a folder has such a file."""
-    files = path.rglob("*") if path.is_dir() else [path]
-    return any(f.suffix.casefold() in LIST_SUFFIXES or sample_suffix(f.name) for f in files)
-
-
 def match_key(name: str) -> str:
     """The name of a samples file for comparing: folded, without suffix."""
     folded = fold_word(name)

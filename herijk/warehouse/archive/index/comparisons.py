@@ -170,7 +170,7 @@ def _listed_twice(entry: Entry, other: Entry) -> DefectiveInputError:
 def join_boat(entry: Entry, boats: Boats) -> None:
     """Gives the tow its boat, with the sizes that were not written down that day."""
     fsn_no = entry.tow["fsn_no"]
-    why = boats.bad.get(fsn_no)
+    why = boats.bad.get(fsn_no) or boats.unread
     if why is not None:
         message = say(
             "boat {boat} cannot be used, see {path}: {why}",

@@ -164,7 +164,8 @@ def _read_boats(root: Path, wording: Wording) -> Boats:
     try:
         return read_boats(root, path, wording)
     except DefectiveInputError as error:
-        return Boats({}, (), {}, (fault_from(error, path),))
+        fault = fault_from(error, path)
+        return Boats({}, (), {}, (fault,), unread=fault)
 
 
 def _add_instruments(

@@ -4,7 +4,7 @@ A guess for a person to look at: `check` proposes it under `[files]`, and nothin
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.files.contents import read_bytes, read_start
-from herijk.warehouse.archive.files.list_kinds import BOATS, LIST_KINDS, TOWS
+from herijk.warehouse.archive.files.list_kinds import BOATS, LIST_KINDS
 from herijk.warehouse.archive.files.names import (
     LIST_SUFFIXES,
     SAMPLES,
@@ -23,22 +23,16 @@ from herijk.warehouse.archive.files.names import (
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.profile.season import SAMPLE_COLUMNS
 from herijk.warehouse.archive.samples.labview import is_labview
-from herijk.warehouse.archive.sheets.cell_contents import FITS
 from herijk.warehouse.archive.sheets.sheet import Sheet, read_sheets, sheets_of_workbook
 from herijk.warehouse.archive.spelling.columns import Column
-from herijk.warehouse.archive.spelling.dates import is_like_a_date
 from herijk.warehouse.archive.spelling.likeness import likeness
-from herijk.warehouse.archive.spelling.numbers import is_number
 from herijk.warehouse.archive.spelling.wording import Wording
 
 MOST_FILES: Final = 2000
 """Files of a folder of another name that are looked at; photographs can be many."""
 
 FEWEST_COLUMNS: Final = 3
-"""How many columns must have names that are known, or hold numbers."""
-
-FEWEST_SAMPLES: Final = 50
-"""How many rows of numbers must be at the start of a file for it to hold samples."""
+"""How many columns must have names that are known."""
 
 _YEAR: Final = re.compile(r"(?<![0-9])((?:19|20)[0-9]{2})(?![0-9])")
 
@@ -50,32 +44,12 @@ def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
         root: the archive.
         path: a file or folder in it.
     """
-    return _stand_for(root, path, _recognised_kinds)
-
-
-def guessed(root: Path, path: str) -> Iterator[tuple[str, str]]:
-    """Gives what files of which nobody knows the words can stand for, by what is in their columns.
-
-    A list with a column of dates can be of tows, one without of boats, and long rows of numbers
-    samples.
-
-    Args:
-        root: the archive.
-        path: a file or folder in it.
-    """
-    return _stand_for(root, path, _guessed_kinds)
-
-
-def _stand_for(
-    root: Path, path: str, kinds_of: Callable[[Path], Mapping[str, str]]
-) -> Iterator[tuple[str, str]]:
-    """Gives what files stand for, given the kinds of each by its sheets; samples as a folder."""
     full = root / path
     folders: set[Path] = set()
     for file in _files_under(full):
         if any(folder in file.parents for folder in folders):
             continue
-        relative, kinds = file.relative_to(root).as_posix(), kinds_of(file)
+        relative, kinds = file.relative_to(root).as_posix(), _recognised_kinds(file)
         if full != file and SAMPLES in kinds.values():
             folder = _folder_of_season(full, file)
             folders.add(folder)
@@ -106,12 +80,6 @@ def _recognised_kinds(file: Path) -> Mapping[str, str]:
     return {"": different.pop()} if len(different) == 1 else kinds
 
 
-def _guessed_kinds(file: Path) -> Mapping[str, str]:
-    """The kind of each sheet by its content."""
-    kinds = {sheet.name: _kind_by_content(sheet) for sheet in _sheets_of(file, TOWS.columns)}
-    return {sheet: kind for sheet, kind in kinds.items() if kind is not None}
-
-
 def _is_labview(file: Path) -> bool:
     if not sample_suffix(file.name):
         return False
@@ -132,23 +100,6 @@ def _sheets_of(file: Path, columns: Sequence[Column]) -> list[Sheet]:
     except DefectiveInputError:
         return []
     return []
-
-
-def _kind_by_content(sheet: Sheet) -> str | None:
-    columns = list(zip(*(row.fields for row in sheet.rows if row.problem is None), strict=False))
-    numbers = sum(_mostly(is_number, cells) for cells in columns)
-    if numbers < FEWEST_COLUMNS:
-        return None
-    others = [cells for cells in columns if not _mostly(is_number, cells)]
-    if len(sheet.rows) >= FEWEST_SAMPLES and len(others) <= 1:
-        return SAMPLES
-    has_dates = any(_mostly(is_like_a_date, cells) for cells in columns)
-    return (TOWS if has_dates else BOATS).name if others else None
-
-
-def _mostly(is_one: Callable[[str], bool], cells: Sequence[str]) -> bool:
-    filled = [cell for cell in map(str.strip, cells) if cell]
-    return bool(filled) and sum(map(is_one, filled)) >= FITS * len(filled)
 
 
 def _files_under(full: Path) -> list[Path]:

@@ -16,9 +16,8 @@ from herijk.warehouse.archive.files.names import (
     PACKED,
     SAMPLES,
     SPREADSHEETS,
-    can_hold_data,
 )
-from herijk.warehouse.archive.index.recognise import guessed, recognised
+from herijk.warehouse.archive.index.recognise import recognised
 from herijk.warehouse.archive.profile.definition import Profiles
 from herijk.warehouse.archive.spelling.text import fold
 from herijk.words import say
@@ -51,21 +50,20 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
     """What lies in the archive and is not read; what it can be, where that can be told."""
-    is_lacking = root.is_dir() and bool(missing_lists(root, profiles))
     message = "The name of '{name}' has letters that cannot be read; give it another name."
     misnamed = [
         Fault(path, None, None, "unrecognised_file", say(message, name=path))
         for path in list_misnamed(root)
     ]
     return misnamed + [
-        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path, is_lacking))
+        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
         for path in list_strangers(root, profiles.wording.files)
         if fold(path) not in profiles.wording.ignore
     ]
 
 
-def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
-    """The sentence about what is not read; while a list is lacking it can be anything."""
+def _about_stranger(root: Path, path: str) -> str:
+    """The sentence about what is not read."""
     kind = Path(path)
     if kind.suffix.lower() in PACKED:
         return say("'{path}' is not read: it is packed. Unpack it in its folder.", path=path)
@@ -74,14 +72,8 @@ def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
         return say(message, path=path)
     can_be = dict(recognised(root, path))
     if not can_be:
-        guesses = tuple(sorted(guessed(root, path)))
-        return say(
-            "'{path}' is not read: it is not recognised.",
-            path=path,
-            guesses=guesses,
-            is_other=not guesses
-            and not ((is_lacking or (root / path).is_dir()) and can_hold_data(root / path)),
-        )
+        message = "'{path}' is not recognised. It may be put under ignore in archief.toml."
+        return say(message, path=path)
     return say(
         "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; "
         "say so under [files] in archief.toml.",

@@ -36,6 +36,7 @@ class Boats:
         bad: why others cannot be used.
         faults: what is wrong in the list.
         more: what else is wrong in those rows.
+        unread: why the list as a whole cannot be read.
     """
 
     good: Mapping[str, Row]
@@ -43,6 +44,7 @@ class Boats:
     bad: Mapping[str, Fault]
     faults: tuple[Fault, ...]
     more: tuple[Fault, ...] = ()
+    unread: Fault | None = None
 
     def frame(self) -> pl.DataFrame:
         """The good boats, a row for each crew that rows them, in the order of the list."""

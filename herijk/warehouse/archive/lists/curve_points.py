@@ -11,7 +11,7 @@ from herijk.tables.declare import dy
 from herijk.warehouse.archive.sheets.reading import read_rows
 from herijk.warehouse.archive.sheets.row import ListRow
 from herijk.warehouse.archive.spelling.columns import Column
-from herijk.warehouse.archive.spelling.headers import split_header
+from herijk.warehouse.archive.spelling.headers import split_header, unit_behind
 from herijk.warehouse.archive.spelling.text import decode, find_delimiter, split_line
 from herijk.words import say
 
@@ -37,7 +37,7 @@ def read_points(path: Path, speed: str | None, force: str | None) -> pl.DataFram
 
     Args:
         path: the file, with fields and numbers as in the archive's lists.
-        speed, force: names of the columns without their unit; without, the usual ones are found.
+        speed, force: names of the columns; without, the usual ones are found.
 
     Returns:
         `line`, `speed_m_s` and `cw_kg_m`; the latter is force / speed^2 where forces are given.
@@ -48,17 +48,20 @@ def read_points(path: Path, speed: str | None, force: str | None) -> pl.DataFram
     data = path.read_bytes()
     header = decode(data).split("\n", 1)[0]
     names = [split_header(cell)[0] for cell in split_line(header, find_delimiter(header))]
-    speed, force = (name and split_header(name)[0] for name in (speed, force))
-    speed_column = Column("speed", speed or _first(names, "speed", header), "speed", "m/s")
+    speed_column = _column("speed", speed or _first(names, "speed", header), "m/s")
     if force is None and any(name in names for name in KNOWN["cw"]):
         other = Column("cw", KNOWN["cw"][0])
     else:
-        other = Column("force", force or _first(names, "force", header), "force", "N")
+        other = _column("force", force or _first(names, "force", header), "N")
     rows = read_rows(data, (speed_column, other), "bad_point", _Points)
     return pl.DataFrame(
         [_point(row, other.key) for row in rows],
         schema={"line": pl.Int64, "speed_m_s": pl.Float64, "cw_kg_m": pl.Float64},
     )
+
+
+def _column(key: str, name: str, unit: str) -> Column:
+    return Column(key, split_header(name)[0], key, unit_behind(name, key) or unit)
 
 
 def _first(names: list[str], key: str, header: str) -> str:

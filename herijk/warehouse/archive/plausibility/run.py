@@ -127,11 +127,11 @@ def within(value: float, limits: tuple[float, float], unit: float = 1.0) -> bool
 
 def what_it_holds(value: float) -> str:
     """What a sentence says of a value."""
-    return say("holds {:.6g}", value) if np.isfinite(value) else "holds no ordinary number"
+    return say("holds {:.6g}", value) if np.isfinite(value) else say("holds no ordinary number")
 
 
 def what_then(lost: Lost) -> str:
     """What a sentence says of the run from which so much is lost."""
     if lost == "run":
         return say("up to {:g} s may be missing, so the run is left out", LEFT_OUT_S)
-    return "the run goes on without them"
+    return say("the run goes on without them")

@@ -20,11 +20,12 @@ from herijk.pipeline.channels import (
     RUN_SECONDS,
     TARGET_SPEED_RATIOS,
 )
+from herijk.warehouse.archive.files.list_kinds import LIST_KINDS
 from herijk.warehouse.archive.files.names import STANDS_FOR
 from herijk.warehouse.archive.profile.plan import STANDARD, Plan
 from herijk.warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS, SeasonProfile
 from herijk.warehouse.archive.spelling.columns import Column
-from herijk.warehouse.archive.spelling.headers import split_header
+from herijk.warehouse.archive.spelling.headers import split_header, unread_unit
 from herijk.warehouse.archive.spelling.text import fold, fold_word
 from herijk.warehouse.archive.spelling.units import UNITS, find_scale
 from herijk.warehouse.archive.spelling.wording import Wording
@@ -32,6 +33,7 @@ from herijk.warehouse.archive.spelling.wording import Wording
 Channel = Literal["run", "log1", "log2", "gps", "force", "wind_speed", "wind_angle", "time"]
 Absent = Literal["log2", "gps", "wind"]
 _DIMENSIONS: Final = {column.key: column.dimension for column in SAMPLE_COLUMNS}
+_WITH_UNIT: Final = {fold(c.header) for kind in LIST_KINDS for c in kind.columns if c.unit}
 
 
 def _season_range(value: object) -> object:
@@ -96,7 +98,7 @@ class _ProfileTable(_Strict):
     @model_validator(mode="after")
     def _names_and_units_are_known(self) -> Self:
         for channel, name in self.columns.items():
-            if "[" in name:
+            if "[" in name or (channel not in self.units and unread_unit(name)):
                 raise ValueError(f"columns.{channel}: '{name}' has a unit; put it under units")
         for channel, unit in self.units.items():
             dimension = _DIMENSIONS[channel]
@@ -172,6 +174,13 @@ class Profiles(_Strict):
         for (_, last), (first, _) in pairwise(ranges):
             if first <= last:
                 raise ValueError(f"season {first} has two profiles")
+        return self
+
+    @model_validator(mode="after")
+    def _headers_hide_no_unit(self) -> Self:
+        for name, meant in self.headers.items():
+            if fold(meant) in _WITH_UNIT and unread_unit(name):
+                raise ValueError(f"headers: '{name}' has a unit; put it in brackets in the list")
         return self
 
     @cached_property

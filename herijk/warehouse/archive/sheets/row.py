@@ -24,8 +24,8 @@ from herijk.words import say
 
 T = TypeVar("T")
 
-ROWS_ARE_EQUAL: Final = "the rows are equal and the first counts."
-ROWS_DIFFER: Final = "the rows differ, so neither counts."
+ROWS_ARE_EQUAL: Final = say("the rows are equal and the first counts.")
+ROWS_DIFFER: Final = say("the rows differ, so neither counts.")
 """What becomes of rows that are about the same thing."""
 
 BOAT_NUMBER: Final = re.compile(

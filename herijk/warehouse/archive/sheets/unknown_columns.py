@@ -22,10 +22,6 @@ from herijk.words import say
 
 _BY_CONTENT: Final = frozenset({"use_runs", "crew_class"})
 """Columns that need not be there, and that are recognised by their content."""
-_SELDOM: Final = frozenset(
-    {"weight_after_kg", "freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m"}
-)
-"""Columns that few lists have."""
 _DISTINCT: Final = frozenset({"tow_id", "file"})
 
 Cells = Mapping[str, Sequence[str]]
@@ -108,14 +104,12 @@ def meanings(strange: Cells, free: Sequence[Column], fits: Fits) -> tuple[Meanin
     meant: dict[str, Meaning] = {}
     needed = [column for column in free if column.required]
     by_content = [column for column in free if column.key in _BY_CONTENT]
-    usual = [column for column in free if column.key not in _SELDOM]
     for guess, columns in (
         (_by_name, needed),
         (_by_content, needed),
         (_by_name, free),
         (_by_content, by_content),
         (_by_unit, free),
-        (partial(_by_unit, is_shared=True), usual),
         (_by_name_alone, free),
     ):
         taken = {meaning.column for meaning in meant.values()}
@@ -161,20 +155,15 @@ def _by_content(strange: Cells, free: Sequence[Column], fits: Fits) -> dict[str,
     return meant
 
 
-def _by_unit(
-    strange: Cells, free: Sequence[Column], fits: Fits, is_shared: bool = False
-) -> dict[str, Meaning]:
-    """The headers with a unit that only one column can have.
-
-    Where `is_shared`, several can have it: headers and columns are then paired in their order.
-    """
+def _by_unit(strange: Cells, free: Sequence[Column], fits: Fits) -> dict[str, Meaning]:
+    """The headers with a unit that only one column can have."""
     meant: dict[str, Meaning] = {}
     left = list(free)
     for header, cells in strange.items():
         if split_header(header)[1] is None:
             continue
         can_be = [c for c in left if _may_hold(c, header) and _share(c, cells, fits) >= FITS]
-        if len(can_be) == 1 or (can_be and is_shared):
+        if len(can_be) == 1:
             meant[header] = Meaning(header, can_be[0], is_sure=False)
             left.remove(can_be[0])
     return meant

@@ -4,8 +4,10 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
+from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.spelling.text import fold
-from herijk.warehouse.archive.spelling.units import is_any_unit, is_unit
+from herijk.warehouse.archive.spelling.units import find_scale, is_any_unit, is_unit
+from herijk.words import say
 
 _BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
 _UNIT_BEHIND: Final = re.compile(r"^(.*?[^\s_,])(?:\s*,\s+|\s+in\s+|[\s_]+)(m_s|[^\s_]+)$")
@@ -31,6 +33,29 @@ def split_header(cell: str) -> tuple[str, str | None]:
     if behind and is_unit(unit) and unit.casefold() not in _NO_UNIT_BEHIND:
         return fold(behind[1]), unit
     return fold(cell), None
+
+
+def unit_behind(name: str, dimension: str) -> str | None:
+    """The unit that ends a name somebody gave: `pull_lbf`, `speed_m_per_s`; None without one.
+
+    Raises:
+        DefectiveInputError: `unknown_unit`: a unit of something else, or what follows a `_`.
+    """
+    unit = split_header(name)[1]
+    ends = [unit] if unit else [name[mark.end() :] for mark in re.finditer(r"[\s_,]+", name)]
+    for end in ends:
+        if find_scale(dimension, end.replace("_", " ")) is not None:
+            return end.replace("_", " ")
+    if not (unit or unread_unit(name) or (ends and name[-len(ends[-1]) - 1] == "_")):
+        return None
+    message = "'{end}' at the end of '{name}' is no known unit of it; put the unit in brackets."
+    raise DefectiveInputError("unknown_unit", say(message, end=ends[-1], name=name))
+
+
+def unread_unit(name: str) -> bool:
+    """Whether a name ends in a unit that `split_header` takes for a part of it: `pull_lbf`."""
+    last = re.split(r"[\s_,]+", name)[-1]
+    return last != name and split_header(name)[1] is None and is_any_unit(last)
 
 
 def _last_part(group: re.Match[str]) -> tuple[str, str]:

@@ -52,12 +52,6 @@ def ungrouped(cell: str) -> str:
     return cell.replace(match["mark"], "")
 
 
-def is_number(cell: str) -> bool:
-    """Whether a cell is a number without a unit, or a time of day."""
-    match = LIKE_A_NUMBER.fullmatch(ungrouped(cell))
-    return match is not None and not match[2]
-
-
 def decimal_mark(cells: Iterable[str]) -> str:
     """The decimal marks of numbers that can be read in one way only."""
     return "".join(sorted({m[1] for cell in cells if (m := _DECIMAL.fullmatch(cell))}))
