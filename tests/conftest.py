@@ -59,6 +59,7 @@ LEFT_OUT: Final = ("studies", "lines", "consistency")
 def _make_directly(
     folders: tuple[Path, Path],
     methods: Sequence[str],
+    seasons: Collection[int] | None,
     progress: Progress,
     stale: Stale,
     done: Done,

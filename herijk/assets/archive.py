@@ -31,6 +31,8 @@ OUTSIDE: Final = {
     "published": "editions that were published",
     "failed_tows": "tows on which Herijk itself failed",
 }
+PEOPLE_AND_US: Final = ("decisions", "published", "failed_tows")
+VERSION_TAG: Final = "dagster/data_version"
 """What no asset makes: it is looked at with the lists of the archive, and noted as observed."""
 
 OUTSIDE_SPECS: Final = [
@@ -75,8 +77,7 @@ def archive_index(
     context.instance.add_dynamic_partitions(
         str(SEASONS.name), [str(season) for season in intake.listed_seasons(setup.store)]
     )
-    for observation in observations(setup):
-        context.log_event(observation)
+    observe(context.instance, setup)
     for name in intake.INDEXED:
         yield dg.MaterializeResult(
             asset_key=name,
@@ -85,19 +86,37 @@ def archive_index(
         )
 
 
-def observations(setup: Setup) -> Iterator[dg.AssetObservation]:
-    """What is seen of all that no asset makes."""
+def observe(instance: dg.DagsterInstance, setup: Setup) -> list[tuple[str, str | None]]:
+    """Notes what changed of all that no asset makes; gives its names, with the season."""
+    changed = []
+    for name, season, version in _seen(setup):
+        if version != _last_version(instance, name, season):
+            tags = {VERSION_TAG: version}
+            seen = dg.AssetObservation(name, partition=season, tags=tags)
+            instance.report_runless_asset_event(seen)
+            changed.append((name, season))
+    return changed
+
+
+def _last_version(instance: dg.DagsterInstance, name: str, season: str | None) -> str | None:
+    """The version under which something was last observed."""
+    key, seasons = dg.AssetKey(name), None if season is None else [season]
+    here = dg.AssetRecordsFilter(asset_key=key, asset_partitions=seasons)
+    for record in instance.fetch_observations(here, limit=1).records:
+        if record.asset_observation is not None:
+            return record.asset_observation.tags.get(VERSION_TAG)
+    return None
+
+
+def _seen(setup: Setup) -> Iterator[tuple[str, str | None, str]]:
+    """Name, season and version of all that no asset makes."""
     scope = setup.scope
     for season, listed in intake.season_fingerprints(setup.store, setup.archive_root).items():
-        yield _observed("tow_lists", listed, str(season))
-    yield _observed("method_options", [(m.name, m.content_hash) for m in scope.methods])
-    for name, parameter in (("register_rules", "methods"), *((n, n) for n in list(OUTSIDE)[3:])):
-        yield _observed(name, OTHERS[parameter].state(scope))
-
-
-def _observed(name: str, state: object, partition: str | None = None) -> dg.AssetObservation:
-    tags = {"dagster/data_version": fingerprint(state)}
-    return dg.AssetObservation(name, partition=partition, tags=tags)
+        yield "tow_lists", str(season), listed
+    options = [(method.name, method.content_hash) for method in scope.methods]
+    yield "method_options", None, fingerprint(options)
+    for name, parameter in (("register_rules", "methods"), *((n, n) for n in PEOPLE_AND_US)):
+        yield name, None, fingerprint(OTHERS[parameter].state(scope))
 
 
 @dg.asset(
@@ -116,7 +135,7 @@ def samples(
 ) -> Iterator[dg.MaterializeResult]:
     """The samples of the tows of seasons, in Parquet; faulty tows are set aside."""
     store, root = setup.store, setup.archive_root
-    asked, read = [int(season) for season in context.partition_keys], set()
+    asked, read = setup.wanted(context.partition_keys), set()
 
     def work() -> None:
         stale = intake.stale_seasons(store, root, asked)
@@ -177,7 +196,7 @@ def _most_tows_sound(store: Store) -> dg.AssetCheckResult:
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """Sums over each second of each run of seasons."""
     store = setup.store
-    asked, collected = [int(season) for season in context.partition_keys], set()
+    asked, collected = setup.wanted(context.partition_keys), set()
     for season in asked:
         work = partial(intake.collect_blocks, store, season)
         again = partial(intake.read_season, store, setup.archive_root, season)
@@ -201,7 +220,7 @@ def _record(
     here = dg.AssetRecordsFilter(asset_key=key, asset_partitions=[partition])
     (last,) = context.instance.fetch_materializations(here, limit=1).records
     assert last.asset_materialization is not None  # noqa: S101 - the event that Dagster just wrote
-    tags = {**(last.asset_materialization.tags or {}), "dagster/data_version": fingerprint(state)}
+    tags = {**(last.asset_materialization.tags or {}), VERSION_TAG: fingerprint(state)}
     context.log_event(
         dg.AssetMaterialization(key, partition=partition, metadata=metadata, tags=tags)
     )

@@ -11,7 +11,7 @@ from unittest import mock
 import dagster as dg
 import yaml  # type: ignore[import-untyped]
 
-from herijk.assets.archive import SEASONS
+from herijk.assets.archive import SEASONS, observe
 from herijk.assets.location import assets_of
 from herijk.assets.progress import Progress
 from herijk.assets.report import Done
@@ -40,15 +40,23 @@ def run_assets(
     Returns:
         What the checks said.
     """
-    store, job = setup.store, assets_of(setup, progress).resolve_implicit_global_asset_job_def()
+    defs = assets_of(setup, progress)
+    graph = defs.resolve_asset_graph()
+    store = setup.store
     with instance_of(store) as instance:
         _end_lost_runs(instance)
         known = _add_seasons(instance, [str(s) for s in intake.listed_seasons(store)])
-        chosen = [season for season in known if int(season) in stale.seasons]
+        changed = observe(instance, setup)
+        seasons = {*map(str, stale.seasons), *(season for _, season in changed)}
+        chosen = [s for s in known if s in seasons and setup.wanted([s])]
+        assets = {dg.AssetKey(name) for name in stale.assets}
+        for name, season in changed:
+            if season is None or season in chosen:
+                assets |= graph.get(dg.AssetKey(name)).child_keys
         ends = {"start": chosen[0], "end": chosen[-1]} if chosen else {}
-        result = job.execute_in_process(
+        result = defs.resolve_implicit_global_asset_job_def().execute_in_process(
             instance=instance,
-            asset_selection=[dg.AssetKey(name) for name in stale.assets],
+            asset_selection=sorted(assets),
             run_config=QUIET_LOG,
             tags=OF_A_COMMAND
             | {f"dagster/asset_partition_range_{end}": season for end, season in ends.items()},

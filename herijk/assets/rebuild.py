@@ -59,7 +59,7 @@ def rebuild(
             progress.step("looking at what the archive holds")
             stale = look(archive, store, known, seasons)
             if stale.assets:
-                checks[:] = make_assets((archive, data), methods, progress, stale, done)
+                checks[:] = make_assets((archive, data), methods, seasons, progress, stale, done)
 
         mending(store, work, again=lambda: None)
         return write_report(store, done, checks, dt.datetime.now().astimezone())
@@ -68,6 +68,7 @@ def rebuild(
 def make_assets(
     folders: tuple[Path, Path],
     methods: Sequence[str],
+    seasons: Collection[int] | None,
     progress: Progress,
     stale: Stale,
     done: Done,
@@ -76,7 +77,7 @@ def make_assets(
     from herijk.assets.instance import run_assets  # noqa: PLC0415 - see above
     from herijk.assets.resources import Setup  # noqa: PLC0415
 
-    setup = Setup.of(*folders, methods, read_settings(folders[1]))
+    setup = Setup.of(*folders, methods, read_settings(folders[1]), seasons or ())
     return run_assets(setup, progress, stale, done)
 
 

@@ -1,6 +1,6 @@
 """What assets are given: the folders and the methods to apply, and who is told how far it is."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final, TypeVar
@@ -36,17 +36,26 @@ class Setup(dg.ConfigurableResource["Setup"]):
         default_factory=list,
         description="methods to apply; the others are compared with the first",
     )
+    seasons: list[int] = Field(default_factory=list, description="to read; none: all asked for")
     set_aside_share: float = Settings().set_aside_share
     factor_jump: float = Settings().factor_jump
     dask: str | None = Field(default=None, description="scheduler of a Dask cluster")
 
     @classmethod
-    def of(cls, archive: Path, data: Path, methods: Sequence[str], settings: Settings) -> "Setup":
+    def of(
+        cls,
+        archive: Path,
+        data: Path,
+        methods: Sequence[str],
+        settings: Settings,
+        seasons: Collection[int] = (),
+    ) -> "Setup":
         """The setup of a data folder with its settings."""
         return cls(
             archive=str(archive),
             data=str(data),
             methods=list(methods),
+            seasons=list(seasons),
             set_aside_share=settings.set_aside_share,
             factor_jump=settings.factor_jump,
             dask=settings.dask,
@@ -78,6 +87,10 @@ class Setup(dg.ConfigurableResource["Setup"]):
     def scope(self) -> Scope:
         """What all methods together see of the data folder."""
         return Scope(self.store, self.chosen_methods)
+
+    def wanted(self, partitions: Sequence[str]) -> list[int]:
+        """Those of some seasons that are to be made, or confirmed."""
+        return [int(s) for s in partitions if not self.seasons or int(s) in self.seasons]
 
     def map(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R]]:
         """Each task with what came of it, done side by side."""
