@@ -91,20 +91,23 @@ def observe(instance: dg.DagsterInstance, setup: Setup) -> list[tuple[str, str |
     changed = []
     for name, season, version in _seen(setup):
         if version != _last_version(instance, name, season):
-            tags = {VERSION_TAG: version}
-            seen = dg.AssetObservation(name, partition=season, tags=tags)
+            # Of what it does not make, Dagster compares these two kinds of events.
+            kind = dg.AssetMaterialization if season is None else dg.AssetObservation
+            seen = kind(name, partition=season, tags={VERSION_TAG: version})
             instance.report_runless_asset_event(seen)
             changed.append((name, season))
     return changed
 
 
 def _last_version(instance: dg.DagsterInstance, name: str, season: str | None) -> str | None:
-    """The version under which something was last observed."""
-    key, seasons = dg.AssetKey(name), None if season is None else [season]
-    here = dg.AssetRecordsFilter(asset_key=key, asset_partitions=seasons)
-    for record in instance.fetch_observations(here, limit=1).records:
-        if record.asset_observation is not None:
-            return record.asset_observation.tags.get(VERSION_TAG)
+    """The version under which something was last noted."""
+    here = dg.AssetRecordsFilter(
+        asset_key=dg.AssetKey(name), asset_partitions=None if season is None else [season]
+    )
+    fetch = instance.fetch_materializations if season is None else instance.fetch_observations
+    for record in fetch(here, limit=1).records:
+        event = record.asset_materialization or record.asset_observation
+        return None if event is None else (event.tags or {}).get(VERSION_TAG)
     return None
 
 
