@@ -74,10 +74,10 @@ def rebuild_archive(
     notifier: dg.ResourceParam[Notifier],
 ) -> None:
     """The whole rebuild, as `herijk rebuild` does it."""
-    progress = LogProgress(context)
     data, seasons = Path(setup.data), config.seasons or None
     try:
-        report = rebuild(setup.archive_root, data, setup.methods, progress, seasons)
+        names = [method.name for method in setup.chosen_methods]
+        report = rebuild(setup.archive_root, data, names, LogProgress(context), seasons)
     except Exception as error:  # whatever it is, it is told
         passes = isinstance(error, UnavailableError) or _is_away(setup.archive_root)
         if passes and context.retry_number < TRIES:
@@ -109,8 +109,7 @@ def _is_away(archive: Path) -> bool:
 
 def _failure(notifier: Notifier, error: Exception) -> dg.Failure:
     what = str(error) if isinstance(error, HerijkError) else unexpected(error)
-    problems = tell_failure(notifier, what)
-    return dg.Failure("; ".join([what, *problems]), allow_retries=False)
+    return dg.Failure("; ".join([what, *tell_failure(notifier, what)]), allow_retries=False)
 
 
 @dg.job(name="rebuild", tags=ONE_AT_A_TIME | {"dagster/max_runtime": str(LONGEST_S)})

@@ -31,7 +31,7 @@ def build_defs(archive: str, data: str, settings: Settings, address: str = "") -
         settings: of the data folder.
         address: where the site is served, if it is: assets link to their pages.
     """
-    setup = Setup.of(Path(archive), Path(data), settings.applied, settings)
+    setup = Setup.of(Path(archive), Path(data), settings.methods, settings)
     notifier = notifier_of(data, settings)
     return dg.Definitions(
         assets=with_site(ASSETS, address) if address else ASSETS,

@@ -20,6 +20,7 @@ from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.warehouse.build.graph import DATABASE, STEPS
+from herijk.warehouse.build.inputs import forget_other_methods
 from herijk.warehouse.build.step import Step
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.intake.lake import ArchiveChangedError
@@ -109,6 +110,7 @@ class _Rebuild:
         self.progress.step("looking at what the archive holds")
         intake.index(self.store, self.archive)
         intake.forget_unlisted_seasons(self.store)
+        forget_other_methods(self.store, {method.name for method in self.methods})
         _check_listed(seasons, intake.listed_seasons(self.store))
         stale = intake.stale_seasons(self.store, self.archive, seasons)
         checks: Sequence[dg.AssetCheckEvaluation] = ()
@@ -141,8 +143,9 @@ class _Rebuild:
         from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
         from herijk.assets.runs import in_one_run  # noqa: PLC0415
 
-        names = [method.name for method in self.methods]
-        setup = Setup.of(self.archive, self.store.root, names, self.settings)
+        setup = Setup.of(
+            self.archive, self.store.root, [m.name for m in self.methods], self.settings
+        )
 
         def do(work: "Work") -> None:
             work.record_index()

@@ -11,9 +11,9 @@ import dagster as dg
 from pydantic import Field
 
 from herijk.assets.settings import Settings
-from herijk.pipeline.method.definition import Method, shipped_methods
+from herijk.pipeline.method.definition import Method
 from herijk.warehouse.store.lock import only_writer
-from herijk.warehouse.store.methods import KnownMethods
+from herijk.warehouse.store.methods import KnownMethods, methods_to_apply
 from herijk.warehouse.store.store import Store
 
 QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
@@ -28,7 +28,7 @@ class Setup(dg.ConfigurableResource["Setup"]):
 
     archive: str
     data: str
-    methods: list[str] = Field(default_factory=lambda: list(shipped_methods()))
+    methods: list[str] = Field(default_factory=list)
     set_aside_share: float = Settings().set_aside_share
     factor_jump: float = Settings().factor_jump
 
@@ -62,7 +62,7 @@ class Setup(dg.ConfigurableResource["Setup"]):
     @property
     def chosen_methods(self) -> list[Method]:
         """The methods to apply; the first is what the others are compared with."""
-        return [self.known_methods.get(name) for name in self.methods]
+        return [self.known_methods.get(n) for n in methods_to_apply(self.store, self.methods)]
 
     @property
     def known_methods(self) -> KnownMethods:

@@ -3,14 +3,16 @@
 It lies in the data folder and may be left out. No setting in it can change a number.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 from zoneinfo import available_timezones
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from herijk.pipeline.method.definition import shipped_methods
+from herijk.warehouse.store.methods import methods_to_apply
 from herijk.warehouse.store.settings_file import read_settings_file
+from herijk.warehouse.store.store import Store
 
 FILE_NAME: Final = "beheer.toml"
 
@@ -19,8 +21,7 @@ class Settings(BaseModel):
     """What `beheer.toml` can say.
 
     Attributes:
-        methods: names of the methods that a rebuild applies, the first to compare the others with;
-            those that ship where it is empty.
+        methods: names of the methods that a rebuild applies; see `methods_to_apply`.
         nightly: when everything is looked at; a cron line.
         campaign: when the season of that year is looked at, while it is towed.
         timezone: of both.
@@ -69,10 +70,10 @@ class Settings(BaseModel):
             raise ValueError(f"{name!r} is not a time zone, such as 'Europe/Amsterdam'")
         return name
 
-    @property
-    def applied(self) -> tuple[str, ...]:
-        """Names of the methods that a rebuild applies when it is not told which."""
-        return self.methods or shipped_methods()
+
+def applied(data: Path, asked: Sequence[str] = ()) -> list[str]:
+    """Names of the methods that a rebuild applies when these are asked for."""
+    return methods_to_apply(Store(data), read_settings(data).methods, asked)
 
 
 def read_settings(data: Path) -> Settings:

@@ -63,7 +63,7 @@ def doctor(
 def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     from importlib.metadata import version
 
-    from herijk.assets.settings import read_settings
+    from herijk.assets.settings import applied
     from herijk.cli.methods import known_methods
     from herijk.warehouse.queries.reports import rebuild_report
     from herijk.warehouse.store.lock import only_writer
@@ -72,7 +72,7 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     yield Finding("Herijk", True, version("herijk"))
     yield Finding("Python", True, sys.version.split()[0])
     yield _space(data)
-    yield _tried("settings", lambda: tell("applies {}", ", ".join(read_settings(data).applied)))
+    yield _tried("settings", lambda: tell("applies {}", ", ".join(applied(data))))
     known = known_methods(data)
     for name in known.own:
         yield _tried(tell("method {}", name), partial(_title, known, name))

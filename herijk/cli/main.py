@@ -161,8 +161,8 @@ def rebuild(
         list[str] | None,
         typer.Option(
             metavar="METHOD_OR_FILE",
-            help="Method to apply; repeat for more. A file is kept in the data folder. "
-            "Default: all that ship, or those in beheer.toml.",
+            help="Method to add to those of the data folder, or to renew; repeat for more. A file "
+            "is kept there. Default: those that beheer.toml lists, or all that ship.",
         ),
     ] = None,
     seasons: Annotated[
@@ -175,7 +175,7 @@ def rebuild(
     from herijk.assets.notify import notifier_of
     from herijk.assets.rebuild import rebuild as run
     from herijk.assets.report import failed_checks, tell
-    from herijk.assets.settings import read_settings
+    from herijk.assets.settings import applied, read_settings
     from herijk.cli.progress import TerminalProgress
     from herijk.dashboards.report import headlines
     from herijk.warehouse.queries import reports
@@ -183,7 +183,7 @@ def rebuild(
     from herijk.words.catalogue import speaker
 
     known = methods.known_methods(data)
-    chosen = [known.kept(name) for name in method or read_settings(data).applied]
+    chosen = applied(data, [known.kept(name) for name in method or ()])
     try:
         with TerminalProgress() as progress:
             news = run(archive, data, chosen, progress, seasons)

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from math import exp
 from typing import Final
 
-import polars as pl
 from markupsafe import Markup
 
 from herijk.dashboards.pictures import curve_picture, waterfall_picture
 from herijk.dashboards.speech import Speech
 from herijk.tables.row import Row
+from herijk.warehouse.queries.documents import Curve
 
 FEW: Final = 2
 """A place among fewer says nothing."""
@@ -29,15 +29,13 @@ class Answer:
     Attributes:
         line: a row of `warehouse.queries.answers.answers`.
         races: rows of `own_races` of this boat and crew.
-        curve: rows of `curve_points` of the tow that counts.
-        points: rows of `run_points` of that tow.
+        curve: its curve, as `warehouse.queries.documents.curve_of` gives it.
         faults: rows of `season_diagnosis` of its season that a person should look at.
     """
 
     line: Row
     races: Sequence[Row]
-    curve: pl.DataFrame
-    points: pl.DataFrame
+    curve: Curve
     faults: Sequence[Row] = ()
 
 
@@ -50,7 +48,6 @@ class Told:
         headline: the number, or why there is none.
         sentences: the rest, in order of what people ask.
         waterfall, curve: pictures; empty where there is nothing to draw.
-        curve_caption: what the picture of the curve shows.
         certificate: key by which the certificate can be asked for.
     """
 
@@ -59,7 +56,6 @@ class Told:
     sentences: Sequence[str]
     waterfall: Markup
     curve: Markup
-    curve_caption: str
 
 
 def told(answer: Answer, speech: Speech) -> Told:
@@ -72,10 +68,7 @@ def told(answer: Answer, speech: Speech) -> Told:
         headline=_headline(line, speech),
         sentences=list(_sentences(answer, speech)),
         waterfall=_waterfall(line, speech, title),
-        curve=curve_picture(
-            answer.curve, answer.points, speech, f"{speech.say('boat_curve')}: {title}"
-        ),
-        curve_caption=curve_caption(line, speech),
+        curve=curve_picture(answer.curve, line, speech, f"{speech.say('boat_curve')}: {title}"),
     )
 
 
@@ -165,12 +158,6 @@ def _certainty(line: Row, speech: Speech) -> Iterator[str]:
     yield speech.say(f"{key}_old" if of_one_tow else key)
     if line["exceeds_interval"] is not None and not line["old_log_known"]:
         yield speech.say("answer_old_spread")
-
-
-def curve_caption(line: Row, speech: Speech) -> str:
-    """What the picture of the curve shows, and what its band leaves out."""
-    band = "band_complete" if line["new_log_known"] else "band_runs_alone"
-    return speech.say("curve_caption").format(band=speech.say(band))
 
 
 def _best(line: Row, speech: Speech) -> Iterator[str]:

@@ -11,11 +11,12 @@ from operator import mul
 from typing import Final
 
 import numpy as np
-import polars as pl
 from markupsafe import Markup, escape
 
-from herijk.dashboards.figures.style import BACK, GREY, OKABE_ITO, OUT
+from herijk.dashboards.figures.style import GREY, OKABE_ITO
 from herijk.dashboards.speech import Speech
+from herijk.tables.row import Row
+from herijk.warehouse.queries.documents import Curve
 
 WIDTH: Final = 460
 HEIGHT: Final = 230
@@ -35,10 +36,7 @@ _TEXT = '<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>'
 _LINE = '<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"/>'
 _BAR = '<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="16" fill="{}"/>'
 _NUMBER = '<path d="M{:.1f} {:.1f}l7 8l-7 8l-7 -8z" fill="{}"/>'
-_BAND = '<polygon points="{}" fill="{}" fill-opacity="0.35"/>'
 _CURVE = '<polyline points="{}" fill="none" stroke="black" stroke-width="2"/>'
-_OUT = '<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="{}" stroke="{}"/>'
-_BACK = '<path d="M{0:.1f} {1:.1f}l5 9h-10z" fill="{2}" stroke="{3}"/>'
 
 Place = Callable[[float], float]
 
@@ -64,40 +62,34 @@ class Axis:
         return cls(ticks, lambda v: start + (v - first) / (last - first) * (end - start), digits)
 
 
-def curve_picture(line: pl.DataFrame, points: pl.DataFrame, speech: Speech, title: str) -> Markup:
-    """A curve with its band and the runs that it goes through.
+def curve_picture(curve: Curve, line: Row, speech: Speech, title: str) -> Markup:
+    """A curve, and the interval of Cw at the declared speed.
 
     Args:
-        line: `speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`, by speed.
-        points: `speed_m_s, cw_kg_m, direction, used`.
+        curve: speed [m/s], Cw [kg/m] and power [W] along it.
+        line: of a register: `declared_speed_m_s`, and the interval where it is known.
         speech: the language.
         title: what a screen reader says.
     """
-    if line.is_empty():
+    if not curve:
         return Markup()
-    speeds = [*line["speed_m_s"], *points["speed_m_s"]]
-    values = [*line["cw_lo_kg_m"], *line["cw_hi_kg_m"], *points["cw_kg_m"]]
+    speeds, values, _ = zip(*curve, strict=True)
+    low, high = line["cw_lo_kg_m"], line["cw_hi_kg_m"]
+    known = low is not None and high is not None
     x = Axis.over(speeds, LEFT, WIDTH - 12)
-    y = Axis.over(values, HEIGHT - BOTTOM, TOP)
-    low = _path(x, y, line["speed_m_s"], line["cw_lo_kg_m"])
-    high = _path(x, y, line["speed_m_s"].reverse(), line["cw_hi_kg_m"].reverse())
-    parts = [
-        *_axes(x, y, speech),
-        _BAND.format(f"{low} {high}", OKABE_ITO[5]),
-        _CURVE.format(_path(x, y, line["speed_m_s"], line["cw_kg_m"])),
-        *(_run(x, y, row) for row in points.iter_rows(named=True)),
-    ]
-    return _picture(HEIGHT, title, parts)
+    y = Axis.over([*values, *((low, high) if known else ())], HEIGHT - BOTTOM, TOP)
+    parts = _axes(x, y, speech)
+    if known:
+        at = x.place(line["declared_speed_m_s"])
+        parts.append(_LINE.format(at, y.place(low), at, y.place(high), OKABE_ITO[5], 6))
+    path = " ".join(f"{x.place(v):.1f},{y.place(c):.1f}" for v, c, _ in curve)
+    return _picture(HEIGHT, title, [*parts, _CURVE.format(path)])
 
 
 def _picture(height: float, title: str, parts: Iterable[str]) -> Markup:
     """The parts, in which texts are escaped, as a picture with a name."""
     drawn = Markup("".join(parts))  # noqa: S704 - see above
     return _SVG.format(WIDTH, height, WIDTH, height, title, drawn)
-
-
-def _path(x: Axis, y: Axis, across: pl.Series, up: pl.Series) -> str:
-    return " ".join(f"{x.place(a):.1f},{y.place(b):.1f}" for a, b in zip(across, up, strict=True))
 
 
 def _axes(x: Axis, y: Axis, speech: Speech) -> list[str]:
@@ -117,14 +109,6 @@ def _axes(x: Axis, y: Axis, speech: Speech) -> list[str]:
         label = speech.number(tick, y.digits)
         parts.append(_TEXT.format(left - 7, y.place(tick) + 4, "end", label))
     return parts
-
-
-def _run(x: Axis, y: Axis, row: dict[str, float]) -> str:
-    across, up = x.place(row["speed_m_s"]), y.place(row["cw_kg_m"])
-    out = row["direction"] == 1
-    ink = OUT if out else BACK
-    mark, up = (_OUT, up) if out else (_BACK, up - 5)
-    return mark.format(across, up, ink if row["used"] else "white", ink)
 
 
 def waterfall_picture(

@@ -111,6 +111,8 @@ def _moved(changes: ChangeSummary, say: Say) -> Iterable[str]:
         yield say("report_first")
     if changes.seasons_gone:
         yield f"{say('report_seasons_gone')}: {', '.join(map(str, changes.seasons_gone))}"
+    for row in changes.methods:
+        yield f"{say('report_method')} {row['method']}: {say('code.' + row['what'])}"
     counted = (("report_tows", changes.tows), ("report_set_aside", changes.set_aside))
     for title, rows in counted:
         by_what: dict[str, int] = {}

@@ -217,6 +217,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.log_not_linear": ("log niet evenredig", "log not in proportion"),
     "code.unusual_calibration": ("ijking ongewoon", "unusual calibration"),
     "code.recomputed": ("herrekend", "recomputed"),
+    "code.printed_rebased": ("gedrukt, omgerekend", "printed, re-based in closed form"),
     "code.as_printed": ("zoals gedrukt", "as printed"),
     "code.window.force_ends_ratio": (
         "venster: kracht op 5 %, niet 10 %",
@@ -247,6 +248,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "candidate.askew": ("misschien scheef getrokken", "perhaps pulled askew"),
     "candidate.b_at_cap": ("B op zijn bovengrens", "B at its cap"),
     "candidate.b_not_determined": ("B niet bepaald", "B not determined"),
+    "method.as-printed": ("zoals gedrukt, niet herijkt", "as printed, not re-based"),
     "method.as-published": ("zoals gepubliceerd", "as published"),
     "method.as-published-2014": ("zoals gepubliceerd, 2014 eerst", "as published, 2014 at first"),
     "method.corrected-2013": ("gecorrigeerd 2013", "corrected 2013"),

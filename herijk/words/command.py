@@ -163,10 +163,10 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "Write what is proposed to archief.toml.": "Schrijf het voorstel naar archief.toml.",
     "Folder to make.": "Map die gemaakt wordt.",
-    "Method to apply; repeat for more. A file is kept in the data folder. Default: all "
-    "that ship, or those in beheer.toml.": (
-        "Toe te passen methode; herhaal voor meer. Een bestand wordt in de datamap "
-        "bewaard. Standaard: alle meegeleverde, of die in beheer.toml."
+    "Method to add to those of the data folder, or to renew; repeat for more. A file is kept "
+    "there. Default: those that beheer.toml lists, or all that ship.": (
+        "Methode die erbij komt of opnieuw wordt toegepast; herhaal voor meer. Een bestand wordt "
+        "in de datamap bewaard. Standaard: die in beheer.toml staan, of alle meegeleverde."
     ),
     "Read these seasons only.": "Lees alleen deze seizoenen.",
     "Seasons, both ends included.": "Seizoenen, eerste en laatste meegerekend.",

@@ -42,13 +42,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "cite": ("Bronvermelding", "Cite"),
     "how_made": ("Hoe deze getallen tot stand kwamen", "How these numbers were made"),
     "curve_caption": (
-        "Cw tegen snelheid: kromme met {band}; rond heen, driehoek terug, open telt niet",
-        "Cw against speed: curve with {band}; round out, triangle back, open does not count",
-    ),
-    "band_complete": ("95 %-band", "95 % band"),
-    "band_runs_alone": (
-        "de spreiding van de runs alleen (de fout van de log zit er niet in)",
-        "the spread of the runs alone (the log's error is not in it)",
+        "Cw tegen snelheid, uit A en B; de balk is de marge bij de opgegeven snelheid",
+        "Cw against speed, from A and B; the bar is the interval at the declared speed",
     ),
     "skip": ("Naar de inhoud", "Skip to content"),
     "pages": ("Pagina's", "Pages"),

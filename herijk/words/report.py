@@ -19,6 +19,7 @@ REPORT: Final[dict[str, tuple[str, str]]] = {
         "Seizoenen waarvan geen sleepproef meer in het archief staat",
         "Seasons of which the archive has no tow any more",
     ),
+    "report_method": ("Methode", "Method"),
     "report_set_aside": ("Terzijde gelegd", "Set aside"),
     "report_factors": ("Logfactoren die verschoven", "Log factors that moved"),
     "report_checks": ("Controles", "Checks"),

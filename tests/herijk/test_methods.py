@@ -2,7 +2,11 @@
 
 import json
 
-from tests.conftest import directly
+from herijk.assets.resources import Setup
+from herijk.pipeline.method.definition import shipped_methods
+from herijk.warehouse.store.methods import methods_to_apply
+from herijk.warehouse.store.store import Store
+from tests.conftest import METHODS, directly
 
 
 def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeypatch):
@@ -42,12 +46,32 @@ def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
     file.write_text('name = "ours"\ntitle = "Onze"\nextends = "rebased-2015"\n', encoding="utf-8")
     folders = ("--archive", bench.archive, "--data", bench.data)
     with directly():
-        arguments = ("--method", "as-published", "--method", file)
-        assert herijk("rebuild", *folders, *arguments)[0] == 0
-    assert set(bench.table("curves")["method"]) == {"as-published", "ours"}
+        assert "Method ours: new" in herijk("rebuild", *folders, "--method", file)[1]
+    assert set(bench.table("methods")["method"]) == {*METHODS, "ours"}
+    assert set(bench.table("register")["method"]) == {*METHODS, "ours"}
     terms = ("--method", "ours", "--valid-from", "2015-01-01", "--decision", "ALV")
     assert herijk("publish", "2015-1", *terms, "--data", bench.data)[0] == 0
     assert herijk("verify", "--data", bench.data)[0] == 0
+
+
+def test_a_method_goes_by_a_list_without_it_and_the_report_says_so(herijk, bench):
+    folders = ("--archive", bench.archive, "--data", bench.data)
+    (bench.data / "beheer.toml").write_text(f'methods = ["{METHODS[1]}"]', encoding="utf-8")
+    with directly():
+        printed = herijk("rebuild", *folders)[1]
+        assert f"Method {METHODS[0]}: gone" in printed
+        assert set(bench.table("register")["method"]) == {METHODS[1]}
+        assert herijk("rebuild", *folders, "--method", "corrected-2013")[0] == 0
+    assert set(bench.table("methods")["method"]) == {METHODS[1], "corrected-2013"}
+
+
+def test_without_a_list_all_that_ship_are_applied_and_those_that_are_there(tmp_path, built):
+    assert methods_to_apply(Store(tmp_path), ()) == list(shipped_methods())
+    assert methods_to_apply(Store(tmp_path), (), ["rebased"]) == ["rebased"]
+    assert methods_to_apply(built.store, (), ["rebased"]) == ["as-published", "rebased", METHODS[1]]
+    assert methods_to_apply(built.store, ("rebased",)) == ["rebased"]
+    setup = Setup(archive="", data=str(built.data), methods=[])
+    assert [method.name for method in setup.chosen_methods] == list(shipped_methods())
 
 
 def test_a_file_that_is_no_toml_is_named_as_such(herijk, tmp_path):

@@ -525,7 +525,13 @@ def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(wit
     assert line["a_kg_m"] == pytest.approx(32.62 / 1.06**2, rel=1e-12)
     assert line["b_m_s"] == pytest.approx(5.59 * 1.06, rel=1e-12)
     calibrated = register.filter(pl.col("fsn_no") == "FSN902").row(0, named=True)
-    assert (calibrated["basis"], calibrated["a_kg_m"]) == ("printed", 32.62)
+    assert (calibrated["basis"], calibrated["a_kg_m"]) == ("printed_not_rebased", 32.62)
+    assert (line["method"], calibrated["method"]) == ("corrected-2013", "as-printed")
+    published = folder(with_printed, "2014-1")
+    sheet = (published / "register.csv").read_text("utf-8")
+    assert "gedrukt, niet herijkt" in next(row for row in sheet.splitlines() if "FSN902" in row)
+    notes = (published / "toelichting.md").read_text("utf-8")
+    assert "Niet herijkt: 1 regel van gedrukt-2012" in notes
     measured = line_of(with_printed, with_printed.tow(2014), "2014-1")
     assert measured["basis"] == "measured"
     lines = diff(with_printed.store, "gedrukt-2012", "2014-1").lines

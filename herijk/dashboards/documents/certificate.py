@@ -4,7 +4,7 @@ from typing import Final
 
 import segno
 
-from herijk.dashboards.answer import crew_name, curve_caption
+from herijk.dashboards.answer import crew_name
 from herijk.dashboards.documents import page, pdf
 from herijk.dashboards.pictures import curve_picture
 from herijk.dashboards.speech import Speech
@@ -61,8 +61,8 @@ def _one(line: Row, speech: Speech) -> dict[str, object]:
         "caution": _caution(line, speech),
         "left": _numbers(line, speech),
         "right": _terms(line, speech),
-        "curve": str(curve_picture(line["curve"], line["points"], speech, crew)),
-        "curve_note": curve_caption(line, speech),
+        "curve": str(curve_picture(line["powers"], line, speech, crew)),
+        "curve_note": say("curve_caption"),
         "curve_alt": f"{say('boat_curve')} {line['fsn_no']} {crew}",
         "powers": [
             [number(speed, 2), number(cw, 2), number(power, 1)]
@@ -93,7 +93,7 @@ def _interval(line: Row, speech: Speech) -> str:
     low, high = line["cw_lo_kg_m"], line["cw_hi_kg_m"]
     if low is None or high is None:
         return speech.say("certificate_no_interval")
-    key = "answer_interval" if line["new_log_known"] else "answer_spread"
+    key = "answer_interval" if line["log_known"] else "answer_spread"
     return speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
 
 
@@ -116,12 +116,15 @@ def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str
 
 def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
     say = speech.say
+    method = say(f"method.{line['method']}") if line["method"] else None
+    if line["basis"] == "printed_rebased":
+        method = f"{method} ({say('code.printed_rebased')})"
     rows = [
         ("certificate_tow", line["tow_date"]),
         ("column.valid_from", line["valid_from"]),
         ("certificate_until", line["valid_until"]),
         ("column.edition", speech.edition(line["edition"])),
-        ("column.method", say(f"method.{line['method']}") if line["method"] else None),
+        ("column.method", method),
         ("column.decision", line["decision"]),
         ("column.empty_thwart", line["empty_thwart"] or say("code.none")),
     ]

@@ -29,6 +29,7 @@ from herijk.warehouse.queries.answers import (
     own_races,
     season_faults,
 )
+from herijk.warehouse.queries.documents import curve_of
 from herijk.warehouse.queries.views import Views
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
@@ -49,7 +50,7 @@ def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Call
     """Every boat that the archive lists, with what makes its page."""
     frames = _frames(views)
     editions = frames["register"]["edition"].unique().sort().to_list()
-    crews = _answers(views, newest_edition(editions, draft_of(methods)), frames)
+    crews = _answers(views, newest_edition(editions, draft_of(methods)))
     frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
     for boats in frames["boats"].iter_slices(AT_ONCE):
         those = boats[["fsn_no"]]
@@ -128,38 +129,25 @@ ALIKE = ("wind", "line", "point", "declared", "stages", "assessments")
 """Frames of which most rows are the same under several methods."""
 
 
-def _answers(
-    views: Views, edition: str, frames: dict[str, pl.DataFrame]
-) -> dict[str, list[Answer]]:
+def _answers(views: Views, edition: str) -> dict[str, list[Answer]]:
     """What there is to say of each crew, by boat."""
     lines = answers(views, edition)
     compared = lines["from_edition"].drop_nulls()
     races = own_races(views, compared[0] if compared.len() else None, edition)
-    crew, tow = ["fsn_no", "rowers", "crew_class"], ["method", "tow_id"]
-    by_crew = _parts(races, crew)
-    curves, points = (
-        _parts(frames[name].join(lines.select(tow), on=tow, how="semi"), tow)
-        for name in ("line", "point")
-    )
+    crew = ["fsn_no", "rowers", "crew_class"]
+    by_crew = races.partition_by(crew, as_dict=True, maintain_order=True)
     faults = season_faults(views)
     by_boat: dict[str, list[Answer]] = defaultdict(list)
     for line in lines.to_dicts():
-        of_tow = (line["method"], line["tow_id"])
         by_boat[line["fsn_no"]].append(
             Answer(
                 line=line,
                 races=by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts(),
-                curve=curves.get(of_tow, frames["line"].head(0)),
-                points=points.get(of_tow, frames["point"].head(0)),
+                curve=curve_of(line),
                 faults=faults.get((line["method"], line["season"]), ()),
             )
         )
     return by_boat
-
-
-def _parts(frame: pl.DataFrame, by: Sequence[str]) -> dict[tuple[object, ...], pl.DataFrame]:
-    """The rows of each key, in their order."""
-    return frame.partition_by(by, as_dict=True, maintain_order=True)
 
 
 def _frames(views: Views) -> dict[str, pl.DataFrame]:

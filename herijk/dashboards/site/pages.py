@@ -72,7 +72,7 @@ def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> 
 
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "tow_date"),
-    *("valid_until", "status"),
+    *("valid_until", "status", "method"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
     *("waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
     "verification_code",

@@ -56,6 +56,13 @@ METHOD_TABLES: Final = (
 """Tables with a partition per method."""
 
 
+def forget_other_methods(store: Store, applied: Collection[str]) -> None:
+    """Removes the tables of methods that are not applied any more."""
+    for table in METHOD_TABLES:
+        for name in set(store.partitions(table)) - set(applied):
+            store.remove(table, name)
+
+
 @dataclass(frozen=True)
 class Inputs:
     """The inputs that a step declares, read when they are asked for.

@@ -19,7 +19,7 @@ from herijk.warehouse.editions.compare import (
     Group,
     report,
 )
-from herijk.warehouse.editions.printed import REBASED
+from herijk.warehouse.editions.printed import NOT_REBASED, REBASED
 from herijk.warehouse.editions.words import (
     CHANGES,
     CREWS,
@@ -104,7 +104,9 @@ def summary(edition: Edition) -> str:
 def _facts(edition: Edition, language: Language) -> dict[str, object]:
     about = edition.about
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
-    carried = edition.register.filter(basis=REBASED).height
+    carried, as_it_was = (
+        edition.register.filter(basis=basis).height for basis in (REBASED, NOT_REBASED)
+    )
     ensemble = edition.tables.get("ensemble")
     return {
         "edition": about.edition,
@@ -118,6 +120,7 @@ def _facts(edition: Edition, language: Language) -> dict[str, object]:
             f"{count} {language.word(STATUSES, status)}" for status, count in counts.rows()
         ),
         "carried": language.count(carried) if carried else None,
+        "not_rebased": language.count(as_it_was) if as_it_was else None,
         "carried_from": about.carried_from,
         "members": None if ensemble is None else ensemble["member"].n_unique(),
         "complete": edition.method is not None and edition.method.interval == COMPLETE,

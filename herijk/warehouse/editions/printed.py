@@ -21,7 +21,10 @@ from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, archive_root, fingerprint
 from herijk.words import say
 
-AS_PRINTED, REBASED = "printed", "printed_rebased"
+AS_PRINTED, REBASED, NOT_REBASED = "printed", "printed_rebased", "printed_not_rebased"
+PRINTED_METHOD: Final = "as-printed"
+"""What stands for the method of a line that none was applied to."""
+
 NO_VALID_CURVE: Final = "no_valid_curve"
 
 
@@ -134,7 +137,7 @@ def _carried(printed: Edition, log_factors: pl.DataFrame, method: Method) -> pl.
         pl.Series("a_kg_m", a),
         pl.Series("b_m_s", b),
         pl.Series("cw_kg_m", cw(a, s_of_b(b), lines["declared_speed_m_s"])),
-        pl.Series("basis", np.where(y == 1.0, AS_PRINTED, REBASED), pl.String),
+        pl.Series("basis", np.where(y == 1.0, NOT_REBASED, REBASED), pl.String),
     )
 
 

@@ -44,7 +44,13 @@ from herijk.warehouse.editions.lines import (
     SAME_NUMBER,
     method_lines,
 )
-from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
+from herijk.warehouse.editions.printed import (
+    NOT_REBASED,
+    PRINTED_METHOD,
+    printed_lines,
+    printed_path,
+    with_carried,
+)
 from herijk.warehouse.editions.sheets import CODE_FIELD
 from herijk.warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
 from herijk.warehouse.store import decisions as decided
@@ -71,7 +77,6 @@ from herijk.warehouse.store.ensemble import read_ensemble
 from herijk.warehouse.store.package import Rights
 from herijk.warehouse.store.store import Store, table_digest
 
-PRINTED_METHOD: Final = "as-printed"
 LINE_SCHEMA: Final = {
     **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
     **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
@@ -296,7 +301,10 @@ def _complete(
         maintain_order="left",
     ).with_columns(
         pl.lit(terms.edition).alias("edition"),
-        pl.lit(method).alias("method"),
+        pl.when(basis=NOT_REBASED)
+        .then(pl.lit(PRINTED_METHOD))
+        .otherwise(pl.lit(method))
+        .alias("method"),
         pl.lit(terms.valid_from).alias("as_of"),
     )
     missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]

@@ -40,6 +40,7 @@ BASIS_WORDS: Final = {
     "measured": "herrekend",
     "printed": "gedrukt",
     "printed_rebased": "gedrukt, omgerekend",
+    "printed_not_rebased": "gedrukt, niet herijkt",
 }
 
 

@@ -79,14 +79,14 @@ def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
     """With the boat, and of both editions whether an interval holds the error of the log."""
     names = views.table("boats").select("fsn_no", "name", "boat_type")
     named = changes.join(names, on="fsn_no", how="left", maintain_order="left")
-    known = _log_known(views)
+    known = log_known(views)
     for side, edition in (("old", "from_edition"), ("new", "to_edition")):
         mine = known.rename({"edition": edition, "log_known": f"{side}_log_known"})
         named = named.join(mine, on=edition, how="left", maintain_order="left")
     return named
 
 
-def _log_known(views: Views) -> pl.DataFrame:
+def log_known(views: Views) -> pl.DataFrame:
     """Per edition and draft whether its intervals hold the error of the log.
 
     An edition has it from its own method, also where the warehouse makes that no longer.
@@ -113,7 +113,8 @@ def _side_by_side(old: pl.DataFrame, new: pl.DataFrame, changes: pl.DataFrame) -
 
 def _steps(views: Views, old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """What each step does to a tow, from the method of one register to that of the other."""
-    methods = {"from_method": old["method"][0], "to_method": new["method"][0]}
+    first, last = (side.sort("tow_id", nulls_last=True)["method"][0] for side in (old, new))
+    methods = {"from_method": first, "to_method": last}
     same = old.join(new, on=[*LINE, "tow_id"], how="semi").select("tow_id")
     steps = views.table("correction_steps").filter(**methods).join(same, on="tow_id", how="semi")
     return steps.filter(pl.col("position") > 0)
@@ -137,7 +138,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     changes = line_changes(views).filter(to_edition=edition)
     lines = views.register().filter(edition=edition)
     compared = changes.drop("name", "boat_type", "to_edition", "new_log_known")
-    known = _log_known(views).rename({"log_known": "new_log_known"})
+    known = log_known(views).rename({"log_known": "new_log_known"})
     due = views.table("due_list").select(
         "method", *LINE, "tow_speed_m_s", "speed_reason", "as_of",
         next_before="valid_until",

@@ -58,6 +58,7 @@ class ChangeReport:
         tows: `tow_id`, `fsn_no`, `season`, `what`: new, samples (its files changed), list (its row
             in a list changed) or gone.
         seasons_gone: seasons that had tows, and have none now.
+        methods: `method` and `what`: new, or gone.
         set_aside: new faults (`what` is new) and those that are gone (mended).
         factors: log factors that moved: `method`, `season`, `old_factor`, `new_factor`, `ratio`.
         lines: lines of draft registers that changed, with the columns of `register_changes` and of
@@ -67,6 +68,7 @@ class ChangeReport:
     first: bool
     tows: pl.DataFrame
     seasons_gone: list[int]
+    methods: pl.DataFrame
     set_aside: pl.DataFrame
     factors: pl.DataFrame
     lines: pl.DataFrame
@@ -74,7 +76,7 @@ class ChangeReport:
     @property
     def nothing(self) -> bool:
         """Whether nothing changed."""
-        frames = (self.tows, self.set_aside, self.factors, self.lines)
+        frames = (self.tows, self.methods, self.set_aside, self.factors, self.lines)
         return not self.first and all(frame.is_empty() for frame in frames)
 
 
@@ -88,6 +90,7 @@ class ChangeSummary:
         tows, set_aside, register: how many (`number`) of each kind.
         tow_rows, set_aside_rows, factors, lines: rows of the change report.
         seasons_gone: seasons that had tows, and have none now.
+        methods: those that are new or gone.
         beyond_interval: lines that move by more than both intervals.
     """
 
@@ -102,6 +105,7 @@ class ChangeSummary:
     beyond_interval: int
     lines: list[Row]
     seasons_gone: list[int] = field(default_factory=list)
+    methods: list[Row] = field(default_factory=list)
 
 
 def reported_path(store: Store) -> Path:
@@ -125,7 +129,8 @@ def _between(store: Store, *_: str | None) -> ChangeReport:
         first=was is None,
         tows=_tows(before, now),
         seasons_gone=sorted({*before["tows"]["season"]} - {*now["tows"]["season"]}),
-        set_aside=_faults(before["quarantine"], now["quarantine"]),
+        methods=_came_and_went(before["methods"], now["methods"], ("method",), "gone"),
+        set_aside=_came_and_went(before["quarantine"], now["quarantine"], FAULT, "mended"),
         factors=_factors(before["log_factors"], now["log_factors"]),
         lines=_lines(before, now),
     )
@@ -133,11 +138,11 @@ def _between(store: Store, *_: str | None) -> ChangeReport:
 
 def _nothing() -> ChangeReport:
     """No changes."""
-    keys = {name: TABLES[name].create_empty() for name in ("tows", "quarantine", "log_factors")}
+    names = ("tows", "methods", "quarantine")
     what = pl.lit(None, pl.String).alias("what")
-    tows, faults = (keys[name].with_columns(what) for name in ("tows", "quarantine"))
-    factors = _factors(keys["log_factors"], keys["log_factors"])
-    return ChangeReport(False, tows, [], faults, factors, _no_lines())
+    tows, methods, faults = (TABLES[n].create_empty().with_columns(what) for n in names)
+    factor = TABLES["log_factors"].create_empty()
+    return ChangeReport(False, tows, [], methods, faults, _factors(factor, factor), _no_lines())
 
 
 def is_reported(store: Store) -> bool:
@@ -223,15 +228,17 @@ def _tows(was: Tables, now: Tables) -> pl.DataFrame:
     ).sort("tow_id")
 
 
-def _faults(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
-    came = now.select(FAULT).join(was, on=FAULT, how="anti", nulls_equal=True)
-    went = was.select(FAULT).join(now, on=FAULT, how="anti", nulls_equal=True)
+def _came_and_went(
+    was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str], went: str
+) -> pl.DataFrame:
+    """Rows by their key that are new, and those that are there no more; `what` says which."""
+    parts = ((now, was, "new"), (was, now, went))
     return pl.concat(
-        [
-            came.with_columns(pl.lit("new").alias("what")),
-            went.with_columns(pl.lit("mended").alias("what")),
-        ]
-    ).sort("what", *FAULT)
+        mine.select(key)
+        .join(other, on=key, how="anti", nulls_equal=True)
+        .with_columns(pl.lit(what).alias("what"))
+        for mine, other, what in parts
+    ).sort("what", *key)
 
 
 def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
@@ -334,6 +341,7 @@ def summary_of(report: ChangeReport) -> ChangeSummary:
         beyond_interval=int(report.lines["exceeds_interval"].fill_null(False).sum()),
         lines=report.lines.to_dicts(),
         seasons_gone=report.seasons_gone,
+        methods=[] if report.first else report.methods.to_dicts(),
     )
 
 

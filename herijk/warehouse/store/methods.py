@@ -4,6 +4,7 @@ A federation's own method is a file like those that ship. Its name is that of th
 method that ships can be replaced.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Self
@@ -114,6 +115,24 @@ class KnownMethods:
         with written_beside(self.folder / f"{method.name}{SUFFIX}") as beside:
             beside.write_text(text_of_file(Path(name_or_file)), encoding="utf-8")
         return method.name
+
+
+def methods_to_apply(store: Store, listed: Sequence[str], asked: Sequence[str] = ()) -> list[str]:
+    """Names of the methods that a rebuild applies; with the first the others are compared.
+
+    A method that is asked for comes beside those of which the data folder holds tables. Those go
+    with their file, or by a list that leaves them out.
+
+    Args:
+        store: the data folder.
+        listed: what `beheer.toml` lists; nothing stands for all that ship beside those held.
+        asked: methods asked for this time.
+    """
+    if listed and not asked:
+        return list(listed)
+    wanted = {*(asked or shipped_methods()), *store.partitions("curves")}
+    in_order = dict.fromkeys((*listed, *KnownMethods.of(store).names))
+    return [name for name in in_order if name in wanted]
 
 
 def text_of_file(file: Path) -> str:
