@@ -1,5 +1,6 @@
 """What assets are given: the folders and the methods to apply, and who is told how far it is."""
 
+import os
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +11,7 @@ from pydantic import Field
 
 from herijk.assets.settings import Settings
 from herijk.assets.workers import in_parallel
+from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.store.lock import only_writer
@@ -63,7 +65,14 @@ class Setup(dg.ConfigurableResource["Setup"]):
 
     @contextmanager
     def yield_for_execution(self, context: dg.InitResourceContext) -> Iterator["Setup"]:  # noqa: ARG002 - Dagster's signature
-        """The folders, with the right to write."""
+        """The folders, with the right to write.
+
+        Raises:
+            MissingKnowledgeError: a server works on other folders.
+        """
+        served = os.environ.get("HERIJK_ARCHIVE"), os.environ.get("HERIJK_DATA")
+        if os.environ.get("HERIJK_SITE") and (self.archive, self.data) != served:
+            raise MissingKnowledgeError("this server works on {} and {} alone", *served)
         with machine_faults_explained(Path(self.data)), only_writer(Path(self.data), wait=True):
             yield self
 

@@ -21,6 +21,7 @@ from herijk.assets.archive import OUTSIDE_SPECS
 from herijk.assets.location import assets_of
 from herijk.assets.resources import QUIET_LOG, Setup
 from herijk.assets.settings import Settings
+from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import shipped_text
 from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.intake import seasons as intake
@@ -199,6 +200,18 @@ def test_records_are_kept_where_dagster_home_says(bench, tmp_path, monkeypatch):
         assert instance.root_directory == str(tmp_path / "home")
     assert (tmp_path / "home" / "dagster.yaml").exists()
     assert not (bench.data / "dagster").exists() or list((bench.data / "dagster").iterdir())
+
+
+def test_a_server_works_on_its_own_folders_alone(bench, instance, tmp_path, monkeypatch):
+    for name, value in (
+        ("HERIJK_SITE", "http://127.0.0.1:3001/site"),
+        ("HERIJK_ARCHIVE", str(bench.archive)),
+        ("HERIJK_DATA", str(bench.data)),
+    ):
+        monkeypatch.setenv(name, value)
+    assert materialise(bench, instance, "era_shifts").success
+    with pytest.raises(MissingKnowledgeError, match="works on"):
+        materialise(Workbench(bench.archive, tmp_path / "other"), instance, "era_shifts")
 
 
 @pytest.mark.slow
