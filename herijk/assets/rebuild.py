@@ -9,6 +9,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from herijk.assets import workers
 from herijk.assets.progress import Progress
 from herijk.assets.report import Done, Report, write_report
 from herijk.assets.settings import read_settings
@@ -74,10 +75,12 @@ def make_assets(
     done: Done,
 ) -> "Sequence[dg.AssetCheckEvaluation]":
     """Has Dagster make assets, and notes what was done; gives what the checks said."""
+    settings = read_settings(folders[1])
+    workers.get_ready(settings.dask)
     from herijk.assets.instance import run_assets  # noqa: PLC0415 - see above
     from herijk.assets.resources import Setup  # noqa: PLC0415
 
-    setup = Setup.of(*folders, methods, read_settings(folders[1]), seasons or ())
+    setup = Setup.of(*folders, methods, settings, seasons or ())
     return run_assets(setup, progress, stale, done)
 
 

@@ -1,27 +1,24 @@
-"""The processes that do the heavy work: of this machine, or of a Dask cluster that is named."""
+"""Who helps with the heavy work: a process of this machine, or a Dask cluster that is named."""
 
 import atexit
 import multiprocessing
 import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed, wait
+from concurrent.futures import Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from functools import cache
-from typing import Final, TypeVar
+from typing import TypeVar
 
 from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 
 T = TypeVar("T")
 R = TypeVar("R")
 
-NUMBER: Final = 2
-"""Processes of this machine: with more, memory runs out before time is won (measured)."""
-
 
 @cache
 def workers(scheduler: str | None) -> Executor:
-    """Where heavy work runs; the only place that knows of a cluster.
+    """Where heavy work runs beside this process; the only place that knows of a cluster.
 
     Args:
         scheduler: of a Dask cluster whose machines see the same folders under the same paths.
@@ -32,7 +29,7 @@ def workers(scheduler: str | None) -> Executor:
     """
     if scheduler is None:
         afresh = multiprocessing.get_context("spawn")  # a fork of Polars hangs
-        return ProcessPoolExecutor(NUMBER, mp_context=afresh, initializer=begin)
+        return ProcessPoolExecutor(1, mp_context=afresh, initializer=begin)
     try:
         from distributed import Client  # noqa: PLC0415 - needs the extra dask
     except ImportError as error:
@@ -47,12 +44,19 @@ def workers(scheduler: str | None) -> Executor:
         raise UnavailableError("there is no Dask scheduler at {}: {}", scheduler, error) from error
 
 
+def get_ready(scheduler: str | None) -> None:
+    """Has the helping process import what it needs, while this one imports Dagster."""
+    if scheduler is None:
+        workers(scheduler).submit(os.getpid)
+
+
 def in_parallel(
     work: Callable[[T], R], tasks: Sequence[T], scheduler: str | None = None
 ) -> Iterator[tuple[T, R]]:
-    """Each task with what came of it, as it comes; a single one is done here.
+    """Each task with what came of it; the helping process begins at one end, this one at the other.
 
-    Where something goes wrong, none that is left is begun, and those that run are waited for.
+    A single task is done here, and none where a cluster works. Where something goes wrong, none
+    that is left is begun, and those that run are waited for.
 
     Raises:
         UnavailableError: a process was ended from outside, as by a machine short of memory.
@@ -60,10 +64,14 @@ def in_parallel(
     if len(tasks) == 1 and scheduler is None:
         yield tasks[0], work(tasks[0])
         return
-    asked = {workers(scheduler).submit(work, task): task for task in tasks}
+    asked = [(task, workers(scheduler).submit(work, task)) for task in tasks]
     try:
-        for done in as_completed(asked):
-            yield asked[done], done.result()
+        for task, future in reversed(asked):
+            if scheduler is None and future.cancel():
+                yield task, work(task)
+        for task, future in asked:
+            if not future.cancelled():
+                yield task, future.result()
     except BrokenProcessPool as error:
         workers.cache_clear()
         raise UnavailableError(
@@ -71,7 +79,7 @@ def in_parallel(
             "again: what was finished is kept"
         ) from error
     finally:
-        wait([future for future in asked if not future.cancel()])
+        wait([future for _, future in asked if not future.cancel()])
 
 
 def begin() -> None:
@@ -79,7 +87,8 @@ def begin() -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     # At once: taken apart around that thread, DuckDB's binding writes that it leaks.
     atexit.register(os._exit, 0)
-    import herijk.warehouse.build.graph  # noqa: F401, PLC0415 - seconds that nobody has to wait for
+    import herijk.dashboards.site.render  # noqa: PLC0415 - seconds that nobody has to wait for
+    import herijk.warehouse.build.graph  # noqa: F401, PLC0415
 
 
 def _end_with_parent() -> None:
