@@ -88,11 +88,9 @@ def _sums(tows: pl.DataFrame, cw: str, lo: str, hi: str) -> Record:
 def _factors(
     factors: pl.DataFrame, truth: pl.DataFrame, doubted: set[int], not_told_apart: set[int]
 ) -> Iterator[Record]:
-    """Season log factors in the seasons without dGPS, against the mean of what the days had."""
-    days = truth.group_by("season").agg(
-        pl.col("log_factor_of_day").log().mean().exp().alias("true")
-    )
-    held = factors.filter(pl.col("season") < PERIODS["2014 on"].start).join(days, on="season")
+    """Season log factors in the seasons without dGPS, against the mean of what the tows had."""
+    means = truth.group_by("season").agg(pl.col("log_factor").log().mean().exp().alias("true"))
+    held = factors.filter(pl.col("season") < PERIODS["2014 on"].start).join(means, on="season")
     held = held.drop_nulls("factor")
     error = held["factor"] / held["true"] - 1.0
     covered = held["true"].is_between(held["lo"], held["hi"]).fill_null(False)

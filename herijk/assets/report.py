@@ -114,7 +114,8 @@ def write_report(
 
 def _unforeseen(store: Store) -> Iterator[Check]:
     """On what Herijk itself failed: tows are set aside, anything else is an error."""
-    tows = store.read(QUARANTINE).filter(reason_code=UNFORESEEN)["tow_id"].to_list()
+    failed_on = store.read(QUARANTINE).filter(reason_code=UNFORESEEN)
+    tows = [tow or path for tow, path in failed_on.select("tow_id", "path").rows()]
     for asset, severity, failed in (
         (QUARANTINE, "WARN", tows),
         ("site", ERROR, failures(store.root)),

@@ -10,6 +10,11 @@ ARCHIVE: Final[dict[str, str]] = {
         "Herijk zelf liep vast op deze sleepproef ({}). De bestanden kunnen goed zijn. Meld dit "
         "aan wie Herijk onderhoudt, met unforeseen/{}.txt uit de datamap."
     ),
+    "Herijk itself failed on this list ({}). It may be sound. Please report this to whoever "
+    "maintains Herijk, with the folder unforeseen of the data folder.": (
+        "Herijk zelf liep vast op deze lijst ({}). De lijst kan goed zijn. Meld dit aan wie Herijk "
+        "onderhoudt, met de map unforeseen uit de datamap."
+    ),
     "line {line} of {path}": "regel {line} van {path}",
     "sheet '{sheet}': {what}": "blad '{sheet}': {what}",
     "The name of '{name}' has letters that cannot be read; give it another name.": (
@@ -151,9 +156,9 @@ ARCHIVE: Final[dict[str, str]] = {
         "de rijen van één proef zijn voor de runs {numbers}; elke run heeft één rij, en waar elke "
         "run een eigen bestand heeft zijn ze 1, 2, 3 en verder."
     ),
-    "boat {boat} is in the list twice and the rows differ in {key} ({one} and {other}).": (
-        "sloep {boat} staat twee keer in de lijst en de rijen verschillen in {key} ({one} en "
-        "{other})."
+    "boat {boat} is listed twice and the rows differ in {key}: {one} here, {other} on {where}.": (
+        "sloep {boat} staat twee keer in de lijsten en de rijen verschillen in {key}: {one} hier, "
+        "{other} op {where}."
     ),
     "boat {boat} cannot be used, see {path}: {why}": (
         "sloep {boat} is niet te gebruiken, zie {path}: {why}"

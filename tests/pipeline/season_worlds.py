@@ -170,6 +170,7 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "ln_cw": level,
         "reference_ln": 0.0,
         "true_ln_cw": truth,
+        "true_ln_factor": ln_factor + wander,
         "kappa": 2 * (1 + q_guess),
         "ln_cw_sd": 0.41 * setup.run_noise,
         "weight_kg": float(np.exp(ln_weight)),

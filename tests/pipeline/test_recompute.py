@@ -256,6 +256,17 @@ def test_a_run_at_120_per_cent_does_not_count_whatever_the_log_read(measured):
         assert np.array_equal(too_fast, top)
 
 
+@pytest.mark.parametrize(("out", "dropped"), [(1.1495, True), (1.135, False)])
+def test_runs_out_and_back_stay_or_go_together(measured, out, dropped):
+    batch = Batch.of(measured.tows, measured.blocks)
+    intended = batch.of_run("declared_speed_m_s") * batch.target_speed_ratio
+    top = batch.target_speed_ratio == 1.1
+    towed = np.where(batch.direction > 0, out, 1.1608) / 1.1
+    everything = np.ones(len(batch.tow), dtype=bool)
+    too_fast = above_target(batch, intended * np.where(top, towed, 1.0), everything, 1.15)
+    assert np.array_equal(too_fast, top & dropped)
+
+
 def test_without_gps_nothing_is_calibrated_and_the_tow_says_so(measured):
     made = recompute(method(calibration='{ rule = "gps_per_tow" }'), measured.tows, measured.blocks)
     early = made.run_points.join(measured.tows.filter(season=2010), on="tow_id", how="semi")

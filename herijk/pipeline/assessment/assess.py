@@ -50,12 +50,6 @@ SIZES: Final = {
     "bow_height_changed": "bow_height_m",
 }
 
-AGREE: Final = 0.02
-"""Standard deviation of ln Cw between two sound tows of a boat, where too few pairs show it
-themselves (presentation 24-01-2015: tows agree within 2 %)."""
-
-FEWEST_PAIRS: Final = 10
-
 
 def assess(
     curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame

@@ -142,7 +142,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     ageing_sd = float(np.sqrt(posterior.covariance[ageing, ageing]))
     second = without_boats(posterior.problem.network, (ageing_per_year, ageing_sd), USUAL)
     along = _group_means(posterior)
-    covariance = along @ posterior.covariance @ along.T
+    covariance = _of_means(posterior, along @ posterior.covariance @ along.T)
     change = _without_each_boat(posterior)
     instruments = instrument_errors(posterior, change)
     best, weights = best_estimates(posterior, instruments)
@@ -150,7 +150,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
     diagnosis = season_diagnosis(posterior)
     return SeasonFactors(
-        factors=_described(posterior, along, change, second),
+        factors=_described(posterior, along, covariance, change, second),
         covariance=covariance,
         tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
         calibration_sd=calibration_sd,
@@ -203,6 +203,17 @@ def _group_means(posterior: Posterior) -> FloatArray:
     return np.array(means).reshape(len(groups), len(posterior.places))
 
 
+def _of_means(posterior: Posterior, covariance: FloatArray) -> FloatArray:
+    """Covariance of the mean ln factors over tows, by that of what logs do in general.
+
+    The scatter of the tows is in their mean as well as in what they tell of the log: it is in the
+    difference only as far as the prior draws the estimate.
+    """
+    own = posterior.scatter_of_means[posterior.problem.network.determined]
+    drawn = own / posterior.problem.settings.log_sd**2
+    return np.asarray(covariance * (1.0 + drawn + drawn[:, None]) - np.diag(own))
+
+
 def _without_each_boat(posterior: Posterior) -> FloatArray:
     """Change of every unknown of the fit when a boat is left out, (boats, unknowns)."""
     fit, cluster = posterior.fit, posterior.problem.network.cluster
@@ -220,6 +231,7 @@ def _without_each_boat(posterior: Posterior) -> FloatArray:
 def _described(
     posterior: Posterior,
     along: FloatArray,
+    covariance: FloatArray,
     change: FloatArray,
     second: Second,
 ) -> pl.DataFrame:
@@ -227,6 +239,7 @@ def _described(
 
     Args:
         along: as `_group_means` gives it.
+        covariance: of the determined ln factors.
         change: of every unknown of the fit without each boat, (boats, unknowns).
         second: the estimate without boats.
     """
@@ -245,7 +258,7 @@ def _described(
     influence = move.max(axis=0, initial=0.0)
     boat = first_largest(move) if move.size else np.zeros(len(known))
     ln_factor, dof = placed(mean), placed(fit.dof(along))
-    sd = placed(np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along)))
+    sd = placed(np.sqrt(np.diag(covariance)))
     half = _half_width(sd, dof)
     other = pl.Series(np.where(second.known, second.ln_factor, np.nan)).fill_nan(None)
     other_sd = pl.Series(second.sd)

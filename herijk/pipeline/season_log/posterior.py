@@ -495,6 +495,20 @@ class Posterior:
         """Unknowns that act as the scale of a log does, (k,)."""
         return np.array([WAYS[name] == "speed" for name in self.names.tolist()])
 
+    @cached_property
+    def scatter_of_means(self) -> FloatArray:
+        """Variance of a mean ln factor over tows about what the log does in general, (groups,).
+
+        By it the mean over the very tows that a log is estimated from is better known than the log
+        in general. 0 for a log that is known by other tows, calibrated on dGPS.
+        """
+        problem, ln_variance = self.problem, self.fit.state.ln_variance
+        of_season = ln_variance[4 + len(problem.settings.era_starts) : -1]
+        scatter = np.exp(ln_variance[3 + problem.era] + of_season[problem.season])
+        group = problem.network.group + 1  # 0, anchored, is left out
+        of_mean = np.bincount(group, scatter)[1:] / np.bincount(group)[1:] ** 2
+        return np.where(problem.network.calibrated, 0.0, of_mean)
+
 
 def solve(problem: Problem) -> Posterior:
     """The posterior of everything, with the faults that the archive shows."""

@@ -47,9 +47,12 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     corrected = np.isin(posterior.places, problem.faults)
     force = corrected & (posterior.names == FORCE)
     zero = corrected & np.isin(posterior.names, (ZERO, ZERO_DRIFT))
-    variance = np.maximum(((level @ posterior.covariance) * level).sum(axis=1), 0.0)
+    variance = ((level @ posterior.covariance) * level).sum(axis=1)
+    own = np.append(posterior.scatter_of_means, 0.0)[network.group]  # -1, anchored, reads the last
+    by_log = posterior.fit.slopes.ways["speed"][:, LEVEL] ** 2
+    variance += own * (2.0 * variance / problem.settings.log_sd**2 - by_log)
     determined = network.log_known
-    known = np.sqrt(variance) / (2.0 + 2.0 * problem.q)
+    known = np.sqrt(np.maximum(variance, 0.0)) / (2.0 + 2.0 * problem.q)
     applied = np.where(speed | force | zero, level, 0.0)
     others = -(applied * change[network.cluster]).sum(axis=1)
     return network.tows.select(

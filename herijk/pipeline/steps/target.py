@@ -7,6 +7,7 @@ like 117 % afterwards.
 """
 
 import numpy as np
+import polars as pl
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
@@ -18,17 +19,20 @@ def above_target(
     """Runs faster than `highest_ratio` of the declared speed, on the scale of the tow's own runs.
 
     The scale is the median of speed / intended speed over the tow's runs (of two in the middle the
-    lower, as the runs towed too fast are the high ones): a factor on all speeds drops out.
+    lower, as the runs towed too fast are the high ones): a factor on all speeds drops out. Runs of
+    one intended speed, out and back, are judged by their mean: of a pair that stays or goes apart,
+    current and wind would not cancel.
 
     Args:
         log_m_s: mean speed of each run as read, shape (runs,).
         runs: runs that take part, shape (runs,).
         highest_ratio: limit of speed / declared speed.
     """
-    declared = batch.of_run("declared_speed_m_s")
-    ratio = log_m_s / (declared * batch.target_speed_ratio)
-    takes_part = runs & np.isfinite(ratio) & (ratio > 0)
-    of_tow = np.where(batch.by_tow(takes_part) > 0, batch.by_tow(ratio), np.inf)
-    middle = np.maximum(batch.count(takes_part) - 1, 0) // 2
-    level = np.take_along_axis(np.sort(of_tow, axis=1), middle[:, None], axis=1)[:, 0]
-    return np.asarray(runs & (log_m_s > highest_ratio * declared * level[batch.tow]))
+    speed = np.where(runs & (log_m_s > 0), log_m_s / batch.of_run("declared_speed_m_s"), np.nan)
+    ratios = pl.DataFrame(
+        {"tow": batch.tow, "intended": batch.target_speed_ratio, "speed": speed}, nan_to_null=True
+    )
+    level = (pl.col("speed") / pl.col("intended")).quantile(0.5, "lower").over("tow")
+    of_pair = pl.col("speed").mean().over("tow", "intended")
+    too_fast = pl.col("speed").is_not_null() & (of_pair > highest_ratio * level)
+    return ratios.select(too_fast.fill_null(False)).to_series().to_numpy()

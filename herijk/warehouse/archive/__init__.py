@@ -5,7 +5,7 @@ Everything that cannot be used becomes a `Fault` with a reason code; the format 
 described in `docs/archive.md`.
 """
 
-from herijk.warehouse.archive.faults import Fault, fault_from
+from herijk.warehouse.archive.faults import Failure, Fault, fault_from
 from herijk.warehouse.archive.files.hashes import FileHashes
 from herijk.warehouse.archive.index.index import ArchiveIndex, index_archive
 from herijk.warehouse.archive.lists.races import read_races
@@ -17,6 +17,7 @@ from herijk.warehouse.archive.samples.tow import read_tow_samples
 
 __all__ = [
     "ArchiveIndex",
+    "Failure",
     "Fault",
     "FileHashes",
     "Profiles",

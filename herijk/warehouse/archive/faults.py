@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final, Literal
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, traced
 from herijk.words import Sentence, cause_of, say, spoken
 
 Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
@@ -68,12 +69,44 @@ class DefectiveFileError(DefectiveInputError):
         self.path = path
 
 
+def place(line: int, path: str) -> Sentence:
+    """A line of a file, for a sentence."""
+    return say("line {line} of {path}", line=line, path=path)
+
+
 def at_line(line: int, what: str) -> Sentence:
     """A sentence with the line that it is about."""
     return say("Line {line}: {what}", line=line, what=what)
 
 
-def fault_from(error: DefectiveInputError, path: str, tow_id: str | None = None) -> Fault:
-    """The fault an error stands for; `path` serves where the error knows none itself."""
+@dataclass(frozen=True)
+class Failure(Fault):
+    """A list, or a row of one, on which Herijk itself failed.
+
+    Attributes:
+        trace: the traceback.
+    """
+
+    trace: str = ""
+
+
+def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fault:
+    """The fault an error stands for; `path` serves where the error knows none itself.
+
+    Raises:
+        BaseException: the error, where it is neither about the input nor a fault of Herijk.
+    """
+    if not isinstance(error, DefectiveInputError):
+        if not is_unforeseen(error):
+            raise error
+        return Failure(path, tow_id, None, UNFORESEEN, _failed(error), trace=traced(error))
     where = error.path if isinstance(error, DefectiveFileError) else path
     return Fault(where, tow_id, error.line, error.reason_code, error.message)
+
+
+def _failed(error: BaseException) -> Sentence:
+    return say(
+        "Herijk itself failed on this list ({}). It may be sound. Please report this to whoever "
+        "maintains Herijk, with the folder unforeseen of the data folder.",
+        in_short(error),
+    )

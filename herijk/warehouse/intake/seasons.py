@@ -5,7 +5,6 @@ samples only where a season's fingerprint says that something changed. Reading o
 is `warehouse.intake.lake`.
 """
 
-import dataclasses
 import os
 import time
 from collections.abc import Collection, Iterator, Sequence
@@ -22,6 +21,7 @@ from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import AboutArchive, Faults, SeasonIndex
 from herijk.warehouse.archive import (
+    Failure,
     FileHashes,
     Profiles,
     index_archive,
@@ -33,6 +33,7 @@ from herijk.warehouse.archive.profile.reading import read_profiles
 from herijk.warehouse.intake import lake
 from herijk.warehouse.store.code import FAULTS_IN_DUTCH, code_hash
 from herijk.warehouse.store.store import Store, fingerprint
+from herijk.warehouse.store.unforeseen import note
 
 LISTED: Final = ("boats", "tows", "runs", "windows")
 INDEXED: Final = (
@@ -62,7 +63,11 @@ def index(store: Store, root: Path) -> None:
     hashes.save(store.file_hashes)
     races, race_faults = read_races(root)
     printed, register_faults = read_published_registers(root)
-    faults = [dataclasses.asdict(f) for f in (*listed.faults, *race_faults, *register_faults)]
+    all_faults = (*listed.faults, *race_faults, *register_faults)
+    for fault in all_faults:
+        if isinstance(fault, Failure):
+            note(store.root, fault.path.replace(" ", "-"), fault.trace)
+    faults = [{key: getattr(f, key) for key in Faults.column_names()} for f in all_faults]
     about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
     about |= listed.profiles.publication.model_dump()
     tables = {

@@ -9,8 +9,15 @@ import pytest
 
 from herijk.pipeline.channels import SAMPLE_SCHEMA
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.archive import FileHashes, index_archive, read_published_registers, read_races
-from tests.warehouse.archive.conftest import FIRST, ROWS, TOWS, Archive, Scan, line_of
+from herijk.warehouse.archive import (
+    Failure,
+    FileHashes,
+    index_archive,
+    read_published_registers,
+    read_races,
+)
+from herijk.warehouse.archive.sheets import reading
+from tests.warehouse.archive.conftest import BOATS, FIRST, ROWS, TOWS, Archive, Scan, line_of
 
 SAMPLE_ARCHIVE = Path(__file__).parents[2] / "data" / "sample-archive"
 NEXT_TOW = "2014-009;2014-03-09;FSN1;tweede;{second};8;H;2,40;;;;;;;;;{runs};nee;20;\n"
@@ -299,3 +306,77 @@ def test_a_thousand_with_a_point_beside_decimal_commas_is_no_number(archive: Arc
     assert force[7:10].is_nan().all()
     assert not force[:7].is_nan().any()
     assert [(f.reason_code, f.lost, f.run) for f in scan.faults] == [("bad_number", "seconds", 2)]
+
+
+OTHER_BOATS = "sloepregister/Sloependata.txt"
+
+
+def test_all_boat_lists_are_read(archive: Archive) -> None:
+    before = archive.scan()
+    boats = (archive.root / BOATS).read_text().splitlines()
+    (archive.root / BOATS).write_text("\n".join(boats[:2]))
+    (archive.root / OTHER_BOATS).write_text("\n".join(boats))
+    after = archive.scan()
+    assert after.faults == []
+    assert after.index.boats.sort("fsn_no").equals(before.index.boats.sort("fsn_no"))
+
+
+def test_boats_on_which_two_lists_disagree_are_set_aside_with_both_places(
+    archive: Archive,
+) -> None:
+    boats = (archive.root / BOATS).read_text().splitlines()
+    (archive.root / OTHER_BOATS).write_text("\n".join(boats[:3]).replace(";1417;", ";999;"))
+    scan = archive.scan()
+    assert sorted(scan.good) == ["2014-002", "2014-003"]
+    of_boat, of_tow = sorted(scan.faults, key=lambda fault: fault.tow_id or "")
+    assert (of_boat.reason_code, of_tow.tow_id) == ("duplicate_boat", "2014-001")
+    for place in (f"line 2 of {OTHER_BOATS}", "999", "1417"):
+        assert place in of_tow.message
+    assert of_boat.path == BOATS
+
+
+@pytest.mark.parametrize(
+    ("path", "lost"),
+    [
+        (BOATS, ["2014-001", "2014-002", "2014-003"]),
+        (TOWS, []),
+        ("sleeplijsten/lampjes_2014.csv", []),
+    ],
+)
+def test_a_list_on_which_herijk_fails_costs_that_list(
+    archive: Archive, monkeypatch: pytest.MonkeyPatch, path: str, lost: list[str]
+) -> None:
+    (archive.root / "sleeplijsten/lampjes_2014.csv").write_text("sleep_id;run;van;tot\n")
+    real = reading.date_order
+
+    def fails(cells: list[str]) -> str:
+        if path == reading_now[-1]:
+            raise ZeroDivisionError("planted")
+        return real(cells)
+
+    reading_now: list[str] = []
+    read_bytes = reading.read_bytes
+
+    def noted(full: Path, *arguments: int) -> bytes:
+        reading_now.append(full.relative_to(archive.root).as_posix())
+        return read_bytes(full, *arguments)
+
+    monkeypatch.setattr(reading, "read_bytes", noted)
+    monkeypatch.setattr(reading, "date_order", fails)
+    faults = archive.scan().faults
+    (of_list,) = [fault for fault in faults if isinstance(fault, Failure)]
+    assert (of_list.path, of_list.reason_code) == (path, "unforeseen")
+    assert "planted" in of_list.trace
+    assert [f.tow_id for f in faults if f is not of_list and f.tow_id] == lost
+
+
+@pytest.mark.parametrize("error", [MemoryError, KeyboardInterrupt])
+def test_what_is_no_fault_of_ours_stops_the_reading_of_lists(
+    archive: Archive, monkeypatch: pytest.MonkeyPatch, error: type[BaseException]
+) -> None:
+    def fails(cells: list[str]) -> str:
+        raise error
+
+    monkeypatch.setattr(reading, "date_order", fails)
+    with pytest.raises(error):
+        archive.scan()

@@ -12,7 +12,7 @@ from typing import Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.archive.faults import DefectiveFileError
-from herijk.warehouse.archive.files.list_kinds import BOATS, LIST_KINDS, ListKind
+from herijk.warehouse.archive.files.list_kinds import LIST_KINDS, ListKind
 from herijk.warehouse.archive.files.names import (
     LIST_SUFFIXES,
     PROFILE_FILE,
@@ -130,12 +130,6 @@ def _opened(entry: Path, known: set[Path]) -> list[Path]:
 
 def _path_in(root: Path, entry: Path) -> str:
     return entry.relative_to(root).as_posix()
-
-
-def find_boats_file(root: Path, named: Mapping[str, str]) -> str | None:
-    """The path of the boat list, whatever kind of file it is; None when there is none."""
-    lists = list_files(root, BOATS, named)
-    return lists[0].path if lists else None
 
 
 def _sample_folders(root: Path, named: Mapping[str, str]) -> Iterator[tuple[int, Path]]:

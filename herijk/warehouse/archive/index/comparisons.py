@@ -36,7 +36,7 @@ def keep(
     for entry in entries:
         try:
             check(entry)
-        except DefectiveInputError as error:
+        except BaseException as error:
             faults.append(fault_from(error, entry.list_path, entry.tow_id))
             if more is not None:
                 more += [fault_from(e, entry.list_path, entry.tow_id) for e in others_of(error)]
@@ -170,7 +170,8 @@ def _listed_twice(entry: Entry, other: Entry) -> DefectiveInputError:
 def join_boat(entry: Entry, boats: Boats) -> None:
     """Gives the tow its boat, with the sizes that were not written down that day."""
     fsn_no = entry.tow["fsn_no"]
-    why = boats.bad.get(fsn_no) or boats.unread
+    boat = boats.find(fsn_no)
+    why = boats.bad.get(fsn_no) or (boats.unread if boat is None else None)
     if why is not None:
         message = say(
             "boat {boat} cannot be used, see {path}: {why}",
@@ -179,7 +180,6 @@ def join_boat(entry: Entry, boats: Boats) -> None:
             why=why.message,
         )
         raise entry.row.fault(message, why.reason_code)
-    boat = boats.find(fsn_no)
     if boat is None:
         message = say("boat {boat} is not in the boat list.", boat=shorten(fsn_no))
         raise entry.row.fault(message, "unknown_boat")

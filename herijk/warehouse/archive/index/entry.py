@@ -4,12 +4,12 @@ from dataclasses import dataclass, field
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.row import Row
+from herijk.warehouse.archive.faults import place
 from herijk.warehouse.archive.files.finding import ArchiveFile
 from herijk.warehouse.archive.files.names import PARTS
 from herijk.warehouse.archive.profile.definition import Profiles
 from herijk.warehouse.archive.profile.plan import Plan
 from herijk.warehouse.archive.sheets.row import ListRow
-from herijk.words import say
 
 
 @dataclass(frozen=True)
@@ -54,4 +54,4 @@ class Entry:
     @property
     def where(self) -> str:
         """Where it is listed, for a sentence."""
-        return say("line {line} of {path}", line=self.row.line, path=self.list_path)
+        return place(self.row.line, self.list_path)

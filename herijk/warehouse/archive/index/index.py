@@ -11,14 +11,13 @@ from pathlib import Path
 import polars as pl
 
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
-from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
+from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows
 from herijk.tables.row import Row
-from herijk.warehouse.archive.faults import Fault, fault_from
-from herijk.warehouse.archive.files.finding import find_boats_file, list_sample_files
-from herijk.warehouse.archive.files.names import BOATS_FILE
+from herijk.warehouse.archive.faults import Fault
+from herijk.warehouse.archive.files.finding import list_sample_files
 from herijk.warehouse.archive.index.comparisons import (
     fits_table,
     join_boat,
@@ -40,13 +39,12 @@ from herijk.warehouse.archive.index.tow_files import (
 )
 from herijk.warehouse.archive.index.tow_rows import idle_settings, read_tow_lists
 from herijk.warehouse.archive.index.unread_files import missing_lists, strangers
-from herijk.warehouse.archive.lists.boats import Boats, read_boats
+from herijk.warehouse.archive.lists.boats import read_boats
 from herijk.warehouse.archive.lists.force_checks import load_cell_of, read_force_checks
 from herijk.warehouse.archive.lists.lamps import lamp_seconds, read_lamps
 from herijk.warehouse.archive.lists.windows import read_windows
 from herijk.warehouse.archive.profile.definition import Profiles
 from herijk.warehouse.archive.profile.reading import read_profiles
-from herijk.warehouse.archive.spelling.wording import Wording
 
 
 @dataclass(frozen=True)
@@ -100,7 +98,7 @@ def index_archive(
     faults: list[Fault] = []
     unhashed = hash_lists(root, named, hashes)
     faults += strangers(root, profiles)
-    boats = _read_boats(root, profiles.wording)
+    boats = read_boats(root, profiles.wording)
     faults += boats.faults
     entries, unread_seasons = read_tow_lists(root, profiles, faults)
     sample_files = list_sample_files(root, named)
@@ -157,15 +155,6 @@ def _check_present(root: Path, profiles: Profiles) -> None:
         raise MissingKnowledgeError(
             "The archive at {} cannot be read: {}", root, lacking[0].message
         )
-
-
-def _read_boats(root: Path, wording: Wording) -> Boats:
-    path = find_boats_file(root, wording.files) or BOATS_FILE
-    try:
-        return read_boats(root, path, wording)
-    except DefectiveInputError as error:
-        fault = fault_from(error, path)
-        return Boats({}, (), {}, (fault,), unread=fault)
 
 
 def _add_instruments(

@@ -25,7 +25,7 @@ def read_tow_lists(
     for file in list_files(root, TOWS, profiles.wording.files):
         try:
             rows = read_list(root, TOWS, file.path, profiles.wording)
-        except DefectiveInputError as error:
+        except BaseException as error:
             faults.append(fault_from(error, file.path))
             unread_seasons.add(file.season)
             continue

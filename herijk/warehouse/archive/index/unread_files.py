@@ -5,12 +5,11 @@ from pathlib import Path
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.files.finding import (
-    find_boats_file,
     list_files,
     list_misnamed,
     list_strangers,
 )
-from herijk.warehouse.archive.files.list_kinds import TOWS
+from herijk.warehouse.archive.files.list_kinds import BOATS, TOWS
 from herijk.warehouse.archive.files.names import (
     BOATS_FILE,
     PACKED,
@@ -38,7 +37,7 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
         )
     named = profiles.wording.files
     lacking = []
-    if find_boats_file(root, named) is None:
+    if not list_files(root, BOATS, named):
         lacking.append(
             (BOATS_FILE, say("there is no list of boats: {path} is expected.", path=BOATS_FILE))
         )

@@ -1,4 +1,4 @@
-"""The boats of the archive: `sloependata.csv`."""
+"""The boats of the archive: `sloependata.csv`, or several lists of boats."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,11 +7,11 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedBoats
 from herijk.tables.row import Row
-from herijk.warehouse.archive.faults import Fault, fault_from
+from herijk.warehouse.archive.faults import Fault, fault_from, place
+from herijk.warehouse.archive.files.finding import list_files
 from herijk.warehouse.archive.files.list_kinds import BOATS
 from herijk.warehouse.archive.sheets.reading import read_list
 from herijk.warehouse.archive.sheets.row import ListRow, others_of
@@ -28,15 +28,15 @@ OF_THE_BOAT: Final = (
 
 @dataclass(frozen=True)
 class Boats:
-    """The boat list.
+    """The boat lists.
 
     Attributes:
         good: the boats that can be used, by `fsn_no`; the last row of a boat gives its name.
         crews: every row of those boats: a boat and a crew that rows it.
         bad: why others cannot be used.
-        faults: what is wrong in the list.
+        faults: what is wrong in the lists.
         more: what else is wrong in those rows.
-        unread: why the list as a whole cannot be read.
+        unread: why one of the lists as a whole cannot be read.
     """
 
     good: Mapping[str, Row]
@@ -67,35 +67,44 @@ def _crew_of(boat: Row) -> Row:
     return {"rowers": boat["rowers"], "crew_class": boat["crew_class"]}
 
 
-def read_boats(root: Path, path: str, wording: Wording) -> Boats:
-    """Reads the boat list; a defective row or an ambiguous boat becomes a fault.
+def read_boats(root: Path, wording: Wording) -> Boats:
+    """Reads all boat lists; a defective row or an ambiguous boat becomes a fault.
 
-    A boat may have a row for each of its names and crews. Dimensions, weight and crew may be empty.
-
-    Raises:
-        DefectiveInputError: the list as a whole cannot be read.
+    A boat may have a row for each of its names and crews, in one list or in several. Dimensions,
+    weight and crew may be empty. Rows that contradict each other cost the boat: nobody can know
+    which of them is right.
     """
     good: dict[str, Row] = {}
+    first: dict[str, str] = {}
     crews: list[Row] = []
     bad: dict[str, Fault] = {}
     faults: list[Fault] = []
     more: list[Fault] = []
-    for row in read_list(root, BOATS, path, wording):
+    unread: Fault | None = None
+    for file in list_files(root, BOATS, wording.files):
         try:
-            boat = _boat(row)
-            merged = _merged(row, boat, good.get(boat["fsn_no"]))
-        except DefectiveInputError as error:
-            fault = fault_from(error, path)
-            faults.append(fault)
-            more += [fault_from(other, path) for other in others_of(error)]
-            if row.optional_text("fsn_no") is not None:
-                bad[row.boat("fsn_no")] = fault
+            rows = read_list(root, BOATS, file.path, wording)
+        except BaseException as error:
+            unread = fault_from(error, file.path)
+            faults.append(unread)
             continue
-        good[boat["fsn_no"]] = merged
-        crews.append(boat)
+        for row in rows:
+            try:
+                boat = _boat(row)
+                fsn_no = boat["fsn_no"]
+                where = first.setdefault(fsn_no, place(row.line, file.path))
+                good[fsn_no] = _merged(row, boat, good.get(fsn_no), where)
+            except BaseException as error:
+                fault = fault_from(error, file.path)
+                faults.append(fault)
+                more += [fault_from(other, file.path) for other in others_of(error)]
+                if row.optional_text("fsn_no") is not None:
+                    bad[row.boat("fsn_no")] = fault
+            else:
+                crews.append(boat)
     usable = {fsn_no: boat for fsn_no, boat in good.items() if fsn_no not in bad}
     rowed = [boat for boat in crews if boat["fsn_no"] in usable]
-    return Boats(usable, rowed, bad, tuple(faults), tuple(more))
+    return Boats(usable, rowed, bad, tuple(faults), tuple(more), unread)
 
 
 def _boat(row: ListRow) -> Row:
@@ -105,19 +114,24 @@ def _boat(row: ListRow) -> Row:
     return boat | {"boat_type": None} if has_no_type else boat
 
 
-def _merged(row: ListRow, boat: Row, before: Row | None) -> Row:
-    """A boat with what its rows so far say; two sizes or types cannot both be right."""
+def _merged(row: ListRow, boat: Row, before: Row | None, where: str) -> Row:
+    """A boat with what its rows so far say; two sizes or types cannot both be right.
+
+    Args:
+        where: the first of these rows.
+    """
     if before is None:
         return boat
     for key in OF_THE_BOAT:
         if None not in (boat[key], before[key]) and boat[key] != before[key]:
             message = say(
-                "boat {boat} is in the list twice and the rows differ in {key} ({one} and "
-                "{other}).",
+                "boat {boat} is listed twice and the rows differ in {key}: {one} here, {other} on "
+                "{where}.",
                 boat=boat["fsn_no"],
                 key=row.named(key),
-                one=before[key],
-                other=boat[key],
+                one=boat[key],
+                other=before[key],
+                where=where,
             )
             raise row.fault(message, "duplicate_boat")
     return {key: value if value is not None else before[key] for key, value in boat.items()}

@@ -116,14 +116,14 @@ def read_lists(
     for file in list_files(root, kind, wording.files):
         try:
             rows = read_list(root, kind, file.path, wording)
-        except DefectiveInputError as error:
+        except BaseException as error:
             faults.append(fault_from(error, file.path))
             continue
         for row in rows:
             try:
                 row.check_whole()
                 values = read_row(row, file.season)
-            except DefectiveInputError as error:
+            except BaseException as error:
                 faults.append(fault_from(error, file.path))
             else:
                 good.append({**values, "path": file.path, "line": row.line})

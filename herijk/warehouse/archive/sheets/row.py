@@ -301,7 +301,7 @@ def all_of(readings: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:
     return values
 
 
-def others_of(error: DefectiveInputError) -> tuple[DefectiveInputError, ...]:
+def others_of(error: BaseException) -> tuple[DefectiveInputError, ...]:
     """What else is wrong in the row of a fault."""
     return error.others if isinstance(error, DefectiveRowError) else ()
 
