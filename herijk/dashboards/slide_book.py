@@ -113,7 +113,7 @@ class Book:
         if tows not in STATED:
             views.choose(tows, list({*methods_of(held), *methods_of(held, tows)}))
         self.held, self.compared = held, compared_frame(views)
-        lines = views.table("type_lines")
+        lines = views.table("type_lines").filter(within="all")
         self.choices = lines["tows"].unique().sort().to_list()
         keys = ("boat_type", "tows", "quantity", "explaining", "method")
         self._lines = {tuple(row[k] for k in keys): row for row in lines.iter_rows(named=True)}
