@@ -94,7 +94,10 @@ def of(built):
     def statistics(slope, bends):
         return replace(
             any_type,
-            lines=[dict(quantity="b_m_s", explaining="weight_kg", within="all", reason="") | slope],
+            lines=[
+                {"quantity": "b_m_s", "explaining": "weight_kg", "within": "all", "reason": ""}
+                | slope
+            ],
             speed_trend={"reason": "few_boats"},
             eras=[],
             bends={"equal_possible": bends},
