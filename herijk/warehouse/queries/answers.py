@@ -81,7 +81,9 @@ def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
     names = views.register().select("edition", *LINE, "name", "boat_type")
     key = [*PAIR, *LINE]
     of_each = [
-        changes.select(key).join(names.rename({"edition": side}), on=[side, *LINE])
+        changes.select(key).join(
+            names.rename({"edition": side}), on=[side, *LINE], maintain_order="left"
+        )
         for side in reversed(PAIR)
     ]
     once = pl.concat(of_each).unique(key, keep="first", maintain_order=True)
@@ -184,7 +186,7 @@ def _best_estimates(behind: _Tables) -> pl.DataFrame:
     mine = pl.col("tow_id") == pl.col("rests_on")  # shares of next to nothing are left out
     own = (
         behind("best_estimate_weights")
-        .group_by(key)
+        .group_by(key, maintain_order=True)
         .agg(own_weight=pl.col("weight").filter(mine).sum())
     )
     pairs = behind("repeat_pairs").select(*key, "tow_id_before", "season_before", "ln_ratio")
