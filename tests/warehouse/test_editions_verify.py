@@ -17,8 +17,8 @@ from herijk.pipeline.blocks.run_blocks import SPEED_SOURCES
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.warehouse.build.graph import METHOD
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.build.published import published_tables
-from herijk.warehouse.build.step import Scope
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.chain import chain_head
 from herijk.warehouse.editions.inputs import same_tows, unchanged_tows

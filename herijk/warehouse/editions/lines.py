@@ -142,8 +142,8 @@ def made_again(store: Store, edition: Edition) -> Again:
         files = sheets.read_inputs(path)
         if not files:
             raise BrokenPromiseError("{}/{} names no file", path.name, INPUTS)
-        printed = printed_lines(store, files[0][0])
-        return Again(completed(store, printed, edition.about, None), {})
+        as_printed = printed_lines(store, files[0][0])
+        return Again(completed(store, as_printed, edition.about, None), {})
     known = [name for name in JUDGED if name in edition.tables["tows"].columns]
     judged = edition.tables["tows"].select("tow_id", *known)
     today = tows_of_today(store)

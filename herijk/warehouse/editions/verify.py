@@ -23,7 +23,7 @@ from herijk.pipeline.recompute.facts import with_hand_windows
 from herijk.warehouse.archive import ArchiveIndex, FileHashes, index_archive
 from herijk.warehouse.archive.files.names import PARTS
 from herijk.warehouse.build.graph import ARCHIVE
-from herijk.warehouse.build.step import Scope
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.chain import chain_findings
 from herijk.warehouse.editions.finding import Finding, line_name
