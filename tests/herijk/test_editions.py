@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from herijk.pipeline.recompute import recompute
+from pipeline.recompute import recompute
 from tests.conftest import Workbench
 
 DECISION = ("--decision", "ALV 12-5-2014")

@@ -11,25 +11,25 @@ import zipfile
 import polars as pl
 import pytest
 
-import herijk.pipeline.recompute.recompute
-import herijk.warehouse.editions.verify
-from herijk.pipeline.blocks.run_blocks import SPEED_SOURCES
-from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.warehouse.build.graph import METHOD
-from herijk.warehouse.build.inputs import Scope
-from herijk.warehouse.build.published import published_tables
-from herijk.warehouse.editions import sheets
-from herijk.warehouse.editions.chain import chain_head
-from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
-from herijk.warehouse.editions.lineage import lineage
-from herijk.warehouse.editions.publish import publish_printed
-from herijk.warehouse.editions.remade import Counts
-from herijk.warehouse.editions.verify import verify
-from herijk.warehouse.store.editions import TableDigest, read_about, read_edition
-from herijk.warehouse.store.files import file_sha256
-from herijk.warehouse.store.store import table_digest
+import pipeline.recompute.recompute
+import warehouse.editions.verify
+from pipeline.blocks.run_blocks import SPEED_SOURCES
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.method.definition import parse_method, shipped_method
 from tests.warehouse.edition_bench import terms
+from warehouse.derive.graph import METHOD
+from warehouse.derive.inputs import Scope
+from warehouse.derive.published import published_tables
+from warehouse.editions import sheets
+from warehouse.editions.chain import chain_head
+from warehouse.editions.inputs import same_tows, unchanged_tows
+from warehouse.editions.lineage import lineage
+from warehouse.editions.publish import publish_printed
+from warehouse.editions.remade import Counts
+from warehouse.editions.verify import verify
+from warehouse.store.editions import TableDigest, read_about, read_edition
+from warehouse.store.files import file_sha256
+from warehouse.store.store import table_digest
 
 
 def folder(bench, name="2014-1"):
@@ -46,9 +46,7 @@ def found(bench, **wanted):
 @pytest.fixture
 def _files_alone(monkeypatch):
     """Editions are not made again, which takes three quarters of the time."""
-    monkeypatch.setattr(
-        herijk.warehouse.editions.verify, "remade", lambda store, name: (Counts(), [])
-    )
+    monkeypatch.setattr(warehouse.editions.verify, "remade", lambda store, name: (Counts(), []))
 
 
 FILES_ALONE = pytest.mark.usefixtures("_files_alone")
@@ -254,9 +252,9 @@ def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_
 def test_what_other_code_makes_otherwise_stands_where_the_head_is_known(
     published_copy, monkeypatch
 ):
-    original = herijk.pipeline.recompute.recompute.still_air_coefficient_kg_m
+    original = pipeline.recompute.recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        herijk.pipeline.recompute.recompute,
+        pipeline.recompute.recompute,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
