@@ -2,8 +2,8 @@
 
 If an asset needs an `if` on data, that `if` belongs in `pipeline` or `warehouse`.
 
-- What Dagster loads: `definitions`; of these the assets and checks are put together in `location`,
-  from `archive`, `tables`, `site` and `checks`, with their `resources`, the `workers` that help, and
+- What Dagster loads: `definitions`; assets and checks are put together in `location`,
+  from `archive`, `tables`, `site` and `checks`, with `resources`, the `workers` that help, and
   what Dagster's page shows of them (`shown`).
 - A rebuild: `rebuild` asks what is `stale` and has it made in one run (`instance`); its `progress`.
 - Afterwards: `report` writes what changed, `notify` tells people.
