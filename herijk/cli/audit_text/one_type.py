@@ -27,12 +27,12 @@ from herijk.cli.audit_text.words import (
     yes,
 )
 from herijk.cli.text import decimals, table
-from herijk.pipeline.consistency.eras import ERAS
-from herijk.pipeline.consistency.tow_speed import SLOW_POWER_W
-from herijk.tables.row import Row
-from herijk.warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
-from herijk.words import tell
-from herijk.words.catalogue import code
+from pipeline.consistency.eras import ERAS
+from pipeline.consistency.tow_speed import SLOW_POWER_W
+from pipeline.tables.row import Row
+from pipeline.words import tell
+from pipeline.words.catalogue import code
+from warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
 
 T = TypeVar("T")
 
@@ -151,11 +151,13 @@ def _each(under: Mapping[str, T], say: Callable[[T], list[str]]) -> list[str]:
 def _lines(under: Mapping[str, TypeStatistics]) -> list[str]:
     """The table of lines, what is not claimed, and which quantity lies closest together."""
     cells, silent = [], []
-    for quantity, explaining in LINES:
-        letter, against = LETTERS[quantity], tell(AGAINST[explaining][0])
-        label = tell("{} per {}", letter, step_of(quantity, explaining)[1])
+    for quantity, explaining, crews in LINES:
+        within = "" if crews == "all" else f", {code(crews)}"
+        letter, against = LETTERS[quantity], tell(AGAINST[explaining][0]) + within
+        step = step_of(quantity, explaining)[1]
+        label = f"  {letter}{within}" if within else tell("{} per {}", letter, step)
         for method, figures in under.items():
-            line = line_of(figures, quantity, explaining)
+            line = line_of(figures, quantity, explaining, crews)
             if line["reason"]:
                 silent.append((method, tell("{} against {}", letter, against), nothing(line)))
                 continue

@@ -1,0 +1,35 @@
+"""The site of plain files, made from the database that is in place."""
+
+import dagster as dg
+import polars as pl
+
+from assets import workers
+from assets.progress import Progress
+from assets.resources import Setup
+from assets.site_state import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
+from warehouse.derive.database import DATABASE_TABLE
+from warehouse.store.code import code_hash
+
+
+@dg.asset(
+    deps=[DATABASE_TABLE],
+    group_name="site",
+    kinds={"html"},
+    owners=["team:register"],
+    tags={"herijk/subject": "site"},
+    code_version=code_hash(*SITE_CODE),
+)
+def site(setup: Setup, progress: dg.ResourceParam[Progress]) -> dg.MaterializeResult:
+    """Pages people can look at, swapped in whole; pictures are drawn by who helps."""
+    store = setup.store
+    if is_stale := site_is_stale(store):
+        progress.step("making the site")
+        from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
+
+        build_site(store, workers.workers(setup.dask))
+        store.write(SITE_TABLE, pl.DataFrame(), site_made_from(store))
+    index = store.root / "site" / "index.html"
+    return dg.MaterializeResult(
+        data_version=dg.DataVersion(site_made_from(store)),
+        metadata={"new": is_stale, "index": dg.MetadataValue.path(str(index.resolve()))},
+    )
