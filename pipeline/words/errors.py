@@ -472,9 +472,6 @@ ERRORS: Final[dict[str, str]] = {
     "{} was added after publication": "{} is na de uitgave toegevoegd",
     "{} is gone; put it back from a copy": "{} is weg; zet het terug uit een kopie",
     "{} was changed after publication": "{} is na de uitgave gewijzigd",
-    "verification code {} does not fit the line: inputs or numbers were changed": (
-        "controlecode {} past niet bij de regel: invoer of getallen zijn gewijzigd"
-    ),
     "{} does not say what the tables of the edition say": (
         "{} zegt iets anders dan de tabellen van de editie"
     ),

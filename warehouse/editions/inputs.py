@@ -18,7 +18,7 @@ JUDGED: Final = ("doubts", "unusual")
 """What all other tows say of a tow."""
 
 NOT_INPUT: Final = (
-    *("samples_path", "second_path", "remark", "inputs_sha256"),
+    *("samples_path", "second_path", "inputs_sha256"),
     *JUDGED,
     *("hand_reason", "list_path", "list_line"),
 )

@@ -27,7 +27,7 @@ from warehouse.derive.graph import ARCHIVE
 from warehouse.derive.inputs import Scope
 from warehouse.editions import sheets
 from warehouse.editions.chain import chain_findings
-from warehouse.editions.finding import Finding, line_name
+from warehouse.editions.finding import Finding
 from warehouse.editions.inputs import LIST, NOT_INPUT
 from warehouse.editions.remade import Counts, remade
 from warehouse.intake import seasons as intake
@@ -160,8 +160,6 @@ def _altered(path: Path, about: About) -> Iterator[Finding]:
         yield Finding(path.name, "altered", file, say("{} was changed after publication", file))
         for where, said in _where(path, about, file, intact):
             yield Finding(path.name, "altered", where, said)
-    if "register.parquet" in known - intact:
-        yield from _codes(path, about)
 
 
 def _folder(path: Path, about: About) -> Iterator[Finding]:
@@ -180,27 +178,6 @@ def _folder(path: Path, about: About) -> Iterator[Finding]:
         yield Finding(name, "notice", file, message, wrong=False)
     for file in sorted(about.files.keys() - present):
         yield Finding(name, "missing", file, say("{} is gone; put it back from a copy", file))
-
-
-def _codes(path: Path, about: About) -> Iterator[Finding]:
-    """Lines whose verification code does not fit their inputs, method and numbers."""
-    try:
-        register = read_table(path, "register")
-        expected = sheets.verification_codes(register, about.method_hash)
-    except (HerijkError, pl.exceptions.PolarsError):
-        return
-    stated = register[sheets.CODE_FIELD.column].to_list()
-    for row, code, right in zip(register.iter_rows(named=True), stated, expected, strict=True):
-        if code != right:
-            yield Finding(
-                path.name,
-                "altered",
-                f"register.parquet, {line_name(row)}",
-                say(
-                    "verification code {} does not fit the line: inputs or numbers were changed",
-                    code,
-                ),
-            )
 
 
 def _where(path: Path, about: About, file: str, intact: set[str]) -> list[tuple[str, str]]:
