@@ -228,8 +228,17 @@ ARCHIVE: Final[dict[str, str]] = {
     "The workbook has no sheet '{name}'; it has {names}.": (
         "Het rekenblad heeft geen werkblad '{name}'; wel {names}."
     ),
-    "Sheet '{name}' has too many rows or columns for a list.": (
-        "Blad '{name}' heeft te veel rijen of kolommen voor een lijst."
+    "The workbook holds {:.0f} MB, unpacked; at most {:.0f} MB can be a list. Copy the list alone "
+    "into a new workbook.": (
+        "Het rekenblad is uitgepakt {:.0f} MB groot; een lijst is hoogstens {:.0f} MB. Kopieer "
+        "alleen de lijst naar een nieuw rekenblad."
+    ),
+    "A sheet of the workbook reaches to row {} and column {}; a list has at most {} rows and {} "
+    "columns. Delete what is far below or beside the list, or copy the list alone into a new "
+    "workbook.": (
+        "Een werkblad loopt door tot rij {} en kolom {}; een lijst heeft hoogstens {} rijen en {} "
+        "kolommen. Verwijder wat ver onder of naast de lijst staat, of kopieer alleen de lijst "
+        "naar een nieuw rekenblad."
     ),
     "The file is empty.": "Het bestand is leeg.",
     "The file is not text in UTF-8, UTF-16 or Windows-1252: it can be damaged.": (

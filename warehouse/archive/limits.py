@@ -19,6 +19,9 @@ MOST_ROWS: Final = 3_000_000
 MOST_LISTED_ROWS: Final = 100_000
 """Rows of a list; a spreadsheet that claims more is not a list."""
 
+WORKBOOK_MAX_BYTES: Final = 100_000_000
+"""Size of a workbook, unpacked; a list of 1,000 tows is 2 MB."""
+
 LONGEST_HEADER: Final = 20_000
 MOST_COLUMNS: Final = 500
 
@@ -54,3 +57,38 @@ def check_header(line: str, columns: int) -> None:
             ),
             line=1,
         )
+
+
+def check_unpacked(size: int) -> None:
+    """Refuses a workbook that unpacks to so many bytes.
+
+    Raises:
+        DefectiveInputError: `too_large`.
+    """
+    if size > WORKBOOK_MAX_BYTES:
+        said = say(
+            "The workbook holds {:.0f} MB, unpacked; at most {:.0f} MB can be a list. Copy the "
+            "list alone into a new workbook.",
+            size / 1e6,
+            WORKBOOK_MAX_BYTES / 1e6,
+        )
+        raise DefectiveInputError("too_large", said)
+
+
+def check_extent(rows: int, columns: int) -> None:
+    """Refuses a sheet that reaches so far.
+
+    Raises:
+        DefectiveInputError: `too_large`.
+    """
+    if rows > MOST_LISTED_ROWS or columns > MOST_COLUMNS:
+        said = say(
+            "A sheet of the workbook reaches to row {} and column {}; a list has at most {} rows "
+            "and {} columns. Delete what is far below or beside the list, or copy the list alone "
+            "into a new workbook.",
+            rows,
+            columns,
+            MOST_LISTED_ROWS,
+            MOST_COLUMNS,
+        )
+        raise DefectiveInputError("too_large", said)

@@ -10,11 +10,13 @@ import io
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
+from zipfile import BadZipFile
 
 from pipeline.errors import DefectiveInputError
 from pipeline.words import say
 from warehouse.archive.files.names import SPREADSHEETS
-from warehouse.archive.limits import MOST_COLUMNS, MOST_LISTED_ROWS
+from warehouse.archive.limits import check_extent
+from warehouse.archive.sheets.extent import check_workbook
 from warehouse.archive.spelling.columns import (
     HEADER_WITHIN,
     Column,
@@ -208,15 +210,14 @@ def sheets_of_workbook(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet
     import python_calamine  # noqa: PLC0415 - only where there is a spreadsheet
 
     try:
+        check_workbook(data)
         book = python_calamine.load_workbook(io.BytesIO(data))
         grids = [book.get_sheet_by_name(name) for name in book.sheet_names]
-    except (python_calamine.CalamineError, OSError, ValueError) as error:
+    except (python_calamine.CalamineError, BadZipFile, OSError, ValueError) as error:
         said = say("The file is not a spreadsheet that can be read: {error}.", error=error)
         raise DefectiveInputError("unreadable_file", said) from error
     for grid in grids:
-        if grid.total_height > MOST_LISTED_ROWS or grid.total_width > MOST_COLUMNS:
-            said = say("Sheet '{name}' has too many rows or columns for a list.", name=grid.name)
-            raise DefectiveInputError("too_large", said)
+        check_extent(grid.total_height, grid.total_width)
     for grid in grids:
         yield replace(_sheet(_cells_of(grid), columns, grid.start), name=grid.name)
 
