@@ -17,6 +17,7 @@ from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE, METHOD
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.editions.compare import diff
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.editions.verify import verify
@@ -34,9 +35,9 @@ def rebuilt(root, tows_per_season):
     write_simulated_archive(root / "archive", simulate_world(settings))
     store = Store(root / "data")
     bring_in(store, root / "archive")
-    ARCHIVE.make(store, (), DAY)
+    ARCHIVE.make(Scope(store, (), today=DAY))
     for name in METHODS:
-        METHOD.make(store, [shipped_method(name)])
+        METHOD.make(Scope(store, [shipped_method(name)]))
     return store
 
 

@@ -13,6 +13,7 @@ import polars as pl
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.store.store import Store
 from tests.intake import bring_in
 
@@ -53,8 +54,9 @@ class World:
             settings = WorldSettings(SEASONS, self.tows_per_season, RATE_HZ)
             write_simulated_archive(self.archive, simulate_world(settings))
         bring_in(self.store, self.archive)
-        if ARCHIVE.is_stale(self.store, ()):
-            ARCHIVE.make(self.store, (), max(self.store.read("listed_tows")["tow_date"]))
+        if ARCHIVE.is_stale(Scope(self.store, ())):
+            last = max(self.store.read("listed_tows")["tow_date"])
+            ARCHIVE.make(Scope(self.store, (), today=last))
 
     def tows(self, count: int | None = None, plain: bool = False) -> pl.DataFrame:
         """Sound tows with their place in the lake, evenly spread over the seasons.

@@ -3,11 +3,11 @@
 import os
 import shutil
 from collections.abc import Callable, Collection, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 from unittest import mock
 
 import dagster as dg
@@ -17,16 +17,20 @@ import pytest
 from filelock import FileLock
 from hypothesis import settings
 
+import herijk.assets.instance
 import herijk.assets.rebuild
-import herijk.assets.runs
+import herijk.assets.stale
+import herijk.assets.workers
 import herijk.dashboards.report_page
-from herijk.assets.report import Report
-from herijk.assets.resources import Setup
-from herijk.assets.side_by_side import Read, Task
+from herijk.assets.progress import Progress
+from herijk.assets.report import Done, Report
+from herijk.assets.stale import Stale
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.build.graph import CONSISTENCY, LINES, STUDIES
+from herijk.warehouse.build.graph import DATABASE, METHOD, STEPS
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.store import Store
 from tests.quiet import Quiet
 
@@ -48,35 +52,39 @@ def _dagster_in_memory(store: Store) -> Iterator[dg.DagsterInstance]:
         yield instance
 
 
-class _Directly:
-    """The work of a rebuild without Dagster's runs, studies and comparisons of types.
+LEFT_OUT: Final = ("studies", "lines", "consistency")
+"""Groups of steps that take two thirds of the time of a small rebuild."""
 
-    They take two thirds of the time of a small rebuild.
-    """
 
-    checks: Final = ()
-
-    def __init__(self, setup: Setup) -> None:
-        self.setup = setup
-
-    def record_index(self) -> None:
-        """Keeps no records."""
-
-    def record_seasons(self, seasons: Sequence[int], found: Sequence[Read]) -> None:
-        """Keeps no records."""
-
-    def build(self, tasks: Sequence[Task]) -> None:
-        store, known = self.setup.store, self.setup.known_methods
-        for task in tasks:
-            step, methods = task.made_by, [known.get(name) for name in task.methods]
-            if step in (STUDIES, LINES, CONSISTENCY):
+def _make_directly(
+    folders: tuple[Path, Path],
+    methods: Sequence[str],
+    seasons: Collection[int] | None,
+    progress: Progress,
+    stale: Stale,
+    done: Done,
+) -> list[object]:
+    """What a rebuild makes without Dagster, and with empty tables where they are left out."""
+    archive, store = folders[0], Store(folders[1])
+    known = [KnownMethods.of(store).get(name) for name in methods]
+    for season in stale.seasons:
+        intake.read_season(store, archive, season)
+        intake.collect_blocks(store, season)
+        done.seasons = sorted({*done.seasons, season})
+    for step in STEPS:
+        for scope in step.stale(store, known):
+            if step.group in LEFT_OUT:
+                partition = scope.at_hand.name if step.per_method else None
                 for name in step.outputs:
-                    store.write(name, TABLES[name].create_empty(), step.made_from(store, methods))
+                    empty = TABLES[name].create_empty()
+                    store.write(name, empty, step.made_from(scope), partition)
             else:
-                task.do()
-
-    def check(self) -> None:
-        """Checks nothing."""
+                step.make(scope)
+            if step is METHOD:
+                applied = {*done.methods, scope.at_hand.name}
+                done.methods = [name for name in methods if name in applied]
+            done.database |= step is DATABASE
+    return []
 
 
 @contextmanager
@@ -86,25 +94,17 @@ def directly(page: bool = False) -> Iterator[None]:
     Args:
         page: make the page about the rebuild too, a quarter of the work.
     """
-
-    def unrecorded(setup: Setup, other: object, work: Callable[[Any], None]) -> list[object]:
-        work(_Directly(setup))
-        return []
-
-    no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
-    no_dagster = mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded)
+    no_site = mock.patch.object(herijk.assets.stale, "site_is_stale", return_value=False)
+    no_dagster = mock.patch.object(herijk.assets.rebuild, "make_assets", _make_directly)
     no_page = mock.patch.object(herijk.dashboards.report_page, "report_pages", return_value={})
-    with no_site, no_dagster, in_one_process(), nullcontext() if page else no_page:
+    with no_site, no_dagster, nullcontext() if page else no_page:
         yield
 
 
 def in_one_process() -> AbstractContextManager[object]:
-    """Inside, a thread helps a rebuild: a process takes seconds to import what it needs."""
-
-    def thread() -> Executor:
-        return ThreadPoolExecutor(1)
-
-    return mock.patch.object(herijk.assets.rebuild, "helper", thread)
+    """Inside, a thread does the heavy work: a process takes seconds to import what it needs."""
+    thread = ThreadPoolExecutor(1)
+    return mock.patch.object(herijk.assets.workers, "workers", return_value=thread)
 
 
 @dataclass(frozen=True)
@@ -130,13 +130,13 @@ class Workbench:
         The whole has Dagster's runs (recorded in memory), studies, comparisons of types, checks and
         pages; most tests do without, and without the page about the rebuild.
         """
-        with self.records_in_memory() if whole else directly(page):
+        with in_one_process(), self.records_in_memory() if whole else directly(page):
             return herijk.assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
 
     @staticmethod
     def records_in_memory() -> AbstractContextManager[object]:
         """Inside, rebuilds keep no records of Dagster's on disk."""
-        return mock.patch.object(herijk.assets.runs, "instance_of", _dagster_in_memory)
+        return mock.patch.object(herijk.assets.instance, "instance_of", _dagster_in_memory)
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""

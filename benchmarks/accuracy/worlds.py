@@ -135,7 +135,7 @@ def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
 
 def simulated(world: str, seed: int) -> Measured:
     """Simulated once for every version of the simulator; sums are kept with seven digits."""
-    version = code_hash("herijk.simulate.worlds", "herijk.pipeline.blocks.sums")
+    version = code_hash("herijk.simulate", "herijk.pipeline.blocks")
     kept = FOLDER / "blocks" / version / f"{world}-{seed}.pickle"
     if kept.exists():
         return _with_sums(pickle.loads(kept.read_bytes()), np.float64)  # noqa: S301, our own file

@@ -26,6 +26,7 @@ from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE, METHOD
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.store.store import Store
 from tests.intake import bring_in
 
@@ -86,10 +87,10 @@ class Ground:
         """Rows of each tow in each table, and the tows of which something is set aside."""
         store = self.store
         bring_in(store, self.archive)
-        ARCHIVE.make(store, (), SEEN)
+        ARCHIVE.make(Scope(store, (), today=SEEN))
         found = {name: store.read(name) for name in ("tows", "tow_runs")}
         for name in METHODS:
-            METHOD.make(store, [shipped_method(name)])
+            METHOD.make(Scope(store, [shipped_method(name)]))
             applied = {table: store.read(table, name) for table in ("run_points", "curves")}
             found |= {f"{table} {name}": frame for table, frame in applied.items()}
         aside = set(store.read("quarantine")["tow_id"].drop_nulls())

@@ -75,8 +75,8 @@ def make_all(archive: Path, data: Path) -> None:
     bring_in(store, archive)
     methods = [shipped_method(name) for name in shipped_methods()]
     for step in STEPS:
-        for some in [[method] for method in methods] if step.per_method else [methods]:
-            step.make(store, some)
+        for scope in step.scopes(store, methods):
+            step.make(scope)
     build_site(store)
 
 

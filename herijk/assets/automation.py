@@ -13,7 +13,7 @@ from pydantic import Field
 from herijk.assets.notify import Notifier
 from herijk.assets.rebuild import rebuild
 from herijk.assets.report import failed_checks, tell, tell_failure
-from herijk.assets.resources import Setup
+from herijk.assets.resources import LogProgress, Setup
 from herijk.assets.settings import Settings
 from herijk.pipeline.errors import (
     HerijkError,
@@ -40,26 +40,6 @@ TRY_AGAIN_S = 300
 TRIES = 3
 
 
-class LogProgress:
-    """Progress as lines in the log of a run."""
-
-    def __init__(self, context: dg.OpExecutionContext) -> None:
-        self._log = context.log
-
-    def expect(self, tows: int) -> None:
-        """How many tows will be read."""
-        self._log.info(f"{tows} tows to read")
-
-    def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        """A tow was read; only one set aside is worth a line."""
-        if set_aside:
-            self._log.warning(f"{tow_id} is set aside")
-
-    def step(self, what: str) -> None:
-        """A step begins."""
-        self._log.info(what)
-
-
 class Which(dg.Config):
     """Seasons to read; none for all."""
 
@@ -77,14 +57,12 @@ def rebuild_archive(
     data, seasons = Path(setup.data), config.seasons or None
     try:
         names = [method.name for method in setup.chosen_methods]
-        report = rebuild(setup.archive_root, data, names, LogProgress(context), seasons)
+        report = rebuild(setup.archive_root, data, names, LogProgress(context.log), seasons)
     except Exception as error:  # whatever it is, it is told
         passes = isinstance(error, UnavailableError) or _is_away(setup.archive_root)
         if passes and context.retry_number < TRIES:
             raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error
         raise _failure(notifier, error) from error
-    # The archive was looked through, which counts for its freshness also when nothing changed.
-    context.log_event(dg.AssetMaterialization("archive_index"))
     for line in [*report.headlines, *tell(notifier, report)]:
         context.log.info(line)
     context.add_output_metadata(
@@ -118,8 +96,11 @@ def rebuild_job() -> None:
     rebuild_archive()
 
 
-def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
-    """Everything, every night; and in the months of towing, the season of that year."""
+def schedules(settings: Settings, is_served: bool) -> list[dg.ScheduleDefinition]:
+    """Everything, every night; and in the months of towing, the season of that year.
+
+    They run where `herijk serve` serves; anybody else has to switch them on.
+    """
 
     def of_the_year(context: dg.ScheduleEvaluationContext) -> dict[str, Any]:
         season = context.scheduled_execution_time.year
@@ -128,7 +109,9 @@ def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
     common: dict[str, Any] = {
         "job": rebuild_job,
         "execution_timezone": settings.timezone,
-        "default_status": dg.DefaultScheduleStatus.RUNNING,
+        "default_status": dg.DefaultScheduleStatus.RUNNING
+        if is_served
+        else dg.DefaultScheduleStatus.STOPPED,
     }
     return [
         dg.ScheduleDefinition(name="nightly", cron_schedule=settings.nightly, **common),
@@ -138,7 +121,7 @@ def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
     ]
 
 
-def archive_sensor(archive: Path) -> dg.SensorDefinition:
+def archive_sensor(archive: Path, is_served: bool) -> dg.SensorDefinition:
     """The sensor that asks for a rebuild when the files of the archive change."""
 
     def look(context: dg.SensorEvaluationContext) -> dg.SensorResult | dg.SkipReason:
@@ -154,7 +137,9 @@ def archive_sensor(archive: Path) -> dg.SensorDefinition:
         evaluation_fn=look,
         job=rebuild_job,
         minimum_interval_seconds=60,
-        default_status=dg.DefaultSensorStatus.RUNNING,
+        default_status=dg.DefaultSensorStatus.RUNNING
+        if is_served
+        else dg.DefaultSensorStatus.STOPPED,
     )
 
 

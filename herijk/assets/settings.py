@@ -57,10 +57,12 @@ class Settings(BaseModel):
     @field_validator("nightly", "campaign")
     @classmethod
     def _is_cron(cls, line: str) -> str:
-        from dagster._utils.schedules import is_valid_cron_schedule  # noqa: PLC0415 - takes a second
+        import dagster as dg  # noqa: PLC0415 - takes a second
 
-        if not is_valid_cron_schedule(line):
-            raise ValueError(f"{line!r} is not a cron line, such as '0 3 * * *'")
+        try:
+            dg.ScheduleDefinition(job_name="rebuild", cron_schedule=line)
+        except dg.DagsterInvalidDefinitionError as error:
+            raise ValueError(f"{line!r} is not a cron line, such as '0 3 * * *'") from error
         return line
 
     @field_validator("timezone")

@@ -1,12 +1,12 @@
 """What Dagster's page shows of a table besides its columns: its first rows, and its page."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 import dagster as dg
 import polars as pl
 
-from herijk.warehouse.build.step import FIRST_ROWS
+FIRST_ROWS: Final = 20
 
 PAGES: Final[Mapping[str, str]] = {
     "site": "index.html",
@@ -34,9 +34,9 @@ def columns_of(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
     return {"dagster/column_schema": dg.TableSchema(columns)}
 
 
-def preview(table: str, frame: pl.DataFrame) -> dict[str, dg.MetadataValue]:
+def preview(table: str, read: Callable[[], pl.DataFrame]) -> dict[str, dg.MetadataValue]:
     """The first rows of a table that people look for; nothing of others."""
-    if table not in PAGES or frame.is_empty():
+    if table not in PAGES or (frame := read()).is_empty():
         return {}
     with pl.Config(
         tbl_formatting="MARKDOWN",
@@ -51,7 +51,9 @@ def preview(table: str, frame: pl.DataFrame) -> dict[str, dg.MetadataValue]:
         return {"preview": dg.MetadataValue.md(str(frame.head(FIRST_ROWS)))}
 
 
-def with_site(assets: Sequence[dg.AssetsDefinition], address: str) -> Sequence[dg.AssetsDefinition]:
+def with_site(
+    assets: Sequence[dg.AssetsDefinition | dg.AssetSpec], address: str
+) -> Sequence[dg.AssetsDefinition | dg.AssetSpec]:
     """Assets that link to their pages of the site, where it is served."""
     return dg.map_asset_specs(
         lambda spec: spec.merge_attributes(metadata=_link(spec.key, address)), assets

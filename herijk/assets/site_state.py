@@ -5,12 +5,15 @@ from typing import Final
 
 from herijk.dashboards.guides import GUIDES, guide_file
 from herijk.warehouse.build.database import DATABASE_TABLE
-from herijk.warehouse.store.code import SENTENCES_IN_DUTCH, code_hash
+from herijk.warehouse.store.code import COMPUTING, code_hash
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store, fingerprint
 from herijk.words import LANGUAGES
 
-SITE_CODE: Final = ("herijk.dashboards.site.render", *SENTENCES_IN_DUTCH)
+SITE_CODE: Final = (
+    *("herijk.dashboards", "herijk.words", "herijk.warehouse.queries"),
+    *("herijk.warehouse.editions", *COMPUTING),
+)
 SITE_TABLE: Final = "site"
 """An empty table that remembers what the site was made from."""
 
@@ -21,7 +24,7 @@ def site_made_from(store: Store) -> str:
     files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates"}]
     files += [guide_file(name, language) for name in GUIDES for language in LANGUAGES]
     return fingerprint(
-        store.made_from(DATABASE_TABLE),
+        store.contents(DATABASE_TABLE),
         code_hash(*SITE_CODE),
         [file_sha256(file) for file in sorted(files)],
     )

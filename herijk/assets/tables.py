@@ -1,59 +1,87 @@
 """The steps of a build as assets: what `warehouse.build.graph` declares, as Dagster sees it."""
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import Final
 
 import dagster as dg
 
-from herijk.assets.events import Result
-from herijk.assets.partitions import methods
+from herijk.assets.progress import Progress
 from herijk.assets.resources import Setup
 from herijk.assets.shown import preview
 from herijk.tables.declare import dy
-from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, FAILED, PUBLISHED
-from herijk.warehouse.build.step import Made, Step, Summary
-from herijk.warehouse.intake.seasons import INDEXED
+from herijk.warehouse.build.inputs import IN_DATABASE, Scope, read_table, state_of_table
+from herijk.warehouse.build.mending import catch_up, mending
+from herijk.warehouse.build.step import Step
+from herijk.warehouse.intake.seasons import SEASON_TABLES
+from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.store import fingerprint
 
 KINDS = {"warehouse_database": "duckdb"}
 """What an asset is stored as, where that is not Parquet."""
 
-OWNERS = {
-    "archive": "team:archive",
-    "method": "team:method",
-    "studies": "team:method",
-    "lines": "team:method",
-    "consistency": "team:method",
+ARCHIVE, METHOD, PUBLISHER = "team:archive", "team:method", "team:register"
+"""Who answers for a table."""
+OWNERS = {"archive": ARCHIVE} | dict.fromkeys(("method", "studies", "lines", "consistency"), METHOD)
+
+READ_AS: Final[Mapping[str, Sequence[str]]] = {
+    **dict.fromkeys(SEASON_TABLES, ("samples",)),
+    "blocks": ("blocks",),
+    "method": ("method_options",),
+    "first_method": ("method_options",),
+    "methods": ("method_options", "register_rules"),
+    "all_tables": IN_DATABASE,
+    **dict.fromkeys(("run_cache", "quarantine_before", "today", "store"), ()),
 }
-"""Who answers for the tables of a step, where it is not who publishes the register."""
-PUBLISHER = "team:register"
+"""The assets behind what a step reads, where that is no asset of the same name."""
 
 
 def step_asset(step: Step) -> dg.AssetsDefinition:
-    """The assets of a step: one per table, any of which can be made alone."""
+    """The assets of a step: one per table."""
 
     @dg.multi_asset(
-        name=step.compute.__name__,
+        name=step.name,
         description=step.compute.__doc__,
         specs=[_spec(step, table) for table in step.outputs],
-        partitions_def=methods if step.per_method else None,
-        check_specs=[dg.AssetCheckSpec(check.name, asset=check.table) for check in step.checks],
-        can_subset=True,
     )
-    def asset(context: dg.AssetExecutionContext, setup: Setup):  # type: ignore[no-untyped-def]
-        chosen = setup.chosen_methods
-        if step.per_method:
-            chosen = [setup.known_methods.get(context.partition_key)]
-        asked = {key.to_user_string() for key in context.selected_asset_keys}
-        made = step.make(setup.store, chosen, wanted=asked)
-        checks = {key.name for key in context.selected_asset_check_keys}
-        for result in results_of(made):
-            if isinstance(result, dg.MaterializeResult) or result.check_name in checks:
-                yield result
+    def asset(setup: Setup, progress: dg.ResourceParam[Progress]) -> Iterator[dg.MaterializeResult]:
+        yield from make(step, setup, progress)
 
     return asset
+
+
+def make(step: Step, setup: Setup, progress: Progress) -> Iterator[dg.MaterializeResult]:
+    """Makes the tables of a step, or confirms them where what they are made of is unchanged."""
+    store, methods = setup.store, setup.chosen_methods
+    new: list[str] = []
+
+    def work() -> None:
+        stale = step.stale(store, methods)
+        if stale:
+            progress.step(step.says)
+        for scope, _ in setup.map(partial(_make, step.name), stale):
+            new.append(scope.at_hand.name)
+
+    mending(store, work, again=partial(catch_up, store, setup.archive_root, methods, step))
+    scope = Scope(store, methods)
+    for table in step.outputs:
+        partitions: Sequence[str | None] = scope.partitions(table) or [None]
+        yield dg.MaterializeResult(
+            asset_key=table,
+            data_version=dg.DataVersion(fingerprint(state_of_table(scope, table))),
+            metadata={
+                "dagster/row_count": sum(store.count_rows(table, p) for p in partitions),
+                "new": list(dict.fromkeys(new)),
+                **preview(table, partial(read_table, scope, table)),
+            },
+        )
+
+
+def _make(name: str, scope: Scope) -> None:
+    """Makes a step by its name: another process has steps of its own."""
+    next(step for step in STEPS if step.name == name).make(scope)
 
 
 def _spec(step: Step, table: str) -> dg.AssetSpec:
@@ -61,26 +89,25 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
     schema = TABLES.get(table)
     return dg.AssetSpec(
         table,
-        deps={dep.asset_key: dep for name in step.inputs for dep in _deps(name)}.values(),
+        deps=[_dep(asset) for asset in dict.fromkeys(_assets_read(step))],
         description=(schema or step.compute).__doc__,
         metadata=None if schema is None else {"dagster/column_schema": _columns(schema)},
-        group_name=step.name,
+        group_name=step.group,
         kinds={KINDS.get(table, "parquet"), "polars"},
-        owners=[OWNERS.get(step.name, PUBLISHER)],
+        owners=[OWNERS.get(step.group, PUBLISHER)],
         tags={} if schema is None else {"herijk/subject": schema.__module__.rpartition(".")[2]},
-        code_version=step.code,
+        code_version=code_hash(*step.code),
     )
 
 
-def _deps(name: str) -> Iterator[dg.AssetDep]:
-    """The asset behind an input of a step; decisions and editions are no assets."""
-    if name in INDEXED:
-        yield dg.AssetDep("archive_index")
-    elif name in SEASON_TABLES or name == BLOCKS:
-        asset = BLOCKS if name == BLOCKS else "samples"
-        yield dg.AssetDep(asset, partition_mapping=dg.AllPartitionMapping())
-    elif name not in (DECISIONS, FAILED, *PUBLISHED):
-        yield dg.AssetDep(name)
+def _assets_read(step: Step) -> Iterator[str]:
+    for name in step.inputs:
+        yield from READ_AS.get(name, (name,))
+
+
+def _dep(asset: str) -> dg.AssetDep:
+    every = dg.AllPartitionMapping() if asset in ("samples", "blocks") else None
+    return dg.AssetDep(asset, partition_mapping=every)
 
 
 def _columns(schema: type[dy.Schema]) -> dg.TableSchema:
@@ -97,24 +124,4 @@ def _columns(schema: type[dy.Schema]) -> dg.TableSchema:
     )
 
 
-def _metadata(table: str, summary: Summary) -> dict[str, Any]:
-    metadata: dict[str, Any] = {"dagster/row_count": summary.rows}
-    if summary.statuses:
-        metadata["statuses"] = dg.MetadataValue.json(summary.statuses)
-    return metadata | preview(table, summary.first)
-
-
-def results_of(made: Made) -> Iterator[Result]:
-    """What a step made, and what does not hold of it."""
-    for table, summary in made.tables.items():
-        yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, summary))
-    for check, faults in made.faults.items():
-        yield dg.AssetCheckResult(
-            check_name=check.name,
-            asset_key=check.table,
-            passed=not faults,
-            metadata={"lost": dg.MetadataValue.json(list(faults))},
-        )
-
-
-STEP_ASSETS = {step.name: step_asset(step) for step in STEPS}
+STEP_ASSETS = [step_asset(step) for step in STEPS]

@@ -7,36 +7,29 @@ and the command.
 """
 
 import sys
-from importlib.metadata import version
+from typing import Any
+from unittest import mock
 
-import dagster as dg
-from dagster._core.nux import set_nux_seen
-from dagster._core.workspace.context import WorkspaceProcessContext
-from dagster._core.workspace.load_target import ModuleTarget
-from dagster_webserver.app import create_app_from_workspace_process_context
+from dagster_webserver.cli import create_dagster_webserver_cli
+from starlette.types import ASGIApp
 
 from herijk.dashboards.guard import guarded, listen
 
 READ_ONLY, MAY_START = "read-only", "may-start"
-DEFINITIONS = ModuleTarget("herijk.assets.definitions", None, None, None)
 
 
 def main(host: str, port: str, rights: str) -> None:
     """Serves until the process is ended."""
-    # Without the form that asks for an address to send news to.
-    set_nux_seen()  # type: ignore[no-untyped-call]
-    with (
-        listen(host, int(port)) as listening,
-        dg.DagsterInstance.get() as instance,
-        WorkspaceProcessContext(
-            instance,
-            DEFINITIONS,
-            version=version("dagster-webserver"),
-            read_only=rights == READ_ONLY,
-        ) as context,
-    ):
-        app = create_app_from_workspace_process_context(context)
-        guarded(app, host).run(sockets=[listening])
+
+    def behind_the_guard(app: ASGIApp, **_: Any) -> None:
+        with listen(host, int(port)) as listening:
+            guarded(app, host).run(sockets=[listening])
+
+    command = create_dagster_webserver_cli()  # type: ignore[no-untyped-call]
+    arguments = ["-m", "herijk.assets.definitions", "-h", host, "-p", port]
+    # It hands its application to Uvicorn: the only place where a guard can be put before it.
+    with mock.patch("uvicorn.run", behind_the_guard):
+        command.main([*arguments, *(["--read-only"] if rights == READ_ONLY else [])])
 
 
 if __name__ == "__main__":

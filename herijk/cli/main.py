@@ -229,8 +229,8 @@ def serve(
     ] = False,
 ) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
+    from herijk.assets.instance import prepare_home, taking_over
     from herijk.assets.rebuild import check_apart
-    from herijk.assets.runs import prepare_home, taking_over
     from herijk.assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
     from herijk.warehouse.store.lock import only_server

@@ -129,14 +129,20 @@ def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[by
     }
     rights = MAY_START if what.may_start else READ_ONLY
     commands = {
-        "Dagster's page": ["herijk.assets.webserver", what.host, str(what.port), rights],
-        "Dagster's daemon": ["dagster._daemon", "run", "-m", "herijk.assets.definitions"],
+        "Dagster's page": [
+            *(sys.executable, "-m", "herijk.assets.webserver"),
+            *(what.host, str(what.port), rights),
+        ],
+        "Dagster's daemon": [
+            str(Path(sys.executable).with_name("dagster-daemon")),
+            *("run", "-m", "herijk.assets.definitions"),
+        ],
     }
     children: dict[str, subprocess.Popen[bytes]] = {}
     try:
-        for name, (module, *arguments) in commands.items():
+        for name, command in commands.items():
             children[name] = subprocess.Popen(  # noqa: S603 - our own arguments
-                [sys.executable, "-m", module, *arguments],
+                command,
                 env=environment,
                 **_TIED_TO_US,
             )

@@ -162,7 +162,7 @@ def _certainty(line: Row, speech: Speech) -> Iterator[str]:
 
 def _best(line: Row, speech: Speech) -> Iterator[str]:
     """What the whole archive makes of the tow, and of its difference from the last one."""
-    if line["cw_best_kg_m"] is None:
+    if line["cw_best_kg_m"] is None or line["own_weight"] is None:
         return
     best = (line[f"cw_best_{end}kg_m"] for end in ("", "lo_", "hi_"))
     value, low, high = (speech.number(number, 2) for number in best)

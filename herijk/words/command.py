@@ -392,10 +392,6 @@ COMMAND: Final[dict[str, str]] = {
     "making the site": "de site maken",
     "checking the tables": "de tabellen controleren",
     "looking at what the archive holds": "kijken wat het archief bevat",
-    "reading {} seasons on the Dask cluster at {}": "{} seizoenen lezen op het Dask-cluster op {}",
-    "season {} could not be read there ({}); reading it here": (
-        "seizoen {} kon daar niet gelezen worden ({}); het wordt hier gelezen"
-    ),
     "Nothing changed: no file was read again, all tables are up to date.": (
         "Er is niets veranderd: geen bestand is opnieuw gelezen, alle tabellen zijn bij."
     ),

@@ -4,11 +4,8 @@ from typing import Final
 
 ERRORS: Final[dict[str, str]] = {
     # The machine, the data folder
-    "the Dask cluster at {} did not finish: {}. Check that its scheduler and workers are "
-    "up, and run it again: what was finished is kept": (
-        "het Dask-cluster op {} kwam niet klaar: {}. Kijk of de scheduler en de workers "
-        "draaien en start opnieuw: wat af is, blijft bewaard"
-    ),
+    "there is no Dask scheduler at {}: {}": "er is geen Dask-scheduler op {}: {}",
+    "this server works on {} and {} alone": "deze server werkt alleen met {} en {}",
     "{}, named by smtp_password_file, cannot be read": (
         "{}, genoemd bij smtp_password_file, is niet te lezen"
     ),
@@ -22,9 +19,9 @@ ERRORS: Final[dict[str, str]] = {
         "{} is niet te begrijpen: {}. Herstel het, of haal het weg: het wordt dan opnieuw "
         "gemaakt met de gewone instellingen"
     ),
-    "to read on {} a library is needed that is not there; install it with: pip install "
+    "to work on {} a library is needed that is not there; install it with: pip install "
     "'herijk[dask]'": (
-        "om op {} te lezen is een bibliotheek nodig die ontbreekt; installeer die met: "
+        "om op {} te werken is een bibliotheek nodig die ontbreekt; installeer die met: "
         "pip install 'herijk[dask]'"
     ),
     "{} ended by itself with status {}; what it said is above": (

@@ -3,14 +3,15 @@
 import dagster as dg
 import polars as pl
 
-from herijk.assets.definitions import ASSETS as DEFINED
+from herijk.assets.archive import OUTSIDE
 from herijk.assets.definitions import build_defs, defs
+from herijk.assets.location import ASSETS as DEFINED
 from herijk.assets.settings import Settings
 from herijk.assets.shown import PAGES, preview, with_site
-from tests.conftest import METHODS
+from herijk.warehouse.intake.seasons import INDEXED
 
 ASSETS = [
-    "archive_index",
+    "about_archive",
     "assessments",
     "best_estimate_weights",
     "blocks",
@@ -27,6 +28,13 @@ ASSETS = [
     "hand_windows",
     "hull_speed",
     "lineage",
+    "list_faults",
+    "listed_boats",
+    "listed_files",
+    "listed_races",
+    "listed_runs",
+    "listed_tows",
+    "listed_windows",
     "log_factors",
     "methods",
     "option_curves",
@@ -37,6 +45,7 @@ ASSETS = [
     "prediction_error",
     "print_reproduction",
     "print_summary",
+    "printed_registers",
     "promise",
     "quality_counts",
     "quarantine",
@@ -74,15 +83,15 @@ ASSETS = [
 ]
 
 CHECKS = [
-    "correction_steps: steps_multiply_to_the_total",
-    "curves: every_tow_has_a_curve_row",
-    "log_factors: log_factors_stayed",
-    "quarantine: few_tows_set_aside",
-    "register: boats_stayed_within_their_intervals",
-    "register: editions_can_be_made_again",
     "samples: most_tows_sound",
-    "tows: every_listed_tow_accounted_for",
+    "warehouse_database: boats_stayed_within_their_intervals",
     "warehouse_database: counts_agree",
+    "warehouse_database: editions_can_be_made_again",
+    "warehouse_database: every_listed_tow_accounted_for",
+    "warehouse_database: every_tow_has_a_curve_row",
+    "warehouse_database: few_tows_set_aside",
+    "warehouse_database: log_factors_stayed",
+    "warehouse_database: steps_multiply_to_the_total",
     "warehouse_database: tables_fit_their_schemas",
 ]
 
@@ -93,7 +102,7 @@ def test_definitions_are_loadable():
 
 def test_assets_are_those_listed():
     keys = defs.resolve_asset_graph().get_all_asset_keys()
-    assert sorted(key.to_user_string() for key in keys) == ASSETS
+    assert sorted(key.to_user_string() for key in keys) == sorted([*ASSETS, *OUTSIDE])
 
 
 def test_checks_are_those_listed():
@@ -103,7 +112,7 @@ def test_checks_are_those_listed():
 
 def test_every_asset_says_what_it_is_and_whose():
     graph = defs.resolve_asset_graph()
-    for node in map(graph.get, graph.get_all_asset_keys()):
+    for node in map(graph.get, graph.materializable_asset_keys):
         assert node.group_name != "default", node.key
         assert node.kinds, node.key
         assert node.owners, node.key
@@ -113,35 +122,40 @@ def test_every_asset_says_what_it_is_and_whose():
 
 def test_every_asset_that_is_a_table_shows_its_columns():
     graph = defs.resolve_asset_graph()
-    nodes = map(graph.get, graph.get_all_asset_keys())
+    nodes = map(graph.get, graph.materializable_asset_keys)
     bare = {n.key.to_user_string() for n in nodes if "dagster/column_schema" not in n.metadata}
-    assert bare == {"archive_index", "site", "warehouse_database"}
+    assert bare == {*INDEXED, "site", "warehouse_database"}
 
 
-def test_one_table_can_be_made_alone(bench):
-    before = {f.name: f.stat().st_mtime_ns for f in _tables(bench)}
-    location = build_defs(str(bench.archive), str(bench.data), Settings(methods=METHODS))
-    alone = dg.AssetSelection.assets("season_ladder")
-    job = dg.define_asset_job("alone", alone - alone.checks())
-    both = dg.Definitions.merge(location, dg.Definitions(jobs=[job]))
-    assert both.resolve_job_def("alone").execute_in_process().success
-    changed = {f.name for f in _tables(bench) if f.stat().st_mtime_ns != before[f.name]}
-    assert changed == {"season_ladder.parquet"}
-    assert not bench.rebuild().done.database  # what was made alone is what a rebuild makes
+def test_an_edge_is_a_table_that_is_read():
+    graph = defs.resolve_asset_graph()
+
+    def read(table):
+        return {key.to_user_string() for key in graph.get(dg.AssetKey(table)).parent_keys}
+
+    assert read("season_ladder") == {"correction_steps", "tows"}
+    assert read("check_counts") == {"assessments"}
+    assert read("race_changes") == {"register_changes", "register_history", "listed_races"}
+    assert read("blocks") == {"samples"}
+    assert read("samples") == {"tow_lists"}
 
 
-def _tables(bench):
-    return (bench.data / "lake" / "tables").glob("*.parquet")
+def test_nothing_begins_by_itself_unless_it_is_served():
+    served = build_defs("archive", "data", Settings(), "http://127.0.0.1:3001/site")
+    for location, status in ((defs, "STOPPED"), (served, "RUNNING")):
+        begins = [*location.schedules, *location.sensors]
+        assert {one.default_status.value for one in begins} == {status}
 
 
 def test_assets_link_to_their_page_where_the_site_is_served():
-    specs = [s for a in with_site(DEFINED, "http://127.0.0.1:3001/site") for s in a.specs]
+    assets = with_site(DEFINED, "http://127.0.0.1:3001/site")
+    specs = [s for a in assets for s in getattr(a, "specs", [a])]
     pages = {s.key.to_user_string(): s.metadata["page"].url for s in specs if "page" in s.metadata}
     assert pages.keys() == PAGES.keys()
     assert pages["register"] == "http://127.0.0.1:3001/site/register.html"
 
 
 def test_a_table_that_people_look_for_is_seen_in_dagster():
-    seen = preview("log_factors", pl.DataFrame({"season": [2009], "factor": [1.04259]}))
+    seen = preview("log_factors", lambda: pl.DataFrame({"season": [2009], "factor": [1.04259]}))
     assert "| 2009   | 1.0426 |" in seen["preview"].md_str
-    assert preview("run_points", pl.DataFrame({"run": [1]})) == {}
+    assert preview("run_points", lambda: pl.DataFrame({"run": [1]})) == {}

@@ -22,7 +22,7 @@ from herijk.assets.automation import (
     schedules,
 )
 from herijk.assets.definitions import build_defs, defs
-from herijk.assets.runs import INSTANCE_SETTINGS
+from herijk.assets.instance import INSTANCE_SETTINGS
 from herijk.assets.settings import Settings
 from tests.conftest import METHODS
 
@@ -44,7 +44,7 @@ class Ticks:
     """The sensor, asked again and again with the cursor it gave."""
 
     def __init__(self, archive, instance):
-        self.sensor, self.cursor = archive_sensor(archive), None
+        self.sensor, self.cursor = archive_sensor(archive, is_served=True), None
         self.instance = instance
 
     def tick(self):
@@ -150,6 +150,7 @@ def test_the_daemon_queues_a_run_for_each_change(archive, tmp_path, monkeypatch)
         ("DAGSTER_HOME", tmp_path / "home"),
         ("HERIJK_ARCHIVE", archive),
         ("HERIJK_DATA", tmp_path / "data"),
+        ("HERIJK_SITE", "http://127.0.0.1:3001/site"),
     ):
         monkeypatch.setenv(name, str(value))
     target = ModuleTarget("herijk.assets.definitions", None, str(ROOT), None)
@@ -194,7 +195,8 @@ def test_a_night_without_a_change_does_no_work_and_says_so(bench):
 
 
 def test_schedules_run_the_rebuild_at_night_and_in_the_season():
-    nightly, campaign = schedules(Settings(campaign="0 12 * 4-9 *", timezone="Europe/Amsterdam"))
+    settings = Settings(campaign="0 12 * 4-9 *", timezone="Europe/Amsterdam")
+    nightly, campaign = schedules(settings, is_served=True)
     assert (nightly.job_name, campaign.job_name) == ("rebuild", "rebuild")
     when = dt.datetime(2026, 5, 8, 12, tzinfo=dt.UTC)
     with dg.DagsterInstance.ephemeral() as instance:

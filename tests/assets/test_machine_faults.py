@@ -11,7 +11,7 @@ import duckdb
 import pytest
 
 import herijk.warehouse.intake.lake
-from herijk.assets.runs import instance_of
+from herijk.assets.instance import instance_of
 from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 from herijk.warehouse.intake.lake import ArchiveChangedError
 from herijk.warehouse.store.machine_faults import machine_faults_explained

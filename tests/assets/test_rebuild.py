@@ -11,9 +11,9 @@ from polars.testing import assert_frame_equal
 import herijk.warehouse.intake.lake
 from herijk.assets.report import Done
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from herijk.warehouse.build.graph import CONSISTENCY, LINES, STUDIES
+from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.store.store import table_digest
-from tests.conftest import METHODS, SMALL, Workbench
+from tests.conftest import LEFT_OUT, METHODS, SMALL, Workbench
 
 TOWS_2009 = "sleeplijsten/sleeplijst_2009.csv"
 ONE = METHODS[:1]
@@ -50,7 +50,7 @@ SUMMED_UP = ("season_ladder", "option_summary", "promise", "contents")
 
 def without_studies(tables: dict[str, pl.DataFrame]) -> dict[str, pl.DataFrame]:
     """The tables that a rebuild makes also where it is not whole."""
-    left_out = {*STUDIES.outputs, *LINES.outputs, *CONSISTENCY.outputs, *SUMMED_UP}
+    left_out = {*SUMMED_UP, *(name for s in STEPS if s.group in LEFT_OUT for name in s.outputs)}
     return {name: frame for name, frame in tables.items() if name not in left_out}
 
 

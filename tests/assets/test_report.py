@@ -17,7 +17,7 @@ import duckdb
 import polars as pl
 import pytest
 
-from herijk.assets.checks import results
+from herijk.assets.checks import CHECKS
 from herijk.assets.notify import Message, Notifier, notifier_of
 from herijk.assets.report import Done, failed_checks, tell
 from herijk.assets.resources import Setup
@@ -161,8 +161,8 @@ def test_all_checks_pass_on_a_sound_archive(built):
 
 
 def test_all_checks_can_be_run_again_after_the_report(built):
-    again = results(Setup(archive="", data=str(built.data), methods=list(METHODS)))
-    assert all(check.passed for check in again)
+    setup = Setup(archive="", data=str(built.data), methods=list(METHODS))
+    assert all(check(setup).passed for check in CHECKS)
 
 
 def test_a_failing_check_of_a_promise_is_an_error_and_a_warning_is_none():

@@ -9,7 +9,7 @@ from herijk.cli.main import app, main
 from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from tests.conftest import Workbench, in_one_process
+from tests.conftest import Workbench
 
 TOW_LIST = "sleeplijsten/sleeplijst_2014.csv"
 BOATS = "sloepregister/sloependata.csv"
@@ -45,8 +45,7 @@ def without_runs(bench, runs):
 def test_one_tow_without_runs_that_are_not_asked_for_is_computed(one_tow, monkeypatch, capsys):
     without_runs(one_tow, "25")
     assert "1,3,4,6" in (one_tow.archive / TOW_LIST).read_text("utf-8")
-    with in_one_process():
-        one_tow.rebuild(METHODS, whole=True)
+    one_tow.rebuild(METHODS, whole=True)
     assert one_tow.table("tow_runs")["run"].to_list() == [1, 3, 4, 6]
     assert one_tow.table("curves")["runs_used"].max() == 4
     for command in (["due"], ["log-error"], ["audit", "FSN101"], ["verify"]):

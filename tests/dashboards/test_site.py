@@ -71,7 +71,7 @@ def test_every_page_says_that_it_is_simulated(site):
 def test_names_are_escaped_everywhere(site, attacked):
     escaped = ATTACK.replace("<", "&lt;").replace(">", "&gt;")
     assert not any(ATTACK in text for text in texts_of(site))
-    for name in ("register.html", boat_path(attacked)):
+    for name in ("due.html", boat_path(attacked)):
         assert escaped in (site / name).read_text("utf-8")
 
 

@@ -11,6 +11,7 @@ from herijk.pipeline.method.definition import Method, shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE, METHOD
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.store.store import Store
 from tests.intake import bring_in
@@ -54,9 +55,9 @@ class EditionBench:
         """Everything that a rebuild does up to the curves."""
         store = self.store
         bring_in(store, self.archive)
-        ARCHIVE.make(store, (), today=DAY)
+        ARCHIVE.make(Scope(store, (), today=DAY))
         for method in methods:
-            METHOD.make(store, [method])
+            METHOD.make(Scope(store, [method]))
 
     def publish(
         self,

@@ -1,75 +1,23 @@
-"""What computes decides what is stale: other words remake nothing, another formula what uses it."""
-
-import datetime as dt
-import shutil
+"""What computes decides what is stale: other words remake nothing, other code what uses it."""
 
 import pytest
 
-from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.inputs import Inputs
-from herijk.warehouse.build.version import MODULES
-from herijk.warehouse.store.code import ADDERS, FAULTS_IN_DUTCH, READERS, Sources
-from herijk.warehouse.store.store import Store
+from herijk.warehouse.build.graph import DATABASE, STEPS
+from herijk.warehouse.build.version import code_version
+from herijk.warehouse.store import code
 from tests.architecture.repository import ROOT
 
-COMPUTES = {"samples": (*READERS, FAULTS_IN_DUTCH), "blocks": ADDERS, "version": MODULES} | {
-    step.name: (step.compute.__module__, *step.words) for step in STEPS
-}
-"""The modules with which everything is computed that a rebuild keeps, and a register line."""
+USED = {"samples": code.READING, "blocks": code.ADDING} | {s.name: s.code for s in STEPS}
+"""The packages with which everything is computed that a rebuild keeps."""
 
 
-@pytest.fixture(scope="module")
-def package(tmp_path_factory):
-    """A copy of the package that a test may edit."""
-    folder = tmp_path_factory.mktemp("package")
-    shutil.copytree(ROOT / "herijk", folder / "herijk", ignore=shutil.ignore_patterns("__pyc*"))
-    return folder
-
-
-@pytest.fixture(scope="module")
-def known(package):
-    """What is known of the modules as they are."""
-    sources = Sources(package)
-    hashes(sources)
-    return sources.known
-
-
-def hashes(sources):
-    return {name: sources.hash_of(*modules) for name, modules in COMPUTES.items()}
-
-
-def stale_after(package, known, file, edit):
-    """What has to be made again when a file of the package is edited."""
-    path = package / "herijk" / file
-    before, text = hashes(Sources(package, dict(known))), path.read_text("utf-8")
-    path.write_text(edit(text), "utf-8")
-    try:
-        after = hashes(Sources(package, dict(known)))
-    finally:
-        path.write_text(text, "utf-8")
-    return {name for name in COMPUTES if before[name] != after[name]}
-
-
-def other_words(text):
-    """Another docstring and a comment."""
-    assert text.startswith('"""')
-    return '"""Other words. ' + text[3:] + "\n# A comment.\n"
-
-
-def another_formula(text):
-    return text + "\n_ANOTHER = 1\n"
-
-
-@pytest.mark.parametrize(
-    "file",
-    [
-        "pipeline/curve.py",
-        "warehouse/archive/samples/text_files.py",
-        "warehouse/build/registers.py",
-    ],
-)
-def test_other_words_make_nothing_stale(package, known, file):
-    assert stale_after(package, known, file, other_words) == set()
+def stale_after(file):
+    """What has to be made again when a file of the package changes."""
+    return {
+        name
+        for name, packages in USED.items()
+        if ROOT / "herijk" / file in {f for package in packages for f in code._modules(package)}
+    }
 
 
 @pytest.mark.parametrize(
@@ -78,55 +26,49 @@ def test_other_words_make_nothing_stale(package, known, file):
         "simulate/boats.py",
         "dashboards/site/pages.py",
         "warehouse/queries/audit.py",
-        "warehouse/archive/lists/registers.py",
         "warehouse/editions/publish.py",
+        "words/archive.py",
+        "words/command.py",
+        "tables/archive.py",
         "cli/main.py",
     ],
 )
-def test_what_computes_no_table_makes_none_stale(package, known, file):
-    assert stale_after(package, known, file, another_formula) == set()
+def test_what_computes_no_table_makes_none_stale(file):
+    assert (ROOT / "herijk" / file).is_file()
+    assert stale_after(file) == set()
 
 
 @pytest.mark.parametrize(
-    ("file", "stale"),
+    ("file", "not_stale"),
     [
-        ("words/command.py", set()),
-        ("words/errors.py", set()),
-        ("words/archive.py", {"samples", "archive"}),
+        ("pipeline/blocks/sums.py", {"samples"}),
+        ("warehouse/archive/samples/text_files.py", {"blocks"}),
+        ("pipeline/curve.py", {"samples", "blocks"}),
     ],
 )
-def test_other_dutch_makes_stale_only_what_is_kept_with_it(package, known, file, stale):
-    assert stale_after(package, known, file, another_formula) == stale
+def test_other_code_makes_stale_what_is_computed_with_it(file, not_stale):
+    assert stale_after(file) == USED.keys() - not_stale
 
 
-@pytest.mark.parametrize(
-    ("file", "stale"),
-    [
-        ("pipeline/blocks/sums.py", {"blocks", "version"}),
-        ("warehouse/archive/samples/text_files.py", {"samples", "version"}),
-        ("warehouse/archive/sheets/row.py", {"archive", "version"}),
-        ("pipeline/season_log/posterior.py", {"method", "studies", "version"}),
-        ("pipeline/studies/options.py", {"studies"}),
-        ("pipeline/consistency/reml.py", {"lines", "consistency"}),
-        (
-            "pipeline/register/register.py",
-            {"method", "register", "studies", "summaries", "version"},
-        ),
-        ("pipeline/register/replay.py", {"summaries"}),
-        ("warehouse/store/database.py", {"database"}),
-    ],
-)
-def test_another_formula_makes_stale_what_uses_it(package, known, file, stale):
-    assert stale_after(package, known, file, another_formula) == stale
+def test_what_writes_the_database_makes_that_alone_stale():
+    assert stale_after("warehouse/store/database.py") == {DATABASE.name}
 
 
-def test_a_step_sees_only_the_inputs_that_it_declares(tmp_path):
-    inputs = Inputs(Store(tmp_path), ("curves",), (), dt.date(2026, 1, 1))
-    with pytest.raises(KeyError, match="tows is not a declared input"):
-        inputs["tows"]
+def test_the_hash_is_of_the_bytes(monkeypatch, tmp_path):
+    for name, text in (("a.py", "x = 1\n"), ("b.py", "y = 2\n")):
+        (tmp_path / name).write_text(text)
+    monkeypatch.setattr(code, "_ROOT", tmp_path)
+    monkeypatch.setattr(code, "_modules", lambda _: list(tmp_path.glob("*.py")))
+    before = code.code_hash.__wrapped__("any")
+    (tmp_path / "b.py").write_text("y = 3\n")
+    assert code.code_hash.__wrapped__("any") != before
+
+
+def test_a_register_line_names_what_computed_it():
+    assert code_version().endswith(code.code_hash(*code.READING, *code.COMPUTING))
 
 
 def test_steps_come_after_those_whose_tables_they_read():
     made = [set(step.outputs) for step in STEPS]
     for number, step in enumerate(STEPS):
-        assert not set(step.inputs) & set().union(*made[number:]), step.name
+        assert not step.reads & set().union(*made[number:]), step.name

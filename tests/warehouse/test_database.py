@@ -9,7 +9,7 @@ import pytest
 
 from herijk.tables.schemas import ABOUT, TABLES
 from herijk.tables.views import VIEWS
-from herijk.warehouse.build.graph import LAKE_ONLY
+from herijk.warehouse.build.inputs import LAKE_ONLY
 from herijk.warehouse.store.database import build_database
 from tests.conftest import Workbench
 

@@ -11,6 +11,7 @@ from polars.testing import assert_frame_equal
 
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.build.graph import ARCHIVE, METHOD
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.store.database import build_database
 from tests.conftest import METHODS, SMALL, Workbench
 from tests.intake import bring_in
@@ -235,7 +236,7 @@ def read_again(bench: Workbench, day: dt.date) -> pl.DataFrame:
     """Brings the archive into the lake as a rebuild of that day does; gives what is set aside."""
     store = bench.store
     bring_in(store, bench.archive)
-    ARCHIVE.make(store, (), today=day)
+    ARCHIVE.make(Scope(store, (), today=day))
     return store.read("quarantine")
 
 
@@ -254,7 +255,7 @@ def test_a_vane_that_reads_minus_180_to_180_is_no_fault(bench, built):
     file.write_text("\n".join(changed) + "\n", "utf-8")
     assert read_again(bench, DAYS[0]).height == 0
     for name in METHODS:
-        METHOD.make(bench.store, [shipped_method(name)])
+        METHOD.make(Scope(bench.store, [shipped_method(name)]))
         new, old = (b.store.read("curves", name).filter(tow_id=tow) for b in (bench, built))
         assert new["cw_kg_m"].item() == pytest.approx(old["cw_kg_m"].item(), rel=1e-6)
 

@@ -28,14 +28,14 @@ import dataclasses, json, shutil, sys
 from pathlib import Path
 from tests.warehouse.edition_bench import METHODS, EditionBench
 from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.build.graph import ARCHIVE, STEPS
+from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.editions.verify import verify
 bench = EditionBench(Path(sys.argv[1]), Path(sys.argv[2]))
 methods = [shipped_method(name) for name in METHODS]
 bench.rebuild(methods)
 for step in STEPS:
-    if step is not ARCHIVE and not step.per_method:
-        step.make(bench.store, methods)
+    for scope in step.stale(bench.store, methods):
+        step.make(scope)
 """
 PUBLISH = """
 bench.publish("2014-1", "as-published")

@@ -22,6 +22,7 @@ from herijk.simulate import WorldSettings, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE
 from herijk.warehouse.build.graph import METHOD as METHOD_STEP
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.build.plausible import with_doubts
 from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish
 from herijk.warehouse.store.editions import read_edition
@@ -56,7 +57,7 @@ class Archive:
 
     def collect(self) -> None:
         bring_in(self.store, self.root)
-        ARCHIVE.make(self.store, (), today=DAY)
+        ARCHIVE.make(Scope(self.store, (), today=DAY))
 
     def quarantined(self) -> dict[str, tuple[str, str]]:
         faults = self.store.read("quarantine").filter(lost="tow")
@@ -67,7 +68,7 @@ class Archive:
         return dict(doubted.select("tow_id", "doubts").rows())
 
     def curves(self) -> pl.DataFrame:
-        METHOD_STEP.make(self.store, [shipped_method(METHOD)])
+        METHOD_STEP.make(Scope(self.store, [shipped_method(METHOD)]))
         return self.store.read("curves", METHOD)
 
 

@@ -198,7 +198,7 @@ def test_a_failing_method_costs_its_rows_alone(tiny, tmp_path):
         bench.table("curves"), tiny.table("curves").filter(method=METHODS[0]), rel_tol=1e-9
     )
     (check,) = [c for c in report.checks if c.check == "nothing_unforeseen"]
-    assert (check.severity, check.found["first"]) == ("ERROR", [f"step method {METHODS[1]}"])
+    assert (check.severity, check.found["first"]) == ("ERROR", [f"step method_tables {METHODS[1]}"])
     report = bench.rebuild()  # not tried again, and still told
     assert [c.severity for c in report.checks] == ["ERROR"]
 

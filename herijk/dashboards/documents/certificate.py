@@ -32,7 +32,7 @@ def certificates(
         "language": language,
         "title": f"{say('certificate')} {fsn_no or ''} {edition}".replace("  ", " "),
         "kind": f"{say('certificate')} · {speech.edition(edition)}",
-        "simulated": say("simulated") if about.get("simulated") == "true" else "",
+        "simulated": say("simulated") if views.simulated(edition) else "",
         "curve_title": say("boat_curve"),
         "power_title": say("certificate_power"),
         "power_head": [say("speed_short"), say("cw"), say("certificate_watts")],

@@ -23,14 +23,13 @@ from herijk.dashboards.site.parts import (
     once_for_methods,
 )
 from herijk.warehouse.queries.answers import (
-    DRAFT,
     answers,
     newest_edition,
     own_races,
     season_faults,
 )
 from herijk.warehouse.queries.documents import curve_of
-from herijk.warehouse.queries.views import Views
+from herijk.warehouse.queries.views import DRAFT, Views
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
@@ -136,7 +135,7 @@ def _answers(views: Views, edition: str) -> dict[str, list[Answer]]:
     races = own_races(views, compared[0] if compared.len() else None, edition)
     crew = ["fsn_no", "rowers", "crew_class"]
     by_crew = races.partition_by(crew, as_dict=True, maintain_order=True)
-    faults = season_faults(views)
+    faults = season_faults(views) if edition.startswith(DRAFT) else {}  # an edition holds none
     by_boat: dict[str, list[Answer]] = defaultdict(list)
     for line in lines.to_dicts():
         by_boat[line["fsn_no"]].append(

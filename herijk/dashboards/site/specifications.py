@@ -51,7 +51,7 @@ def _kept(name: str, make: Callable[[], str]) -> dict[str, Any]:
 @cache
 def _made_from() -> str:
     versions = [version(name) for name in ("altair", "vl-convert-python")]
-    return fingerprint(versions, WORDS, code_hash(__name__))
+    return fingerprint(versions, WORDS, code_hash("herijk.dashboards"))
 
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:

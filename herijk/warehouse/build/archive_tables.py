@@ -3,7 +3,6 @@
 import dataclasses
 import datetime as dt
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -14,13 +13,11 @@ from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import OF_A_HEADER
 from herijk.warehouse.archive.lists.windows import outside_run
+from herijk.warehouse.build.inputs import Blocks
 from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
 from herijk.warehouse.build.same_samples import CONTENT, same_samples
-from herijk.warehouse.store.unforeseen import FAILED_TOWS, tow_key
+from herijk.warehouse.store.unforeseen import tow_key
 from herijk.words import say
-
-if TYPE_CHECKING:
-    from herijk.warehouse.build.inputs import Inputs
 
 
 class NothingSoundError(MissingKnowledgeError):
@@ -35,40 +32,49 @@ class NothingSoundError(MissingKnowledgeError):
         self.tables = tables
 
 
-def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+def archive_tables(
+    list_faults: pl.DataFrame,
+    listed_boats: pl.DataFrame,
+    listed_windows: pl.DataFrame,
+    season_tows: pl.DataFrame,
+    season_runs: pl.DataFrame,
+    season_index: pl.DataFrame,
+    blocks: Blocks,
+    failed_tows: pl.DataFrame,
+    quarantine_before: pl.DataFrame,
+    today: dt.date,
+) -> dict[str, pl.DataFrame]:
     """Boats, sound tows with their runs and windows, and everything that was set aside.
 
     Raises:
         NothingSoundError: no tow is sound.
     """
-    index = _with_failed(inputs["season_index"], inputs["season_tows"], inputs[FAILED_TOWS])
+    index = _with_failed(season_index, season_tows, failed_tows)
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
-    contents = inputs.blocks("tow_id", "run", "second", *CONTENT)
+    contents = blocks.columns("tow_id", "run", "second", *CONTENT)
     contents = contents.join(sound, on="tow_id", how="semi", maintain_order="left")
     present = contents.group_by("tow_id", "run", maintain_order=True).agg(
         seconds=pl.col("second").max() + 1
     )
-    listed = _with_what_was_read(inputs["season_tows"].join(sound, on="tow_id", how="semi"), index)
-    runs_read = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
+    listed = _with_what_was_read(season_tows.join(sound, on="tow_id", how="semi"), index)
+    runs_read = season_runs.join(present, on=["tow_id", "run"], how="semi")
     tows, contradicted = judged_tows(
-        with_boat_types(listed, inputs["listed_boats"]), inputs.run_blocks(runs_read), contents
+        with_boat_types(listed, listed_boats), blocks.of_runs(runs_read), contents
     )
     sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
-    windows = inputs["listed_windows"].join(runs, on=["tow_id", "run"], how="semi")
+    windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
     beyond = frame_of(Faults, map(dataclasses.asdict, outside_run(windows, present)))
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
     known = [name for name in Faults.column_names() if name in index.columns]
     unsound = index.drop_nulls("reason_code").select(known)
-    set_aside = pl.concat(
-        [inputs["list_faults"], beyond, unsound, losses, contradicted], how="diagonal"
-    )
+    set_aside = pl.concat([list_faults, beyond, unsound, losses, contradicted], how="diagonal")
     tables = {
-        "boats": inputs["listed_boats"].unique("fsn_no", keep="last", maintain_order=True),
-        "seasons": _seasons(inputs["season_tows"], sound, losses),
+        "boats": listed_boats.unique("fsn_no", keep="last", maintain_order=True),
+        "seasons": _seasons(season_tows, sound, losses),
         "tows": _with_lost_runs(tows, losses),
         "tow_runs": _with_lost_seconds(runs, losses),
         "hand_windows": windows.join(beyond, on=["path", "line"], how="anti"),
-        "quarantine": _dated(set_aside, inputs.earlier("quarantine"), inputs.today),
+        "quarantine": _dated(set_aside, quarantine_before, today),
     }
     if tables["tows"].is_empty():
         raise NothingSoundError(_why_nothing(tables["quarantine"]), tables)
@@ -192,10 +198,3 @@ def _dated(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.Da
     return faults.join(
         first, on=key, how="left", nulls_equal=True, maintain_order="left"
     ).with_columns(pl.col("lost").fill_null(lost), pl.col("first_seen").fill_null(today))
-
-
-def unaccounted_tows(inputs: "Inputs", made: Mapping[str, pl.DataFrame]) -> list[str]:
-    """Listed tows of the seasons read that are neither accepted nor set aside: there are none."""
-    known = pl.concat([made[name].select("tow_id") for name in ("tows", "quarantine")])
-    lost = inputs["season_tows"].join(known, on="tow_id", how="anti")
-    return list(lost["tow_id"])

@@ -1,27 +1,26 @@
 """Which tow it is that makes a step fail: found by halving, as many are computed at once."""
 
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
-import polars as pl
-
-from herijk.warehouse.build.inputs import Inputs
 from herijk.warehouse.store.unforeseen import FailedTowsError, in_short, is_unforeseen, traced
 
-Compute = Callable[[Inputs], Mapping[str, pl.DataFrame]]
+Compute = Callable[[Sequence[str]], object]
+"""Does the work of a step for some tows."""
 
 LARGEST_SHARE: Final = 0.1
 """Where more of the tows fail, it is no tow that fails (inferred)."""
 
 
-def failed_tows(compute: Compute, inputs: Inputs, error: BaseException) -> FailedTowsError | None:
+def failed_tows(
+    compute: Compute, tows: Sequence[str], error: BaseException
+) -> FailedTowsError | None:
     """The tows that make a step fail as it did, each by itself; None where it is no tow."""
-    tows = inputs.tow_ids()
     most = max(1, int(LARGEST_SHARE * len(tows)))
 
     def failing(chosen: Sequence[str], found: int) -> list[str]:
-        if not chosen or found > most or not _fails(compute, inputs.only(chosen), error):
+        if not chosen or found > most or not _fails(compute, chosen, error):
             return []
         if len(chosen) == 1:
             return list(chosen)
@@ -35,10 +34,10 @@ def failed_tows(compute: Compute, inputs: Inputs, error: BaseException) -> Faile
     return FailedTowsError(tuple(alone), in_short(error), traced(error))
 
 
-def _fails(compute: Compute, inputs: Inputs, as_before: BaseException) -> bool:
+def _fails(compute: Compute, tows: Sequence[str], as_before: BaseException) -> bool:
     """Whether a step fails in the same place."""
     try:
-        compute(inputs)
+        compute(tows)
     except BaseException as error:
         if not is_unforeseen(error):
             return False

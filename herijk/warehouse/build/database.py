@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import polars as pl
 
@@ -14,9 +14,6 @@ from herijk.warehouse.store.database import build_database, left_wal
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.package import Origin, Rights, package_is_whole, write_package
 from herijk.warehouse.store.store import Store, fingerprint
-
-if TYPE_CHECKING:
-    from herijk.warehouse.build.inputs import Inputs
 
 
 def _meanings(schema: type[dy.Schema]) -> list[str]:
@@ -33,15 +30,16 @@ MEANINGS: Final = str(
 """What the file says of its tables, and its views."""
 
 
-def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+def warehouse_database(
+    all_tables: Mapping[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
+) -> dict[str, pl.DataFrame]:
     """All tables in one DuckDB file, swapped in whole; then those of the lake are described."""
-    tables = {name: ordered(name, inputs.take(name)) for name in inputs.names if name in TABLES}
-    tables["about"] = _about(inputs.store)
+    tables = {name: ordered(name, all_tables[name]) for name in all_tables}
+    tables["about"] = _about(about_archive)
     tables["contents"] = _contents(tables)
-    build_database(inputs.store.database, tables)
-    files = _files(inputs.store, tables)
-    write_package(inputs.store.table_folder, files, _origin(tables))
-    sha256 = pl.lit(file_sha256(inputs.store.database)).alias("sha256")
+    build_database(store.database, tables)
+    write_package(store.table_folder, _files(store, tables), _origin(tables))
+    sha256 = pl.lit(file_sha256(store.database)).alias("sha256")
     return {DATABASE_TABLE: tables["contents"].select("table", "rows", sha256)}
 
 
@@ -58,11 +56,13 @@ def database_without_tows(store: Store, tables: Mapping[str, pl.DataFrame]) -> N
     if not store.database.exists():
         empty = {name: schema.create_empty() for name, schema in TABLES.items()}
         known = {name: conform(name, frame) for name, frame in tables.items()}
-        build_database(store.database, {**empty, **known, "about": _about(store)})
+        build_database(
+            store.database, {**empty, **known, "about": _about(store.read("about_archive"))}
+        )
 
 
-def _about(store: Store) -> pl.DataFrame:
-    archive = store.read("about_archive").row(0, named=True)
+def _about(about_archive: pl.DataFrame) -> pl.DataFrame:
+    archive = about_archive.row(0, named=True)
     about = {
         "simulated": str(archive["simulated"]).lower(),
         "code_version": code_version(),

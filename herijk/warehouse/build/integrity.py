@@ -4,16 +4,15 @@ Reads only. What checks are called and how bad they are is said in `assets.check
 """
 
 from collections.abc import Sequence
-from typing import Final
+
+import polars as pl
 
 from herijk.pipeline.method.definition import Method
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.build.graph import DATABASE
-from herijk.warehouse.build.inputs import METHOD_TABLES
+from herijk.warehouse.build.inputs import IN_DATABASE, PER_METHOD
+from herijk.warehouse.build.studies import ladders_that_do_not_multiply
 from herijk.warehouse.store.database import open_database
-from herijk.warehouse.store.store import Store, count_rows
-
-DATABASED: Final = tuple(name for name in DATABASE.inputs if name in TABLES)
+from herijk.warehouse.store.store import Store
 
 
 def schema_faults(store: Store) -> list[str]:
@@ -21,35 +20,51 @@ def schema_faults(store: Store) -> list[str]:
     with open_database(store.database) as db:
         return [
             f"{name} is not as declared in herijk/tables"
-            for name in DATABASED
+            for name in IN_DATABASE
             if not TABLES[name].is_valid(db.sql(f'FROM "{name}"').pl())
         ]
 
 
 def count_faults(store: Store, methods: Sequence[Method]) -> list[str]:
-    """Tables with other numbers of rows than in the lake, and methods that lost a tow."""
-    expected = {name: _rows_in_lake(store, name, methods) for name in DATABASED}
+    """Tables with other numbers of rows than in the lake."""
+    expected = {name: _rows_in_lake(store, name, methods) for name in IN_DATABASE}
     with open_database(store.database) as db:
         counts = {name: len(db.table(name)) for name in expected}
-        curves = dict(db.sql("SELECT method, count(*) FROM curves GROUP BY method").fetchall())
     return [
-        *(
-            f"{name} has {counts[name]} rows, and {number} in the lake"
-            for name, number in expected.items()
-            if counts[name] != number
-        ),
-        *(
-            f"{m.name} has {curves.get(m.name, 0)} curves of {expected['tows']} tows"
-            for m in methods
-            if curves.get(m.name) != expected["tows"]
-        ),
+        f"{name} has {counts[name]} rows, and {number} in the lake"
+        for name, number in expected.items()
+        if counts[name] != number
     ]
 
 
+def lost_curves(store: Store, methods: Sequence[Method]) -> list[str]:
+    """Methods that lost a tow."""
+    with open_database(store.database) as db:
+        curves = dict(db.sql("SELECT method, count(*) FROM curves GROUP BY method").fetchall())
+        tows = len(db.table("tows"))
+    return [
+        f"{m.name} has {curves.get(m.name, 0)} curves of {tows} tows"
+        for m in methods
+        if curves.get(m.name) != tows
+    ]
+
+
+def lost_tows(store: Store) -> list[str]:
+    """Listed tows of the seasons read that are neither accepted nor set aside: there are none."""
+    known = pl.concat([store.read(name, columns=["tow_id"]) for name in ("tows", "quarantine")])
+    return list(store.read_all("season_tows").join(known, on="tow_id", how="anti")["tow_id"])
+
+
+def broken_ladders(store: Store, methods: Sequence[Method]) -> list[str]:
+    """Tows of which the factors of a ladder do not multiply to its total."""
+    names = [method.name for method in methods]
+    return ladders_that_do_not_multiply(store.read_all("correction_steps", names))
+
+
 def _rows_in_lake(store: Store, name: str, methods: Sequence[Method]) -> int:
-    if name not in METHOD_TABLES:
-        return count_rows(store.table_path(name))
-    return sum(count_rows(store.table_path(name, m.name)) for m in methods)
+    if name not in PER_METHOD:
+        return store.count_rows(name)
+    return sum(store.count_rows(name, m.name) for m in methods)
 
 
 def set_aside_tows(store: Store) -> tuple[int, int]:

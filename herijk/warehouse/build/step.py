@@ -1,48 +1,38 @@
-"""A step of a build: the tables it makes, the tables it is made from, and the function between.
+"""A step of a build: a function from tables to tables, and the tables that it makes.
 
-Everything else follows from the declaration: the fingerprint of its tables, whether they are
-stale, and (in `assets`) Dagster's assets and their edges. A function sees nothing but the inputs
-that its step declares, so a declaration cannot leave one out.
+Everything else follows: what it reads from the names of its parameters, the fingerprint of its
+tables, whether they are stale, and (in `assets`) Dagster's assets and their edges.
 """
 
-import datetime as dt
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.method.definition import Method
+from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.tables.frames import dtypes
 from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.build.archive_tables import NothingSoundError
 from herijk.warehouse.build.border import failed_tows
 from herijk.warehouse.build.database import database_without_tows
-from herijk.warehouse.build.inputs import ARCHIVE_TABLES, METHOD_TABLES, Inputs, made_from
-from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.build.inputs import (
+    ARCHIVE_TABLES,
+    IN_DATABASE,
+    OTHERS,
+    Scope,
+    argument,
+    state,
+)
+from herijk.warehouse.store.code import COMPUTING, code_hash
 from herijk.warehouse.store.store import Store, fingerprint
-from herijk.warehouse.store.unforeseen import failures, forget, is_unforeseen, note, traced
+from herijk.warehouse.store.unforeseen import forget, is_unforeseen, note, traced
 
 QUARANTINE: Final = "quarantine"
-
-FIRST_ROWS: Final = 20
-"""Rows of a table that Dagster's page shows."""
-
-
-@dataclass(frozen=True)
-class Check:
-    """What must hold of a table that a step made.
-
-    Attributes:
-        name: what the check is called.
-        table: the table it is about.
-        faults: what does not hold, given the inputs of the step and its outputs; empty if all does.
-    """
-
-    name: str
-    table: str
-    faults: Callable[[Inputs, Mapping[str, pl.DataFrame]], Sequence[str]]
 
 
 @dataclass(frozen=True)
@@ -50,168 +40,139 @@ class Step:
     """One step of a build.
 
     Attributes:
-        name: what the step is called.
-        says: what happens, for people who wait; `{}` is the name of the method.
-        inputs: names of the tables it reads.
+        group: what it is about.
+        says: what happens, for people who wait.
+        compute: makes the outputs; its docstring says what they are, its parameters what it reads.
         outputs: names of the tables it makes.
-        compute: makes the outputs; its docstring says what they are.
-        checks: what must hold of the outputs.
-        of_method: what else of a method its outputs depend on, beside options and name.
-        words: modules with texts that the outputs hold; texts count nowhere else.
-        also: what else the outputs follow from, beside inputs, methods and code.
+        code: packages with which it computes.
+        also: what else the outputs follow from, beside inputs and code.
         is_whole: whether what it makes outside the lake is still there and undamaged.
     """
 
-    name: str
+    group: str
     says: str
-    inputs: tuple[str, ...]
+    compute: Callable[..., Mapping[str, pl.DataFrame]]
     outputs: tuple[str, ...]
-    compute: Callable[[Inputs], Mapping[str, pl.DataFrame]]
-    checks: tuple[Check, ...] = ()
-    of_method: Callable[[Method], object] = lambda _: None
-    words: tuple[str, ...] = ()
+    code: tuple[str, ...] = COMPUTING
     also: str = ""
     is_whole: Callable[[Store], bool] = lambda _: True
 
     @property
+    def name(self) -> str:
+        """What the step is called."""
+        return self.compute.__name__
+
+    @cached_property
+    def inputs(self) -> tuple[str, ...]:
+        """What the step reads, as `warehouse.build.inputs` knows it."""
+        return tuple(inspect.signature(self.compute).parameters)
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """The tables among them."""
+        tables = {name for name in self.inputs if name == "blocks" or name not in OTHERS}
+        return frozenset(tables | {*(IN_DATABASE if "all_tables" in self.inputs else ())})
+
+    @property
     def per_method(self) -> bool:
         """Whether the step is made once for every method."""
-        return set(self.outputs) <= set(METHOD_TABLES)
+        return "method" in self.inputs
 
     @property
     def may_fail(self) -> bool:
         """Whether a rebuild goes on without its rows: without those of all tows there is none."""
         return set(self.outputs) <= set(TABLES) and set(self.outputs).isdisjoint(ARCHIVE_TABLES)
 
-    @property
-    def knows_methods(self) -> bool:
-        """Whether what it makes depends on methods at all."""
-        return self.per_method or not set(self.inputs).isdisjoint(METHOD_TABLES)
+    def scopes(self, store: Store, methods: Sequence[Method]) -> list[Scope]:
+        """One for each time that the step is made.
 
-    @property
-    def code(self) -> str:
-        """Hash of the code that computes the outputs, and of the texts that they hold."""
-        return code_hash(self.compute.__module__, *self.words)
+        Methods that estimate take longest, so they begin: all processes are busy to the end.
+        """
+        scope = Scope(store, methods)
+        if not self.per_method:
+            return [scope]
+        longest_first = sorted(methods, key=lambda method: method.estimates_logs, reverse=True)
+        return [replace(scope, method=method) for method in longest_first]
 
-    def made_from(self, store: Store, methods: Sequence[Method]) -> str:
+    def stale(self, store: Store, methods: Sequence[Method]) -> list[Scope]:
+        """Those for which the outputs have to be made again."""
+        return [scope for scope in self.scopes(store, methods) if self.is_stale(scope)]
+
+    def is_stale(self, scope: Scope) -> bool:
+        """Whether the outputs have to be made again."""
+        made_from, partition = self.made_from(scope), self._partition(scope)
+        kept = (scope.store.made_from(name, partition) == made_from for name in self.outputs)
+        return not all(kept) or not self.is_whole(scope.store)
+
+    def made_from(self, scope: Scope) -> str:
         """Fingerprint of all that the outputs follow from."""
         return fingerprint(
-            {name: made_from(store, name, methods) for name in self.inputs},
-            [
-                (m.name, m.content_hash, str(self.of_method(m)))
-                for m in methods
-                if self.knows_methods
-            ],
-            {n: str(dtypes(TABLES[n])) for n in self.outputs if n in TABLES},
+            {name: state(scope, name) for name in self.inputs},
+            {name: str(dtypes(TABLES[name])) for name in self.outputs if name in TABLES},
             self.also,
-            self.code,
+            code_hash(*self.code),
         )
 
-    def is_stale(self, store: Store, methods: Sequence[Method]) -> bool:
-        """Whether the outputs have to be made again."""
-        made_from = self.made_from(store, methods)
-        partition = self._partition(methods)
-        kept = (store.made_from(name, partition) == made_from for name in self.outputs)
-        return not all(kept) or not self.is_whole(store)
-
-    def make(
-        self,
-        store: Store,
-        methods: Sequence[Method],
-        today: dt.date | None = None,
-        wanted: Collection[str] | None = None,
-    ) -> "Made":
+    def make(self, scope: Scope) -> None:
         """Makes the outputs and writes them.
 
-        Args:
-            store: the data folder.
-            methods: those to apply, or the one where the step is made per method.
-            today: the day that is noted where something is seen for the first time.
-            wanted: the outputs to write; None for all. Others stay as they are, and stale.
+        Raises:
+            FailedTowsError: some tows make the step fail; without them it can be made.
+            NothingSoundError: no tow is sound.
         """
         try:
-            return self._make(store, methods, today or dt.date.today(), wanted)
+            made_from = self.made_from(scope)
+            made = self._tables(scope)
+            for name in self.outputs:
+                frame = conform(name, made[name]) if name in TABLES else made[name]
+                scope.store.write(name, frame, made_from, self._partition(scope))
         finally:
             pa.system_memory_pool().release_unused()  # the C library keeps what arrays took
 
-    def _make(
-        self,
-        store: Store,
-        methods: Sequence[Method],
-        today: dt.date,
-        wanted: Collection[str] | None,
-    ) -> "Made":
-        made_from = self.made_from(store, methods)
-        inputs = Inputs(store, self.inputs, methods, today)
-        failure = " ".join(("step", self.name, *(m.name for m in methods if self.per_method)))
+    def _tables(self, scope: Scope) -> Mapping[str, pl.DataFrame]:
+        """What the function makes; empty tables where it fails, and that is kept."""
+        root, failure = scope.store.root, self._failure(scope)
         try:
-            made = dict(self.compute(inputs))
+            made = self._computed(scope)
         except NothingSoundError as error:
-            store.write(QUARANTINE, conform(QUARANTINE, error.tables[QUARANTINE]), "")
-            database_without_tows(store, error.tables)
+            set_aside = conform(QUARANTINE, error.tables[QUARANTINE])
+            scope.store.write(QUARANTINE, set_aside, "")
+            database_without_tows(scope.store, error.tables)
             raise
         except BaseException as error:
             if not is_unforeseen(error):
                 raise
-            failed = failed_tows(self.compute, inputs, error)
+            failed = failed_tows(
+                lambda tows: self._computed(scope.only(tows)), self._tow_ids(scope), error
+            )
             if failed is not None:
                 raise failed from error
             if not self.may_fail:
                 raise
-            note(store.root, failure, traced(error))
-            made = {name: TABLES[name].create_empty() for name in self.outputs}
-        else:
-            forget(store.root, failure)
-        partition = self._partition(methods)
-        tables = {
-            name: conform(name, made.pop(name)) if name in TABLES else made.pop(name)
-            for name in self.outputs
-            if wanted is None or name in wanted
-        }
-        for name, frame in tables.items():
-            store.write(name, frame, made_from, partition)
-        faults = {
-            check: list(check.faults(inputs, tables))
-            for check in self.checks
-            if check.table in tables and failure not in failures(store.root)
-        }
-        return Made({name: Summary.of(frame) for name, frame in tables.items()}, faults)
+            note(root, failure, traced(error))
+            return {name: TABLES[name].create_empty() for name in self.outputs}
+        forget(root, failure)
+        return made
 
-    def _partition(self, methods: Sequence[Method]) -> str | None:
-        return methods[0].name if self.per_method else None
+    def _computed(self, scope: Scope) -> Mapping[str, pl.DataFrame]:
+        arguments = {name: argument(scope, name) for name in self.inputs}
+        try:
+            return self.compute(**arguments)
+        finally:
+            cache = arguments.get("run_cache")
+            if isinstance(cache, RunCache):
+                cache.let_go()
 
+    def _tow_ids(self, scope: Scope) -> list[str]:
+        """The tows that the step works on, sorted; none where it knows of no tow."""
+        listed = next((name for name in ("tows", "season_tows") if name in self.inputs), None)
+        if listed is None:
+            return []
+        table = argument(scope, listed)
+        return sorted(table["tow_id"].unique()) if isinstance(table, pl.DataFrame) else []
 
-@dataclass(frozen=True)
-class Summary:
-    """What is told of a table; whole, those of all methods would fill the memory.
+    def _failure(self, scope: Scope) -> str:
+        return " ".join(filter(None, ("step", self.name, self._partition(scope))))
 
-    Attributes:
-        rows: how many it has.
-        statuses: how many of them have each status, where they have one.
-        first: the first of them.
-    """
-
-    rows: int
-    statuses: Mapping[str, int]
-    first: pl.DataFrame
-
-    @classmethod
-    def of(cls, frame: pl.DataFrame) -> "Summary":
-        """The summary of a table."""
-        known = "status" in frame.columns
-        statuses = frame["status"].value_counts().sort("status").rows() if known else ()
-        first = pl.all().gather(range(min(FIRST_ROWS, frame.height)))  # a slice would keep all
-        return cls(frame.height, dict(statuses), frame.select(first))
-
-
-@dataclass(frozen=True)
-class Made:
-    """What a step made.
-
-    Attributes:
-        tables: summaries of the outputs, by name.
-        faults: what does not hold of them, by check.
-    """
-
-    tables: Mapping[str, Summary]
-    faults: Mapping[Check, Sequence[str]]
+    def _partition(self, scope: Scope) -> str | None:
+        return scope.at_hand.name if self.per_method else None

@@ -1,19 +1,19 @@
 """What the steps of a method change, one after the other, and how much its options matter."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 import polars as pl
 
 from herijk.pipeline.method.definition import Method
+from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.studies.ladder import ladder
 from herijk.pipeline.studies.options import beside_uncertainty, option_effects
 from herijk.pipeline.studies.tool_options import option_curves, tick_effects
+from herijk.tables.declare import dy
 from herijk.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
-from herijk.warehouse.build.method_tables import blocks_of, run_cache
-
-if TYPE_CHECKING:
-    from herijk.warehouse.build.inputs import Inputs
+from herijk.warehouse.build.inputs import Blocks
+from herijk.warehouse.build.method_tables import runs_with_blocks
 
 FIRST_PUBLISHED: Final = "as-published-2014"
 """Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
@@ -34,45 +34,54 @@ MOST_APART: Final = 1e-10
 """Rounding may make the factors of a ladder and its total so different."""
 
 
-def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
-    """The ladder from the first method to each other, and the studies of options."""
-    blocks, tows, (first, *others) = blocks_of(inputs), inputs["tows"], inputs.methods
-    links = {m.name: _of(m, inputs["tow_instruments"]) for m in inputs.methods}
-    with run_cache(inputs) as cache:
+def study_tables(
+    method: Method,
+    first_method: Method,
+    tows: pl.DataFrame,
+    tow_runs: pl.DataFrame,
+    hand_windows: pl.DataFrame,
+    blocks: Blocks,
+    tow_instruments: pl.DataFrame,
+    curves: pl.DataFrame,
+    run_cache: RunCache,
+) -> dict[str, pl.DataFrame]:
+    """The ladder from the first method to this one, and the studies of its options."""
+    runs = runs_with_blocks(tow_runs, hand_windows, blocks)
+    links, known = _of(method, tow_instruments), (tows, runs)
+    effects, ticked = [], []
+    if method.name in TICKED:
+        ticked = [option_curves(method, *known, links, run_cache)]
+        effects = [(TOOL, tick_effects(ticked[0]))]
+    if method.name in JUDGED:
+        effects.append((JUDGEMENT, option_effects(method, *known, links, run_cache)))
+    ladders = []
+    if method != first_method:
+        old, new = _in_order(first_method, method)
+        both = _of(old, tow_instruments), _of(new, tow_instruments)
         ladders = [
-            ladder(old, new, tows, blocks, (links[old.name], links[new.name]), cache).with_columns(
+            ladder(old, new, *known, both, run_cache).with_columns(
                 pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
             )
-            for old, new in (_in_order(first, other) for other in others)
         ]
-        ticked = {
-            m: option_curves(m, tows, blocks, links[m.name], cache)
-            for m in inputs.methods
-            if m.name in TICKED
-        }
-        effects = [
-            *((m, TOOL, tick_effects(curves)) for m, curves in ticked.items()),
-            *(
-                (m, JUDGEMENT, option_effects(m, tows, blocks, links[m.name], cache))
-                for m in inputs.methods
-                if m.name in JUDGED
-            ),
-        ]
-        cache.clear()  # no later step applies a method
-    all_effects = [
-        beside_uncertainty(frame, _of(m, inputs["curves"])).with_columns(
-            pl.lit(m.name).alias("method"), pl.lit(study).alias("study")
-        )
-        for m, study, frame in effects
-    ]
-    curves = [frame.with_columns(pl.lit(m.name).alias("method")) for m, frame in ticked.items()]
     return {
-        "correction_steps": pl.concat(ladders) if ladders else CorrectionSteps.create_empty(),
-        "option_effects": (
-            pl.concat(all_effects, how="diagonal") if all_effects else OptionEffects.create_empty()
+        "correction_steps": _together(CorrectionSteps, ladders),
+        "option_effects": _together(
+            OptionEffects,
+            [
+                beside_uncertainty(frame, _of(method, curves)).with_columns(
+                    pl.lit(method.name).alias("method"), pl.lit(study).alias("study")
+                )
+                for study, frame in effects
+            ],
         ),
-        "option_curves": pl.concat(curves) if curves else OptionCurves.create_empty(),
+        "option_curves": _together(
+            OptionCurves, [c.with_columns(pl.lit(method.name).alias("method")) for c in ticked]
+        ),
     }
+
+
+def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
+    return pl.concat(frames, how="diagonal") if frames else schema.create_empty()
 
 
 def _in_order(first: Method, other: Method) -> tuple[Method, Method]:
@@ -84,11 +93,10 @@ def _of(method: Method, frame: pl.DataFrame) -> pl.DataFrame:
     return frame.filter(pl.col("method") == method.name)
 
 
-def ladders_that_do_not_multiply(_: "Inputs", made: Mapping[str, pl.DataFrame]) -> list[str]:
+def ladders_that_do_not_multiply(correction_steps: pl.DataFrame) -> list[str]:
     """Tows of which the factors of a ladder do not multiply to its total, within 1e-10."""
     ends = (
-        made["correction_steps"]
-        .sort("position")
+        correction_steps.sort("position")
         .group_by("from_method", "to_method", "tow_id", maintain_order=True)
         .agg(
             pl.col("factor").product(),

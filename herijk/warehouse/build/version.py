@@ -2,16 +2,8 @@
 
 from functools import cache
 from importlib import metadata
-from typing import Final
 
-from herijk.warehouse.store.code import ADDERS, READERS, code_hash
-
-MODULES: Final = (
-    *("herijk.warehouse.archive.index.index", *READERS, *ADDERS),
-    *(f"herijk.warehouse.build.{step}" for step in ("archive_tables", "method_tables")),
-    "herijk.pipeline.register.register",
-)
-"""All that a line is computed with."""
+from herijk.warehouse.store.code import COMPUTING, READING, code_hash
 
 
 @cache
@@ -21,4 +13,4 @@ def code_version() -> str:
     The hash needs no git and is equal wherever the same source is installed. Two lines with equal
     inputs, method and code version are equal.
     """
-    return f"{metadata.version('herijk')}+{code_hash(*MODULES)}"
+    return f"{metadata.version('herijk')}+{code_hash(*READING, *COMPUTING)}"

@@ -76,7 +76,10 @@ def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
 @cache
 def texts_version() -> str:
     """Version of the code and the templates that write the texts."""
-    return fingerprint(code_hash(__name__), [file_sha256(TEMPLATES / name) for name in TEXTS])
+    return fingerprint(
+        code_hash("herijk.warehouse.editions", "herijk.words"),
+        [file_sha256(TEMPLATES / name) for name in TEXTS],
+    )
 
 
 @cache

@@ -26,6 +26,7 @@ from herijk.tables.register import Register
 from herijk.tables.row import Row
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.graph import METHOD as METHOD_STEP
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import notes, sheets
 from herijk.warehouse.editions.chain import chain_head
@@ -151,7 +152,7 @@ def recomputed_edition(
     store: Store, method: Method, terms: Terms, carry: str | None = None
 ) -> Edition:
     """The edition that would be published, not yet written; see `publish`."""
-    if store.made_from("tows") is None or METHOD_STEP.is_stale(store, [method]):
+    if store.made_from("tows") is None or METHOD_STEP.is_stale(Scope(store, [method], method)):
         raise MissingKnowledgeError(
             "the tables of method {} are not those of the archive and code of today; "
             "run: herijk rebuild --archive DIR --data {} --method {}",

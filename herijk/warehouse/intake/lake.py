@@ -28,7 +28,7 @@ from herijk.warehouse.archive import (
     read_tow_samples,
 )
 from herijk.warehouse.archive.samples.resolution import steps_of
-from herijk.warehouse.store.code import ADDERS, FAULTS_IN_DUTCH, READERS, code_hash
+from herijk.warehouse.store.code import ADDING, READING, code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 from herijk.warehouse.store.unforeseen import (
     UNFORESEEN,
@@ -59,8 +59,7 @@ def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonPr
     """What the samples and blocks of a season are made from."""
     season_runs = runs.filter(pl.col("tow_id").is_in(tows["tow_id"].implode()))
     rows = [tows.write_json(), season_runs.sort("tow_id", "run").write_json()]
-    code = (code_hash(*READERS, FAULTS_IN_DUTCH), code_hash(*ADDERS))
-    return fingerprint(rows, dataclasses.asdict(profile), *code)
+    return fingerprint(rows, dataclasses.asdict(profile), code_hash(*READING, *ADDING))
 
 
 def read_season(
@@ -139,7 +138,7 @@ def _bring_in(
     facts = None if known is None else {name: known[name] for name in SAMPLE_FACTS}
     row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
     path = store.samples_path(profile.season, key)
-    blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDERS))
+    blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDING))
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
         samples = None
@@ -219,8 +218,7 @@ def _known_tows(store: Store, season: int) -> dict[str, Row]:
 def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
     names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
     facts = [tow[n] for n in names], runs.sort("run").rows()
-    code = code_hash(*READERS, FAULTS_IN_DUTCH)  # faults are remembered with their Dutch
-    return fingerprint(*facts, dataclasses.asdict(profile), code)
+    return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READING))
 
 
 def keep_only(store: Store, season: int, index: pl.DataFrame) -> None:

@@ -23,7 +23,6 @@ from herijk.tables.lake import AboutArchive, Faults, SeasonIndex
 from herijk.warehouse.archive import (
     Failure,
     FileHashes,
-    Profiles,
     index_archive,
     read_published_registers,
     read_races,
@@ -31,7 +30,7 @@ from herijk.warehouse.archive import (
 from herijk.warehouse.archive.files.hashes import RACY_SECONDS
 from herijk.warehouse.archive.profile.reading import read_profiles
 from herijk.warehouse.intake import lake
-from herijk.warehouse.store.code import FAULTS_IN_DUTCH, code_hash
+from herijk.warehouse.store.code import READING, code_hash
 from herijk.warehouse.store.store import Store, fingerprint
 from herijk.warehouse.store.unforeseen import note
 
@@ -43,8 +42,9 @@ INDEXED: Final = (
 """What is kept of the archive's lists."""
 UNREADABLE: Final = "unreadable_file"
 """A file that could not be read may be readable the next time, though nothing changed."""
-SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
+READ: Final = ("season_tows", "season_runs", "season_index")
 """What is kept of a season, as the archive was when it was read."""
+SEASON_TABLES: Final = (*READ, "blocks")
 
 
 def index(store: Store, root: Path) -> None:
@@ -98,7 +98,7 @@ def _seen(root: Path) -> str:
         path: (stat.st_mode, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns)
         for path, stat in stats.items()
     }
-    return fingerprint(str(root.resolve()), files, code_hash(__name__, FAULTS_IN_DUTCH))
+    return fingerprint(str(root.resolve()), files, code_hash(*READING))
 
 
 def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:
@@ -135,19 +135,41 @@ def listed_seasons(store: Store) -> list[int]:
     return seasons
 
 
+def season_fingerprints(store: Store, root: Path) -> dict[int, str]:
+    """What the samples of each listed season are made from, as the archive is today."""
+    profiles = read_profiles(root)
+    return {
+        season: lake.season_fingerprint(*_listed(store, season), profiles.for_season(season))
+        for season in listed_seasons(store)
+    }
+
+
 def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = None) -> list[int]:
     """Listed seasons whose samples or blocks are not those of the archive of today."""
-    profiles = read_profiles(root)
     return [
         season
-        for season in listed_seasons(store)
-        if (wanted is None or season in wanted) and _is_stale(store, profiles, season)
+        for season, made_from in season_fingerprints(store, root).items()
+        if wanted is None or season in wanted
+        if any(store.made_from(table, str(season)) != made_from for table in READ)
+        or blocks_are_stale(store, season)
     ]
 
 
-def _is_stale(store: Store, profiles: Profiles, season: int) -> bool:
-    made_from = lake.season_fingerprint(*_listed(store, season), profiles.for_season(season))
-    return any(store.made_from(table, str(season)) != made_from for table in SEASON_TABLES)
+def blocks_are_stale(store: Store, season: int) -> bool:
+    """Whether the table of a season's blocks is not that of its index."""
+    index = store.contents("season_index", str(season))
+    return index is None or store.made_from("blocks", str(season)) != index
+
+
+def damaged_seasons(store: Store) -> list[int]:
+    """Seasons that were read, and of which a table is not there any more."""
+    return [
+        season
+        for season in listed_seasons(store)
+        if 0
+        < sum(store.made_from(t, str(season)) is None for t in SEASON_TABLES)
+        < len(SEASON_TABLES)
+    ]
 
 
 def forget_unlisted_seasons(store: Store) -> None:
@@ -179,7 +201,7 @@ def read_season(
 
 def collect_blocks(store: Store, season: int) -> pl.DataFrame:
     """Puts the blocks of a season's sound tows together in one table."""
-    made_from = store.made_from("season_index", str(season))
+    made_from = store.contents("season_index", str(season))
     season_blocks = lake.season_blocks(store, season, store.read("season_index", str(season)))
     store.write("blocks", season_blocks, made_from or "", str(season))
     return season_blocks

@@ -4,6 +4,7 @@ Joins the tables and `pipeline.register.changes`; computes nothing else. Words a
 """
 
 from collections import defaultdict
+from collections.abc import Callable
 from typing import Final
 
 import polars as pl
@@ -18,14 +19,14 @@ from herijk.pipeline.register.replay import (
     winner_changes,
 )
 from herijk.tables.row import Row
+from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.studies import STUDIED_METHOD
-from herijk.warehouse.queries.views import Views
+from herijk.warehouse.queries.views import DRAFT, Views
 from herijk.warehouse.store.database import no_such_edition
 from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.ensemble import read_ensemble
 
 PAIR: Final = ("from_edition", "to_edition")
-DRAFT: Final = "concept-"
 
 
 def newest_edition(editions: list[str], default: str) -> str:
@@ -76,9 +77,17 @@ def compared(views: Views, old: str, new: str) -> pl.DataFrame:
 
 
 def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
-    """With the boat, and of both editions whether an interval holds the error of the log."""
-    names = views.table("boats").select("fsn_no", "name", "boat_type")
-    named = changes.join(names, on="fsn_no", how="left", maintain_order="left")
+    """With the boat, as the new edition or else the old one names it, and `log_known` of both."""
+    names = views.register().select("edition", *LINE, "name", "boat_type")
+    key = [*PAIR, *LINE]
+    of_each = [
+        changes.select(key).join(
+            names.rename({"edition": side}), on=[side, *LINE], maintain_order="left"
+        )
+        for side in reversed(PAIR)
+    ]
+    once = pl.concat(of_each).unique(key, keep="first", maintain_order=True)
+    named = changes.join(once, on=key, how="left", maintain_order="left")
     known = log_known(views)
     for side, edition in (("old", "from_edition"), ("new", "to_edition")):
         mine = known.rename({"edition": edition, "log_known": f"{side}_log_known"})
@@ -123,13 +132,16 @@ def _steps(views: Views, old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
 def answers(views: Views, edition: str) -> pl.DataFrame:
     """Every line of an edition with what there is to say of it.
 
+    What stands behind the lines comes from the edition's own folder, which holds no weights and no
+    pairs: those are said of drafts alone. The next tow and races are those of today.
+
     Returns:
         Rows of `register` of that edition, with the columns of `line_changes` where it is compared
         with another. Added are:
 
         - `old_type_place`, `new_type_place` and `type_size` among boats of its type and class;
         - `old_log_known` and `new_log_known`: whether the interval holds the error of the log;
-        - what `due_list` says of the next tow, and what the tow weighed and measured;
+        - what `due_list` says of the next tow;
         - its best estimate `cw_best_*`, and `own_weight`, the share that rests on the tow itself;
         - by what factor the tow (`moved_ratio`) and its best estimate (`best_moved_ratio`) differ
           from those of `season_before`, the tow before of the same, unaltered boat and crew;
@@ -139,36 +151,49 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     lines = views.register().filter(edition=edition)
     compared = changes.drop("name", "boat_type", "to_edition", "new_log_known")
     known = log_known(views).rename({"log_known": "new_log_known"})
-    due = views.table("due_list").select(
-        "method", *LINE, "tow_speed_m_s", "speed_reason", "as_of",
-        next_before="valid_until",
-    )  # fmt: skip
-    logs = views.table("log_factors").select(
+    due = views.table("due_list").select("method", *LINE, "tow_speed_m_s", "speed_reason")
+    behind = _behind(views, edition)
+    logs = behind("log_factors").select(
         "method", "season", log_factor="factor", log_lo="lo", log_hi="hi", log_source="source"
     )
-    seasons = views.table("tows").select("tow_id", "season")
+    seasons = behind("tows").select("tow_id", "season")
     joined = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .join(known, on="edition", how="left", maintain_order="left")
         .join(seasons, on="tow_id", how="left", maintain_order="left")
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
-        .join(_best_estimates(views), on=["method", "tow_id"], how="left", maintain_order="left")
+        .join(_best_estimates(behind), on=["method", "tow_id"], how="left", maintain_order="left")
         .join(logs, on=["method", "season"], how="left", maintain_order="left")
     )
     return _with_places(joined)
 
 
-def _best_estimates(views: Views) -> pl.DataFrame:
+_Tables = Callable[[str], pl.DataFrame]
+
+
+def _behind(views: Views, edition: str) -> _Tables:
+    """The tables behind a register by name: its own of an edition, today's of a draft."""
+    if edition.startswith(DRAFT):
+        return views.table
+    own = read_edition(views.store, edition).tables
+    return lambda name: own[name] if name in own else TABLES[name].create_empty()
+
+
+def _best_estimates(behind: _Tables) -> pl.DataFrame:
     """What the whole archive says of each tow, and how far both numbers moved since the last."""
     key = ("method", "tow_id")
-    best = views.table("curves").select(*key, "^cw_best_.*$", kept=_BEST_TO_MEASURED)
-    own = views.table("best_estimate_weights").filter(pl.col("tow_id") == pl.col("rests_on"))
-    pairs = views.table("repeat_pairs").select(*key, "tow_id_before", "season_before", "ln_ratio")
+    best = behind("curves").select(*key, "^cw_best_.*$", kept=_BEST_TO_MEASURED)
+    mine = pl.col("tow_id") == pl.col("rests_on")  # shares of next to nothing are left out
+    own = (
+        behind("best_estimate_weights")
+        .group_by(key, maintain_order=True)
+        .agg(own_weight=pl.col("weight").filter(mine).sum())
+    )
+    pairs = behind("repeat_pairs").select(*key, "tow_id_before", "season_before", "ln_ratio")
     before = best.select("method", tow_id_before="tow_id", kept_before="kept")
     moved = pl.col("ln_ratio").exp()
     return (
-        best.join(own.select(*key, own_weight="weight"), on=key, how="left", maintain_order="left")
-        .with_columns(pl.col("own_weight").fill_null(0.0))  # shares of next to nothing are left out
+        best.join(own, on=key, how="left", maintain_order="left")
         .join(pairs, on=key, how="left", maintain_order="left")
         .join(before, on=["method", "tow_id_before"], how="left", maintain_order="left")
         .with_columns(

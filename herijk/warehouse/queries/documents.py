@@ -11,8 +11,8 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.races.power import curve_of_lines
 from herijk.pipeline.races.race import power_per_rower_w
 from herijk.tables.row import Row
-from herijk.warehouse.queries.answers import DRAFT, log_known
-from herijk.warehouse.queries.views import Views
+from herijk.warehouse.queries.answers import log_known
+from herijk.warehouse.queries.views import DRAFT, Views
 from herijk.warehouse.store.database import no_such_edition
 from herijk.warehouse.store.editions import edition_names, read_edition
 from herijk.words import say

@@ -16,7 +16,7 @@ class RegisterReport:
 
     Attributes:
         edition: its name.
-        simulated: whether the archive is.
+        simulated: whether its tows are.
         as_of: the day on which validity is judged.
         lines: rows of `register` with `name`.
     """
@@ -43,8 +43,8 @@ def register_report(
     with Views(store, as_of) as views:
         chosen = edition or current_edition(views)
         lines = views.register()
-        simulated = views.about().get("simulated") == "true"
-    of_edition = lines.filter(edition=chosen)
-    if of_edition.is_empty():
-        raise no_such_edition(chosen, lines["edition"].unique())
+        of_edition = lines.filter(edition=chosen)
+        if of_edition.is_empty():
+            raise no_such_edition(chosen, lines["edition"].unique())
+        simulated = views.simulated(chosen)
     return RegisterReport(chosen, simulated, of_edition["as_of"][0], of_edition.to_dicts())

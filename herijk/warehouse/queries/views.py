@@ -5,15 +5,19 @@ Reads the database; writes and computes nothing: every number here is in a table
 
 import datetime as dt
 from collections.abc import Sequence
-from typing import Self
+from typing import Final, Self
 
 import polars as pl
 
+from herijk.pipeline.register.register import LINE, with_empty_thwart
 from herijk.warehouse.queries.as_of import lay_over, lay_published
 from herijk.warehouse.queries.chosen_tows import choose
 from herijk.warehouse.queries.due import RETOW_CHOICE
 from herijk.warehouse.store.database import open_results
+from herijk.warehouse.store.editions import edition_names, edition_path, read_about, read_table
 from herijk.warehouse.store.store import Store
+
+DRAFT: Final = "concept-"
 
 
 class Views:
@@ -74,8 +78,21 @@ class Views:
         return dict(self.frame("SELECT key, value FROM about ORDER BY key").iter_rows())
 
     def register(self) -> pl.DataFrame:
-        """Lines of every edition with the boat's name and type."""
-        return self.frame(_REGISTER)
+        """Lines of every edition with the boat's name and type: as published, or as listed now."""
+        lines = self.frame(_REGISTER)
+        key = ["edition", *LINE]
+        for edition in edition_names(self.store):
+            own = with_empty_thwart(read_table(edition_path(self.store, edition), "register"))
+            own = own.select(*key, "name", "boat_type")
+            lines = lines.update(own, on=key, include_nulls=True)
+        called = pl.col("name").str.to_lowercase()
+        return lines.sort("edition", called, *LINE, nulls_last=True, maintain_order=True)
+
+    def simulated(self, edition: str) -> bool:
+        """Whether an edition is of simulated tows; a draft, whether today's archive is."""
+        if edition.startswith(DRAFT):
+            return self.about().get("simulated") == "true"
+        return read_about(edition_path(self.store, edition)).simulated
 
     def curves(self) -> pl.DataFrame:
         """Curves with the day, name and what was on board."""
@@ -235,7 +252,6 @@ SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.empty
        r.as_of, r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m,
        r.cw_hi_kg_m, r.tow_id, r.method, r.verification_code
 FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
-ORDER BY edition, lower(b.name), fsn_no, rowers, crew_class
 """
 
 _DUE = """

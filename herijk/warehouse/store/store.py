@@ -19,10 +19,11 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from herijk.warehouse.store.files import written_beside
+from herijk.warehouse.store.files import file_sha256, written_beside
 from herijk.warehouse.store.machine_faults import is_machine_fault
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
+CONTENTS_KEY: Final = "herijk.contents"
 
 
 def fingerprint(*parts: object) -> str:
@@ -114,6 +115,14 @@ class Store:
     def made_from(self, table: str, partition: str | None = None) -> str | None:
         """Fingerprint of what a table was made from; None if it is not there or is damaged."""
         return metadata_of(self.table_path(table, partition), FINGERPRINT_KEY)
+
+    def contents(self, table: str, partition: str | None = None) -> str | None:
+        """Hash of what is in a table: equal for equal tables, whatever they were made from."""
+        return metadata_of(self.table_path(table, partition), CONTENTS_KEY)
+
+    def count_rows(self, table: str, partition: str | None = None) -> int:
+        """Rows of a table or partition; raises as `read_parquet`."""
+        return count_rows(self.table_path(table, partition))
 
     def remove(self, table: str, partition: str) -> None:
         """Removes a partition whose season or method is no more."""
@@ -227,13 +236,16 @@ def write_parquet(
         form: how it is packed, in the words of Arrow; None for the form of tables.
     """
     table = frame.to_arrow()
-    with written_beside(path) as target:
-        pq.write_table(
-            pa.Table.from_arrays(table.columns, schema=_tight_schema(table, metadata)),
-            target,
-            write_page_checksum=True,
-            **(_table_form(table.schema) if form is None else form),
-        )
+    tight = pa.Table.from_arrays(table.columns, schema=_tight_schema(table))
+    packed = _table_form(table.schema) if form is None else form
+    with (
+        written_beside(path) as target,
+        pq.ParquetWriter(target, tight.schema, write_page_checksum=True, **packed) as writer,
+    ):
+        writer.write_table(tight)
+        if metadata is not None:
+            hashed = fingerprint(str(frame.schema), file_sha256(target))  # all but the footer
+            writer.add_key_value_metadata(metadata | {CONTENTS_KEY: hashed})
 
 
 def _table_form(schema: pa.Schema) -> dict[str, object]:
@@ -247,7 +259,7 @@ def _table_form(schema: pa.Schema) -> dict[str, object]:
     }
 
 
-def _tight_schema(table: pa.Table, metadata: dict[str, str] | None) -> pa.Schema:
+def _tight_schema(table: pa.Table) -> pa.Schema:
     """Columns without gaps as columns that cannot have any: these are read in half the time."""
     columns = zip(table.schema, table.columns, strict=True)
-    return pa.schema([f.with_nullable(c.null_count > 0) for f, c in columns], metadata)
+    return pa.schema([f.with_nullable(c.null_count > 0) for f, c in columns])

@@ -17,7 +17,7 @@ from herijk.pipeline.errors import HerijkError
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import FailedTows
 from herijk.tables.row import Row
-from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.code import COMPUTING, code_hash
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.machine_faults import is_machine_fault
 from herijk.warehouse.store.store import Store, fingerprint
@@ -26,8 +26,6 @@ from herijk.words import Sentence, cause_of, say, spoken
 UNFORESEEN: Final = "unforeseen"
 """The reason code of a tow on which Herijk itself failed, and the folder of tracebacks."""
 FAILED_TOWS: Final = "failed_tows"
-CODE: Final = "herijk.warehouse.build.graph"
-"""With it comes all that works on tows: other code tries them again."""
 _NOT_OURS: Final = (HerijkError, MemoryError, OSError, KeyboardInterrupt, SystemExit, GeneratorExit)
 
 
@@ -103,7 +101,7 @@ def failures(root: Path) -> list[str]:
 
 def failed_tows(store: Store) -> pl.DataFrame:
     """The tows that make this code fail: rows of `FailedTows`."""
-    if store.made_from(FAILED_TOWS) == code_hash(CODE):
+    if store.made_from(FAILED_TOWS) == code_hash(*COMPUTING):
         return store.read(FAILED_TOWS)
     return pl.DataFrame(FailedTows.create_empty())
 
@@ -136,7 +134,7 @@ def set_aside(store: Store, failed: FailedTowsError) -> None:
             }
         )
     frame = pl.concat([known, frame_of(FailedTows, rows)])
-    store.write(FAILED_TOWS, frame.sort("tow_id"), code_hash(CODE))
+    store.write(FAILED_TOWS, frame.sort("tow_id"), code_hash(*COMPUTING))
 
 
 def tow_key(row: Mapping[str, object] | Row) -> str:

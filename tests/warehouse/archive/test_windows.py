@@ -8,6 +8,7 @@ import pytest
 
 from herijk.pipeline.method.definition import Method, parse_method
 from herijk.warehouse.build.graph import ARCHIVE, METHOD, REGISTERS
+from herijk.warehouse.build.inputs import Scope
 from herijk.warehouse.store.store import Store
 from tests.intake import bring_in as read_archive
 from tests.warehouse.archive.conftest import TOWS, Archive
@@ -39,8 +40,8 @@ def give(archive: Archive, rows: str, path: str = WINDOWS) -> None:
 def bring_in(archive: Archive, store: Store) -> None:
     """A rebuild as far as the tables about the archive, only where something changed."""
     read_archive(store, archive.root)
-    if ARCHIVE.is_stale(store, ()):
-        ARCHIVE.make(store, (), today=TODAY)
+    if ARCHIVE.is_stale(Scope(store, ())):
+        ARCHIVE.make(Scope(store, (), today=TODAY))
 
 
 def test_windows_are_read_as_written(archive: Archive) -> None:
@@ -136,7 +137,7 @@ def test_a_window_beyond_its_run_is_set_aside_when_the_run_is_read(
 
 
 def run_2(store: Store, method: Method) -> dict[str, object]:
-    METHOD.make(store, [method])
+    METHOD.make(Scope(store, [method]))
     return store.read("run_points", method.name).row(
         by_predicate=(pl.col("tow_id") == "2014-001") & (pl.col("run") == 2), named=True
     )
@@ -148,11 +149,11 @@ def test_a_window_reaches_the_run_point_and_a_changed_one_does_so_again(
     store = Store(tmp_path / "data")
     bring_in(archive, store)
     searched = run_2(store, method)
-    assert not METHOD.is_stale(store, [method])
+    assert not METHOD.is_stale(Scope(store, [method]))
 
     give(archive, GOOD)
     bring_in(archive, store)
-    assert METHOD.is_stale(store, [method])
+    assert METHOD.is_stale(Scope(store, [method]))
     given = run_2(store, method)
     assert (given["window_start_s"], given["window_end_s"]) == (5.0, 45.0)
     assert given["cut_reason"] == "by_hand: zwaan voor de boeg"
@@ -160,10 +161,10 @@ def test_a_window_reaches_the_run_point_and_a_changed_one_does_so_again(
     assert given["cw_kg_m"] != searched["cw_kg_m"]
 
     bring_in(archive, store)
-    assert not METHOD.is_stale(store, [method])
+    assert not METHOD.is_stale(Scope(store, [method]))
     (archive.root / WINDOWS).unlink()
     bring_in(archive, store)
-    assert METHOD.is_stale(store, [method])
+    assert METHOD.is_stale(Scope(store, [method]))
     assert run_2(store, method) == searched
 
 
@@ -173,7 +174,7 @@ def test_a_tow_that_a_flag_rejects_keeps_its_numbers_and_leaves_the_register(
     store = Store(tmp_path / "data")
     give(archive, "2014-001;2;5;34;te kort, dus telt de run niet\n")
     bring_in(archive, store)
-    METHOD.make(store, [method])
+    METHOD.make(Scope(store, [method]))
     curves = store.read("curves", method.name)
     curve = curves.row(by_predicate=pl.col("tow_id") == "2014-001", named=True)
     assert curve["status"] == "rejected"
@@ -182,7 +183,7 @@ def test_a_tow_that_a_flag_rejects_keeps_its_numbers_and_leaves_the_register(
     assessed = store.read("assessments", method.name)
     few = assessed.filter(tow_id="2014-001", check="few_runs").to_dicts()[0]
     assert (few["observed"], few["limit"], few["flagged"]) == (5.0, 6.0, True)
-    REGISTERS.make(store, [method])
+    REGISTERS.make(Scope(store, [method]))
     status = dict(store.read("register").select("fsn_no", "status").rows())
     assert status == {"FSN1": "rejected", "FSN2": "valid", "FSN3": "valid"}
     # The wind of these samples is the same out and back, which no boat feels.

@@ -1,0 +1,236 @@
+"""Assets as Dagster sees them: what is stale, what its page can make, and what is mended."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import dagster as dg
+import pytest
+from dagster._core.definitions.data_version import CachingStaleStatusResolver
+from dagster._core.loader import LoadingContextForTest
+from polars.testing import assert_frame_equal
+
+import herijk.assets.instance
+import herijk.assets.location
+import herijk.assets.tables
+import herijk.warehouse.build.step
+import herijk.warehouse.intake.lake
+from herijk.assets.archive import OUTSIDE_SPECS
+from herijk.assets.location import assets_of
+from herijk.assets.resources import QUIET_LOG, Setup
+from herijk.assets.settings import Settings
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import shipped_text
+from herijk.warehouse.build.graph import STEPS
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.methods import KnownMethods
+from tests.assets.test_rebuild import TOWS_2009, assert_same_tables, samples_files, spoil
+from tests.conftest import METHODS, SMALL, Workbench, in_one_process
+from tests.elsewhere import dask_cluster
+
+ROOT = Path(__file__).parents[2]
+OWN = "ours"
+
+
+@pytest.fixture
+def instance(monkeypatch):
+    """Records of Dagster that last as long as the test, in memory."""
+    with dg.DagsterInstance.ephemeral() as instance:
+
+        @herijk.assets.instance.contextmanager
+        def known(_):
+            yield instance
+
+        monkeypatch.setattr(Workbench, "records_in_memory", staticmethod(_nothing))
+        monkeypatch.setattr(herijk.assets.instance, "instance_of", known)
+        yield instance
+
+
+@herijk.assets.instance.contextmanager
+def _nothing():
+    yield
+
+
+def materialise(bench, instance, *assets, season=None, methods=METHODS):
+    """What a person does from Dagster's page."""
+    setup = Setup.of(bench.archive, bench.data, methods, Settings())
+    instance.add_dynamic_partitions("season", list(map(str, SMALL.seasons)))
+    job = assets_of(setup).resolve_implicit_global_asset_job_def()
+    with in_one_process():
+        return job.execute_in_process(
+            instance=instance,
+            asset_selection=[dg.AssetKey(name) for name in assets],
+            partition_key=None if season is None else str(season),
+            run_config=QUIET_LOG,
+        )
+
+
+def stale_in_dagster(instance, bench, methods=METHODS):
+    """Assets, or seasons of them, that Dagster calls stale."""
+    setup = Setup.of(bench.archive, bench.data, methods, Settings())
+    graph = assets_of(setup).resolve_asset_graph()
+    resolver = CachingStaleStatusResolver(instance, graph, LoadingContextForTest(instance))
+    found = set()
+    for key in graph.materializable_asset_keys:
+        seasons = map(str, SMALL.seasons) if graph.get(key).is_partitioned else (None,)
+        for season in seasons:
+            status = resolver.get_status(key, season)
+            assert status.value != "MISSING", (key, season)
+            if status.value == "STALE":
+                found.add((key.to_user_string(), season))
+    return found
+
+
+def stale_to_us(bench, methods=METHODS):
+    """The same by fingerprints."""
+    store = bench.store
+    known = [KnownMethods.of(store).get(name) for name in methods]
+    seasons = {("samples", str(s)) for s in intake.stale_seasons(store, bench.archive)}
+    return seasons | {
+        (name, None) for step in STEPS if step.stale(store, known) for name in step.outputs
+    }
+
+
+def other_weight(bench):
+    path = bench.archive / TOWS_2009
+    first, second, *rest = path.read_text("cp1252").split("\n")
+    weight = next(cell for cell in second.split(";") if cell.isdigit() and int(cell) > 400)
+    other = second.replace(f";{weight};", f";{int(weight) + 7};", 1)
+    assert other != second
+    path.write_text("\n".join([first, other, *rest]), "cp1252")
+
+
+def other_race(bench):
+    (path, *_) = sorted((bench.archive / "wedstrijden").iterdir())
+    first, *rest = path.read_text("utf-8").splitlines()
+    path.write_text("\n".join([first, *rest[1:]]), "utf-8")
+
+
+@pytest.mark.slow
+def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_rebuild(
+    bench, instance, monkeypatch
+):
+    own = bench.data / "methods" / f"{OWN}.toml"
+    own.parent.mkdir(exist_ok=True)
+    own.write_text(shipped_text("rebased-2015").replace("rebased-2015", OWN), "utf-8")
+    methods = (METHODS[0], OWN)
+
+    def new_code(bench):
+        for module in (herijk.warehouse.build.step, herijk.assets.tables):
+            monkeypatch.setattr(module, "code_hash", lambda *_: "other")
+        steps = [herijk.assets.tables.step_asset(step) for step in STEPS]
+        others = [a for a in herijk.assets.location.ASSETS if a not in OUTSIDE_SPECS]
+        kept = [a for a in others if a not in herijk.assets.tables.STEP_ASSETS]
+        monkeypatch.setattr(herijk.assets.location, "ASSETS", [*OUTSIDE_SPECS, *kept, *steps])
+
+    bench.store.database.unlink()
+    shutil.rmtree(bench.data / "lake")
+    bench.rebuild(methods, whole=True)
+    assert stale_in_dagster(instance, bench, methods) == set()
+    for change in (
+        lambda bench: spoil(samples_files(bench, 2009)[3]),
+        other_weight,
+        other_race,
+        lambda _: own.write_text(own.read_text("utf-8").replace('"log1"', '"mean"'), "utf-8"),
+        new_code,
+    ):
+        change(bench)
+        materialise(bench, instance, *intake.INDEXED, methods=methods)
+        ours = stale_to_us(bench, methods)
+        assert ours
+        assert stale_in_dagster(instance, bench, methods) == ours
+        bench.rebuild(methods, whole=True)
+        assert stale_in_dagster(instance, bench, methods) == set()
+        assert stale_to_us(bench, methods) == set()
+
+
+def test_a_season_is_made_from_dagsters_page_and_what_follows_too(bench, built, instance, tmp_path):
+    fresh = Workbench(bench.archive, tmp_path / "fresh")
+    materialise(fresh, instance, *intake.INDEXED)
+    assert materialise(fresh, instance, "samples", "blocks", season=2009).success
+    assert fresh.store.partitions("blocks") == ["2009"]
+    following = [name for step in STEPS[:3] for name in step.outputs]
+    assert materialise(fresh, instance, *following).success
+    of_2009 = built.store.read("tows").filter(season=2009)["tow_id"]
+    assert fresh.store.read("tows")["tow_id"].equals(of_2009)
+
+
+def test_a_damaged_table_that_an_asset_reads_is_made_again(bench, built, instance):
+    path = bench.store.table_path("tows")
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2])
+    bench.store.table_path("curves", METHODS[0]).unlink()
+    assert materialise(bench, instance, *STEPS[2].outputs).success
+    assert_frame_equal(bench.store.read("tows"), built.store.read("tows"))
+    assert bench.store.read("curves", METHODS[0]).equals(built.store.read("curves", METHODS[0]))
+
+
+def test_damaged_blocks_of_a_tow_are_made_again(bench, built, instance):
+    file = next((bench.data / "lake" / "blocks" / "season=2009").iterdir())
+    file.write_bytes(file.read_bytes()[:100])
+    bench.store.table_path("blocks", "2009").unlink()
+    assert materialise(bench, instance, "blocks", season=2009).success
+    assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
+
+
+def test_an_archive_that_changes_while_a_season_is_made_is_read_again(
+    bench, built, instance, monkeypatch
+):
+    file = samples_files(bench, 2009)[3]
+    kept = spoil(file)
+    original, changes = herijk.warehouse.intake.lake.read_tow_samples, []
+
+    def changing(root, tow, profile):
+        if not changes:
+            changes.append(tow["tow_id"])
+            file.write_bytes(kept)
+        return original(root, tow, profile)
+
+    monkeypatch.setattr(herijk.warehouse.intake.lake, "read_tow_samples", changing)
+    assert materialise(bench, instance, "samples", "blocks", season=2009).success
+    assert changes
+    assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
+
+
+def test_records_are_kept_where_dagster_home_says(bench, tmp_path, monkeypatch):
+    monkeypatch.setenv("DAGSTER_HOME", str(tmp_path / "home"))
+    with herijk.assets.instance.instance_of(bench.store) as instance:
+        assert instance.root_directory == str(tmp_path / "home")
+    assert (tmp_path / "home" / "dagster.yaml").exists()
+    assert not (bench.data / "dagster").exists() or list((bench.data / "dagster").iterdir())
+
+
+def test_a_server_works_on_its_own_folders_alone(bench, instance, tmp_path, monkeypatch):
+    for name, value in (
+        ("HERIJK_SITE", "http://127.0.0.1:3001/site"),
+        ("HERIJK_ARCHIVE", str(bench.archive)),
+        ("HERIJK_DATA", str(bench.data)),
+    ):
+        monkeypatch.setenv(name, value)
+    assert materialise(bench, instance, "era_shifts").success
+    with pytest.raises(dg.DagsterError) as refused:
+        materialise(Workbench(bench.archive, tmp_path / "other"), instance, "era_shifts")
+    assert isinstance(refused.value.__cause__, MissingKnowledgeError)
+    assert not (tmp_path / "other").exists()
+
+
+@pytest.mark.slow
+def test_two_workers_of_a_dask_cluster_make_the_same_tables(built, tmp_path):
+    bench = Workbench(built.archive, tmp_path / "data")
+    bench.data.mkdir()
+    with dask_cluster(2, tmp_path / "home") as cluster:
+        (bench.data / "beheer.toml").write_text(f'dask = "{cluster.address}"\n')
+        names = [part for name in METHODS for part in ("--method", name)]
+        done = subprocess.run(
+            [
+                *(sys.executable, "-m", "herijk", "rebuild", *names),
+                *("--archive", str(bench.archive), "--data", str(bench.data)),
+            ],
+            cwd=ROOT, env=os.environ | {"LC_ALL": "C"}, check=False, capture_output=True, text=True,
+        )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert_same_tables(
+        {n: f for n, f in bench.tables().items() if n != "warehouse_database"}, built.tables()
+    )

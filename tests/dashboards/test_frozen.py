@@ -1,0 +1,51 @@
+"""What is shown of a published edition stays, whatever the warehouse becomes."""
+
+import datetime as dt
+
+from herijk.dashboards.answer import told
+from herijk.dashboards.documents import certificate
+from herijk.dashboards.site import boats
+from herijk.dashboards.speech import Speech
+from herijk.pipeline.method.definition import shipped_method
+from herijk.warehouse.editions.publish import Terms, publish
+from herijk.warehouse.queries.register import register_report
+from herijk.warehouse.queries.views import Views
+
+EDITION, METHOD, DAY = "2014-1", "rebased", dt.date(2014, 6, 1)
+OF_TODAY = ("tow_speed_m_s", "speed_reason")
+"""The next tow is due by the tows of today."""
+
+
+def shown(store):
+    """Answers on the boats' pages without what is of today, the register and all certificates."""
+    with Views(store) as views:
+        answers = [one for crews in boats._answers(views, EDITION).values() for one in crews]
+        for answer in answers:
+            answer.line.update(dict.fromkeys(OF_TODAY))
+        pages = [told(answer, Speech("en")) for answer in answers]
+        paper = certificate.certificates(views, EDITION, None, "en", as_page=True)
+    return pages, register_report(store, EDITION), paper.decode()
+
+
+def change_lists(archive):
+    """Other names and types under the same numbers, and other temperatures."""
+    for file, was, now in (
+        ("sloepregister/sloependata.csv", b"loep ", b"loep anders "),
+        ("sloepregister/sloependata.csv", b";Stersloep;", b";Barkas;"),
+        ("sleeplijsten/sleeplijst_2014.csv", b",4.", b",9."),
+    ):
+        text = (archive / file).read_bytes()
+        assert was in text
+        (archive / file).write_bytes(text.replace(was, now))
+
+
+def test_an_edition_stays_on_pages_register_and_certificates(bench):
+    bench.rebuild((METHOD,))
+    terms = Terms(EDITION, DAY, "besluit van de ALV", DAY)
+    publish(bench.store, shipped_method(METHOD), terms)
+    before, draft = shown(bench.store), register_report(bench.store, f"concept-{METHOD}")
+    assert any("the log read" in text for page in before[0] for text in page.sentences)
+    change_lists(bench.archive)
+    bench.rebuild(("as-published", METHOD))
+    assert register_report(bench.store, f"concept-{METHOD}") != draft
+    assert shown(bench.store) == before
