@@ -93,7 +93,7 @@ def test_a_number_of_the_demo(entry, world):
 
 @entries("command")
 def test_a_command_prints(entry, world):
-    printed = herijk(entry["run"], world("sample"))
+    printed = herijk(entry["run"].format(data=SAMPLE.parent), world("sample"))
     assert [text for text in entry["shows"] if text not in printed] == []
 
 

@@ -35,15 +35,16 @@ def certificate(
     from herijk.warehouse.queries.views import Views
     from herijk.warehouse.store.boats import the_boat
     from herijk.warehouse.store.store import Store
+    from herijk.warehouse.store.unforeseen import documents
 
     store = Store(data)
-    with Views(store) as views:
+    with documents(store.root, "certificate") as border, Views(store) as views:
         chosen = edition or current_edition(views)
         fsn_no = boat and the_boat(views.table("boats"), boat)
         as_page = out is not None and out.suffix == ".html"
-        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), as_page)
-    name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
-    _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
+        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), as_page, border)
+        name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
+        _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
 
 
 def pages(
@@ -55,11 +56,14 @@ def pages(
     from herijk.dashboards.site.render import OWN_FILES, build_pages
     from herijk.pipeline.errors import MissingKnowledgeError
     from herijk.warehouse.store.store import Store
+    from herijk.warehouse.store.unforeseen import documents
 
     if out.exists() and not (out / "static" / OWN_FILES[0]).is_file():
         raise MissingKnowledgeError("{} is there and holds no pages; give a new folder", out)
-    made = build_pages(Store(data), out, as_of)
-    typer.echo(tell("{} files in {}; begin with index.html", made["files"], out))
+    store = Store(data)
+    with documents(store.root, "pages") as border:
+        made = build_pages(store, out, as_of, bordered=border)
+        typer.echo(tell("{} files in {}; begin with index.html", made["files"], out))
 
 
 def proposal(
@@ -79,16 +83,18 @@ def proposal(
     from herijk.dashboards.documents.proposal import proposal as make_proposal
     from herijk.warehouse.queries.views import Views
     from herijk.warehouse.store.store import Store
+    from herijk.warehouse.store.unforeseen import documents
 
-    store = Store(data)
-    with Views(store) as views:
+    store, name = Store(data), "-".join(("proposal", *methods))
+    with documents(store.root, name), Views(store) as views:
         made = make_proposal(views, methods, against, LANGUAGE.get(), known_methods(data))
-    name = "-".join(("proposal", *methods))
-    _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
+        _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
 
 
-def _write(content: bytes, path: Path, as_json: bool) -> None:
-    """Writes the file whole, and says where."""
+def _write(content: bytes | None, path: Path, as_json: bool) -> None:
+    """Writes the file whole, and says where; nothing where nothing could be made."""
+    if content is None:
+        return
     from herijk.warehouse.store.files import written_beside
     from herijk.warehouse.store.machine_faults import machine_faults_explained
 

@@ -342,13 +342,15 @@ def slides(
     from herijk.dashboards.slide_book import Asked
     from herijk.dashboards.slides import write_slides
     from herijk.warehouse.store.store import Store
+    from herijk.warehouse.store.unforeseen import documents
 
     if len(boat_type or ()) > MOST_TYPES:
         raise typer.BadParameter("give one or two types")
     store = Store(data)
     asked = Asked(boat_type or (), tows, boat or ())
-    written = write_slides(store, out or store.root / "slides", LANGUAGE.get(), asked)
-    show_files(written, as_json)
+    with documents(store.root, "slides") as border:
+        written = write_slides(store, out or store.root / "slides", LANGUAGE.get(), asked, border)
+        show_files(written, as_json)
 
 
 def _plots(

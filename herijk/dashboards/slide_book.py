@@ -5,8 +5,9 @@ figures of the tables. Does not belong here: what a figure looks like (`dashboar
 the statistics behind a sentence (`pipeline.consistency`), and files (`dashboards.slides`).
 """
 
-from collections.abc import Iterator, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import nullcontext
+from functools import cached_property, partial
 from typing import Final, NamedTuple
 
 import polars as pl
@@ -27,6 +28,7 @@ from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
 from herijk.tables.row import Row
 from herijk.warehouse.queries.chosen_tows import ALL, STATED, rows_of, spoken_range, with_choices
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.unforeseen import Border
 from herijk.words.catalogue import Say
 
 RECOMPUTED: Final = (("cw", "weight"), ("b", "speed"), ("cw", "speed"))
@@ -68,27 +70,34 @@ THE_PRESENTATION: Final = Asked()
 """Its types, boats, and all tows."""
 
 
-def slides(views: Views, say: Say, asked: Asked = THE_PRESENTATION) -> Iterator[Slide]:
-    """Every slide of which the archive has something to show.
+def slides(
+    views: Views, say: Say, asked: Asked = THE_PRESENTATION, border: Border = nullcontext
+) -> Iterator[Slide]:
+    """Every slide of which the archive has something to show, each made within a border.
 
     Raises:
         MissingKnowledgeError: there is no such type, boat or choice of tows.
     """
-    about = Book(views, say, asked.tows)
+    for name, make in _makers(Book(views, say, asked.tows), asked):
+        with border(f"slide {name}"):
+            yield from make()
+
+
+def _makers(about: "Book", asked: Asked) -> Iterator[tuple[str, Callable[[], Iterable[Slide]]]]:
+    """What makes each slide, or those of a boat."""
     types = about.types(asked.types)
-    for quantity in QUANTITIES:
-        for explaining in EXPLAINING:
-            yield about.against(quantity, explaining, types, about.tows)
+    pairs = [(y, x, about.tows) for y in QUANTITIES for x in EXPLAINING]
     if RECOMPUTED_SEASON in about.choices and about.tows == ALL:
-        for quantity, explaining in RECOMPUTED:
-            yield about.against(quantity, explaining, types, RECOMPUTED_SEASON)
-    yield about.hull_speed()
-    yield about.towed_at()
-    yield from about.raced_beyond()
-    yield from about.eras()
-    for boat in boats_of_slides(views, about.compared, asked.boats):
-        yield from about.boat(boat)
-    yield from about.tick_effects()
+        pairs += [(y, x, RECOMPUTED_SEASON) for y, x in RECOMPUTED]
+    for y, x, tows in pairs:
+        yield f"{y} {x} {tows}", partial(about.against, y, x, types, tows)
+    yield "hull speed", about.hull_speed
+    yield "towed at", about.towed_at
+    yield "raced beyond", about.raced_beyond
+    yield "eras", about.eras
+    for boat in boats_of_slides(about.views, about.compared, asked.boats):
+        yield boat, partial(about.boat, boat)
+    yield "ticks fleet", about.tick_effects
 
 
 class Book:
@@ -104,7 +113,7 @@ class Book:
         if tows not in STATED:
             views.choose(tows, list({*methods_of(held), *methods_of(held, tows)}))
         self.held, self.compared = held, compared_frame(views)
-        lines = views.table("type_lines")
+        lines = views.table("type_lines").filter(within="all")
         self.choices = lines["tows"].unique().sort().to_list()
         keys = ("boat_type", "tows", "quantity", "explaining", "method")
         self._lines = {tuple(row[k] for k in keys): row for row in lines.iter_rows(named=True)}
@@ -131,7 +140,9 @@ class Book:
         """A method as people call it."""
         return self.say(f"method.{name}")
 
-    def against(self, quantity: str, explaining: str, types: list[str], tows: str) -> Slide:
+    def against(
+        self, quantity: str, explaining: str, types: list[str], tows: str
+    ) -> Iterator[Slide]:
         """A quantity against an explaining variable, of some types and tows."""
         own = pl.col("boat_type").is_in(types)
         own &= pl.col("method").is_in(methods_of(self.held, tows))
@@ -144,7 +155,7 @@ class Book:
             words = self.say(f"code.{tows}") if tows in STATED else spoken_range(tows)
             title += self.say("slide.of_season").format(tows=words)
         said = [self.line((quantity, explaining), name, tows, self.ends(tows)) for name in types]
-        return Slide(
+        yield Slide(
             f"{quantity} {explaining} {tows}", f"slide_{quantity}_{explaining}", rows, title, said
         )
 
@@ -205,12 +216,12 @@ class Book:
         )
         return {(boat_type, tows): label for boat_type, tows, label in names.iter_rows()}
 
-    def hull_speed(self) -> Slide:
+    def hull_speed(self) -> Iterator[Slide]:
         """B against length, and against hull speed."""
         own = rows_of(self.tows) & (pl.col("boat_type") != UNKNOWN_TYPE)
         known = self._compared_methods().filter(own)
         said = [self.b_and_hull_speed(self.tows)]
-        return Slide("hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), said)
+        yield Slide("hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), said)
 
     def b_and_hull_speed(self, tows: str) -> str:
         """Whether B is hull speed."""
@@ -236,13 +247,13 @@ class Book:
     def _compared_methods(self) -> pl.DataFrame:
         return self.compared.filter(pl.col("method").is_in(methods_of(self.held)))
 
-    def towed_at(self) -> Slide:
+    def towed_at(self) -> Iterator[Slide]:
         """Tow speed as part of hull speed."""
         after = pl.col("method") == self.ends()[1]
         rows = self.compared.filter(rows_of(self.tows), after)
         rows = rows.with_columns(newest_method="method")
         said = [self.part_of_hull_speed(self.tows)]
-        return Slide("towed at", "slide_towed_at", rows, self.say("slide.towed_at"), said)
+        yield Slide("towed at", "slide_towed_at", rows, self.say("slide.towed_at"), said)
 
     def part_of_hull_speed(self, tows: str) -> str:
         """At what part of hull speed boats are towed."""

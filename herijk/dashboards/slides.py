@@ -2,6 +2,7 @@
 
 import io
 import textwrap
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Final
 
@@ -17,6 +18,7 @@ from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import open_results
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.unforeseen import Border
 from herijk.words.catalogue import speaker
 
 WIDTH_OF_TEXT: Final = 140
@@ -25,7 +27,11 @@ MARGIN: Final = 24
 
 
 def write_slides(
-    store: Store, folder: Path, language: str, asked: Asked = THE_PRESENTATION
+    store: Store,
+    folder: Path,
+    language: str,
+    asked: Asked = THE_PRESENTATION,
+    border: Border = nullcontext,
 ) -> list[Path]:
     """Writes every slide as SVG and PNG, and all of them as one PDF.
 
@@ -35,6 +41,7 @@ def write_slides(
         language: nl or en.
         asked: types, one or two; tows, `all`, `newest`, a season or a
             range of them; boats by number or name.
+        border: stands round the work on each slide.
 
     Raises:
         MissingKnowledgeError: there is no such type, boat or choice of tows, or no database.
@@ -43,15 +50,16 @@ def write_slides(
     open_results(store.database).close()  # says so where there is no tow
     with Views(store) as views:
         simulated = views.about().get("simulated") == "true"
-        made = list(slides(views, say, asked))
+        made = list(slides(views, say, asked, border))
     folder.mkdir(parents=True, exist_ok=True)
     book, written = pypdf.PdfWriter(), []
     for number, slide in enumerate(made, 1):
-        svg = _svg(slide, language, simulated)
-        stem = file_name(f"{number:02d} {slide.name}")
-        png = vl_convert.svg_to_png(svg, scale=2.0)
-        written += [_put(folder / f"{stem}.svg", svg.encode()), _put(folder / f"{stem}.png", png)]
-        book.append(io.BytesIO(vl_convert.svg_to_pdf(svg)))
+        with border(f"slide {slide.name} drawn"):
+            svg = _svg(slide, language, simulated)
+            png, page = vl_convert.svg_to_png(svg, scale=2.0), vl_convert.svg_to_pdf(svg)
+            stem = folder / file_name(f"{number:02d} {slide.name}")
+            written += [_put(Path(f"{stem}.svg"), svg.encode()), _put(Path(f"{stem}.png"), png)]
+            book.append(io.BytesIO(page))
     pages = io.BytesIO()
     book.write(pages)
     return [*written, _put(folder / f"slides-{language}.pdf", pages.getvalue())]

@@ -18,6 +18,7 @@ class TypeConsistency(PerMethod):
         "weight_kg, displacement_kg, declared_speed_m_s, waterline_length_m or ln_displacement",
         primary_key=True,
     )
+    within = column.text("all, or against tow speed also men, women", primary_key=True)
     standard_speed_m_s = column.speed(
         "common speed of q and cw_standard: median declared speed of the type's tows"
     )
@@ -28,7 +29,9 @@ class TypeConsistency(PerMethod):
         "quantity / explaining", "lower end of its 95 % interval", nullable=True
     )
     slope_hi = column.number("quantity / explaining", "upper end", nullable=True)
-    r2 = column.number("1", "share of the spread that is explained", nullable=True, min=0, max=1)
+    r2 = column.number(
+        "1", "1 - squares about line / about crews' means", nullable=True, min=0, max=1
+    )
     residual_sd_ratio = column.number(
         "1", "spread about the line / mean; of ln Cw itself", nullable=True, min=0
     )

@@ -64,6 +64,8 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.weight": ("gewicht", "weight"),
     "code.length": ("lengte", "length"),
     "code.all": ("alle", "all"),
+    "code.men": ("heren", "men"),
+    "code.women": ("dames", "women"),
     "code.speed_drift": ("snelheid loopt", "speed drifts"),
     "code.ends_differ": ("begin en eind verschillen", "ends differ"),
     "code.force_peak": ("krachtpiek", "force peak"),

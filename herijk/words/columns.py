@@ -129,6 +129,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.first_seen": ("Voor het eerst", "First seen"),
     "column.quantity": ("Grootheid", "Quantity"),
     "column.explaining": ("Tegen", "Against"),
+    "column.within": ("Binnen", "Within"),
     "column.n": ("n", "n"),
     "column.n_boats": ("Sloepen", "Boats"),
     "column.n_pairs": ("Paren", "Pairs"),

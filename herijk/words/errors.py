@@ -165,6 +165,11 @@ ERRORS: Final[dict[str, str]] = {
         "{}. Er is niets uitgegeven. Bijzonderheden staan in {}; stuur dat bestand naar "
         "wie Herijk onderhoudt"
     ),
+    "Herijk itself failed on {}; all else was made. Please report this to whoever maintains "
+    "Herijk, with what the folder unforeseen of the data folder has of it": (
+        "Herijk zelf is vastgelopen op {}; al het andere is gemaakt. Meld dit aan wie Herijk "
+        "onderhoudt, met wat daarvan in de map unforeseen van de gegevensmap staat"
+    ),
     # Files and settings
     "there is no file {}": "er is geen bestand {}",
     "{} is there already; choose another name": "{} bestaat al; kies een andere naam",

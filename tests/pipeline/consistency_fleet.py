@@ -120,5 +120,5 @@ def _fitted(speed, cw, v0):
 
 
 def type_consistency(observed):
-    """Rows of the table `type_consistency`."""
-    return newest_lines(type_lines(observed)[0])
+    """Rows of the table `type_consistency`, those within a class apart."""
+    return newest_lines(type_lines(observed)[0]).filter(within="all")

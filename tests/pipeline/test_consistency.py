@@ -326,6 +326,64 @@ def test_a_line_of_a_type_is_that_of_weighted_least_squares():
     assert [row["slope_lo"], row["slope_hi"]] == pytest.approx(other.conf_int()[1], rel=1e-6)
 
 
+def of_two_classes(tables):
+    """The fleet with its lightest half of the boats rowed by women."""
+    curves, tows, boats, points = tables
+    light = tows.filter(pl.col("weight_kg") < pl.col("weight_kg").median())["tow_id"]
+    women = pl.when(pl.col("tow_id").is_in(light.to_list())).then(pl.lit("D"))
+    return curves.with_columns(crew_class=women.otherwise(pl.lit("H"))), tows, boats, points
+
+
+def test_r2_and_spread_are_those_of_the_line_as_drawn():
+    """Tows weigh as they were measured, and boats with many tows less; a chart shows them alike."""
+    of = {"seasons": (2012, 2014, 2016), "weights_kg": np.linspace(700, 1300, 8)}
+    curves, *rest = of_two_classes(fleet(28, boats=8, height_sd=0.05, **of))
+    counted = (pl.col("season") == 2016) | (pl.col("fsn_no") < "FSN003")
+    observed = observe(curves.filter(counted), *rest)
+    lines, drawn = type_lines(observed)
+    of = {"tows": "all", "quantity": "cw_standard_kg_m", "explaining": "weight_kg"}
+    row, places = lines.filter(**of).row(0, named=True), drawn.filter(**of)
+    y, x = quantities(observed)["cw_standard_kg_m"][0], observed.column("weight_kg")
+    about_line, about_mean = np.zeros(len(y)), np.zeros(len(y))
+    for crew_class in ("D", "H"):
+        mine = (observed.table["crew_class"] == crew_class).to_numpy()
+        line = places.filter(crew_class=crew_class)
+        about_line[mine] = y[mine] - np.interp(x[mine], line["x"], line["y"])
+        about_mean[mine] = y[mine] - y[mine].mean()
+    left = (about_line**2).sum()
+    assert row["r2"] == pytest.approx(1 - left / (about_mean**2).sum(), rel=1e-9)
+    spread = np.sqrt(left / (len(y) - 3)) / y.mean()
+    assert row["residual_sd_ratio"] == pytest.approx(spread, rel=1e-9)
+
+
+def test_a_slope_that_comes_from_the_class_is_none_within_men_and_within_women():
+    """Men are heavier and towed faster; among men, and among women, speed says nothing of Cw."""
+    speeds = np.concatenate([np.linspace(2.1, 2.3, 8), np.linspace(2.5, 2.7, 8)])
+    weights = np.repeat([900.0, 1300.0], 8) + np.arange(16) * 1e-3
+    of = {"boats": 16, "speeds_m_s": speeds, "weights_kg": weights, "height_sd": 0.02}
+    lines, points = type_lines(observe(*of_two_classes(fleet(29, TRIALS_OF_LINES, **of))))
+    found = lines.filter(tows="newest", quantity="cw_standard_kg_m")
+    by_speed = found.filter(explaining="declared_speed_m_s").partition_by("within", as_dict=True)
+    assert (by_speed["all",]["slope_lo"] > 0).all()
+    for name in ("men", "women"):
+        rows = by_speed[name,]
+        assert rows["n"].unique().to_list() == rows["n_boats"].unique().to_list() == [8]
+        inside = ((rows["slope_lo"] <= 0) & (rows["slope_hi"] >= 0)).mean()
+        assert within(inside, 0.95, TRIALS_OF_LINES)
+    assert found.filter(pl.col("explaining") != "declared_speed_m_s")["within"].unique()[0] == "all"
+    drawn = points.filter(tows="newest", quantity="cw_standard_kg_m").group_by("method")
+    assert drawn.len()["len"].unique().to_list() == [21]
+
+
+def test_within_a_class_of_too_few_boats_no_line_is_drawn():
+    lines, _ = type_lines(observe(*fleet(30, boats=6)))
+    women = lines.filter(within="women", tows="newest")
+    assert women["n"].unique().to_list() == [0]
+    assert women["reason"].unique().to_list() == ["few_boats"]
+    same = [lines.filter(within=name, explaining="declared_speed_m_s") for name in ("men", "all")]
+    assert_frame_equal(*(frame.drop("within") for frame in same), check_row_order=False)
+
+
 def test_intervals_of_slopes_cover_the_truth():
     lines = type_consistency(
         observe(*fleet(13, TRIALS_OF_LINES, boats=8, b_cv=0.05, height_sd=0.02))

@@ -38,7 +38,7 @@ def test_figures_of_a_type_are_those_of_the_tables(built):
             lines = built.table("type_consistency").filter(**own)
             assert lines.height == len(found.lines)
             for line in found.lines:
-                key = {name: line[name] for name in ("quantity", "explaining")}
+                key = {name: line[name] for name in ("quantity", "explaining", "within")}
                 row = lines.row(by_predicate=_where(key), named=True)
                 assert row.items() <= line.items()
             test = built.table("type_homogeneity").filter(**own).row(0, named=True)
@@ -94,7 +94,10 @@ def of(built):
     def statistics(slope, bends):
         return replace(
             any_type,
-            lines=[{"quantity": "b_m_s", "explaining": "weight_kg", "reason": ""} | slope],
+            lines=[
+                {"quantity": "b_m_s", "explaining": "weight_kg", "within": "all", "reason": ""}
+                | slope
+            ],
             speed_trend={"reason": "few_boats"},
             eras=[],
             bends={"equal_possible": bends},
@@ -269,7 +272,8 @@ def test_lines_over_all_tows_are_those_of_the_table(built):
     report = audit(built.store, [boat_type], "rebased-2015", tows="all")
     lines = report.types[0].under["rebased-2015"].lines
     table = built.table("type_lines").filter(boat_type=boat_type, method="rebased-2015", tows="all")
-    assert [line["n"] for line in lines] == table.sort("quantity", "explaining")["n"].to_list()
+    table = table.sort("quantity", "explaining", "within")
+    assert [line["n"] for line in lines] == table["n"].to_list()
 
 
 def test_a_boat_is_found_by_its_name_as_people_write_it(built):

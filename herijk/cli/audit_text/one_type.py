@@ -151,11 +151,13 @@ def _each(under: Mapping[str, T], say: Callable[[T], list[str]]) -> list[str]:
 def _lines(under: Mapping[str, TypeStatistics]) -> list[str]:
     """The table of lines, what is not claimed, and which quantity lies closest together."""
     cells, silent = [], []
-    for quantity, explaining in LINES:
-        letter, against = LETTERS[quantity], tell(AGAINST[explaining][0])
-        label = tell("{} per {}", letter, step_of(quantity, explaining)[1])
+    for quantity, explaining, crews in LINES:
+        within = "" if crews == "all" else f", {code(crews)}"
+        letter, against = LETTERS[quantity], tell(AGAINST[explaining][0]) + within
+        step = step_of(quantity, explaining)[1]
+        label = f"  {letter}{within}" if within else tell("{} per {}", letter, step)
         for method, figures in under.items():
-            line = line_of(figures, quantity, explaining)
+            line = line_of(figures, quantity, explaining, crews)
             if line["reason"]:
                 silent.append((method, tell("{} against {}", letter, against), nothing(line)))
                 continue

@@ -24,8 +24,12 @@ AGAINST: Final = {
 }
 """Explaining variables: their name, and the step for which a slope is told."""
 
-LINES: Final = (*((name, other) for name in QUANTITIES for other in AGAINST), ("q", "weight_kg"))
-"""What is told of the table of lines: quantity and explaining variable."""
+LINES: Final = (
+    *((name, "weight_kg", "all") for name in LETTERS),
+    *((name, "declared_speed_m_s", "all") for name in QUANTITIES),
+    *(("cw_standard_kg_m", "declared_speed_m_s", crews) for crews in ("men", "women")),
+)
+"""What is told of the table of lines: quantity, explaining variable and within which crews."""
 
 MOST_LISTED: Final = 4
 WIDTH: Final = 100
@@ -120,10 +124,10 @@ def section(title: str, lines: list[str]) -> str:
     return "\n".join([title, *lines])
 
 
-def line_of(under: TypeStatistics, quantity: str, explaining: str) -> Row:
+def line_of(under: TypeStatistics, quantity: str, explaining: str, within: str = "all") -> Row:
     """The straight line of a quantity on an explaining variable, or why there is none."""
     for line in under.lines:
-        if (line["quantity"], line["explaining"]) == (quantity, explaining):
+        if (line["quantity"], line["explaining"], line["within"]) == (quantity, explaining, within):
             return line
     return {"n": 0, "n_boats": 0, "slope": None, "follows": None, "reason": "no_curves"}
 

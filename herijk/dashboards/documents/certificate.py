@@ -1,5 +1,6 @@
 """The certificate of a boat and crew: one page A4, and all of an edition in one file."""
 
+from contextlib import nullcontext
 from typing import Final
 
 import segno
@@ -9,16 +10,24 @@ from herijk.dashboards.documents import page, pdf
 from herijk.dashboards.pictures import curve_picture
 from herijk.dashboards.speech import Speech
 from herijk.tables.row import Row
-from herijk.warehouse.queries.documents import certificate_lines
+from herijk.warehouse.queries.documents import certificate_lines, curve_of
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.unforeseen import Border
 
 READING: Final = ("certificate_read_cw", "certificate_read_curve", "certificate_read_power")
 
 
 def certificates(
-    views: Views, edition: str, fsn_no: str | None, language: str, as_page: bool = False
-) -> bytes:
+    views: Views,
+    edition: str,
+    fsn_no: str | None,
+    language: str,
+    as_page: bool = False,
+    border: Border = nullcontext,
+) -> bytes | None:
     """The certificates of a boat in an edition, or of all boats, as PDF or as an HTML page.
+
+    Each is made within a border; nothing is given where none could be made.
 
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line in it.
@@ -27,6 +36,13 @@ def certificates(
     say = speech.say
     about = views.about()
     lines = certificate_lines(views, edition, fsn_no)
+    made = []
+    for line in lines:
+        whose = f"{line['fsn_no']} {line['rowers']}{line['crew_class']}"
+        with border(f"certificate {edition} {whose}"):
+            made.append(_one(line, speech))
+    if not made:
+        return None
     made_by = lines[0]["code_version"] or about.get("code_version", "")
     content = {
         "language": language,
@@ -40,7 +56,7 @@ def certificates(
         "reading": [say(key) for key in READING],
         "checking_title": say("certificate_checking"),
         "footing": f"{say('made_by')} {made_by}",
-        "certificates": [_one(line, speech) for line in lines],
+        "certificates": made,
     }
     return page("certificate.html.j2", content) if as_page else pdf("certificate.typ", content)
 
@@ -48,7 +64,7 @@ def certificates(
 def _one(line: Row, speech: Speech) -> dict[str, object]:
     say, number = speech.say, speech.number
     code = line["verification_code"] or ""
-    crew = crew_name(line, speech)
+    crew, curve = crew_name(line, speech), curve_of(line)
     return {
         "name": line["name"] or line["fsn_no"],
         "subtitle": " · ".join(filter(None, (line["fsn_no"], line["boat_type"], crew))),
@@ -61,12 +77,11 @@ def _one(line: Row, speech: Speech) -> dict[str, object]:
         "caution": _caution(line, speech),
         "left": _numbers(line, speech),
         "right": _terms(line, speech),
-        "curve": str(curve_picture(line["powers"], line, speech, crew)),
+        "curve": str(curve_picture(curve, line, speech, crew)),
         "curve_note": say("curve_caption"),
         "curve_alt": f"{say('boat_curve')} {line['fsn_no']} {crew}",
         "powers": [
-            [number(speed, 2), number(cw, 2), number(power, 1)]
-            for speed, cw, power in line["powers"]
+            [number(speed, 2), number(cw, 2), number(power, 1)] for speed, cw, power in curve
         ],
         "checking": say("certificate_check" if code else "certificate_uncheckable").format(
             code=code, fsn_no=line["fsn_no"], edition=line["edition"]

@@ -29,7 +29,7 @@ KEPT: Final = 7
 
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
-    *("quantity", "explaining", "severity", "check", "shared", "kind", "scope"),
+    *("quantity", "explaining", "within", "severity", "check", "shared", "kind", "scope"),
     *("old_remark", "new_remark", "choice"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
     *("instrument", "verdict", "confused_with"),

@@ -37,7 +37,7 @@ from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import folder_written_beside
 from herijk.warehouse.store.store import Store
-from herijk.warehouse.store.unforeseen import border
+from herijk.warehouse.store.unforeseen import Border, border
 from herijk.words import LANGUAGES
 from herijk.words.catalogue import WORDS, speaker
 
@@ -95,12 +95,17 @@ def build_site(store: Store, other: Executor | None = None) -> dict[str, int]:
 
 
 def build_pages(
-    store: Store, target: Path, as_of: dt.date | None = None, other: Executor | None = None
+    store: Store,
+    target: Path,
+    as_of: dt.date | None = None,
+    other: Executor | None = None,
+    bordered: Border | None = None,
 ) -> dict[str, int]:
     """The same in another folder, and as of a day; what stood in the folder is replaced."""
+    bordered = bordered or partial(border, store.root)
     with folder_written_beside(target) as beside:
         with Views(store, as_of) as views:
-            _write_pages(store.root, views, beside, other)
+            _write_pages(bordered, views, beside, other)
             _write_shared(views, beside)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
@@ -120,21 +125,21 @@ def _write_shared(views: Views, folder: Path) -> None:
     (static / "find.js").write_text(_search_script(views), encoding="utf-8")
 
 
-def _write_pages(root: Path, views: Views, folder: Path, other: Executor | None) -> None:
+def _write_pages(border: Border, views: Views, folder: Path, other: Executor | None) -> None:
     """Writes every page; those with a picture last, when the other process has drawn it."""
     editions = [Edition(views, language) for language in LANGUAGES]
     methods = method_names(views)
     shared: list[Page] = []
     makers = shared_pages(views) | {"slides": lambda: [slides_page(views, methods)]}
     for name, make in makers.items():
-        with border(root, f"pages {name}"):
+        with border(f"pages {name}"):
             shared += make()
     drawn = [_draw(page, editions, other) for page in shared]
     for fsn_no, make_page in boat_pages(views, methods):
-        with border(root, f"page {fsn_no}"):
+        with border(f"page {fsn_no}"):
             _write_page(folder, make_page(), editions, {})
     for page, pictures in zip(shared, drawn, strict=True):
-        with border(root, f"page {page.path}"):
+        with border(f"page {page.path}"):
             _write_page(folder, page, editions, pictures())
 
 

@@ -72,7 +72,7 @@ TYPE_COLUMNS = (
 )
 TYPE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "season", "cw_standard_kg_m", "cw_kg_m")
 LINE_COLUMNS = (
-    *("quantity", "explaining", "n", "n_boats", "slope", "slope_lo", "slope_hi", "r2"),
+    *("quantity", "explaining", "within", "n", "n_boats", "slope", "slope_lo", "slope_hi", "r2"),
     "residual_sd_ratio",
 )
 TYPE_FIGURES = ("slide_cw_weight", "slide_cw_speed", "slide_b_weight")

@@ -5,7 +5,8 @@ weighted: each tow has its own measuring error, and boats differ truly by a stan
 is estimated (REML); tows of one boat, also of two crews, share that difference. Over all tows a
 season and a single tow have a deviation of their own as well, so that repeats count as repeats.
 Women's and men's crews differ in weight and speed, so lines against weight or length compare boats
-within a crew; displacement contains the crew.
+within a crew; displacement contains the crew. Lines against tow speed, which stands for crew mass,
+are drawn within men and within women too.
 """
 
 from collections.abc import Iterator
@@ -53,6 +54,10 @@ SLIDE_PAIRS: Final = tuple(
 )
 """What the presentation of 2015 plots, here for every choice of tows."""
 
+
+ALL_CREWS: Final = "all"
+WITHIN: Final = {"men": "H", "women": "D"}
+"""Classes within which lines against tow speed are drawn too, by their codes."""
 
 FEWEST_BOATS: Final = 3
 PLACES: Final = 7
@@ -152,8 +157,8 @@ def type_lines(
 
     Returns:
         Rows of the tables `type_lines` and `type_line_points`. Where no line is drawn, `reason`
-        says why. Where a line compares boats within a crew, its points are given per class;
-        `crew_class` is `all` elsewhere.
+        says why. Points are those of lines over all crews. Where such a line compares boats within
+        a crew, they are given per class; `crew_class` is `all` elsewhere.
     """
     rows: list[Row] = []
     to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
@@ -162,13 +167,15 @@ def type_lines(
         run_variance = tows.column("run_sd_ratio") ** 2
         speeds = tows.column("standard_speed_m_s")
         for (method, boat_type), own in tows.rows_by("method", "boat_type"):
-            for quantity, explaining in _pairs(choice):
+            for quantity, explaining, within in _kinds(choice):
                 names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
                 names |= {"quantity": quantity, "explaining": explaining}
                 y, unit = measured[quantity]
-                mine = own[np.isfinite(y[own]) & np.isfinite(shared.explaining[explaining][own])]
+                known = np.isfinite(y) & np.isfinite(shared.explaining[explaining])
+                mine = own[known[own] & shared.within[within][own]]
                 facts, across = shared.through(mine, boat_type, explaining)
-                row = names | {"standard_speed_m_s": float(speeds[own[0]])} | facts
+                about = {"within": within, "standard_speed_m_s": float(speeds[own[0]])}
+                row = names | about | facts
                 rows.append(row)
                 if across is not None:
                     line = _Line(across, quantity, y[mine], unit[mine] * run_variance[mine])
@@ -182,10 +189,19 @@ def type_lines(
                 continue
             ends = fit.line_at(line.across.at)
             row.update(line.row(fit, ends))
-            if (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
+            drawn = row["within"] == ALL_CREWS
+            if drawn and (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
                 for column, values in line.points(names, ends).items():
                     points[column] += values
     return frame_of(TypeLines, rows), TypeLinePoints.cast(pl.DataFrame(points))
+
+
+def _kinds(choice: Choice) -> Iterator[tuple[str, str, str]]:
+    """Each quantity with what may explain it, and within which crews, for a choice of tows."""
+    for quantity, explaining in _pairs(choice):
+        yield quantity, explaining, ALL_CREWS
+        if explaining == "declared_speed_m_s":
+            yield from ((quantity, explaining, name) for name in WITHIN)
 
 
 def _pairs(choice: Choice) -> Iterator[tuple[str, str]]:
@@ -229,6 +245,8 @@ class _Shared:
             for by in (("tow_id",), ("fsn_no",), ("hull",), ("rowers", "crew_class"))
         )
         self._class = table["crew_class"].to_numpy()
+        self.within = {name: self._class == code for name, code in WITHIN.items()}
+        self.within[ALL_CREWS] = np.ones(table.height, bool)
         self._made: dict[tuple[str, str, bytes], tuple[Row, _Across | None]] = {}
 
     def through(
@@ -291,17 +309,22 @@ class _Line:
         self.level = 1.0 if quantity == LN_CW else float(abs(y.mean()))
 
     def row(self, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
-        """The line itself and its spread, as in `type_lines`; `ends` are at `across.at`."""
-        problem = self.problem
+        """The line itself and its spread, as in `type_lines`; `ends` are at `across.at`.
+
+        Tows weigh on the line as they were measured. About the line as it is drawn they count alike
+        in its spread, and so in R2: beside that about the means of the crews.
+        """
+        problem, x = self.problem, self.problem.design.x
         slope, lo, hi = (float(end[-1]) / self.across.width for end in ends)
-        residual = problem.y - problem.design.x @ fit.beta
-        spread = np.sqrt((residual**2).sum() / problem.rows_beyond)
-        total = fit.total_misfit
+        about_line = float(((problem.y - x @ fit.beta) ** 2).sum())
+        # The last column of x has no mean within a crew.
+        about_means = float(((problem.residual + x[:, -1] * problem.plain[-1]) ** 2).sum())
+        spread = np.sqrt(about_line / problem.rows_beyond)
         return {
             "slope": slope,
             "slope_lo": lo,
             "slope_hi": hi,
-            "r2": min(max(1.0 - fit.misfit / total, 0.0), 1.0) if total > 0 else None,
+            "r2": max(1.0 - about_line / about_means, 0.0) if about_means > 0 else None,
             "residual_sd_ratio": float(spread) / self.level,
             "between_sd_ratio": fit.sd[0] / self.level,
             "noise_sd_ratio": self.noise / self.level,

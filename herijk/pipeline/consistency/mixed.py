@@ -107,11 +107,6 @@ class Fit:
         return float(self.white.misfit[self.place])
 
     @property
-    def total_misfit(self) -> float:
-        """The same without the last column of X, at the same variances."""
-        return self.misfit + float(self.beta[-1] / self._inverse[-1, -1]) ** 2
-
-    @property
     def scale(self) -> float:
         """Misfit per row beyond the fixed effects, at least 1: below, it is only rounding."""
         rows = self.problem.rows_beyond

@@ -300,7 +300,8 @@ def _differing(first: TypeStatistics, second: TypeStatistics) -> list[str]:
 
 def _intervals(under: TypeStatistics) -> dict[str, tuple[float, float, float]]:
     """Every slope and shift with its interval; shifts as logarithms."""
-    slopes = {f"{line['quantity']} {line['explaining']}": line for line in under.lines}
+    lines = (line for line in under.lines if line["within"] == "all")
+    slopes = {f"{line['quantity']} {line['explaining']}": line for line in lines}
     slopes["speed_trend"] = under.speed_trend
     intervals = {
         name: (line["slope"], line["slope_lo"], line["slope_hi"])
@@ -337,7 +338,8 @@ def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Fleet:
 
 
 _LINES = """
-SELECT * FROM type_consistency WHERE method = ? AND boat_type = ? ORDER BY quantity, explaining
+SELECT * FROM type_consistency WHERE method = ? AND boat_type = ?
+ORDER BY quantity, explaining, within
 """
 
 _ALL_TOWS = """

@@ -31,8 +31,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
 
     Returns:
         Rows of `register` with the boat's `name` and `boat_type`, `basis` (None in a draft), the
-        columns `OF_EDITION`, `log_known` (whether the interval holds the error of the log) and
-        `powers`, the curve as of `curve_of`.
+        columns `OF_EDITION` and `log_known` (whether the interval holds the error of the log).
 
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line of that boat in it.
@@ -49,7 +48,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
     about = views.table("editions").filter(edition=edition)
     terms = about.select(OF_EDITION).to_dicts() or [dict.fromkeys(OF_EDITION)]
     return [
-        line | terms[0] | {"log_known": known, "powers": curve_of(line)}
+        line | terms[0] | {"log_known": known}
         for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts()
     ]
 

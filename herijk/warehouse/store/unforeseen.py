@@ -1,4 +1,6 @@
-"""What Herijk itself failed on: a tow, a method, a page. It is set aside, and the rest goes on.
+"""What Herijk itself failed on: a tow, a method, a page, a document.
+
+It is set aside, and the rest goes on.
 
 Each failure is a text file in the data folder, with its traceback, for whoever maintains Herijk.
 Tows are remembered besides, as long as neither their row of the list, their samples nor our code
@@ -6,14 +8,14 @@ change: then they are tried again.
 """
 
 import traceback
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.errors import HerijkError
+from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import FailedTows
 from herijk.tables.row import Row
@@ -26,6 +28,8 @@ from herijk.words import Sentence, cause_of, say, spoken
 UNFORESEEN: Final = "unforeseen"
 """The reason code of a tow on which Herijk itself failed, and the folder of tracebacks."""
 FAILED_TOWS: Final = "failed_tows"
+Border = Callable[[str], AbstractContextManager[object]]
+"""What stands round the work of one thing, given what that is."""
 _NOT_OURS: Final = (HerijkError, MemoryError, OSError, KeyboardInterrupt, SystemExit, GeneratorExit)
 
 
@@ -72,12 +76,13 @@ def note(root: Path, what: str, trace: str) -> None:
 
 
 @contextmanager
-def border(root: Path, what: str) -> Iterator[None]:
+def border(root: Path, what: str, failed: list[str] | None = None) -> Iterator[None]:
     """Round the work of one thing: an error of ours costs that thing, and is kept.
 
     Args:
         root: the data folder.
         what: what the work is about, with its kind before it: `page types.html`.
+        failed: is given what failed.
     """
     try:
         yield
@@ -85,8 +90,34 @@ def border(root: Path, what: str) -> Iterator[None]:
         if not is_unforeseen(error):
             raise
         note(root, what, traced(error))
+        if failed is not None:
+            failed.append(what)
     else:
         forget(root, what)
+
+
+@contextmanager
+def documents(root: Path, command: str) -> Iterator[Border]:
+    """Round a command that makes documents, with the border for each: what failed is told last.
+
+    What is kept of them has no blank in its name, so that no rebuild answers for it (`failures`).
+
+    Raises:
+        BrokenPromiseError: Herijk itself failed on some of them.
+    """
+    failed: list[str] = []
+
+    def round_one(what: str) -> AbstractContextManager[None]:
+        return border(root, what.replace(" ", "-"), failed)
+
+    with round_one(command):
+        yield round_one
+    if failed:
+        raise BrokenPromiseError(
+            "Herijk itself failed on {}; all else was made. Please report this to whoever "
+            "maintains Herijk, with what the folder unforeseen of the data folder has of it",
+            ", ".join(failed),
+        )
 
 
 def forget(root: Path, what: str) -> None:
@@ -95,7 +126,7 @@ def forget(root: Path, what: str) -> None:
 
 
 def failures(root: Path) -> list[str]:
-    """What could not be made, beside tows, as `border` was told; sorted."""
+    """What a rebuild could not make, beside tows, as `border` was told; sorted."""
     return sorted(file.stem for file in (root / UNFORESEEN).glob("[!.]* *.txt"))
 
 
