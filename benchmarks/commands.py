@@ -27,7 +27,7 @@ import polars as pl
 from benchmarks.harness import machine
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.store.store import Store
+from warehouse.store.store import Store
 
 SMALL: Final = WorldSettings(tuple(range(2009, 2017)), 3, 100)
 READ, COLD = "only text to blocks", "rebuild, cold"
@@ -46,7 +46,7 @@ WITHIN_S: Final = {
 _READING: Final = """
 import sys
 from pathlib import Path
-from herijk.warehouse.store.store import Store
+from warehouse.store.store import Store
 from tests.intake import bring_in
 bring_in(Store(Path(sys.argv[2])), Path(sys.argv[1]))
 """

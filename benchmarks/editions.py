@@ -13,17 +13,17 @@ import time
 from pathlib import Path
 
 from benchmarks.harness import machine
-from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build.graph import ARCHIVE, METHOD
-from herijk.warehouse.build.inputs import Scope
-from herijk.warehouse.editions.compare import diff
-from herijk.warehouse.editions.publish import Terms, publish
-from herijk.warehouse.editions.verify import verify
-from herijk.warehouse.store.editions import read_edition
-from herijk.warehouse.store.store import Store
+from pipeline.method.definition import shipped_method
 from tests.intake import bring_in
+from warehouse.derive.graph import ARCHIVE, METHOD
+from warehouse.derive.inputs import Scope
+from warehouse.editions.compare import diff
+from warehouse.editions.publish import Terms, publish
+from warehouse.editions.verify import verify
+from warehouse.store.editions import read_edition
+from warehouse.store.store import Store
 
 DAY = dt.date(2018, 6, 1)
 METHODS = ("as-published", "rebased")

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from benchmarks.harness import machine, median_seconds
-from herijk.pipeline import curve
+from pipeline import curve
 
 REPEATS = 5
 LARGE_BATCH = 200_000

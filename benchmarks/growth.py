@@ -18,7 +18,7 @@ from benchmarks.harness import machine
 from benchmarks.world import SEASONS
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.store.store import Store
+from warehouse.store.store import Store
 
 RATE_HZ: Final = 10
 MOST_MIB: Final = {1_000: 1024, 10_000: 2048}

@@ -17,8 +17,8 @@ import polars as pl
 
 from benchmarks.harness import THREADS, both
 from benchmarks.world import HEADERS, RATE_HZ
-from herijk.pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES, SUM_NAMES
-from herijk.pipeline.channels import SAMPLE_SCHEMA
+from pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES, SUM_NAMES
+from pipeline.channels import SAMPLE_SCHEMA
 
 
 def means_of_runs(sums: pl.DataFrame) -> pl.DataFrame:

@@ -20,8 +20,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
-from herijk.warehouse.intake.lake import LAKE_FORM
-from herijk.warehouse.store.store import read_parquet, write_parquet
+from warehouse.intake.lake import LAKE_FORM
+from warehouse.store.store import read_parquet, write_parquet
 
 SCALE = 1000.0
 """Integers count thousandths: of a m/s, a N, a degree."""

@@ -21,15 +21,15 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from herijk.assets.rebuild import rebuild
-from herijk.dashboards.site.pages import MENU
-from herijk.dashboards.site.render import build_site
-from herijk.pipeline.method.definition import shipped_methods
+from assets.rebuild import rebuild
+from dashboards.site.pages import MENU
+from dashboards.site.render import build_site
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.store import Store
+from pipeline.method.definition import shipped_methods
 from tests.quiet import Quiet
+from warehouse.queries.views import Views
+from warehouse.store.store import Store
 
 READY = (
     "[...document.querySelectorAll('.chart')].every(chart => chart.querySelector('svg')"

@@ -13,16 +13,16 @@ import pyarrow.parquet as pq
 from benchmarks import plain, same
 from benchmarks.harness import both
 from benchmarks.world import FOLDER, RATE_HZ, World
-from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.warehouse.archive.files.contents import read_bytes
-from herijk.warehouse.archive.profile.reading import read_profiles
-from herijk.warehouse.intake import lake
-from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.queries.rebase import rebase
-from herijk.warehouse.store.store import Store, write_parquet
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.method.definition import parse_method, shipped_method
+from pipeline.recompute.recompute import recompute
+from warehouse.archive.files.contents import read_bytes
+from warehouse.archive.profile.reading import read_profiles
+from warehouse.intake import lake
+from warehouse.intake import seasons as intake
+from warehouse.queries.rebase import rebase
+from warehouse.store.store import Store, write_parquet
 
 Work = Callable[[], Any]
 SIDES = {"as_it_was": 0.2, "changed": 0.3}

@@ -17,15 +17,15 @@ from pathlib import Path
 
 import polars as pl
 
-from herijk.dashboards.guard import listen
-from herijk.dashboards.workbench.bench import Base, Bench, Question
-from herijk.dashboards.workbench.server import LOOPBACK, address, serving
-from herijk.pipeline.method.definition import Steps
-from herijk.pipeline.recompute.run_cache import RunCache
+from dashboards.guard import listen
+from dashboards.workbench.bench import Base, Bench, Question
+from dashboards.workbench.server import LOOPBACK, address, serving
 from herijk.simulate import WorldSettings, simulate_world
-from herijk.warehouse.queries.history import History
-from herijk.warehouse.store.store import Store
+from pipeline.method.definition import Steps
+from pipeline.recompute.run_cache import RunCache
 from tests.worlds import measure
+from warehouse.queries.history import History
+from warehouse.store.store import Store
 
 SEASONS = tuple(range(2009, 2019))
 CHANGES = {

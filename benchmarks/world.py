@@ -12,10 +12,10 @@ import polars as pl
 
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build.graph import ARCHIVE
-from herijk.warehouse.build.inputs import Scope
-from herijk.warehouse.store.store import Store
 from tests.intake import bring_in
+from warehouse.derive.graph import ARCHIVE
+from warehouse.derive.inputs import Scope
+from warehouse.store.store import Store
 
 SEASONS = tuple(range(2009, 2026))
 RATE_HZ = 1000

@@ -9,13 +9,15 @@ The public library; docs/library.md has an example of each. Nothing else is publ
 """
 
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from herijk.library.curves import Curve, Estimate, Fit, fit
     from herijk.library.data import DataFolder, compare_registers, open_data
     from herijk.library.methods import Applied, apply_method, method, methods
-    from herijk.pipeline.errors import HerijkError
+    from pipeline.errors import HerijkError
 
 __all__ = [
     "Applied",
@@ -36,8 +38,28 @@ _HOMES: Final = {
     "herijk.library.curves": {"Curve", "Estimate", "Fit", "fit"},
     "herijk.library.data": {"DataFolder", "compare_registers", "open_data"},
     "herijk.library.methods": {"Applied", "apply_method", "method", "methods"},
-    "herijk.pipeline.errors": {"HerijkError"},
+    "pipeline.errors": {"HerijkError"},
 }
+
+
+def _look_at_neighbours() -> None:
+    """Refuses to go on with a room that is not ours: their names are common (decision 18).
+
+    Raises:
+        ImportError: Python would find somebody else's module under the name of a room.
+    """
+    here = Path(__file__).resolve().parents[1]
+    for room in ("assets", "dashboards", "warehouse", "pipeline"):
+        spec = find_spec(room)
+        origin = (spec and spec.origin) or "nothing"
+        if Path(origin).resolve().parent != here / room:
+            raise ImportError(
+                f"import {room} finds {origin}, which is not Herijk's: rename that file or folder, "
+                "or give Herijk an environment of its own"
+            )
+
+
+_look_at_neighbours()
 
 
 def __getattr__(name: str) -> Any:  # the command would otherwise wait for SciPy and Polars

@@ -17,22 +17,22 @@ import pytest
 from filelock import FileLock
 from hypothesis import settings
 
-import herijk.assets.instance
-import herijk.assets.rebuild
-import herijk.assets.stale
-import herijk.assets.workers
-import herijk.dashboards.report_page
-from herijk.assets.progress import Progress
-from herijk.assets.report import Done, Report
-from herijk.assets.stale import Stale
+import assets.instance
+import assets.rebuild
+import assets.stale
+import assets.workers
+import dashboards.report_page
+from assets.progress import Progress
+from assets.report import Done, Report
+from assets.stale import Stale
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.tables.schemas import TABLES
-from herijk.warehouse.build.graph import DATABASE, METHOD, STEPS
-from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.methods import KnownMethods
-from herijk.warehouse.store.store import Store
+from pipeline.tables.schemas import TABLES
 from tests.quiet import Quiet
+from warehouse.derive.graph import DATABASE, METHOD, STEPS
+from warehouse.intake import seasons as intake
+from warehouse.store.methods import KnownMethods
+from warehouse.store.store import Store
 
 # The same examples every time, whatever the machine's speed.
 settings.register_profile("repeatable", deadline=None, derandomize=True, max_examples=50)
@@ -94,9 +94,9 @@ def directly(page: bool = False) -> Iterator[None]:
     Args:
         page: make the page about the rebuild too, a quarter of the work.
     """
-    no_site = mock.patch.object(herijk.assets.stale, "site_is_stale", return_value=False)
-    no_dagster = mock.patch.object(herijk.assets.rebuild, "make_assets", _make_directly)
-    no_page = mock.patch.object(herijk.dashboards.report_page, "report_pages", return_value={})
+    no_site = mock.patch.object(assets.stale, "site_is_stale", return_value=False)
+    no_dagster = mock.patch.object(assets.rebuild, "make_assets", _make_directly)
+    no_page = mock.patch.object(dashboards.report_page, "report_pages", return_value={})
     with no_site, no_dagster, nullcontext() if page else no_page:
         yield
 
@@ -104,7 +104,7 @@ def directly(page: bool = False) -> Iterator[None]:
 def in_one_process() -> AbstractContextManager[object]:
     """Inside, a thread does the heavy work: a process takes seconds to import what it needs."""
     thread = ThreadPoolExecutor(1)
-    return mock.patch.object(herijk.assets.workers, "workers", return_value=thread)
+    return mock.patch.object(assets.workers, "workers", return_value=thread)
 
 
 @dataclass(frozen=True)
@@ -131,12 +131,12 @@ class Workbench:
         pages; most tests do without, and without the page about the rebuild.
         """
         with in_one_process(), self.records_in_memory() if whole else directly(page):
-            return herijk.assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
+            return assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
 
     @staticmethod
     def records_in_memory() -> AbstractContextManager[object]:
         """Inside, rebuilds keep no records of Dagster's on disk."""
-        return mock.patch.object(herijk.assets.instance, "instance_of", _dagster_in_memory)
+        return mock.patch.object(assets.instance, "instance_of", _dagster_in_memory)
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""

@@ -14,9 +14,9 @@ from pathlib import Path
 
 from polars.testing import assert_frame_equal
 
-from herijk.warehouse.build.database import DATABASE_TABLE
-from herijk.warehouse.intake.seasons import INDEXED
-from herijk.warehouse.store.store import Store, read_parquet
+from warehouse.derive.database import DATABASE_TABLE
+from warehouse.intake.seasons import INDEXED
+from warehouse.store.store import Store, read_parquet
 
 ROOT = Path(__file__).parents[1]
 PATIENCE_S = 120.0

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.store import Store
+from warehouse.intake import seasons as intake
+from warehouse.store.store import Store
 
 
 def bring_in(store: Store, root: Path) -> None:

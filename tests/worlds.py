@@ -6,18 +6,6 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import SPEED_SOURCES, RunBlocks, stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.channels import (
-    BACK,
-    OUT,
-    RUNS_PER_FILE,
-    SECOND_FILE_OFFSET,
-    TARGET_SPEED_RATIOS,
-)
-from herijk.pipeline.method.definition import Method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.recompute.results import Recomputed
 from herijk.simulate import (
     RunTruth,
     Tow,
@@ -27,6 +15,18 @@ from herijk.simulate import (
     simulate_world,
     true_cw_kg_m,
 )
+from pipeline.blocks.run_blocks import SPEED_SOURCES, RunBlocks, stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.channels import (
+    BACK,
+    OUT,
+    RUNS_PER_FILE,
+    SECOND_FILE_OFFSET,
+    TARGET_SPEED_RATIOS,
+)
+from pipeline.method.definition import Method
+from pipeline.recompute.recompute import recompute
+from pipeline.recompute.results import Recomputed
 
 FREEBOARDS = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 

@@ -22,10 +22,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
-from herijk.pipeline.season_log.assumed import USUAL
-from herijk.pipeline.season_log.likelihood import LEVEL, LEVEL_SD
-from herijk.pipeline.season_log.network import Network
-from herijk.pipeline.season_log.posterior import Fit, Problem, _own, _variance_prior, fit, solve
+from pipeline.season_log.assumed import USUAL
+from pipeline.season_log.likelihood import LEVEL, LEVEL_SD
+from pipeline.season_log.network import Network
+from pipeline.season_log.posterior import Fit, Problem, _own, _variance_prior, fit, solve
 from tests.pipeline.season_worlds import CLEAN, simulate
 
 SMALL = replace(CLEAN, boats=40, tows_a_season=10)

@@ -12,12 +12,12 @@ import warnings
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.consistency.components import variance_components
-from herijk.pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
-from herijk.pipeline.consistency.lines import type_outliers
-from herijk.pipeline.consistency.observed import observe
-from herijk.pipeline.consistency.prediction import predicted_cw, prediction_error
-from herijk.pipeline.consistency.tables import consistency_tables
+from pipeline.consistency.components import variance_components
+from pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
+from pipeline.consistency.lines import type_outliers
+from pipeline.consistency.observed import observe
+from pipeline.consistency.prediction import predicted_cw, prediction_error
+from pipeline.consistency.tables import consistency_tables
 from tests.pipeline.consistency_fleet import NO_RACES, POWER, fleet, type_consistency
 
 

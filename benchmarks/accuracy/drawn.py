@@ -22,8 +22,8 @@ import polars as pl
 from benchmarks.accuracy.foreign import FOREIGN
 from benchmarks.accuracy.score import DOUBTED, ESTIMATES, seasons_said
 from benchmarks.accuracy.worlds import FIRST_SEED, ONLY_FROM_FILES, recomputed, simulated
-from herijk.pipeline.arrays import BoolArray
 from herijk.simulate import WORLDS
+from pipeline.arrays import BoolArray
 from tests.worlds import Measured, without_gps, without_wind
 
 SEEDS = 20

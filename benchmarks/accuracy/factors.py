@@ -22,9 +22,9 @@ from multiprocessing import get_context
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import Defects, WorldSettings
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, with_force_error
 
 SEASONS = tuple(range(2009, 2019))

@@ -21,7 +21,7 @@ import polars as pl
 
 from benchmarks.accuracy.score import score, table
 from benchmarks.accuracy.worlds import FIRST_SEED, recomputed, simulated
-from herijk.pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES
+from pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES
 from tests.worlds import Measured
 
 CLEAN = "clean"

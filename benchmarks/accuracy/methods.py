@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.curve import rebase
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.studies.ladder import ladder
 from herijk.simulate import AirCoefficients, Defects, WorldSettings
 from herijk.simulate.motion import RunTruth
+from pipeline.curve import rebase
+from pipeline.method.definition import parse_method, shipped_method
+from pipeline.recompute.recompute import recompute
+from pipeline.studies.ladder import ladder
 from tests.worlds import Measured, measure
 
 SEASONS = tuple(range(2009, 2019))

@@ -18,9 +18,9 @@ from dataclasses import replace
 import numpy as np
 import polars as pl
 
-from herijk.pipeline import season_log
-from herijk.pipeline.uncertainty import ensemble
-from herijk.pipeline.uncertainty import propagation as uncertainty
+from pipeline import season_log
+from pipeline.uncertainty import ensemble
+from pipeline.uncertainty import propagation as uncertainty
 from tests.pipeline import season_worlds
 from tests.pipeline.season_worlds import CLEAN, HARD, simulate
 

@@ -32,18 +32,18 @@ import numpy as np
 import polars as pl
 
 from benchmarks.accuracy.score import EQUAL_BOATS, Record, score, table
-from herijk.pipeline.assessment.plausibility import plausibility
-from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.consistency.homogeneity import type_homogeneity
-from herijk.pipeline.consistency.observed import observe
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WORLDS, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build.plausible import with_doubts
-from herijk.warehouse.build.version import code_version
-from herijk.warehouse.store.code import code_hash
+from pipeline.assessment.plausibility import plausibility
+from pipeline.blocks.batch import Batch
+from pipeline.consistency.homogeneity import type_homogeneity
+from pipeline.consistency.observed import observe
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, truth_rows
+from warehouse.derive.plausible import with_doubts
+from warehouse.derive.version import code_version
+from warehouse.store.code import code_hash
 
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data")) / "accuracy"
 SIZE = {"seasons": tuple(range(2009, 2019)), "tows_per_season": 24}
@@ -135,7 +135,7 @@ def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
 
 def simulated(world: str, seed: int) -> Measured:
     """Simulated once for every version of the simulator; sums are kept with seven digits."""
-    version = code_hash("herijk.simulate", "herijk.pipeline.blocks")
+    version = code_hash("herijk.simulate", "pipeline.blocks")
     kept = FOLDER / "blocks" / version / f"{world}-{seed}.pickle"
     if kept.exists():
         return _with_sums(pickle.loads(kept.read_bytes()), np.float64)  # noqa: S301, our own file

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.store.store import Store
+from warehouse.store.store import Store
 
 SEASONS = tuple(range(2009, 2019))
 LIMIT_GIB = 2.0

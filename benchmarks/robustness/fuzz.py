@@ -29,24 +29,24 @@ import polars as pl
 import pyarrow as pa
 import xlsxwriter
 
-from herijk.assets.settings import read_settings
-from herijk.pipeline.channels import SAMPLE_SCHEMA
-from herijk.pipeline.errors import DefectiveInputError, HerijkError
-from herijk.pipeline.method.definition import parse_method, shipped_methods, shipped_text
+from assets.settings import read_settings
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.archive import FileHashes, index_archive
-from herijk.warehouse.archive.files.list_kinds import TOWS
-from herijk.warehouse.archive.lists import tows
-from herijk.warehouse.archive.profile.definition import Profiles
-from herijk.warehouse.archive.profile.reading import read_profiles
-from herijk.warehouse.archive.samples.file import read_samples
-from herijk.warehouse.archive.sheets.reading import read_list
-from herijk.warehouse.archive.spelling.wording import Wording
-from herijk.warehouse.store.decisions import FILE_NAME as DECISIONS
-from herijk.warehouse.store.decisions import read_decisions
-from herijk.warehouse.store.editions import ABOUT, read_about
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.errors import DefectiveInputError, HerijkError
+from pipeline.method.definition import parse_method, shipped_methods, shipped_text
 from tests.reason_codes import REASON_CODES
+from warehouse.archive import FileHashes, index_archive
+from warehouse.archive.files.list_kinds import TOWS
+from warehouse.archive.lists import tows
+from warehouse.archive.profile.definition import Profiles
+from warehouse.archive.profile.reading import read_profiles
+from warehouse.archive.samples.file import read_samples
+from warehouse.archive.sheets.reading import read_list
+from warehouse.archive.spelling.wording import Wording
+from warehouse.store.decisions import FILE_NAME as DECISIONS
+from warehouse.store.decisions import read_decisions
+from warehouse.store.editions import ABOUT, read_about
 
 SLOW_S: Final = 2.0
 HANG_S: Final = 20.0

@@ -19,14 +19,14 @@ from collections import Counter
 from pathlib import Path
 from typing import Final
 
-from herijk.dashboards.site.render import build_site
-from herijk.pipeline.errors import HerijkError
-from herijk.pipeline.method.definition import shipped_method, shipped_methods
+from dashboards.site.render import build_site
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.store.store import Store
+from pipeline.errors import HerijkError
+from pipeline.method.definition import shipped_method, shipped_methods
 from tests.intake import bring_in
+from warehouse.derive.graph import STEPS
+from warehouse.store.store import Store
 
 WORLD: Final = WorldSettings(tuple(range(2009, 2024)), 20, 20)
 NEEDED: Final = {"fsn_nr", "datum", "meetfile", "sleep_id"}

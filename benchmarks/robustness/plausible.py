@@ -25,17 +25,17 @@ from typing import Final
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.errors import DefectiveInputError
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import simulate_tow, simulate_world
 from herijk.simulate.worlds import world_settings
-from herijk.tables.keys import LINE
-from herijk.warehouse.archive.plausibility.judge import judge_samples
-from herijk.warehouse.build.archive_tables import judged_tows
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.errors import DefectiveInputError
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
+from pipeline.tables.keys import LINE
 from tests.worlds import run_rows, tow_rows
+from warehouse.archive.plausibility.judge import judge_samples
+from warehouse.derive.archive_tables import judged_tows
 
 TOWS, DAYS, SEASONS, NEW = 3, 1, 1, 2
 """How many get each fault in one archive."""

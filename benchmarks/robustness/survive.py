@@ -25,13 +25,13 @@ from pathlib import Path
 
 import duckdb
 
-import herijk.dashboards.site.render  # noqa: F401 - takes a second, and victims are killed by the clock
-from herijk.assets.rebuild import rebuild
+import dashboards.site.render  # noqa: F401 - takes a second, and victims are killed by the clock
+from assets.rebuild import rebuild
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.store.files import TEMPORARY_PREFIX
-from herijk.warehouse.store.store import Store, fingerprint, table_digest
 from tests.quiet import Quiet
+from warehouse.store.files import TEMPORARY_PREFIX
+from warehouse.store.store import Store, fingerprint, table_digest
 
 ROOT = Path(__file__).parents[2]
 MYSELF = (sys.executable, "-m", "benchmarks.robustness.survive")

@@ -26,13 +26,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from shutil import copytree, rmtree
 
+from assets.rebuild import rebuild
 from benchmarks.robustness.survive import METHODS, ROOT, WORLD, digests
-from herijk.assets.rebuild import rebuild
 from herijk.simulate import simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.store.editions import read_edition
-from herijk.warehouse.store.store import Store, table_digest
 from tests.quiet import Quiet
+from warehouse.store.editions import read_edition
+from warehouse.store.store import Store, table_digest
 
 EDITION = "2018-1"
 ORDER = ("publish", "verify", "publish", "verify", "serve")

@@ -8,11 +8,11 @@ import typer
 
 from herijk.cli.arguments import AsJson, show, show_files
 from herijk.cli.text import place
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.words import LANGUAGE, tell
+from pipeline.errors import MissingKnowledgeError
+from pipeline.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
-    from herijk.warehouse.archive.check import CauseReport, CheckReport
+    from warehouse.archive.check import CauseReport, CheckReport
 
 
 def check(
@@ -26,13 +26,13 @@ def check(
     as_json: AsJson = False,
 ) -> None:
     """Every fault of lists, headers and a sample of the data, by cause, before any rebuild."""
-    from herijk.warehouse.archive.check import check_archive, check_report
-    from herijk.warehouse.archive.files.names import PROFILE_FILE
+    from warehouse.archive.check import check_archive, check_report
+    from warehouse.archive.files.names import PROFILE_FILE
 
     checked = check_archive(archive)
     show(check_report(archive, checked, LANGUAGE.get()), check_text, as_json)
     if write_profile and checked.profile is not None:
-        from herijk.warehouse.store.files import written_beside
+        from warehouse.store.files import written_beside
 
         path = archive / PROFILE_FILE
         with written_beside(path) as beside:
@@ -49,7 +49,7 @@ def init(
     as_json: AsJson = False,
 ) -> None:
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
-    from herijk.warehouse.archive.files.empty_archive import write_templates
+    from warehouse.archive.files.empty_archive import write_templates
 
     try:
         write_templates(directory)

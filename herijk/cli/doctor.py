@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 
 from herijk.cli.arguments import AsJson, DataFolder, show
-from herijk.pipeline.errors import HerijkError
-from herijk.words import LANGUAGE, spoken, tell
+from pipeline.errors import HerijkError
+from pipeline.words import LANGUAGE, spoken, tell
 
 if TYPE_CHECKING:
-    from herijk.warehouse.queries.reports import RebuildReport
-    from herijk.warehouse.store.methods import KnownMethods
+    from warehouse.queries.reports import RebuildReport
+    from warehouse.store.methods import KnownMethods
 
 LEAST_FREE: Final = 2 * 2**30
 """Bytes: a rebuild writes some 4 MB per tow, and everything beside the old before it is swapped."""
@@ -63,11 +63,11 @@ def doctor(
 def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     from importlib.metadata import version
 
-    from herijk.assets.settings import applied
+    from assets.settings import applied
     from herijk.cli.methods import known_methods
-    from herijk.warehouse.queries.reports import rebuild_report
-    from herijk.warehouse.store.lock import only_writer
-    from herijk.warehouse.store.store import Store
+    from warehouse.queries.reports import rebuild_report
+    from warehouse.store.lock import only_writer
+    from warehouse.store.store import Store
 
     yield Finding("Herijk", True, version("herijk"))
     yield Finding("Python", True, sys.version.split()[0])

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from herijk.cli.arguments import AsJson, AsOf, DataFolder, show_files
-from herijk.words import LANGUAGE, tell
+from pipeline.words import LANGUAGE, tell
 
 
 def add_to(app: typer.Typer) -> None:
@@ -30,12 +30,12 @@ def certificate(
     as_json: AsJson = False,
 ) -> None:
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
-    from herijk.dashboards.documents.certificate import certificates
-    from herijk.warehouse.queries.answers import current_edition
-    from herijk.warehouse.queries.views import Views
-    from herijk.warehouse.store.boats import the_boat
-    from herijk.warehouse.store.store import Store
-    from herijk.warehouse.store.unforeseen import documents
+    from dashboards.documents.certificate import certificates
+    from warehouse.queries.answers import current_edition
+    from warehouse.queries.views import Views
+    from warehouse.store.boats import the_boat
+    from warehouse.store.store import Store
+    from warehouse.store.unforeseen import documents
 
     store = Store(data)
     with documents(store.root, "certificate") as border, Views(store) as views:
@@ -53,10 +53,10 @@ def pages(
     as_of: AsOf = None,
 ) -> None:
     """All pages of the site in a folder of their own, for instance as of an earlier day."""
-    from herijk.dashboards.site.render import OWN_FILES, build_pages
-    from herijk.pipeline.errors import MissingKnowledgeError
-    from herijk.warehouse.store.store import Store
-    from herijk.warehouse.store.unforeseen import documents
+    from dashboards.site.render import OWN_FILES, build_pages
+    from pipeline.errors import MissingKnowledgeError
+    from warehouse.store.store import Store
+    from warehouse.store.unforeseen import documents
 
     if out.exists() and not (out / "static" / OWN_FILES[0]).is_file():
         raise MissingKnowledgeError("{} is there and holds no pages; give a new folder", out)
@@ -79,11 +79,11 @@ def proposal(
     as_json: AsJson = False,
 ) -> None:
     """What a board sends its members before they vote: what changes, for whom, how uncertain."""
+    from dashboards.documents.proposal import proposal as make_proposal
     from herijk.cli.methods import known_methods
-    from herijk.dashboards.documents.proposal import proposal as make_proposal
-    from herijk.warehouse.queries.views import Views
-    from herijk.warehouse.store.store import Store
-    from herijk.warehouse.store.unforeseen import documents
+    from warehouse.queries.views import Views
+    from warehouse.store.store import Store
+    from warehouse.store.unforeseen import documents
 
     store, name = Store(data), "-".join(("proposal", *methods))
     with documents(store.root, name), Views(store) as views:
@@ -95,8 +95,8 @@ def _write(content: bytes | None, path: Path, as_json: bool) -> None:
     """Writes the file whole, and says where; nothing where nothing could be made."""
     if content is None:
         return
-    from herijk.warehouse.store.files import written_beside
-    from herijk.warehouse.store.machine_faults import machine_faults_explained
+    from warehouse.store.files import written_beside
+    from warehouse.store.machine_faults import machine_faults_explained
 
     with machine_faults_explained(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)

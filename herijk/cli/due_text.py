@@ -4,13 +4,13 @@ from collections import Counter
 from typing import TYPE_CHECKING, Final
 
 from herijk.cli.text import boat, decimals, page, table
-from herijk.warehouse.queries.due import WORTH
-from herijk.words import tell
-from herijk.words.catalogue import code
+from pipeline.words import tell
+from pipeline.words.catalogue import code
+from warehouse.queries.due import WORTH
 
 if TYPE_CHECKING:
-    from herijk.tables.row import Row
-    from herijk.warehouse.queries.due import DueReport
+    from pipeline.tables.row import Row
+    from warehouse.queries.due import DueReport
 
 LAST_DAY: Final = ", the day of the last tow or race"
 URGENCIES: Final = {

@@ -30,8 +30,8 @@ def register(
 ) -> None:
     """The register: every line with its sizes, and whether it is valid on a day."""
     from herijk.cli import editions_text as text
-    from herijk.warehouse.queries.register import register_report
-    from herijk.warehouse.store.store import Store
+    from warehouse.queries.register import register_report
+    from warehouse.store.store import Store
 
     show(register_report(Store(data), edition, as_of), text.register, as_json)
 
@@ -68,9 +68,9 @@ def publish(
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
     from herijk.cli import editions_text as text
-    from herijk.warehouse.editions.publish import Terms, publish_printed, published
-    from herijk.warehouse.editions.publish import publish as publish_edition
-    from herijk.warehouse.store.store import Store
+    from warehouse.editions.publish import Terms, publish_printed, published
+    from warehouse.editions.publish import publish as publish_edition
+    from warehouse.store.store import Store
 
     if (method is None) == (printed is None):
         raise typer.BadParameter("give --method NAME, or --printed YEAR, and not both")
@@ -102,9 +102,9 @@ def diff(
 ) -> None:
     """Two editions side by side: who gains, who loses, why, and what it does to races."""
     from herijk.cli import editions_text as text
-    from herijk.pipeline.register.replay import RaceRules
-    from herijk.warehouse.editions import compare
-    from herijk.warehouse.store.store import Store
+    from pipeline.register.replay import RaceRules
+    from warehouse.editions import compare
+    from warehouse.store.store import Store
 
     store = Store(data)
     comparison = compare.diff(store, old, new)
@@ -115,10 +115,10 @@ def diff(
 def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
     from herijk.cli import editions_text as text
-    from herijk.pipeline.errors import MissingKnowledgeError
-    from herijk.warehouse.editions.verify import verify as verify_editions
-    from herijk.warehouse.store.editions import edition_names
-    from herijk.warehouse.store.store import Store
+    from pipeline.errors import MissingKnowledgeError
+    from warehouse.editions.verify import verify as verify_editions
+    from warehouse.store.editions import edition_names
+    from warehouse.store.store import Store
 
     store = Store(data)
     if not edition_names(store) and not store.database.exists():
@@ -140,8 +140,8 @@ def lineage(
 ) -> None:
     """From a printed line to the files, runs and seconds behind it."""
     from herijk.cli import editions_text as text
-    from herijk.warehouse.editions.lineage import lineage as find_lineage
-    from herijk.warehouse.store.store import Store
+    from warehouse.editions.lineage import lineage as find_lineage
+    from warehouse.store.store import Store
 
     show(find_lineage(Store(data), edition, boat), text.lineage, as_json)
 
@@ -156,8 +156,8 @@ def due(
 ) -> None:
     """Whose tow expires when, at what speed to tow each next, and which boats to tow again."""
     from herijk.cli import due_text
-    from herijk.warehouse.queries.due import due_report
-    from herijk.warehouse.store.store import Store
+    from warehouse.queries.due import due_report
+    from warehouse.store.store import Store
 
     known_methods(data).text(method)
     show(due_report(Store(data), method, as_of), due_text.due, as_json)

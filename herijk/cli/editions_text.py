@@ -4,18 +4,18 @@ from collections import Counter
 from typing import TYPE_CHECKING, Final
 
 from herijk.cli.text import SIMULATED, boat, decimals, page, table, window
-from herijk.tables.row import Row
-from herijk.warehouse.editions.words import CHANGES, CREWS, STATUSES, Language
-from herijk.words import LANGUAGE, in_per_cent, tell
-from herijk.words.catalogue import code
+from pipeline.tables.row import Row
+from pipeline.words import LANGUAGE, in_per_cent, tell
+from pipeline.words.catalogue import code
+from warehouse.editions.words import CHANGES, CREWS, STATUSES, Language
 
 if TYPE_CHECKING:
-    from herijk.warehouse.editions.compare import DiffReport, Group
-    from herijk.warehouse.editions.finding import Finding
-    from herijk.warehouse.editions.lineage import Lineage, LineLineage
-    from herijk.warehouse.editions.publish import Published
-    from herijk.warehouse.editions.verify import Verification
-    from herijk.warehouse.queries.register import RegisterReport
+    from warehouse.editions.compare import DiffReport, Group
+    from warehouse.editions.finding import Finding
+    from warehouse.editions.lineage import Lineage, LineLineage
+    from warehouse.editions.publish import Published
+    from warehouse.editions.verify import Verification
+    from warehouse.queries.register import RegisterReport
 
 
 def _words() -> Language:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from herijk.cli.arguments import AsJson, as_json_text
-from herijk.words import LANGUAGE, tell
+from pipeline.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
     from herijk.library.curves import Estimate, Fit
@@ -25,8 +25,8 @@ def fit(
 ) -> None:
     """A curve with its interval from speeds and forces; B only where the points determine it."""
     from herijk.library.curves import fit as fit_curve
-    from herijk.pipeline.errors import MissingKnowledgeError
-    from herijk.warehouse.archive.lists.curve_points import read_points
+    from pipeline.errors import MissingKnowledgeError
+    from warehouse.archive.lists.curve_points import read_points
 
     if not file.is_file():
         raise MissingKnowledgeError("there is no file {}", file)
@@ -35,7 +35,7 @@ def fit(
     speeds = points["speed_m_s"].unique().sort().to_list()
     cw = {speed: fitted.cw(speed) for speed in speeds}
     if plot is not None:
-        from herijk.dashboards.fit_plot import write_fit_plot
+        from dashboards.fit_plot import write_fit_plot
 
         write_fit_plot(fitted, plot, LANGUAGE.get())
     if not as_json:

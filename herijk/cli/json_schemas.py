@@ -20,26 +20,26 @@ from typing import Any, Final, Literal, get_args, get_origin, get_type_hints
 import polars as pl
 from pydantic import BaseModel
 
-from herijk.assets.report import Done, Report
+from assets.report import Done, Report
 from herijk.cli.doctor import Findings
 from herijk.cli.methods import MethodReport
-from herijk.pipeline.method.variant import Difference
-from herijk.pipeline.register.register import LINE as NAMES_LINE
-from herijk.tables.declare import dy
-from herijk.tables.row import Row
-from herijk.tables.schemas import TABLES
-from herijk.warehouse.archive.check import CheckReport, Proposal
-from herijk.warehouse.editions.compare import DiffReport
-from herijk.warehouse.editions.lineage import Lineage
-from herijk.warehouse.editions.publish import Published
-from herijk.warehouse.editions.verify import Verification
-from herijk.warehouse.queries.audit import BoatAudit
-from herijk.warehouse.queries.audit_types import TypesAudit
-from herijk.warehouse.queries.due import DueReport
-from herijk.warehouse.queries.rebase import RebaseReport
-from herijk.warehouse.queries.register import RegisterReport
-from herijk.warehouse.queries.reports import LogErrorReport, RebuildReport
-from herijk.warehouse.store.editions import About
+from pipeline.method.variant import Difference
+from pipeline.register.register import LINE as NAMES_LINE
+from pipeline.tables.declare import dy
+from pipeline.tables.row import Row
+from pipeline.tables.schemas import TABLES
+from warehouse.archive.check import CheckReport, Proposal
+from warehouse.editions.compare import DiffReport
+from warehouse.editions.lineage import Lineage
+from warehouse.editions.publish import Published
+from warehouse.editions.verify import Verification
+from warehouse.queries.audit import BoatAudit
+from warehouse.queries.audit_types import TypesAudit
+from warehouse.queries.due import DueReport
+from warehouse.queries.rebase import RebaseReport
+from warehouse.queries.register import RegisterReport
+from warehouse.queries.reports import LogErrorReport, RebuildReport
+from warehouse.store.editions import About
 
 Schema = dict[str, Any]
 Fields = Mapping[str, Any]

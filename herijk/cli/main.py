@@ -26,14 +26,14 @@ from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, as_json_text
 from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
-from herijk.pipeline.errors import BrokenPromiseError, HerijkError, unexpected
-from herijk.warehouse.store.machine_faults import REASSURANCE, machine_faults_explained
-from herijk.words import LANGUAGE, say, spoken, tell
+from pipeline.errors import BrokenPromiseError, HerijkError, unexpected
+from pipeline.words import LANGUAGE, say, spoken, tell
+from warehouse.store.machine_faults import REASSURANCE, machine_faults_explained
 
 if TYPE_CHECKING:
-    from herijk.warehouse.queries.audit import BoatAudit
-    from herijk.warehouse.queries.audit_types import TypesAudit
-    from herijk.warehouse.store.store import Store
+    from warehouse.queries.audit import BoatAudit
+    from warehouse.queries.audit_types import TypesAudit
+    from warehouse.store.store import Store
 
 app = typer.Typer(
     help="Recomputes the history of the Dutch rowing-sloop register from its tow tests.",
@@ -172,15 +172,15 @@ def rebuild(
     as_json: AsJson = False,
 ) -> None:
     """From the archive to registers and tables; only what changed is done again."""
-    from herijk.assets.notify import notifier_of
-    from herijk.assets.rebuild import rebuild as run
-    from herijk.assets.report import failed_checks, tell
-    from herijk.assets.settings import applied, read_settings
+    from assets.notify import notifier_of
+    from assets.rebuild import rebuild as run
+    from assets.report import failed_checks, tell
+    from assets.settings import applied, read_settings
+    from dashboards.report import headlines
     from herijk.cli.progress import TerminalProgress
-    from herijk.dashboards.report import headlines
-    from herijk.warehouse.queries import reports
-    from herijk.warehouse.store.store import Store
-    from herijk.words.catalogue import speaker
+    from pipeline.words.catalogue import speaker
+    from warehouse.queries import reports
+    from warehouse.store.store import Store
 
     known = methods.known_methods(data)
     chosen = applied(data, [known.kept(name) for name in method or ()])
@@ -205,9 +205,9 @@ def rebuild(
 
 def _tell_failure(data: Path, error: Exception) -> None:
     """Tells those who asked to be told that a rebuild failed, as under `serve`."""
-    from herijk.assets.notify import notifier_of
-    from herijk.assets.report import tell_failure
-    from herijk.assets.settings import read_settings
+    from assets.notify import notifier_of
+    from assets.report import tell_failure
+    from assets.settings import read_settings
 
     what = str(error) if isinstance(error, HerijkError) else unexpected(error)
     with suppress(HerijkError):  # settings that cannot be read are what failed
@@ -229,12 +229,12 @@ def serve(
     ] = False,
 ) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from herijk.assets.instance import prepare_home, taking_over
-    from herijk.assets.rebuild import check_apart
-    from herijk.assets.settings import read_settings
+    from assets.instance import prepare_home, taking_over
+    from assets.rebuild import check_apart
+    from assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
-    from herijk.warehouse.store.lock import only_server
-    from herijk.warehouse.store.store import Store
+    from warehouse.store.lock import only_server
+    from warehouse.store.store import Store
 
     def tell(line: str) -> None:
         typer.echo(line, err=True)
@@ -262,10 +262,10 @@ def rebase(
     as_json: AsJson = False,
 ) -> None:
     """All of history under a method: what changes and why. Nothing is published or stored."""
-    from herijk.pipeline.register.register import draft_name
-    from herijk.warehouse.queries.rebase import rebase as rebase_history
-    from herijk.warehouse.store.editions import edition_names, method_of_edition
-    from herijk.warehouse.store.store import Store
+    from pipeline.register.register import draft_name
+    from warehouse.queries.rebase import rebase as rebase_history
+    from warehouse.store.editions import edition_names, method_of_edition
+    from warehouse.store.store import Store
 
     store, known = Store(data), methods.known_methods(data)
     if against in edition_names(store):
@@ -301,8 +301,8 @@ def audit(
 ) -> None:
     """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
     from herijk.cli import audit_text
-    from herijk.warehouse.queries.audit import audit as audit_report
-    from herijk.warehouse.store.store import Store
+    from warehouse.queries.audit import audit as audit_report
+    from warehouse.store.store import Store
 
     if len(names) > MOST_TYPES:
         raise typer.BadParameter("give a boat, or one or two types; quote a name with blanks")
@@ -339,10 +339,10 @@ def slides(
     as_json: AsJson = False,
 ) -> None:
     """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
-    from herijk.dashboards.slide_book import Asked
-    from herijk.dashboards.slides import write_slides
-    from herijk.warehouse.store.store import Store
-    from herijk.warehouse.store.unforeseen import documents
+    from dashboards.slide_book import Asked
+    from dashboards.slides import write_slides
+    from warehouse.store.store import Store
+    from warehouse.store.unforeseen import documents
 
     if len(boat_type or ()) > MOST_TYPES:
         raise typer.BadParameter("give one or two types")
@@ -357,7 +357,7 @@ def _plots(
     store: "Store", report: "BoatAudit | TypesAudit", asked: Path | None, name: str
 ) -> list[Path]:
     """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
-    from herijk.dashboards.audit_plots import file_name, write_audit_plots
+    from dashboards.audit_plots import file_name, write_audit_plots
 
     folder = asked or store.root / "audit" / file_name(name)
     try:
@@ -380,11 +380,11 @@ def workbench(
     ] = 8765,
 ) -> None:
     """Change a method's options in a browser and see at once what happens to all boats."""
-    from herijk.dashboards.guard import listen
-    from herijk.dashboards.workbench.bench import Bench
-    from herijk.dashboards.workbench.server import LOOPBACK, address, serving
-    from herijk.warehouse.queries.history import History
-    from herijk.warehouse.store.store import Store
+    from dashboards.guard import listen
+    from dashboards.workbench.bench import Bench
+    from dashboards.workbench.server import LOOPBACK, address, serving
+    from warehouse.queries.history import History
+    from warehouse.store.store import Store
 
     listening, store = listen(LOOPBACK, port), Store(data)
     bench = Bench(store, History.of(store))
@@ -402,8 +402,8 @@ def log_error(
     as_json: AsJson = False,
 ) -> None:
     """How wrong the speed log was in each season, with its uncertainty and what it rests on."""
-    from herijk.warehouse.queries import reports
-    from herijk.warehouse.store.store import Store
+    from warehouse.queries import reports
+    from warehouse.store.store import Store
 
     methods.known_methods(data).text(method)
     show(reports.log_error_report(Store(data), method), text.log_error, as_json)

@@ -7,11 +7,11 @@ import textwrap
 
 from pydantic import BaseModel
 
-from herijk.dashboards.workbench.form import unit_of
-from herijk.dashboards.workbench.texts import TEXTS
-from herijk.pipeline.method.definition import LAST_SEASON, Method, SeasonSteps
-from herijk.words import LANGUAGE, LANGUAGES, number, tell
-from herijk.words.catalogue import both, code
+from dashboards.workbench.form import unit_of
+from dashboards.workbench.texts import TEXTS
+from pipeline.method.definition import LAST_SEASON, Method, SeasonSteps
+from pipeline.words import LANGUAGE, LANGUAGES, number, tell
+from pipeline.words.catalogue import both, code
 
 DIFFERS = "*"
 WIDTH = 100

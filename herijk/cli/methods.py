@@ -10,14 +10,14 @@ import typer
 
 from herijk.cli.arguments import AsJson, DataFolder, as_json_text, show, show_files
 from herijk.cli.overview import Overview
-from herijk.pipeline.errors import HerijkError
-from herijk.words import LANGUAGE, tell
+from pipeline.errors import HerijkError
+from pipeline.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
-    from herijk.pipeline.method.definition import Method
-    from herijk.pipeline.method.variant import Difference
-    from herijk.warehouse.queries.rebase import RebaseReport
-    from herijk.warehouse.store.methods import KnownMethods
+    from pipeline.method.definition import Method
+    from pipeline.method.variant import Difference
+    from warehouse.queries.rebase import RebaseReport
+    from warehouse.store.methods import KnownMethods
 
 app = typer.Typer(
     cls=Overview,
@@ -49,8 +49,8 @@ class MethodReport:
 
 def known_methods(data: Path) -> "KnownMethods":
     """The methods of a data folder."""
-    from herijk.warehouse.store.methods import KnownMethods
-    from herijk.warehouse.store.store import Store
+    from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
 
     return KnownMethods.of(Store(data))
 
@@ -102,8 +102,8 @@ def new(
     as_json: AsJson = False,
 ) -> None:
     """Begin a method file NAME.toml here, which extends another; every option is listed in it."""
-    from herijk.pipeline.method.writing import beginning_text
-    from herijk.warehouse.store.files import write_new
+    from pipeline.method.writing import beginning_text
+    from warehouse.store.files import write_new
 
     known = known_methods(data)
     file = Path(f"{name}.toml")
@@ -128,15 +128,15 @@ def diff(
     as_json: AsJson = False,
 ) -> None:
     """Which options differ between two methods, and what that does to Cw where --data has tows."""
-    from herijk.pipeline.method.variant import differences
-    from herijk.warehouse.store.store import Store
+    from pipeline.method.variant import differences
+    from warehouse.store.store import Store
 
     known = known_methods(data)
     first, second = known.named(old), known.named(new)
     options, effect = differences(second, first), None
     store = Store(data)
     if store.database.exists():
-        from herijk.warehouse.queries.rebase import rebase
+        from warehouse.queries.rebase import rebase
 
         effect = rebase(store, second, first)
     if as_json:
@@ -164,7 +164,7 @@ def _diff_text(
 ) -> str:
     """Options that differ, one per line, as a method's file has them, and the effect per season."""
     from herijk.cli import text
-    from herijk.pipeline.method.writing import range_text
+    from pipeline.method.writing import range_text
 
     if not options:
         return tell("{} and {} say the same of every season.", first, second)

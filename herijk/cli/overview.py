@@ -21,9 +21,9 @@ from typer._click.exceptions import ClickException, NoArgsIsHelpError, UsageErro
 from typer.core import TyperGroup
 from typer.main import get_command
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.toml_text import decoded, parse_toml
-from herijk.words import LANGUAGE, LANGUAGES, tell
+from pipeline.errors import MissingKnowledgeError
+from pipeline.toml_text import decoded, parse_toml
+from pipeline.words import LANGUAGE, LANGUAGES, tell
 
 if TYPE_CHECKING:
     from typer._click import Command

@@ -12,7 +12,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from herijk.words import tell
+from pipeline.words import tell
 
 
 class TerminalProgress:

@@ -22,11 +22,11 @@ from starlette.responses import RedirectResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from herijk.assets.webserver import MAY_START, READ_ONLY
-from herijk.dashboards.guard import LOOPBACK, guarded, listen
-from herijk.pipeline.errors import UnavailableError
-from herijk.warehouse.store.files import WINDOWS
-from herijk.words import LANGUAGE, say
+from assets.webserver import MAY_START, READ_ONLY
+from dashboards.guard import LOOPBACK, guarded, listen
+from pipeline.errors import UnavailableError
+from pipeline.words import LANGUAGE, say
+from warehouse.store.files import WINDOWS
 
 SHOWN: Final = ("site", "report")
 """What of the data folder the site's address shows."""
@@ -130,12 +130,12 @@ def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[by
     rights = MAY_START if what.may_start else READ_ONLY
     commands = {
         "Dagster's page": [
-            *(sys.executable, "-m", "herijk.assets.webserver"),
+            *(sys.executable, "-m", "assets.webserver"),
             *(what.host, str(what.port), rights),
         ],
         "Dagster's daemon": [
             str(Path(sys.executable).with_name("dagster-daemon")),
-            *("run", "-m", "herijk.assets.definitions"),
+            *("run", "-m", "assets.definitions"),
         ],
     }
     children: dict[str, subprocess.Popen[bytes]] = {}
@@ -143,6 +143,7 @@ def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[by
         for name, command in commands.items():
             children[name] = subprocess.Popen(  # noqa: S603 - our own arguments
                 command,
+                cwd=home,  # the user's folder may have an `assets` of its own
                 env=environment,
                 **_TIED_TO_US,
             )

@@ -7,14 +7,14 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
-from herijk.tables.row import Row
-from herijk.words import LANGUAGE, in_per_cent, number, spoken, tell
-from herijk.words.catalogue import code
+from pipeline.tables.row import Row
+from pipeline.words import LANGUAGE, in_per_cent, number, spoken, tell
+from pipeline.words.catalogue import code
 
 if TYPE_CHECKING:
-    from herijk.assets.report import Done
-    from herijk.warehouse.queries.rebase import RebaseReport
-    from herijk.warehouse.queries.reports import LogErrorReport, RebuildReport
+    from assets.report import Done
+    from warehouse.queries.rebase import RebaseReport
+    from warehouse.queries.reports import LogErrorReport, RebuildReport
 
 
 SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."

@@ -11,9 +11,9 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from herijk.pipeline import curve as hyperbola
-from herijk.pipeline.errors import HerijkError
-from herijk.pipeline.races.power import speed_at_power
+from pipeline import curve as hyperbola
+from pipeline.errors import HerijkError
+from pipeline.races.power import speed_at_power
 
 FloatArray = NDArray[np.float64]
 

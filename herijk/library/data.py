@@ -4,10 +4,10 @@ from pathlib import Path
 
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.register.changes import register_changes
-from herijk.warehouse.store.database import open_database
-from herijk.warehouse.store.store import Store, read_parquet
+from pipeline.errors import MissingKnowledgeError
+from pipeline.register.changes import register_changes
+from warehouse.store.database import open_database
+from warehouse.store.store import Store, read_parquet
 
 
 class DataFolder:

@@ -8,19 +8,19 @@ from typing import Any, Final
 
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.channels import BACK, OUT, RUNS_PER_FILE, SAMPLE_SCHEMA, TARGET_SPEED_RATIOS
-from herijk.pipeline.errors import HerijkError
-from herijk.pipeline.method.definition import (
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.channels import BACK, OUT, RUNS_PER_FILE, SAMPLE_SCHEMA, TARGET_SPEED_RATIOS
+from pipeline.errors import HerijkError
+from pipeline.method.definition import (
     Method,
     parse_method,
     shipped_method,
     shipped_methods,
 )
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.tables.archive import Tows
-from herijk.warehouse.store.methods import text_of_file
+from pipeline.recompute.recompute import recompute
+from pipeline.tables.archive import Tows
+from warehouse.store.methods import text_of_file
 
 REQUIRED: Final = ("declared_speed_m_s", "waterline_length_m", "beam_m", "bow_height_m")
 DEFAULTS: Final = {

@@ -2,7 +2,7 @@
 
 Each season has another of the allowed spellings, so that reading one archive exercises them all.
 What is measured is decided elsewhere in `herijk.simulate`; archives are read by
-`herijk.warehouse.archive`.
+`warehouse.archive`.
 """
 
 import csv
@@ -19,13 +19,13 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.channels import SECOND_FILE_OFFSET
-from herijk.pipeline.errors import HerijkError
 from herijk.simulate import RunTruth, Tow, World, simulate_tow, true_cw_kg_m
 from herijk.simulate.defects import FIRST_SEASON
 from herijk.simulate.hull import REFERENCE_TEMPERATURE_C
 from herijk.simulate.papers import RACE_KM, Curves, printed_register, race
 from herijk.simulate.practice import Practice, practices, printed_curve
+from pipeline.channels import SECOND_FILE_OFFSET
+from pipeline.errors import HerijkError
 
 SPEED_UNITS: Final = {"m/s": 1.0, "km/h": 3.6, "kn": 3600.0 / 1852.0}
 FORCE_UNITS: Final = {"N": 1.0, "kgf": 1.0 / 9.80665}

@@ -9,7 +9,7 @@ How a defect works on a channel is in `motion` and `instruments`.
 from dataclasses import dataclass, replace
 from typing import Final
 
-from herijk.pipeline.errors import MissingKnowledgeError
+from pipeline.errors import MissingKnowledgeError
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from herijk.pipeline.channels import RUN_SECONDS
 from herijk.simulate.defects import Defects
 from herijk.simulate.hull import AirCoefficients, air_force_n, water_cw_kg_m
 from herijk.simulate.motion import SLOW_HZ, TrueRun
 from herijk.simulate.random_streams import Component, TowStreams, coloured_noise, smooth_wander
 from herijk.simulate.world import Tow
+from pipeline.channels import RUN_SECONDS
 
 ADDED_MASS: Final = 0.08
 """Water that moves along, relative to the boat's mass (stated assumption: 5 to 10 % is usual)."""

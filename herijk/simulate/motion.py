@@ -11,10 +11,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from herijk.pipeline.channels import BACK, OUT, RUN_SECONDS, RUNS_PER_FILE, TARGET_SPEED_RATIOS
 from herijk.simulate.defects import Defects
 from herijk.simulate.random_streams import Component, TowStreams, coloured_noise, smooth_wander
 from herijk.simulate.world import Tow
+from pipeline.channels import BACK, OUT, RUN_SECONDS, RUNS_PER_FILE, TARGET_SPEED_RATIOS
 
 SLOW_HZ: Final = 20.0
 LEAD_S: Final = 5.0

@@ -14,7 +14,6 @@ import polars as pl
 import scipy
 from numpy.typing import NDArray
 
-from herijk.pipeline.channels import RUNS_PER_FILE, SECOND_FILE_OFFSET
 from herijk.simulate.hull import (
     AIR_DENSITY_KG_M3,
     REFERENCE_TEMPERATURE_C,
@@ -25,6 +24,7 @@ from herijk.simulate.hull import (
 )
 from herijk.simulate.motion import RunTruth
 from herijk.simulate.world import Tow
+from pipeline.channels import RUNS_PER_FILE, SECOND_FILE_OFFSET
 
 OLD_COEFFICIENTS: Final = (0.5, 0.7)
 """Air drag ahead and following, before they were searched."""

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.channels import RUN_SECONDS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from herijk.simulate.defects import FIRST_GPS_SEASON
 from herijk.simulate.instruments import (
     Samples,
@@ -22,6 +21,7 @@ from herijk.simulate.instruments import (
 from herijk.simulate.motion import RunTruth, true_runs
 from herijk.simulate.random_streams import Component, Subject, TowStreams
 from herijk.simulate.world import Tow, World
+from pipeline.channels import RUN_SECONDS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 
 
 def simulate_tow(world: World, tow: Tow) -> tuple[pl.DataFrame, tuple[RunTruth, ...]]:

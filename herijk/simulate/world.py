@@ -14,7 +14,6 @@ from typing import Final
 
 import numpy as np
 
-from herijk.pipeline.errors import HerijkError
 from herijk.simulate.boats import (
     Boat,
     Shape,
@@ -26,6 +25,7 @@ from herijk.simulate.boats import (
 from herijk.simulate.defects import FIRST_SEASON, Defects
 from herijk.simulate.hull import REFERENCE_TEMPERATURE_C, AirCoefficients, Hull, true_cw_kg_m
 from herijk.simulate.random_streams import Component, Subject, stream
+from pipeline.errors import HerijkError
 
 RETOW_YEARS: Final = (4, 3, 5, 4)
 """Years to the next tow, in turn: 3, 4 and 5 from every season link all seasons together."""

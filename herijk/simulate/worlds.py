@@ -12,9 +12,9 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from herijk.pipeline.errors import HerijkError
 from herijk.simulate.defects import FIRST_SEASON, Defects
 from herijk.simulate.world import WorldSettings
+from pipeline.errors import HerijkError
 
 BEFORE_DGPS: Final = range(FIRST_SEASON, 2014)
 EVER: Final = range(FIRST_SEASON, 10_000)

@@ -6,6 +6,13 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
+PACKAGES = ("herijk", "assets", "dashboards", "warehouse", "pipeline")
+"""The folders of the program itself."""
+
+
+def modules():
+    """Every module of the program."""
+    return [f for package in PACKAGES for f in sorted((ROOT / package).rglob("*.py"))]
 
 
 def read(path):

@@ -8,8 +8,8 @@ import re
 
 import pytest
 
-from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
-from herijk.tables.schemas import TABLES
+from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
+from pipeline.tables.schemas import TABLES
 
 PROMISED = {
     "boats": "fsn_no ht_no name boat_type",

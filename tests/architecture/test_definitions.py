@@ -3,12 +3,12 @@
 import dagster as dg
 import polars as pl
 
-from herijk.assets.archive import OUTSIDE
-from herijk.assets.definitions import build_defs, defs
-from herijk.assets.location import ASSETS as DEFINED
-from herijk.assets.settings import Settings
-from herijk.assets.shown import PAGES, preview, with_site
-from herijk.warehouse.intake.seasons import INDEXED
+from assets.archive import OUTSIDE
+from assets.definitions import build_defs, defs
+from assets.location import ASSETS as DEFINED
+from assets.settings import Settings
+from assets.shown import PAGES, preview, with_site
+from warehouse.intake.seasons import INDEXED
 
 ASSETS = [
     "about_archive",

@@ -8,13 +8,13 @@ from typing import Literal, get_args, get_origin
 import pytest
 import typer.main
 
+from dashboards.guides import GUIDES
 from herijk.cli.main import app
-from herijk.dashboards.guides import GUIDES
-from herijk.pipeline.assessment.checks import CHECKS
-from herijk.pipeline.method.definition import Steps, shipped_methods
-from herijk.tables.schemas import TABLES
-from herijk.tables.views import VIEWS
-from tests.architecture.repository import ROOT, read, tracked_files
+from pipeline.assessment.checks import CHECKS
+from pipeline.method.definition import Steps, shipped_methods
+from pipeline.tables.schemas import TABLES
+from pipeline.tables.views import VIEWS
+from tests.architecture.repository import ROOT, modules, read, tracked_files
 from tests.reason_codes import REASON_CODES
 
 OPTIONS = [
@@ -133,7 +133,7 @@ def test_the_dutch_text_of_a_guide_has_what_the_english_has(name):
 def reason_codes_given():
     """Every text in the code that is given as a reason code, and every text at all."""
     given, texts = set(), set()
-    for file in (ROOT / "herijk").rglob("*.py"):
+    for file in modules():
         for node in ast.walk(ast.parse(file.read_text("utf-8"))):
             if isinstance(node, ast.Constant):
                 texts.add(node.value)

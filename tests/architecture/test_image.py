@@ -6,7 +6,7 @@ import tomllib
 
 from packaging.specifiers import SpecifierSet
 
-from tests.architecture.repository import ROOT, read, tracked_files
+from tests.architecture.repository import ROOT, modules, read
 
 SETTINGS = tomllib.loads(read("pyproject.toml"))
 PROJECT = SETTINGS["project"]
@@ -38,8 +38,7 @@ def test_the_citation_names_the_version():
 def test_no_module_is_imported_that_one_system_alone_has():
     found = {
         (str(file), name)
-        for file in tracked_files()
-        if file.suffix == ".py" and file.is_relative_to(ROOT / "herijk")
+        for file in modules()
         for node in ast.walk(ast.parse(file.read_bytes()))
         for name in _imported(node)
     }

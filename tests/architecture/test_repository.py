@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from herijk.pipeline.method.definition import shipped_method, shipped_methods
+from pipeline.method.definition import shipped_method, shipped_methods
 from tests.architecture.repository import ROOT, read, tracked_files
 
 MB = 1_000_000

@@ -5,11 +5,11 @@ import re
 import pytest
 import typer.main
 
+from dashboards.figures import FIGURES
 from herijk.cli.main import app
-from herijk.dashboards.figures import FIGURES
-from herijk.pipeline.assessment.checks import CODES
-from herijk.pipeline.method.definition import Steps, shipped_methods
-from herijk.tables.schemas import TABLES
+from pipeline.assessment.checks import CODES
+from pipeline.method.definition import Steps, shipped_methods
+from pipeline.tables.schemas import TABLES
 from tests.architecture.repository import ROOT, read
 
 LEDGER = read("docs/sources.md")

@@ -12,23 +12,23 @@ from dagster._core.definitions.data_version import CachingStaleStatusResolver
 from dagster._core.loader import LoadingContextForTest
 from polars.testing import assert_frame_equal
 
-import herijk.assets.instance
-import herijk.assets.location
-import herijk.assets.tables
-import herijk.warehouse.build.step
-import herijk.warehouse.intake.lake
-from herijk.assets.archive import OUTSIDE_SPECS
-from herijk.assets.location import assets_of
-from herijk.assets.resources import QUIET_LOG, Setup
-from herijk.assets.settings import Settings
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.method.definition import shipped_text
-from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.methods import KnownMethods
+import assets.instance
+import assets.location
+import assets.tables
+import warehouse.derive.step
+import warehouse.intake.lake
+from assets.archive import OUTSIDE_SPECS
+from assets.location import assets_of
+from assets.resources import QUIET_LOG, Setup
+from assets.settings import Settings
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import shipped_text
 from tests.assets.test_rebuild import TOWS_2009, assert_same_tables, samples_files, spoil
 from tests.conftest import METHODS, SMALL, Workbench, in_one_process
 from tests.elsewhere import dask_cluster
+from warehouse.derive.graph import STEPS
+from warehouse.intake import seasons as intake
+from warehouse.store.methods import KnownMethods
 
 ROOT = Path(__file__).parents[2]
 OWN = "ours"
@@ -39,16 +39,16 @@ def instance(monkeypatch):
     """Records of Dagster that last as long as the test, in memory."""
     with dg.DagsterInstance.ephemeral() as instance:
 
-        @herijk.assets.instance.contextmanager
+        @assets.instance.contextmanager
         def known(_):
             yield instance
 
         monkeypatch.setattr(Workbench, "records_in_memory", staticmethod(_nothing))
-        monkeypatch.setattr(herijk.assets.instance, "instance_of", known)
+        monkeypatch.setattr(assets.instance, "instance_of", known)
         yield instance
 
 
-@herijk.assets.instance.contextmanager
+@assets.instance.contextmanager
 def _nothing():
     yield
 
@@ -118,12 +118,12 @@ def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_r
     methods = (METHODS[0], OWN)
 
     def new_code(bench):
-        for module in (herijk.warehouse.build.step, herijk.assets.tables):
+        for module in (warehouse.derive.step, assets.tables):
             monkeypatch.setattr(module, "code_hash", lambda *_: "other")
-        steps = [herijk.assets.tables.step_asset(step) for step in STEPS]
-        others = [a for a in herijk.assets.location.ASSETS if a not in OUTSIDE_SPECS]
-        kept = [a for a in others if a not in herijk.assets.tables.STEP_ASSETS]
-        monkeypatch.setattr(herijk.assets.location, "ASSETS", [*OUTSIDE_SPECS, *kept, *steps])
+        steps = [assets.tables.step_asset(step) for step in STEPS]
+        others = [a for a in assets.location.ASSETS if a not in OUTSIDE_SPECS]
+        kept = [a for a in others if a not in assets.tables.STEP_ASSETS]
+        monkeypatch.setattr(assets.location, "ASSETS", [*OUTSIDE_SPECS, *kept, *steps])
 
     bench.store.database.unlink()
     shutil.rmtree(bench.data / "lake")
@@ -180,7 +180,7 @@ def test_an_archive_that_changes_while_a_season_is_made_is_read_again(
 ):
     file = samples_files(bench, 2009)[3]
     kept = spoil(file)
-    original, changes = herijk.warehouse.intake.lake.read_tow_samples, []
+    original, changes = warehouse.intake.lake.read_tow_samples, []
 
     def changing(root, tow, profile):
         if not changes:
@@ -188,7 +188,7 @@ def test_an_archive_that_changes_while_a_season_is_made_is_read_again(
             file.write_bytes(kept)
         return original(root, tow, profile)
 
-    monkeypatch.setattr(herijk.warehouse.intake.lake, "read_tow_samples", changing)
+    monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", changing)
     assert materialise(bench, instance, "samples", "blocks", season=2009).success
     assert changes
     assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
@@ -196,7 +196,7 @@ def test_an_archive_that_changes_while_a_season_is_made_is_read_again(
 
 def test_records_are_kept_where_dagster_home_says(bench, tmp_path, monkeypatch):
     monkeypatch.setenv("DAGSTER_HOME", str(tmp_path / "home"))
-    with herijk.assets.instance.instance_of(bench.store) as instance:
+    with assets.instance.instance_of(bench.store) as instance:
         assert instance.root_directory == str(tmp_path / "home")
     assert (tmp_path / "home" / "dagster.yaml").exists()
     assert not (bench.data / "dagster").exists() or list((bench.data / "dagster").iterdir())

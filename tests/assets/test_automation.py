@@ -14,16 +14,16 @@ from dagster._core.test_utils import create_test_daemon_workspace_context, freez
 from dagster._core.workspace.load_target import ModuleTarget
 from dagster._daemon.sensor import execute_sensor_iteration
 
-from herijk.assets.automation import (
+from assets.automation import (
     ASK_AGAIN_S,
     TRIES,
     archive_sensor,
     rebuild_job,
     schedules,
 )
-from herijk.assets.definitions import build_defs, defs
-from herijk.assets.instance import INSTANCE_SETTINGS
-from herijk.assets.settings import Settings
+from assets.definitions import build_defs, defs
+from assets.instance import INSTANCE_SETTINGS
+from assets.settings import Settings
 from tests.conftest import METHODS
 
 ROOT = Path(__file__).parents[2]
@@ -127,7 +127,7 @@ def _ended_well(run):
 
 
 def test_a_run_whose_archive_is_away_is_tried_again(tmp_path, monkeypatch):
-    monkeypatch.setattr("herijk.assets.automation.TRY_AGAIN_S", 0)
+    monkeypatch.setattr("assets.automation.TRY_AGAIN_S", 0)
     location = build_defs(str(tmp_path / "gone"), str(tmp_path / "data"), Settings(methods=METHODS))
     with dg.DagsterInstance.ephemeral() as instance:
         result = location.resolve_job_def("rebuild").execute_in_process(
@@ -153,7 +153,7 @@ def test_the_daemon_queues_a_run_for_each_change(archive, tmp_path, monkeypatch)
         ("HERIJK_SITE", "http://127.0.0.1:3001/site"),
     ):
         monkeypatch.setenv(name, str(value))
-    target = ModuleTarget("herijk.assets.definitions", None, str(ROOT), None)
+    target = ModuleTarget("assets.definitions", None, str(ROOT), None)
     begin = dt.datetime(2026, 11, 21, 3, tzinfo=dt.UTC)
     with (
         dg.DagsterInstance.from_config(str(tmp_path / "home")) as instance,
@@ -212,9 +212,9 @@ def test_no_job_publishes():
     jobs = {job.name for job in defs.resolve_all_job_defs()} - {"__ASSET_JOB"}
     assert jobs == {"rebuild"}
     found = subprocess.run(
-        [sys.executable, "-c", "import herijk.assets.definitions, sys; print(*sys.modules)"],
+        [sys.executable, "-c", "import assets.definitions, sys; print(*sys.modules)"],
         cwd=ROOT, capture_output=True, text=True, check=True,
     )  # fmt: skip
     loaded = found.stdout.split()
-    assert "herijk.warehouse.editions.verify" in loaded
-    assert "herijk.warehouse.editions.publish" not in loaded
+    assert "warehouse.editions.verify" in loaded
+    assert "warehouse.editions.publish" not in loaded

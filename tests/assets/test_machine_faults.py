@@ -10,14 +10,14 @@ from pathlib import Path
 import duckdb
 import pytest
 
-import herijk.warehouse.intake.lake
-from herijk.assets.instance import instance_of
-from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
-from herijk.warehouse.intake.lake import ArchiveChangedError
-from herijk.warehouse.store.machine_faults import machine_faults_explained
-from herijk.warehouse.store.store import Store
+import warehouse.intake.lake
+from assets.instance import instance_of
+from pipeline.errors import MissingKnowledgeError, UnavailableError
 from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil, without_studies
 from tests.conftest import METHODS
+from warehouse.intake.lake import ArchiveChangedError
+from warehouse.store.machine_faults import machine_faults_explained
+from warehouse.store.store import Store
 
 ROOT = Path(__file__).parents[2]
 
@@ -84,10 +84,10 @@ def test_an_error_of_our_own_is_not_called_a_machine_fault(tmp_path):
 LIMITED = """
 import resource, sys
 from pathlib import Path
-from herijk.assets.rebuild import rebuild
+from assets.rebuild import rebuild
 from tests.quiet import Quiet
-from herijk.pipeline.errors import UnavailableError
-import herijk.dashboards.report_page, herijk.dashboards.site.render
+from pipeline.errors import UnavailableError
+import dashboards.report_page, dashboards.site.render
 _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
 for limit in (14, 200):
     resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
@@ -132,9 +132,9 @@ NOBODY = 65534
 AS_NOBODY = """
 import os, sys
 from pathlib import Path
-from herijk.assets.rebuild import rebuild
+from assets.rebuild import rebuild
 from tests.quiet import Quiet
-from herijk.pipeline.errors import UnavailableError
+from pipeline.errors import UnavailableError
 os.setuid(int(sys.argv[3]))
 try:
     rebuild(Path(sys.argv[1]), Path(sys.argv[2]), ["as-published", "rebased-2015"], Quiet())
@@ -215,7 +215,7 @@ def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypat
     """The file is another than the one that was hashed: its samples would be kept as that one's."""
     file = samples_files(bench, 2009)[3]
     kept = spoil(file)
-    original, changes = herijk.warehouse.intake.lake.read_tow_samples, []
+    original, changes = warehouse.intake.lake.read_tow_samples, []
 
     def changing(root, tow, profile):
         if not changes:
@@ -223,7 +223,7 @@ def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypat
             file.write_bytes(kept)
         return original(root, tow, profile)
 
-    monkeypatch.setattr(herijk.warehouse.intake.lake, "read_tow_samples", changing)
+    monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", changing)
     bench.rebuild()
     assert changes
     assert_same_tables(bench.tables(), built.tables())
@@ -232,13 +232,13 @@ def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypat
 def test_an_archive_that_never_stops_changing_is_left_alone(bench, built, monkeypatch):
     file = samples_files(bench, 2009)[3]
     spoil(file)
-    original = herijk.warehouse.intake.lake.read_tow_samples
+    original = warehouse.intake.lake.read_tow_samples
 
     def changing(root, tow, profile):
         file.write_bytes(file.read_bytes() + b" ")
         return original(root, tow, profile)
 
-    monkeypatch.setattr(herijk.warehouse.intake.lake, "read_tow_samples", changing)
+    monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", changing)
     with pytest.raises(ArchiveChangedError, match="Try again when nobody is copying"):
         bench.rebuild()
     assert_same_tables(bench.tables(), built.tables())
@@ -279,7 +279,7 @@ def test_a_full_disk_that_sqlite_calls_an_error_of_the_disk_is_called_full(tmp_p
 LIMITED_FILES = """
 import resource, sys
 from pathlib import Path
-from herijk.warehouse.store.machine_faults import machine_faults_explained
+from warehouse.store.machine_faults import machine_faults_explained
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
 with machine_faults_explained(Path(sys.argv[1])):
     raise RuntimeError("disk I/O error")  # what SQLite calls it

@@ -8,12 +8,12 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-import herijk.warehouse.intake.lake
-from herijk.assets.report import Done
-from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.store.store import table_digest
+import warehouse.intake.lake
+from assets.report import Done
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from tests.conftest import LEFT_OUT, METHODS, SMALL, Workbench
+from warehouse.derive.graph import STEPS
+from warehouse.store.store import table_digest
 
 TOWS_2009 = "sleeplijsten/sleeplijst_2009.csv"
 ONE = METHODS[:1]
@@ -58,13 +58,13 @@ def without_studies(tables: dict[str, pl.DataFrame]) -> dict[str, pl.DataFrame]:
 def files_read(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Tows whose archive files were opened."""
     read: list[str] = []
-    original = herijk.warehouse.intake.lake.read_tow_samples
+    original = warehouse.intake.lake.read_tow_samples
 
     def noted(root, tow, profile):
         read.append(tow["tow_id"])
         return original(root, tow, profile)
 
-    monkeypatch.setattr(herijk.warehouse.intake.lake, "read_tow_samples", noted)
+    monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", noted)
     return read
 
 
@@ -226,10 +226,10 @@ def test_the_old_database_stays_when_a_step_fails(bench, built, monkeypatch):
     spoil(samples_files(bench, 2009)[3])
     for place, error in (
         (
-            "herijk.warehouse.build.method_tables.recompute",
+            "warehouse.derive.method_tables.recompute",
             BrokenPromiseError("a promise was broken"),
         ),
-        ("herijk.warehouse.store.database._describe", OSError("disk full")),
+        ("warehouse.store.database._describe", OSError("disk full")),
     ):
         with monkeypatch.context() as patched:
             patched.setattr(place, mock.Mock(side_effect=error))

@@ -17,23 +17,23 @@ import duckdb
 import polars as pl
 import pytest
 
-from herijk.assets.checks import CHECKS
-from herijk.assets.notify import Message, Notifier, notifier_of
-from herijk.assets.report import Done, failed_checks, tell
-from herijk.assets.resources import Setup
-from herijk.assets.settings import read_settings
-from herijk.dashboards.report import Check, headlines
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.queries.change_report import (
+from assets.checks import CHECKS
+from assets.notify import Message, Notifier, notifier_of
+from assets.report import Done, failed_checks, tell
+from assets.resources import Setup
+from assets.settings import read_settings
+from dashboards.report import Check, headlines
+from pipeline.errors import MissingKnowledgeError
+from pipeline.words.catalogue import both, speaker
+from tests.assets.test_rebuild import samples_files, spoil, tow_of
+from tests.conftest import METHODS
+from tests.warehouse.test_faults import Archive, cells, line_of, times
+from warehouse.queries.change_report import (
     change_report,
     remember,
     reported_path,
     summary_of,
 )
-from herijk.words.catalogue import both, speaker
-from tests.assets.test_rebuild import samples_files, spoil, tow_of
-from tests.conftest import METHODS
-from tests.warehouse.test_faults import Archive, cells, line_of, times
 
 NOW = dt.datetime(2026, 11, 21, 3, 5, tzinfo=dt.UTC)
 
@@ -145,7 +145,7 @@ def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, mo
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr("herijk.assets.rebuild.write_report", killed)
+        patched.setattr("assets.rebuild.write_report", killed)
         with pytest.raises(KeyboardInterrupt):
             bench.rebuild()
     report = bench.rebuild()

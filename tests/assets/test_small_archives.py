@@ -6,9 +6,9 @@ import sys
 import pytest
 
 from herijk.cli.main import app, main
-from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
+from pipeline.errors import HerijkError, MissingKnowledgeError
 from tests.conftest import Workbench
 
 TOW_LIST = "sleeplijsten/sleeplijst_2014.csv"

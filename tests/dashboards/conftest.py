@@ -8,13 +8,13 @@ import threading
 import duckdb
 import pytest
 
-from herijk.dashboards.guard import listen
-from herijk.dashboards.site.render import build_site
-from herijk.dashboards.workbench.server import LOOPBACK, address, serving
-from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.editions.publish import Terms, publish
-from herijk.warehouse.store.store import Store
+from dashboards.guard import listen
+from dashboards.site.render import build_site
+from dashboards.workbench.server import LOOPBACK, address, serving
+from pipeline.method.definition import shipped_method
 from tests.conftest import METHODS, Workbench, shared
+from warehouse.editions.publish import Terms, publish
+from warehouse.store.store import Store
 
 ATTACK = "</script><script>alert(1)</script>"
 ACCENT = "Tréwes"

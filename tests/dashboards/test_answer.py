@@ -7,10 +7,10 @@ import re
 import polars as pl
 import pytest
 
-from herijk.dashboards import headlines
-from herijk.dashboards.answer import Answer, told
-from herijk.dashboards.site import races
-from herijk.dashboards.speech import Speech, duration
+from dashboards import headlines
+from dashboards.answer import Answer, told
+from dashboards.site import races
+from dashboards.speech import Speech, duration
 
 NL, EN = Speech("nl"), Speech("en")
 LINE = {

@@ -7,10 +7,10 @@ from xml.etree import ElementTree as ET
 import duckdb
 import pytest
 
-from herijk.dashboards import audit_plots
-from herijk.dashboards.audit_plots import file_name, write_audit_plots
-from herijk.warehouse.queries.audit import audit
-from herijk.warehouse.store.store import Store
+from dashboards import audit_plots
+from dashboards.audit_plots import file_name, write_audit_plots
+from warehouse.queries.audit import audit
+from warehouse.store.store import Store
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -14,12 +14,12 @@ from itertools import product
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from herijk.dashboards.guides import GUIDES
-from herijk.dashboards.site.pages import MENU
-from herijk.dashboards.site.parts import boat_path, edition_page, race_path, type_path
-from herijk.warehouse.queries.views import Views
+from dashboards.guides import GUIDES
+from dashboards.site.pages import MENU
+from dashboards.site.parts import boat_path, edition_page, race_path, type_path
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import ATTACK, EDITIONS, FORMULA
+from warehouse.queries.views import Views
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = [

@@ -6,14 +6,14 @@ import polars as pl
 import pytest
 from pypdf import PdfReader
 
-from herijk.dashboards.documents import certificate, proposal
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.races.race import power_per_rower_w
-from herijk.warehouse.queries.answers import compared, replayed
-from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.methods import KnownMethods
+from dashboards.documents import certificate, proposal
+from pipeline.errors import MissingKnowledgeError
+from pipeline.races.race import power_per_rower_w
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
+from warehouse.queries.answers import compared, replayed
+from warehouse.queries.views import Views
+from warehouse.store.methods import KnownMethods
 
 OF_TODAY = ("boats", "curves", "curve_points", "run_points", "due_list", "log_factors")
 """Tables that another rebuild makes anew."""

@@ -10,12 +10,12 @@ import pytest
 import vl_convert
 from altair.utils.schemapi import debug_mode
 
-from herijk.dashboards import drawn
-from herijk.dashboards.figures import FIGURES, png, slides
-from herijk.dashboards.site.specifications import chart_specifications, specification
-from herijk.dashboards.site.still import still
-from herijk.words import LANGUAGES
-from herijk.words.catalogue import WORDS, both, speaker
+from dashboards import drawn
+from dashboards.figures import FIGURES, png, slides
+from dashboards.site.specifications import chart_specifications, specification
+from dashboards.site.still import still
+from pipeline.words import LANGUAGES
+from pipeline.words.catalogue import WORDS, both, speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})
 

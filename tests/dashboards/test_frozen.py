@@ -2,14 +2,14 @@
 
 import datetime as dt
 
-from herijk.dashboards.answer import told
-from herijk.dashboards.documents import certificate
-from herijk.dashboards.site import boats
-from herijk.dashboards.speech import Speech
-from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.editions.publish import Terms, publish
-from herijk.warehouse.queries.register import register_report
-from herijk.warehouse.queries.views import Views
+from dashboards.answer import told
+from dashboards.documents import certificate
+from dashboards.site import boats
+from dashboards.speech import Speech
+from pipeline.method.definition import shipped_method
+from warehouse.editions.publish import Terms, publish
+from warehouse.queries.register import register_report
+from warehouse.queries.views import Views
 
 EDITION, METHOD, DAY = "2014-1", "rebased", dt.date(2014, 6, 1)
 OF_TODAY = ("tow_speed_m_s", "speed_reason")

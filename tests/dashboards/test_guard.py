@@ -7,10 +7,10 @@ import pytest
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse
 
-from herijk import dashboards
-from herijk.dashboards import guard
-from herijk.dashboards.guard import Guard
-from herijk.warehouse.editions.sheets import FORMULA
+import dashboards
+from dashboards import guard
+from dashboards.guard import Guard
+from warehouse.editions.sheets import FORMULA
 
 OWN = {"host": "127.0.0.1:3000", "origin": "http://127.0.0.1:3000"}
 JSON = {"content-type": "application/json"}

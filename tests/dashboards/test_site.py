@@ -11,31 +11,31 @@ from concurrent.futures import ThreadPoolExecutor
 import polars as pl
 import pytest
 
-from herijk.dashboards.guides import GUIDES
-from herijk.dashboards.html import as_json
-from herijk.dashboards.site.boats import boat_pages
-from herijk.dashboards.site.cells import CODES, KEPT
-from herijk.dashboards.site.columns import DRAWN, json_by, json_of
-from herijk.dashboards.site.downloads import SHEETS
-from herijk.dashboards.site.pages import MENU, method_names, shared_pages
-from herijk.dashboards.site.parts import (
+from dashboards.guides import GUIDES
+from dashboards.html import as_json
+from dashboards.site.boats import boat_pages
+from dashboards.site.cells import CODES, KEPT
+from dashboards.site.columns import DRAWN, json_by, json_of
+from dashboards.site.downloads import SHEETS
+from dashboards.site.pages import MENU, method_names, shared_pages
+from dashboards.site.parts import (
     boat_path,
     default_method,
     edition_page,
     race_path,
     type_path,
 )
-from herijk.dashboards.site.races import _winner
-from herijk.dashboards.site.render import build_pages, build_site
-from herijk.dashboards.site.slides import slides_page
-from herijk.dashboards.speech import Speech
-from herijk.warehouse.queries.answers import answers, line_changes, newest_edition
-from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.store import Store
-from herijk.words.catalogue import WORDS
-from herijk.words.tables import TABLES_IN_DUTCH
+from dashboards.site.races import _winner
+from dashboards.site.render import build_pages, build_site
+from dashboards.site.slides import slides_page
+from dashboards.speech import Speech
+from pipeline.words.catalogue import WORDS
+from pipeline.words.tables import TABLES_IN_DUTCH
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
+from warehouse.queries.answers import answers, line_changes, newest_edition
+from warehouse.queries.views import Views
+from warehouse.store.store import Store
 
 
 def pages(site):
@@ -250,7 +250,7 @@ def test_every_table_has_a_meaning_in_dutch(store):
 
 
 def test_nothing_half_made_is_left(store, tmp_path, monkeypatch):
-    monkeypatch.setattr("herijk.dashboards.site.render.boat_pages", lambda *_: 1 / 0)
+    monkeypatch.setattr("dashboards.site.render.boat_pages", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build_pages(store, tmp_path / "site")
     assert list(tmp_path.iterdir()) == []
@@ -258,7 +258,7 @@ def test_nothing_half_made_is_left(store, tmp_path, monkeypatch):
 
 def test_a_failing_build_leaves_the_old_site(store, site, monkeypatch):
     before = hashes(site)
-    monkeypatch.setattr("herijk.dashboards.site.render.shared_pages", lambda _: 1 / 0)
+    monkeypatch.setattr("dashboards.site.render.shared_pages", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build_site(store)
     assert hashes(site) == before

@@ -6,14 +6,14 @@ import re
 import pypdf
 import pytest
 
-from herijk.dashboards import slide_book as book
-from herijk.dashboards import slides as files
-from herijk.dashboards.figures.slides import METHODS
-from herijk.dashboards.site.slides import sentences
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.queries.views import Views
-from herijk.words import LANGUAGES
-from herijk.words.catalogue import speaker
+from dashboards import slide_book as book
+from dashboards import slides as files
+from dashboards.figures.slides import METHODS
+from dashboards.site.slides import sentences
+from pipeline.errors import MissingKnowledgeError
+from pipeline.words import LANGUAGES
+from pipeline.words.catalogue import speaker
+from warehouse.queries.views import Views
 
 
 @pytest.fixture(scope="module")

@@ -10,23 +10,23 @@ import urllib.request
 import pytest
 from polars.testing import assert_frame_equal
 
-from herijk.dashboards.guard import listen
-from herijk.dashboards.site.cells import KEPT
-from herijk.dashboards.workbench import texts
-from herijk.dashboards.workbench.bench import SCENARIO, Base, Bench, Named, Question
-from herijk.dashboards.workbench.form import _kind, controls
-from herijk.dashboards.workbench.server import LOOPBACK
-from herijk.pipeline.assessment.checks import CODES
-from herijk.pipeline.errors import HerijkError, MissingKnowledgeError, UnavailableError
-from herijk.pipeline.method.definition import MethodFileError, Steps, parse_method
-from herijk.pipeline.recompute.run_cache import RunCache
-from herijk.warehouse.queries.history import History
-from herijk.warehouse.queries.rebase import rebase
-from herijk.warehouse.store.store import Store
-from herijk.words import LANGUAGES
-from herijk.words.catalogue import both
+from dashboards.guard import listen
+from dashboards.site.cells import KEPT
+from dashboards.workbench import texts
+from dashboards.workbench.bench import SCENARIO, Base, Bench, Named, Question
+from dashboards.workbench.form import _kind, controls
+from dashboards.workbench.server import LOOPBACK
+from pipeline.assessment.checks import CODES
+from pipeline.errors import HerijkError, MissingKnowledgeError, UnavailableError
+from pipeline.method.definition import MethodFileError, Steps, parse_method
+from pipeline.recompute.run_cache import RunCache
+from pipeline.words import LANGUAGES
+from pipeline.words.catalogue import both
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
+from warehouse.queries.history import History
+from warehouse.queries.rebase import rebase
+from warehouse.store.store import Store
 
 CONTROLS = {(s["step"], c["option"]): c for s in controls() for c in s["options"]}
 PARENT = "rebased-2015"

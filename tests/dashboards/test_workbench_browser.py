@@ -5,13 +5,13 @@ Needs Chromium, like the tests of the site.
 
 import pytest
 
-from herijk.dashboards.workbench.bench import Base, Bench, Question
-from herijk.pipeline.method.definition import Steps, parse_method
-from herijk.warehouse.queries.history import History
-from herijk.warehouse.store.store import Store
+from dashboards.workbench.bench import Base, Bench, Question
+from pipeline.method.definition import Steps, parse_method
 from tests.conftest import METHODS
 from tests.dashboards import test_browser as site
 from tests.dashboards.conftest import served
+from warehouse.queries.history import History
+from warehouse.store.store import Store
 
 pytestmark = site.pytestmark
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from herijk.pipeline import curve, hull
-from herijk.pipeline.steps import friction
+from pipeline import curve, hull
+from pipeline.steps import friction
 from tests.golden.sources import read_table
 
 WATERLINE_M = 8.0

@@ -14,14 +14,14 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline import curve, hull
-from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.channels import RUN_SECONDS, RUNS_PER_FILE, SAMPLE_SCHEMA
-from herijk.pipeline.method.definition import parse_method
-from herijk.pipeline.races import race
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WorldSettings, simulate_world
+from pipeline import curve, hull
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.channels import RUN_SECONDS, RUNS_PER_FILE, SAMPLE_SCHEMA
+from pipeline.method.definition import parse_method
+from pipeline.races import race
+from pipeline.recompute.recompute import recompute
 from tests.golden.sources import read_table
 from tests.worlds import run_rows, tow_rows
 

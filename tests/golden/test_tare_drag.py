@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from herijk.pipeline import curve
+from pipeline import curve
 from tests.golden.sources import read_table
 from tests.pipeline.fieller import b_interval_fieller
 

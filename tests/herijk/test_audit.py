@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 from herijk.cli.arguments import as_json_text
 from herijk.cli.audit_text import audit as page_of
 from herijk.cli.main import app
-from herijk.warehouse.queries.audit import audit
-from herijk.words.catalogue import code
+from pipeline.words.catalogue import code
+from warehouse.queries.audit import audit
 
 WIDTH = 100
 

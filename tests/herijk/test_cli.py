@@ -8,7 +8,7 @@ from typer.main import get_command
 
 from herijk.cli.json_schemas import schemas
 from herijk.cli.main import app
-from herijk.pipeline.method.definition import Steps
+from pipeline.method.definition import Steps
 from tests.conftest import METHODS
 
 COMMANDS = ("simulate", "rebuild", "methods", "audit")

@@ -5,11 +5,11 @@ import shutil
 import pypdf
 import pytest
 
-from herijk.dashboards import slide_book, slides
-from herijk.dashboards.documents import certificate, proposal
-from herijk.dashboards.site import render
-from herijk.warehouse.store.unforeseen import failures
+from dashboards import slide_book, slides
+from dashboards.documents import certificate, proposal
+from dashboards.site import render
 from tests.conftest import METHODS
+from warehouse.store.unforeseen import failures
 
 EDITION = f"concept-{METHODS[1]}"
 

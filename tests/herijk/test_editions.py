@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from herijk.pipeline.recompute import recompute
+from pipeline.recompute import recompute
 from tests.conftest import Workbench
 
 DECISION = ("--decision", "ALV 12-5-2014")
@@ -95,7 +95,7 @@ def test_verify_under_other_code_says_that_what_was_published_stands(
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
-    monkeypatch.setattr("herijk.warehouse.editions.remade.code_version", lambda: "0.2.0+other")
+    monkeypatch.setattr("warehouse.editions.remade.code_version", lambda: "0.2.0+other")
     status, out, _ = herijk("verify", "--data", published.data)
     assert status == 0
     assert "the code changed, from" in out

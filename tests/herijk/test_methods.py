@@ -2,11 +2,11 @@
 
 import json
 
-from herijk.assets.resources import Setup
-from herijk.pipeline.method.definition import shipped_methods
-from herijk.warehouse.store.methods import methods_to_apply
-from herijk.warehouse.store.store import Store
+from assets.resources import Setup
+from pipeline.method.definition import shipped_methods
 from tests.conftest import METHODS, directly
+from warehouse.store.methods import methods_to_apply
+from warehouse.store.store import Store
 
 
 def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeypatch):

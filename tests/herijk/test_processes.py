@@ -9,9 +9,9 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from herijk.warehouse.store.store import table_digest
 from tests.conftest import METHODS, SMALL, Workbench
 from tests.herijk.conftest import hold_against_schema
+from warehouse.store.store import table_digest
 
 ROOT = Path(__file__).parents[2]
 THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")
@@ -46,14 +46,14 @@ def test_a_fresh_process_with_other_threads_gives_the_same_tables(built: Workben
 
 STOPPED = """
 import os, signal, time
-import herijk.assets.settings
+import assets.settings
 from herijk.cli.main import main
 
 def stopped(data):
     os.kill(os.getpid(), signal.SIGTERM)
     time.sleep(10)
 
-herijk.assets.settings.read_settings = stopped
+assets.settings.read_settings = stopped
 main()
 """
 

@@ -9,11 +9,11 @@ import duckdb
 import pytest
 from typer.main import get_command
 
-from herijk.assets.settings import Settings
+from assets.settings import Settings
 from herijk.cli.main import app
-from herijk.warehouse.archive.profile.reading import parse_profiles
 from tests.architecture.repository import ROOT, read
 from tests.conftest import METHODS
+from warehouse.archive.profile.reading import parse_profiles
 
 PAGES = sorted(
     str(path.relative_to(ROOT))

@@ -5,22 +5,22 @@ import sys
 
 import pytest
 
-READING = "herijk.warehouse.intake"
+READING = "warehouse.intake"
 HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy", "sqlalchemy"}
 HEAVY |= {READING}
 NEEDED = {
     "herijk.cli.main": set(),
-    "herijk.pipeline.method.definition": set(),
-    "herijk.warehouse.queries.reports": {"duckdb", "numpy", "polars"},
-    "herijk.warehouse.queries.due": {"duckdb", "numpy", "polars"},
+    "pipeline.method.definition": set(),
+    "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
+    "warehouse.queries.due": {"duckdb", "numpy", "polars"},
     # It computes the statistics of types over the tows that are asked for.
-    "herijk.warehouse.queries.audit": HEAVY - {"altair", "dagster", "sqlalchemy", READING},
+    "warehouse.queries.audit": HEAVY - {"altair", "dagster", "sqlalchemy", READING},
     # It replays races.
-    "herijk.warehouse.editions.compare": {"dataframely", "numpy", "polars", "scipy"},
+    "warehouse.editions.compare": {"dataframely", "numpy", "polars", "scipy"},
     # Columns of later, which an old edition lacks, are read from their declaration.
-    "herijk.warehouse.editions.lineage": {"dataframely", "numpy", "polars"},
+    "warehouse.editions.lineage": {"dataframely", "numpy", "polars"},
     # A rebuild that finds nothing new.
-    "herijk.assets.rebuild": HEAVY - {"altair", "dagster", "sqlalchemy"},
+    "assets.rebuild": HEAVY - {"altair", "dagster", "sqlalchemy"},
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}
 

@@ -5,9 +5,9 @@ import datetime as dt
 import numpy as np
 import polars as pl
 
-from herijk.pipeline import curve
-from herijk.pipeline.consistency.lines import newest_lines, type_lines
-from herijk.tables.lake import ListedRaces
+from pipeline import curve
+from pipeline.consistency.lines import newest_lines, type_lines
+from pipeline.tables.lake import ListedRaces
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
 POWER = 0.8

@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.special
 
-from herijk.pipeline import curve
+from pipeline import curve
 
 
 def b_interval_fieller(

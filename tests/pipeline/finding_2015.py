@@ -9,14 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.consistency.compared import compared_tows
-from herijk.pipeline.consistency.eras import era_shifts
-from herijk.pipeline.consistency.lines import type_lines
-from herijk.pipeline.consistency.observed import observe
-from herijk.pipeline.consistency.repeats import repeat_pairs
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import World, WorldSettings, simulate_world
+from pipeline.consistency.compared import compared_tows
+from pipeline.consistency.eras import era_shifts
+from pipeline.consistency.lines import type_lines
+from pipeline.consistency.observed import observe
+from pipeline.consistency.repeats import repeat_pairs
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
 from tests.worlds import measure
 
 PAIR = ("Kromhoutwhaler", "Kuikensloep")

@@ -1,6 +1,6 @@
 """Methods for tests: every step switched off, but for what a test names."""
 
-from herijk.pipeline.method.definition import Method, parse_method
+from pipeline.method.definition import Method, parse_method
 
 PLAIN = {
     "speed": '{ source = "log1", correction = "none" }',

@@ -10,9 +10,9 @@ import numpy as np
 import polars as pl
 from scipy.signal import lfilter
 
-from herijk.pipeline import season_log
-from herijk.pipeline.blocks.run_blocks import RunBlocks
-from herijk.pipeline.uncertainty import propagation as uncertainty
+from pipeline import season_log
+from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.uncertainty import propagation as uncertainty
 
 SEASONS = range(2009, 2019)
 ANCHORED_FROM = 2014

@@ -6,11 +6,11 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.steps.anemometer import WindRatio, anemometer_of_seasons
 from herijk.simulate import Defects, WorldSettings
+from pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
+from pipeline.steps.anemometer import WindRatio, anemometer_of_seasons
 from tests.worlds import measure
 
 SEASONS = np.repeat([2010.0, 2012.0, 2014.0, 2016.0], 25)

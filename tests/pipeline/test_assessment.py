@@ -12,9 +12,9 @@ from typing import Any
 import polars as pl
 import pytest
 
-from herijk.pipeline.assessment.assess import assess, with_status
-from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
-from herijk.pipeline.method.definition import MethodFileError, parse_method, shipped_method
+from pipeline.assessment.assess import assess, with_status
+from pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
+from pipeline.method.definition import MethodFileError, parse_method, shipped_method
 
 METHOD = "some-method"
 V0 = 2.5

@@ -4,8 +4,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.blocks.run_blocks import SUM_NAMES, RunBlocks
+from pipeline.blocks.batch import Batch
+from pipeline.blocks.run_blocks import SUM_NAMES, RunBlocks
 
 
 @pytest.fixture

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.blocks.run_blocks import SUM_NAMES, WindowSums, stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.channels import SAMPLE_SCHEMA
-from herijk.pipeline.errors import BrokenPromiseError
-from herijk.pipeline.steps.wind import mean_wind_angle_deg
+from pipeline.blocks.run_blocks import SUM_NAMES, WindowSums, stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.errors import BrokenPromiseError
+from pipeline.steps.wind import mean_wind_angle_deg
 
 EXACT = 1e-12
 

@@ -6,10 +6,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.recompute.results import Recomputed
 from herijk.simulate import WorldSettings, world_settings
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
+from pipeline.recompute.results import Recomputed
 from tests.worlds import measure
 
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.blocks.run_blocks import RunBlocks
-from herijk.pipeline.channels import SECOND_FILE_OFFSET
-from herijk.pipeline.steps.calibration import gps_factor, gps_factor_of_files, stream_drift_m_s
+from pipeline.blocks.batch import Batch
+from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.channels import SECOND_FILE_OFFSET
+from pipeline.steps.calibration import gps_factor, gps_factor_of_files, stream_drift_m_s
 
 WAY = np.array([1, 1, 1, -1, -1, -1])
 TOW = np.zeros(6, dtype=np.int64)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.register.changes import (
+from pipeline.register.changes import (
     PART_SCHEMA,
     register_changes,
     side_by_side,

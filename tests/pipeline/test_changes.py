@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.register.changes import register_changes
+from pipeline.register.changes import register_changes
 
 
 def edition(name, lines):

@@ -4,9 +4,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.assessment.assess import _beside_limits
-from herijk.pipeline.assessment.checks import CHECKS
-from herijk.pipeline.choice import first_largest
+from pipeline.assessment.assess import _beside_limits
+from pipeline.assessment.checks import CHECKS
+from pipeline.choice import first_largest
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.studies import claims
-from herijk.tables.schemas import TABLES
+from pipeline.studies import claims
+from pipeline.tables.schemas import TABLES
 
 LINE = {"fsn_no": "FSN1", "rowers": 8, "crew_class": "H"}
 

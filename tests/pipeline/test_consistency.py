@@ -11,22 +11,22 @@ from polars.testing import assert_frame_equal
 from scipy import optimize, stats
 from scipy.stats import binom
 
-from herijk.pipeline.consistency import mixed, reml, repeats, tow_speed
-from herijk.pipeline.consistency.compared import compared_tows, hull_speed_statistics
-from herijk.pipeline.consistency.components import variance_components
-from herijk.pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
-from herijk.pipeline.consistency.lines import (
+from pipeline.consistency import mixed, reml, repeats, tow_speed
+from pipeline.consistency.compared import compared_tows, hull_speed_statistics
+from pipeline.consistency.components import variance_components
+from pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
+from pipeline.consistency.lines import (
     LN_CW,
     quantities,
     type_lines,
     type_outliers,
 )
-from herijk.pipeline.consistency.observed import newest, observe
-from herijk.pipeline.consistency.reml import Design, Problem, Stack, Whitened
-from herijk.pipeline.consistency.repeats import repeat_pairs, reproducibility
-from herijk.pipeline.consistency.tables import consistency_tables, line_tables
-from herijk.pipeline.consistency.tow_speed import slow_tows, speed_trend
-from herijk.tables.schemas import conform
+from pipeline.consistency.observed import newest, observe
+from pipeline.consistency.reml import Design, Problem, Stack, Whitened
+from pipeline.consistency.repeats import repeat_pairs, reproducibility
+from pipeline.consistency.tables import consistency_tables, line_tables
+from pipeline.consistency.tow_speed import slow_tows, speed_trend
+from pipeline.tables.schemas import conform
 from tests.pipeline.consistency_fleet import NO_RACES, fleet, type_consistency
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.channels import SAMPLE_SCHEMA
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import Defects, WorldSettings, simulate_tow, simulate_world
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.recompute.recompute import recompute
 from tests.pipeline.methods import method
 from tests.worlds import measure, recompute_world, run_rows, tow_rows
 

@@ -6,12 +6,12 @@ import polars as pl
 import pytest
 
 from benchmarks.accuracy.foreign import reading, runs
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.recompute.results import Recomputed
-from herijk.pipeline.season_log.assumed import USUAL
-from herijk.pipeline.uncertainty.propagation import Assumed
 from herijk.simulate import WorldSettings
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
+from pipeline.recompute.results import Recomputed
+from pipeline.season_log.assumed import USUAL
+from pipeline.uncertainty.propagation import Assumed
 from tests.worlds import Measured, measure
 
 SEASONS = (2014, 2015, 2016, 2017, 2018)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from herijk.pipeline import curve
-from herijk.pipeline.errors import BrokenPromiseError
-from herijk.pipeline.quantiles import LEVEL
+from pipeline import curve
+from pipeline.errors import BrokenPromiseError
+from pipeline.quantiles import LEVEL
 from tests.pipeline.fieller import b_interval_fieller
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])

@@ -5,7 +5,7 @@ import datetime as dt
 import polars as pl
 import pytest
 
-from herijk.pipeline.register.due import (
+from pipeline.register.due import (
     HIGHEST_W,
     LIKE_BOATS,
     LOWEST_W,
@@ -16,7 +16,7 @@ from herijk.pipeline.register.due import (
     TOO_FAST,
     due_list,
 )
-from herijk.pipeline.register.due import IN_RANGE as REALISTIC
+from pipeline.register.due import IN_RANGE as REALISTIC
 
 AS_OF = dt.date(2018, 6, 1)
 A, B, ROWERS = 31.6, 4.44, 8

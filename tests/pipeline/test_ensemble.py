@@ -4,9 +4,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.uncertainty import ensemble
-from herijk.pipeline.uncertainty import propagation as uncertainty
+from pipeline.errors import MissingKnowledgeError
+from pipeline.uncertainty import ensemble
+from pipeline.uncertainty import propagation as uncertainty
 from tests.pipeline.season_worlds import HARD, register, simulate
 
 MANY = 20_000

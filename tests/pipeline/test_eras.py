@@ -5,7 +5,7 @@ import polars as pl
 import pytest
 from scipy import stats
 
-from herijk.pipeline.consistency.eras import era_shifts, median_interval
+from pipeline.consistency.eras import era_shifts, median_interval
 
 BOATS = pl.DataFrame({"fsn_no": [f"FSN{k}" for k in range(40)], "boat_type": ["like"] * 40})
 

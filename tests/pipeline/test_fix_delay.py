@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.steps.fix_delay import fix_delay_s, fixes_in_time
 from herijk.simulate import world_settings
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
+from pipeline.steps.fix_delay import fix_delay_s, fixes_in_time
 from tests.worlds import Measured, measure
 
 SEASONS = (2014, 2015)

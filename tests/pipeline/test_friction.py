@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from herijk.pipeline.errors import BrokenPromiseError
-from herijk.pipeline.steps import friction
+from pipeline.errors import BrokenPromiseError
+from pipeline.steps import friction
 
 
 def test_density_agrees_with_the_cipm_table():

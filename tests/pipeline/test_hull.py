@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from herijk.pipeline import hull
+from pipeline import hull
 
 
 def test_hull_speed_grows_with_the_square_root_of_length():

@@ -4,12 +4,12 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.recompute.run_cache import RunCache
-from herijk.pipeline.studies.ladder import START, STEP_ORDER, ladder
-from herijk.pipeline.studies.options import ALL_OPTIONS, CHOICES, beside_uncertainty, option_effects
 from herijk.simulate import WorldSettings
+from pipeline.method.definition import parse_method, shipped_method
+from pipeline.recompute.recompute import recompute
+from pipeline.recompute.run_cache import RunCache
+from pipeline.studies.ladder import START, STEP_ORDER, ladder
+from pipeline.studies.options import ALL_OPTIONS, CHOICES, beside_uncertainty, option_effects
 from tests.worlds import measure
 
 OLD, NEW = shipped_method("as-published"), shipped_method("rebased-2015")

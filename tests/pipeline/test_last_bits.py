@@ -9,10 +9,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.consistency.tables import consistency_tables
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WorldSettings, simulate_world
+from pipeline.consistency.tables import consistency_tables
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
 from tests.numbers import unequal
 from tests.pipeline.consistency_fleet import NO_RACES
 from tests.worlds import measure

@@ -6,14 +6,14 @@ import time
 
 import pytest
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.method.definition import (
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import (
     MethodFileError,
     parse_method,
     shipped_method,
     shipped_methods,
 )
-from herijk.words import spoken
+from pipeline.words import spoken
 from tests.pipeline.methods import PLAIN, method_text
 
 LINE_OF = {step: number for number, step in enumerate(PLAIN, 4)}

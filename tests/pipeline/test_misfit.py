@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from herijk.pipeline import curve
-from herijk.pipeline.uncertainty.misfit import USUAL_RATIO, Departure, departure_of_boats
+from pipeline import curve
+from pipeline.uncertainty.misfit import USUAL_RATIO, Departure, departure_of_boats
 
 TARGET = np.tile([0.9, 1.0, 1.1], 2)
 WAY = np.repeat([1.0, -1.0], 3)

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.races import race
+from pipeline.errors import MissingKnowledgeError
+from pipeline.races import race
 
 
 def test_mean_speed_and_power_broadcast():

@@ -9,15 +9,15 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.recompute.facts import with_expected_water
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.steps.target import above_target
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
+from pipeline.blocks.batch import Batch
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import parse_method, shipped_method
+from pipeline.recompute.facts import with_expected_water
+from pipeline.recompute.recompute import recompute
+from pipeline.steps.target import above_target
 from tests.pipeline.methods import method, method_text
 from tests.worlds import Measured, measure, run_rows, tow_rows, without_gps, without_wind
 

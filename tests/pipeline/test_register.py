@@ -6,8 +6,8 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from herijk.pipeline.method.definition import RegisterRule
-from herijk.pipeline.register.register import draft_register, lines_of_all_days
+from pipeline.method.definition import RegisterRule
+from pipeline.register.register import draft_register, lines_of_all_days
 
 ON = dt.date(2016, 6, 1)
 NUMBERS = (*("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),)

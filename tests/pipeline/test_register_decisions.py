@@ -5,14 +5,14 @@ import datetime as dt
 import polars as pl
 import pytest
 
-from herijk.pipeline.method.definition import (
+from pipeline.method.definition import (
     MethodFileError,
     RegisterRule,
     parse_method,
     shipped_method,
 )
-from herijk.pipeline.method.writing import method_text
-from herijk.pipeline.register.register import DECISION_SCHEMA, draft_register
+from pipeline.method.writing import method_text
+from pipeline.register.register import DECISION_SCHEMA, draft_register
 
 NUMBERS = (*("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),)
 TOWS = pl.DataFrame(

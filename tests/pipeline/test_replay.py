@@ -6,9 +6,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.curve import cw, s_of_b
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from pipeline.curve import cw, s_of_b
+from pipeline.errors import MissingKnowledgeError
+from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 
 DAY = dt.date(2015, 6, 6)
 PLAIN = RaceRules(fatigue="none")

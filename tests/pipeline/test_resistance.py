@@ -4,14 +4,14 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.steps.resistance import (
+from herijk.simulate import Defects, WorldSettings
+from pipeline.blocks.batch import Batch
+from pipeline.steps.resistance import (
     OverWindow,
     run_means,
     temperature_change_kg_m,
     wetted_surface_m2,
 )
-from herijk.simulate import Defects, WorldSettings
 from tests.pipeline.methods import method
 from tests.worlds import measure
 

@@ -6,9 +6,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.season_log import estimate_season_factors, retow_choice
-from herijk.pipeline.season_log.network import with_state
-from herijk.pipeline.season_log.retow_design import RETOW_SCHEMA
+from pipeline.season_log import estimate_season_factors, retow_choice
+from pipeline.season_log.network import with_state
+from pipeline.season_log.retow_design import RETOW_SCHEMA
 from tests.pipeline.season_worlds import CLEAN, simulate
 
 LINE = ["fsn_no", "rowers", "crew_class"]

@@ -5,11 +5,11 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 import pytest
 
-from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.recompute.run_cache import RunCache
-from herijk.pipeline.steps.resistance import OverWindow, run_means
-from herijk.pipeline.steps.window import choose_windows
 from herijk.simulate import WorldSettings
+from pipeline.blocks.batch import Batch
+from pipeline.recompute.run_cache import RunCache
+from pipeline.steps.resistance import OverWindow, run_means
+from pipeline.steps.window import choose_windows
 from tests.pipeline.methods import method
 from tests.worlds import measure
 

@@ -3,7 +3,7 @@
 import polars as pl
 import pytest
 
-from herijk.pipeline.assessment.run_choice import with_run_choice
+from pipeline.assessment.run_choice import with_run_choice
 
 
 def point(run, target=1.0, direction=1, **differs):

@@ -10,9 +10,9 @@ import polars as pl
 import pytest
 from scipy.stats import binom, chi2
 
-from herijk.pipeline import curve
-from herijk.pipeline.errors import BrokenPromiseError
-from herijk.pipeline.season_log import (
+from pipeline import curve
+from pipeline.errors import BrokenPromiseError
+from pipeline.season_log import (
     estimate_season_factors,
     guard,
     other_log_factors,
@@ -20,9 +20,9 @@ from herijk.pipeline.season_log import (
     retow_choice,
     without_boats,
 )
-from herijk.pipeline.season_log.assumed import Settings
-from herijk.pipeline.season_log.network import Network
-from herijk.pipeline.season_log.scale import scale_effect
+from pipeline.season_log.assumed import Settings
+from pipeline.season_log.network import Network
+from pipeline.season_log.scale import scale_effect
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 

@@ -5,9 +5,9 @@ from functools import cache, partial
 
 import pytest
 
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import Defects, WorldSettings
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
 from tests.worlds import measure, with_force_error
 
 SEASONS = (2010, 2013, 2014, 2015, 2017, 2018)

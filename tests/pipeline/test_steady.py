@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.blocks.run_blocks import RunBlocks
-from herijk.pipeline.method.definition import Window
-from herijk.pipeline.steps.window import HAND_COLUMNS, Windows, choose_windows
+from pipeline.arrays import FloatArray
+from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.method.definition import Window
+from pipeline.steps.window import HAND_COLUMNS, Windows, choose_windows
 
 SECONDS = 50
 SAMPLES = 20

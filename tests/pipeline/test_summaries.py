@@ -3,7 +3,7 @@
 import polars as pl
 import pytest
 
-from herijk.pipeline.studies import summaries
+from pipeline.studies import summaries
 
 CURVES = pl.DataFrame(
     [

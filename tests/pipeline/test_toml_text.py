@@ -2,7 +2,7 @@
 
 import pytest
 
-from herijk.pipeline.toml_text import parse_toml
+from pipeline.toml_text import parse_toml
 
 
 @pytest.mark.parametrize(

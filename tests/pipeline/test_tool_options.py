@@ -6,12 +6,12 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.hull import hull_speed_m_s
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.recompute.run_cache import RunCache
-from herijk.pipeline.studies.tool_options import TICKS, option_curves, tick_effects
 from herijk.simulate import WorldSettings
+from pipeline.hull import hull_speed_m_s
+from pipeline.method.definition import parse_method, shipped_method
+from pipeline.recompute.recompute import recompute
+from pipeline.recompute.run_cache import RunCache
+from pipeline.studies.tool_options import TICKS, option_curves, tick_effects
 from tests.worlds import measure
 
 SPEEDS = {2010: {"as_read", "multiply", "divide"}, 2013: {"as_read"}, 2016: {"as_read", "dgps"}}

@@ -5,9 +5,9 @@ import polars as pl
 import pytest
 from scipy import stats
 
-from herijk.pipeline.quantiles import LEVEL, MAD_TO_SD, NORMAL
-from herijk.pipeline.season_log.assumed import Settings
-from herijk.pipeline.uncertainty.propagation import (
+from pipeline.quantiles import LEVEL, MAD_TO_SD, NORMAL
+from pipeline.season_log.assumed import Settings
+from pipeline.uncertainty.propagation import (
     COMPONENTS,
     Assumed,
     budget,

@@ -2,14 +2,14 @@
 
 import pytest
 
-from herijk.pipeline.method.definition import (
+from pipeline.method.definition import (
     MethodFileError,
     SeasonSteps,
     Steps,
     parse_method,
     shipped_method,
 )
-from herijk.pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
+from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
 from tests.pipeline.methods import method, method_text
 
 SEASONS = range(2009, 2019)

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.blocks.run_blocks import RunBlocks, WindowSums, stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.channels import SAMPLE_SCHEMA
-from herijk.pipeline.method.definition import Wind
-from herijk.pipeline.steps.wind import AirParts, air_parts, averaged_terms, nearest_coefficients
+from pipeline.blocks.run_blocks import RunBlocks, WindowSums, stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.method.definition import Wind
+from pipeline.steps.wind import AirParts, air_parts, averaged_terms, nearest_coefficients
 
 FRONT, SIDE = np.array([3.26]), np.array([9.0])
 SPEED = 2.5

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from herijk.pipeline import curve
+from pipeline import curve
 from tests.pipeline.fieller import b_interval_fieller
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])

@@ -5,15 +5,15 @@ import tomllib
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.dashboards.workbench.form import controls
-from herijk.pipeline.method.definition import (
+from dashboards.workbench.form import controls
+from pipeline.method.definition import (
     SeasonSteps,
     Steps,
     parse_method,
     shipped_method,
     shipped_methods,
 )
-from herijk.pipeline.method.variant import cut_at, differences, variant, variant_text
+from pipeline.method.variant import cut_at, differences, variant, variant_text
 
 SEASONS = range(2008, 2020)
 CONTROLS = [(step["step"], control) for step in controls() for control in step["options"]]

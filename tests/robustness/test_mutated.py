@@ -3,7 +3,7 @@
 import pytest
 
 from benchmarks.robustness import mutate
-from herijk.warehouse.archive.plausibility.judge import Judged
+from warehouse.archive.plausibility.judge import Judged
 
 
 def quiet(_):
@@ -19,7 +19,7 @@ def test_every_faulty_tow_is_set_aside_or_keeps_its_numbers(tmp_path):
 
 def test_a_reader_that_looks_away_is_noticed(tmp_path, monkeypatch):
     monkeypatch.setattr(
-        "herijk.warehouse.intake.lake.judge_in_files", lambda samples, *_: Judged(samples, ())
+        "warehouse.intake.lake.judge_in_files", lambda samples, *_: Judged(samples, ())
     )
     assert mutate.mutate(tmp_path, 15, 2, quiet).wrong != []
 

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import polars as pl
 
-from herijk.pipeline.method.definition import Method, shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build.graph import ARCHIVE, METHOD
-from herijk.warehouse.build.inputs import Scope
-from herijk.warehouse.editions.publish import Terms, publish
-from herijk.warehouse.store.store import Store
+from pipeline.method.definition import Method, shipped_method
 from tests.intake import bring_in
+from warehouse.derive.graph import ARCHIVE, METHOD
+from warehouse.derive.inputs import Scope
+from warehouse.editions.publish import Terms, publish
+from warehouse.store.store import Store
 
 SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=8, rate_hz=10, seed=5)
 """Season 2009 is written as plain CSV; a line of either season is valid in June 2014."""

@@ -7,10 +7,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.queries.audit import audit
-from herijk.warehouse.queries.audit_types import Closest, closest, differences
+from pipeline.errors import MissingKnowledgeError
 from tests.conftest import METHODS
+from warehouse.queries.audit import audit
+from warehouse.queries.audit_types import Closest, closest, differences
 
 
 def change(bench, *statements):

@@ -2,10 +2,10 @@
 
 import pytest
 
-from herijk.warehouse.build.graph import DATABASE, STEPS
-from herijk.warehouse.build.version import code_version
-from herijk.warehouse.store import code
 from tests.architecture.repository import ROOT
+from warehouse.derive.graph import DATABASE, STEPS
+from warehouse.derive.version import code_version
+from warehouse.store import code
 
 USED = {"samples": code.READING, "blocks": code.ADDING} | {s.name: s.code for s in STEPS}
 """The packages with which everything is computed that a rebuild keeps."""
@@ -16,25 +16,25 @@ def stale_after(file):
     return {
         name
         for name, packages in USED.items()
-        if ROOT / "herijk" / file in {f for package in packages for f in code._modules(package)}
+        if ROOT / file in {f for package in packages for f in code._modules(package)}
     }
 
 
 @pytest.mark.parametrize(
     "file",
     [
-        "simulate/boats.py",
+        "herijk/simulate/boats.py",
         "dashboards/site/pages.py",
         "warehouse/queries/audit.py",
         "warehouse/editions/publish.py",
-        "words/archive.py",
-        "words/command.py",
-        "tables/archive.py",
-        "cli/main.py",
+        "pipeline/words/archive.py",
+        "pipeline/words/command.py",
+        "pipeline/tables/archive.py",
+        "herijk/cli/main.py",
     ],
 )
 def test_what_computes_no_table_makes_none_stale(file):
-    assert (ROOT / "herijk" / file).is_file()
+    assert (ROOT / file).is_file()
     assert stale_after(file) == set()
 
 

@@ -7,11 +7,11 @@ import duckdb
 import polars as pl
 import pytest
 
-from herijk.tables.schemas import ABOUT, TABLES
-from herijk.tables.views import VIEWS
-from herijk.warehouse.build.inputs import LAKE_ONLY
-from herijk.warehouse.store.database import build_database
+from pipeline.tables.schemas import ABOUT, TABLES
+from pipeline.tables.views import VIEWS
 from tests.conftest import Workbench
+from warehouse.derive.inputs import LAKE_ONLY
+from warehouse.store.database import build_database
 
 CONTRACT = {
     "boats": "fsn_no, ht_no, name, boat_type",

@@ -2,8 +2,8 @@
 
 import pytest
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.store.decisions import read_decisions
+from pipeline.errors import MissingKnowledgeError
+from warehouse.store.decisions import read_decisions
 
 DECISION = """
 [[besluit]]

@@ -6,12 +6,12 @@ import polars as pl
 import pytest
 
 from herijk.cli.due_text import URGENCIES
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.register.due import NOT_RACED
-from herijk.pipeline.register.register import draft_name
-from herijk.warehouse.queries.due import due_report
-from herijk.warehouse.store.decisions import FILE_NAME
-from herijk.words.catalogue import WORDS
+from pipeline.errors import MissingKnowledgeError
+from pipeline.register.due import NOT_RACED
+from pipeline.register.register import draft_name
+from pipeline.words.catalogue import WORDS
+from warehouse.queries.due import due_report
+from warehouse.store.decisions import FILE_NAME
 
 METHOD = "rebased-2015"
 

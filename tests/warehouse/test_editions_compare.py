@@ -9,17 +9,17 @@ import shutil
 import polars as pl
 import pytest
 
-import herijk.pipeline.recompute.recompute
-import herijk.pipeline.studies.ladder
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.register.replay import RaceRules
-from herijk.tables.keys import LINE
-from herijk.warehouse.editions.compare import compare, diff, report, report_with_races
-from herijk.warehouse.editions.publish import publish_printed
-from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.decisions import FILE_NAME
-from herijk.warehouse.store.editions import read_edition
+import pipeline.recompute.recompute
+import pipeline.studies.ladder
+from pipeline.method.definition import parse_method, shipped_method
+from pipeline.register.replay import RaceRules
+from pipeline.tables.keys import LINE
 from tests.warehouse.edition_bench import terms
+from warehouse.editions.compare import compare, diff, report, report_with_races
+from warehouse.editions.publish import publish_printed
+from warehouse.intake import seasons as intake
+from warehouse.store.decisions import FILE_NAME
+from warehouse.store.editions import read_edition
 
 VARIANT = """
 name = "variant"
@@ -59,15 +59,15 @@ AS_PUBLISHED = (shipped_method("as-published"),)
 
 def new_code(monkeypatch):
     """Another version of the code, which finds other run points."""
-    original = herijk.pipeline.recompute.recompute.still_air_coefficient_kg_m
+    original = pipeline.recompute.recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        herijk.pipeline.recompute.recompute,
+        pipeline.recompute.recompute,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
-    monkeypatch.setattr("herijk.warehouse.build.step.code_hash", lambda *_: "other")
+    monkeypatch.setattr("warehouse.derive.step.code_hash", lambda *_: "other")
     for room in ("publish", "compare"):
-        monkeypatch.setattr(f"herijk.warehouse.editions.{room}.code_version", lambda: "0.2.0+other")
+        monkeypatch.setattr(f"warehouse.editions.{room}.code_version", lambda: "0.2.0+other")
 
 
 def test_an_edition_against_itself_is_the_same(published):
@@ -89,7 +89,7 @@ def test_log_factors_of_the_editions_are_used_and_not_estimated_again(published,
     def refuse(*_):
         raise AssertionError("estimated again")
 
-    monkeypatch.setattr(herijk.pipeline.studies.ladder, "instruments_of", refuse)
+    monkeypatch.setattr(pipeline.studies.ladder, "instruments_of", refuse)
     assert_factors_multiply(diff(published.store, "2014-1", "2014-2").lines)
 
 

@@ -7,9 +7,9 @@ import textwrap
 
 import pytest
 
-from herijk.pipeline.errors import BrokenPromiseError
-from herijk.warehouse.store.editions import edition_names, write_folder
-from herijk.warehouse.store.store import Store
+from pipeline.errors import BrokenPromiseError
+from warehouse.store.editions import edition_names, write_folder
+from warehouse.store.store import Store
 
 CONTENTS = {f"file-{n}": bytes([n]) * 5000 for n in range(6)}
 
@@ -17,8 +17,8 @@ KILLED_ANYWHERE = """
 import os, signal, sys
 from pathlib import Path
 from tests.warehouse.test_editions_folder import CONTENTS
-from herijk.warehouse.store.editions import edition_names, write_folder
-from herijk.warehouse.store.store import Store
+from warehouse.store.editions import edition_names, write_folder
+from warehouse.store.store import Store
 
 STEPS = {"open", "os.mkdir", "os.rename", "os.chmod", "os.rmdir", "os.remove", "os.listdir"}
 
@@ -76,10 +76,10 @@ def test_killed_at_every_step_there_is_nothing_or_all_of_it(tmp_path):
 FULL_DISK = """
 import sys
 from pathlib import Path
-from herijk.pipeline.errors import BrokenPromiseError
+from pipeline.errors import BrokenPromiseError
 from tests.warehouse.test_editions_folder import CONTENTS
-from herijk.warehouse.store.editions import edition_names, write_folder
-from herijk.warehouse.store.store import Store
+from warehouse.store.editions import edition_names, write_folder
+from warehouse.store.store import Store
 
 store = Store(Path(sys.argv[1]))
 write_folder(store, "old", lambda: {"file": b"small"})

@@ -16,25 +16,25 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.register.register import LINE
-from herijk.tables.schemas import conform
-from herijk.warehouse.build.published import published_made_from, published_tables
-from herijk.warehouse.editions import publish as publish_module
-from herijk.warehouse.editions import sheets
-from herijk.warehouse.editions.compare import diff
-from herijk.warehouse.editions.publish import publish, publish_printed
-from herijk.warehouse.store.decisions import FILE_NAME
-from herijk.warehouse.store.editions import (
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.method.definition import parse_method, shipped_method
+from pipeline.register.register import LINE
+from pipeline.tables.schemas import conform
+from tests.warehouse.edition_bench import terms
+from warehouse.derive.published import published_made_from, published_tables
+from warehouse.editions import publish as publish_module
+from warehouse.editions import sheets
+from warehouse.editions.compare import diff
+from warehouse.editions.publish import publish, publish_printed
+from warehouse.store.decisions import FILE_NAME
+from warehouse.store.editions import (
     CHANGES,
     TABLES,
     edition_names,
     read_about,
     read_edition,
 )
-from herijk.warehouse.store.store import table_digest
-from tests.warehouse.edition_bench import terms
+from warehouse.store.store import table_digest
 
 FILES = {
     "register.csv",
@@ -421,7 +421,7 @@ def test_a_decision_is_needed(published):
 def test_tables_of_another_method_or_code_are_not_published(published, monkeypatch):
     with pytest.raises(MissingKnowledgeError, match="herijk rebuild"):
         published.publish("x", "rebased-2015")
-    monkeypatch.setattr("herijk.warehouse.build.step.code_hash", lambda *_: "other")
+    monkeypatch.setattr("warehouse.derive.step.code_hash", lambda *_: "other")
     with pytest.raises(MissingKnowledgeError, match="not those of the archive and code of today"):
         published.publish("x", "rebased")
 

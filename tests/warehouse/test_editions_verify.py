@@ -11,21 +11,21 @@ import zipfile
 import polars as pl
 import pytest
 
-import herijk.pipeline.recompute.recompute
-import herijk.warehouse.editions.verify
-from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.warehouse.build.published import published_tables
-from herijk.warehouse.editions import notes, sheets
-from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
-from herijk.warehouse.editions.lineage import lineage
-from herijk.warehouse.editions.publish import publish_printed
-from herijk.warehouse.editions.remade import Counts
-from herijk.warehouse.editions.verify import verify
-from herijk.warehouse.store.editions import TableDigest, read_about, read_edition
-from herijk.warehouse.store.files import file_sha256
-from herijk.warehouse.store.store import table_digest
+import pipeline.recompute.recompute
+import warehouse.editions.verify
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.method.definition import parse_method, shipped_method
 from tests.warehouse.edition_bench import terms
+from warehouse.derive.published import published_tables
+from warehouse.editions import notes, sheets
+from warehouse.editions.inputs import same_tows, unchanged_tows
+from warehouse.editions.lineage import lineage
+from warehouse.editions.publish import publish_printed
+from warehouse.editions.remade import Counts
+from warehouse.editions.verify import verify
+from warehouse.store.editions import TableDigest, read_about, read_edition
+from warehouse.store.files import file_sha256
+from warehouse.store.store import table_digest
 
 
 def folder(bench, name="2014-1"):
@@ -42,9 +42,7 @@ def found(bench, **wanted):
 @pytest.fixture
 def _files_alone(monkeypatch):
     """Editions are not made again, which takes three quarters of the time."""
-    monkeypatch.setattr(
-        herijk.warehouse.editions.verify, "remade", lambda store, name: (Counts(), [])
-    )
+    monkeypatch.setattr(warehouse.editions.verify, "remade", lambda store, name: (Counts(), []))
 
 
 FILES_ALONE = pytest.mark.usefixtures("_files_alone")
@@ -253,14 +251,14 @@ def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_
 
 
 def test_other_code_is_told_but_is_no_broken_promise(published_copy, monkeypatch):
-    original = herijk.pipeline.recompute.recompute.still_air_coefficient_kg_m
+    original = pipeline.recompute.recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        herijk.pipeline.recompute.recompute,
+        pipeline.recompute.recompute,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
     assert verify(published_copy.store).wrong
-    other = "herijk.warehouse.editions.remade.code_version"
+    other = "warehouse.editions.remade.code_version"
     monkeypatch.setattr(other, lambda: "0.2.0+other")
     findings, wrong = found(published_copy, kind="differs")
     assert not wrong
@@ -511,7 +509,7 @@ def test_texts_that_are_worded_otherwise_today_are_as_they_were_published(
     published_copy, monkeypatch
 ):
     monkeypatch.setattr(notes, "MOST_CAUSES", 0)
-    monkeypatch.setattr(herijk.warehouse.editions.verify, "texts_version", lambda: "another")
+    monkeypatch.setattr(warehouse.editions.verify, "texts_version", lambda: "another")
     assert found(published_copy) == ([], False)
 
 

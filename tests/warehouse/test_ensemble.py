@@ -4,10 +4,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.uncertainty.ensemble import MEMBERS
-from herijk.warehouse.store.ensemble import read_ensemble
+from pipeline.errors import MissingKnowledgeError
+from pipeline.uncertainty.ensemble import MEMBERS
 from tests.conftest import Workbench
+from warehouse.store.ensemble import read_ensemble
 
 METHOD = "rebased-2015"
 

@@ -4,8 +4,8 @@ import os
 import threading
 from pathlib import Path
 
-from herijk.warehouse.store import files
-from herijk.warehouse.store.files import put_in_place
+from warehouse.store import files
+from warehouse.store.files import put_in_place
 
 
 def filled(folder, text):

@@ -7,8 +7,8 @@ from unittest import mock
 
 import pytest
 
-from herijk.warehouse.archive.files import hashes
-from herijk.warehouse.intake import seasons as intake
+from warehouse.archive.files import hashes
+from warehouse.intake import seasons as intake
 
 
 @pytest.fixture

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from herijk.pipeline.errors import UnavailableError
-from herijk.warehouse.store.lock import LOCK_FILE, OWNER_SUFFIX, only_writer
+from pipeline.errors import UnavailableError
+from warehouse.store.lock import LOCK_FILE, OWNER_SUFFIX, only_writer
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from herijk.warehouse.store.lock import only_writer
+from warehouse.store.lock import only_writer
 with only_writer(Path(sys.argv[1])):
     (Path(sys.argv[1]) / "lake").mkdir(exist_ok=True)
     (Path(sys.argv[1]) / "lake" / ".herijk-half.parquet").write_text("half")

@@ -1,10 +1,10 @@
 """What was found of the runs is used again as long as the runs are what they were."""
 
-from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.build.graph import ARCHIVE, METHOD
-from herijk.warehouse.build.inputs import Scope, argument
+from pipeline.method.definition import shipped_method
 from tests.intake import bring_in
 from tests.warehouse.edition_bench import DAY
+from warehouse.derive.graph import ARCHIVE, METHOD
+from warehouse.derive.inputs import Scope, argument
 
 
 def test_what_was_found_lasts_as_long_as_the_runs_are_the_same(bench_of_editions):

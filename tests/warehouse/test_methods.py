@@ -2,9 +2,9 @@
 
 import pytest
 
-from herijk.pipeline.errors import HerijkError
-from herijk.pipeline.method.definition import shipped_method, shipped_methods
-from herijk.warehouse.store.methods import KnownMethods
+from pipeline.errors import HerijkError
+from pipeline.method.definition import shipped_method, shipped_methods
+from warehouse.store.methods import KnownMethods
 
 OWN = """
 name = "ours"

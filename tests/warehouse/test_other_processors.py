@@ -27,9 +27,9 @@ EVERYTHING = """
 import dataclasses, json, shutil, sys
 from pathlib import Path
 from tests.warehouse.edition_bench import METHODS, EditionBench
-from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.editions.verify import verify
+from pipeline.method.definition import shipped_method
+from warehouse.derive.graph import STEPS
+from warehouse.editions.verify import verify
 bench = EditionBench(Path(sys.argv[1]), Path(sys.argv[2]))
 methods = [shipped_method(name) for name in METHODS]
 bench.rebuild(methods)

@@ -8,12 +8,12 @@ import duckdb
 import polars as pl
 import pytest
 
-from herijk.tables.schemas import ABOUT, TABLES, ordered
-from herijk.warehouse.build.inputs import LAKE_ONLY, PER_METHOD
-from herijk.warehouse.store.files import file_sha256
-from herijk.warehouse.store.package import Origin, Rights, package_is_whole, write_package
-from herijk.warehouse.store.store import write_parquet
+from pipeline.tables.schemas import ABOUT, TABLES, ordered
 from tests.conftest import METHODS, Workbench
+from warehouse.derive.inputs import LAKE_ONLY, PER_METHOD
+from warehouse.store.files import file_sha256
+from warehouse.store.package import Origin, Rights, package_is_whole, write_package
+from warehouse.store.store import write_parquet
 
 ONCE = {*TABLES} - {*PER_METHOD}
 EACH = {*PER_METHOD} - {*LAKE_ONLY}

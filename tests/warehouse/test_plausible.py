@@ -15,20 +15,20 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.assessment.plausibility import Shift, plausibility
-from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build.graph import ARCHIVE
-from herijk.warehouse.build.graph import METHOD as METHOD_STEP
-from herijk.warehouse.build.inputs import Scope
-from herijk.warehouse.build.plausible import with_doubts
-from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish
-from herijk.warehouse.store.editions import read_edition
-from herijk.warehouse.store.store import Store
+from pipeline.assessment.plausibility import Shift, plausibility
+from pipeline.blocks.batch import Batch
+from pipeline.method.definition import shipped_method
 from tests.intake import bring_in
 from tests.worlds import measure
+from warehouse.derive.graph import ARCHIVE
+from warehouse.derive.graph import METHOD as METHOD_STEP
+from warehouse.derive.inputs import Scope
+from warehouse.derive.plausible import with_doubts
+from warehouse.editions.publish import Terms, lines_to_look_at, publish
+from warehouse.store.editions import read_edition
+from warehouse.store.store import Store
 
 DAY = dt.date(2026, 11, 22)
 WORLD = WorldSettings(seasons=(2015, 2016, 2017), tows_per_season=10, rate_hz=20, seed=5)

@@ -4,13 +4,13 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.register.register import LINE
-from herijk.warehouse.queries.history import History
-from herijk.warehouse.queries.scenario import Scenario
-from herijk.warehouse.store.store import Store
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import parse_method, shipped_method
+from pipeline.register.register import LINE
 from tests.conftest import METHODS
+from warehouse.queries.history import History
+from warehouse.queries.scenario import Scenario
+from warehouse.store.store import Store
 
 UNTOWABLE = """
 name = "none"

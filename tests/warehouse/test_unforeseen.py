@@ -13,19 +13,20 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-import herijk.pipeline
-import herijk.warehouse.archive
-from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.recompute.outcome import Outcome
+import pipeline
+import warehouse.archive
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.archive.plausibility.run import Run
+from pipeline.blocks.batch import Batch
+from pipeline.recompute.outcome import Outcome
+from tests.architecture.repository import PACKAGES
 from tests.conftest import METHODS, Workbench, shared
+from warehouse.archive.plausibility.run import Run
 
 TINY = WorldSettings(seasons=(2010, 2014), tows_per_season=11, rate_hz=10, seed=5)
 TOW = "2014-004"
 SEEDED = 60
-ROOMS = (herijk.pipeline, herijk.warehouse.archive)
+ROOMS = (pipeline, warehouse.archive)
 TODAY = ("first_seen", "code_version", "content_hash")
 
 
@@ -71,7 +72,7 @@ def failing(module, name, path, called):
     places = [
         other
         for other in list(sys.modules.values())
-        if getattr(other, "__name__", "").startswith("herijk")
+        if getattr(other, "__name__", "").startswith(PACKAGES)
         and other.__dict__.get(name) is function
     ]
     with (
@@ -147,11 +148,11 @@ def check_without(bench, expected):
 @pytest.mark.parametrize(
     ("module", "name"),
     [
-        ("herijk.warehouse.archive.plausibility.whole_columns", "check_mix_ups"),
-        ("herijk.pipeline.assessment.plausibility", "plausibility"),
-        ("herijk.pipeline.recompute.season_factors", "_rows"),
-        ("herijk.pipeline.season_log.estimate", "estimate_season_factors"),
-        ("herijk.pipeline.assessment.assess", "assess"),
+        ("warehouse.archive.plausibility.whole_columns", "check_mix_ups"),
+        ("pipeline.assessment.plausibility", "plausibility"),
+        ("pipeline.recompute.season_factors", "_rows"),
+        ("pipeline.season_log.estimate", "estimate_season_factors"),
+        ("pipeline.assessment.assess", "assess"),
     ],
 )
 def test_a_failing_tow_is_set_aside_and_the_rest_goes_on(
@@ -170,12 +171,12 @@ def test_a_failing_tow_is_set_aside_and_the_rest_goes_on(
 
 
 def test_a_log_that_stood_still_fails_no_check():
-    from herijk.warehouse.archive.plausibility.whole_columns import _follows_log  # noqa: PLC0415
+    from warehouse.archive.plausibility.whole_columns import _follows_log  # noqa: PLC0415
 
     class Still:
         channels = {"log1": mock.Mock(), "log2": mock.Mock()}  # noqa: RUF012
 
-    median = "herijk.warehouse.archive.plausibility.whole_columns.median_of"
+    median = "warehouse.archive.plausibility.whole_columns.median_of"
     with mock.patch(median, return_value=0.0):
         assert not _follows_log([Still()], "log2")
 
@@ -188,7 +189,7 @@ def test_a_failing_method_costs_its_rows_alone(tiny, tmp_path):
             raise ZeroDivisionError("planted")
         return real(method, *arguments, **named)
 
-    from herijk.warehouse.build import method_tables  # noqa: PLC0415
+    from warehouse.derive import method_tables  # noqa: PLC0415
 
     real = method_tables.recompute
     with mock.patch.object(method_tables, "recompute", fails):
@@ -206,7 +207,7 @@ def test_a_failing_method_costs_its_rows_alone(tiny, tmp_path):
 def test_a_tow_is_tried_again_when_its_row_changes(tiny, path_of_tow, tmp_path):
     bench = Workbench(tmp_path / "archive", tmp_path / "data")
     write_simulated_archive(bench.archive, simulate_world(TINY))
-    with failing("herijk.pipeline.assessment.assess", "assess", path_of_tow, []):
+    with failing("pipeline.assessment.assess", "assess", path_of_tow, []):
         bench.rebuild()
     assert TOW not in bench.table("tows")["tow_id"]
     bench.rebuild()

@@ -2,22 +2,20 @@
 
 import ast
 from functools import cache
-from pathlib import Path
 from string import Formatter
 
 import pytest
 from typer.main import get_command
 
-import herijk
 from herijk.cli.main import app, main
 from herijk.cli.overview import SECTIONS, USAGE, language_of
 from herijk.cli.text import table
-from herijk.pipeline import errors
-from herijk.pipeline.toml_text import PROBLEMS
-from herijk.words import LANGUAGE, dutch, say, spoken, tell
+from pipeline import errors
+from pipeline.toml_text import PROBLEMS
+from pipeline.words import LANGUAGE, dutch, say, spoken, tell
+from tests.architecture.repository import ROOT, modules
 
 DUTCH = dutch()
-ROOT = Path(str(herijk.__file__)).parent
 SPEAKERS = {"say", "tell", "wrong", "fault", "MethodFileError"} | {
     n for n in dir(errors) if n.endswith("Error")
 }
@@ -37,8 +35,12 @@ SAME = {
 @cache
 def sources():
     """Module and room of each file outside the catalogue."""
-    files = [file for file in ROOT.rglob("*.py") if file.relative_to(ROOT).parts[0] != "words"]
-    return [(ast.parse(file.read_text("utf-8")), file.relative_to(ROOT).parts[0]) for file in files]
+    places = [(file, file.relative_to(ROOT).parts) for file in modules()]
+    return [
+        (ast.parse(file.read_text("utf-8")), parts[parts[0] == "herijk"])
+        for file, parts in places
+        if parts[:2] != ("pipeline", "words")
+    ]
 
 
 def texts(node):

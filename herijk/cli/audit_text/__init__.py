@@ -8,8 +8,8 @@ from herijk.cli.audit_text.boat import boat_page
 from herijk.cli.audit_text.one_type import one_type
 from herijk.cli.audit_text.two_types import two_types
 from herijk.cli.text import page
-from herijk.warehouse.queries.audit import BoatAudit
-from herijk.warehouse.queries.audit_types import TypesAudit
+from warehouse.queries.audit import BoatAudit
+from warehouse.queries.audit_types import TypesAudit
 
 
 def audit(report: BoatAudit | TypesAudit) -> str:

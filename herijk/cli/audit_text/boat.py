@@ -18,11 +18,11 @@ from herijk.cli.audit_text.words import (
     wrapped,
 )
 from herijk.cli.text import decimals, place, table, why_set_aside, window
-from herijk.pipeline.method.definition import COMPLETE
-from herijk.tables.row import Row
-from herijk.warehouse.queries.audit import BoatAudit
-from herijk.words import tell
-from herijk.words.catalogue import code
+from pipeline.method.definition import COMPLETE
+from pipeline.tables.row import Row
+from pipeline.words import tell
+from pipeline.words.catalogue import code
+from warehouse.queries.audit import BoatAudit
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
 LEAST_FELT: Final = 5e-4

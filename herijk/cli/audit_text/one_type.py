@@ -27,12 +27,12 @@ from herijk.cli.audit_text.words import (
     yes,
 )
 from herijk.cli.text import decimals, table
-from herijk.pipeline.consistency.eras import ERAS
-from herijk.pipeline.consistency.tow_speed import SLOW_POWER_W
-from herijk.tables.row import Row
-from herijk.warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
-from herijk.words import tell
-from herijk.words.catalogue import code
+from pipeline.consistency.eras import ERAS
+from pipeline.consistency.tow_speed import SLOW_POWER_W
+from pipeline.tables.row import Row
+from pipeline.words import tell
+from pipeline.words.catalogue import code
+from warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
 
 T = TypeVar("T")
 

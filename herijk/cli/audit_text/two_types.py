@@ -17,10 +17,10 @@ from herijk.cli.audit_text.words import (
     wrapped,
 )
 from herijk.cli.text import table
-from herijk.tables.row import Row
-from herijk.warehouse.queries.audit_types import TypesAudit, TypeStatistics
-from herijk.words import tell
-from herijk.words.catalogue import code
+from pipeline.tables.row import Row
+from pipeline.words import tell
+from pipeline.words.catalogue import code
+from warehouse.queries.audit_types import TypesAudit, TypeStatistics
 
 Cell = Callable[[TypeStatistics], str]
 """The words in a cell, from the figures of a type."""

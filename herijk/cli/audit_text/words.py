@@ -10,10 +10,10 @@ from collections.abc import Iterable
 from math import exp
 from typing import Final
 
-from herijk.tables.row import Row
-from herijk.warehouse.queries.audit_types import TypeFacts, TypeStatistics
-from herijk.words import LANGUAGE, number, tell
-from herijk.words.catalogue import code, speaker
+from pipeline.tables.row import Row
+from pipeline.words import LANGUAGE, number, tell
+from pipeline.words.catalogue import code, speaker
+from warehouse.queries.audit_types import TypeFacts, TypeStatistics
 
 QUANTITIES: Final = {"b_m_s": "B", "a_kg_m": "A", "cw_standard_kg_m": "Cw"}
 LETTERS: Final = QUANTITIES | {"q": "q"}

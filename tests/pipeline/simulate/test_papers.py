@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import Defects, WorldSettings, simulate_tow, simulate_world
 from herijk.simulate.papers import RACE_KM, printed_register, race
 from herijk.simulate.practice import practice_of, practices, printed_curve
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
 from tests.worlds import measure
 
 SIZE = {"tows_per_season": 4, "rate_hz": 20}

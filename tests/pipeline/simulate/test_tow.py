@@ -6,7 +6,6 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.channels import SAMPLE_SCHEMA
 from herijk.simulate import (
     AirCoefficients,
     Defects,
@@ -15,6 +14,7 @@ from herijk.simulate import (
     simulate_world,
     true_cw_kg_m,
 )
+from pipeline.channels import SAMPLE_SCHEMA
 
 SEASON = 2016  # has a GPS
 CHANNELS = ("log1_m_s", "log2_m_s", "gps_m_s", "force_n", "wind_speed_m_s", "wind_angle_deg")

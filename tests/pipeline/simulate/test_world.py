@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
 from herijk.simulate import Defects, WorldSettings, simulate_world
+from pipeline.errors import HerijkError, MissingKnowledgeError
 
 
 def none(season):

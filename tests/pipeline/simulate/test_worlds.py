@@ -8,7 +8,6 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.errors import HerijkError
 from herijk.simulate import (
     WORLDS,
     simulate_tow,
@@ -18,6 +17,7 @@ from herijk.simulate import (
 )
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.simulate.delft import FROUDE, RESIDUARY
+from pipeline.errors import HerijkError
 from tests.worlds import nearest_hyperbola
 
 DELFT_FILE = Path(__file__).parents[2] / "data" / "uci_yacht_hydrodynamics.csv"

@@ -9,8 +9,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive import (
+from pipeline.errors import DefectiveInputError
+from warehouse.archive import (
     ArchiveIndex,
     Fault,
     FileHashes,

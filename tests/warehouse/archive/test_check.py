@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from herijk.cli.archive import check_text
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.archive.check.check import check_archive
-from herijk.warehouse.archive.check.report import check_report
-from herijk.warehouse.archive.files.empty_archive import write_templates
-from herijk.warehouse.archive.profile.reading import parse_profiles
-from herijk.words import LANGUAGE, say
+from pipeline.errors import MissingKnowledgeError
+from pipeline.words import LANGUAGE, say
 from tests.warehouse.archive.conftest import BOATS, FIRST, TOWS, Archive, Scan
+from warehouse.archive.check.check import check_archive
+from warehouse.archive.check.report import check_report
+from warehouse.archive.files.empty_archive import write_templates
+from warehouse.archive.profile.reading import parse_profiles
 
 THIRD = "meetdata_2014/derde boot 12h 2014.csv"
 SECOND = "meetdata_2014/tweede boot 6d 2014.csv"

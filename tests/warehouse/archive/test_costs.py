@@ -4,14 +4,14 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.method.definition import shipped_method
-from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
-from herijk.warehouse.archive.plausibility.judge import judge_samples
-from herijk.warehouse.archive.plausibility.run import LEFT_OUT_S
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.blocks.sums import block_sums
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
 from tests.worlds import run_rows, tow_rows
+from warehouse.archive.plausibility.judge import judge_samples
+from warehouse.archive.plausibility.run import LEFT_OUT_S
 
 RATE_HZ = 20
 BOATS = 3

@@ -15,10 +15,10 @@ import pytest
 import xlsxwriter
 from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
-from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive import SeasonProfile
-from herijk.warehouse.archive.samples.file import read_samples
+from pipeline.errors import DefectiveInputError
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, TOWS, Archive, Scan
+from warehouse.archive import SeasonProfile
+from warehouse.archive.samples.file import read_samples
 
 NAME = FIRST.removesuffix(".csv")
 
@@ -262,7 +262,7 @@ def test_a_recording_that_is_larger_or_claims_more_samples_is_not_read(
 ) -> None:
     tdms(archive)
     (path,) = (archive.root / "meetdata_2014").glob("*.tdms")
-    monkeypatch.setattr(f"herijk.warehouse.archive.samples.labview.{limit}", 10)
+    monkeypatch.setattr(f"warehouse.archive.samples.labview.{limit}", 10)
     with pytest.raises(DefectiveInputError) as told:
         read_samples(path, SeasonProfile(2014))
     assert told.value.reason_code == "too_large"

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from herijk.warehouse.archive import FileHashes
-from herijk.warehouse.archive.files.hashes import hash_of_parts
-from herijk.warehouse.archive.files.names import PARTS
+from warehouse.archive import FileHashes
+from warehouse.archive.files.hashes import hash_of_parts
+from warehouse.archive.files.names import PARTS
 
 OLD_NS = 1_600_000_000_000_000_000
 

@@ -7,17 +7,17 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from herijk.pipeline.channels import SAMPLE_SCHEMA
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.archive import (
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.errors import MissingKnowledgeError
+from tests.warehouse.archive.conftest import BOATS, FIRST, ROWS, TOWS, Archive, Scan, line_of
+from warehouse.archive import (
     Failure,
     FileHashes,
     index_archive,
     read_published_registers,
     read_races,
 )
-from herijk.warehouse.archive.sheets import reading
-from tests.warehouse.archive.conftest import BOATS, FIRST, ROWS, TOWS, Archive, Scan, line_of
+from warehouse.archive.sheets import reading
 
 SAMPLE_ARCHIVE = Path(__file__).parents[2] / "data" / "sample-archive"
 NEXT_TOW = "2014-009;2014-03-09;FSN1;tweede;{second};8;H;2,40;;;;;;;;;{runs};nee;20;\n"

@@ -7,11 +7,11 @@ from functools import partial
 
 import pytest
 
-from herijk.pipeline.errors import DefectiveInputError
-from herijk.tables.frames import frame_of, limits
-from herijk.tables.lake import ListedRaces
-from herijk.warehouse.archive.files import list_kinds
-from herijk.warehouse.archive.lists import (
+from pipeline.errors import DefectiveInputError
+from pipeline.tables.frames import frame_of, limits
+from pipeline.tables.lake import ListedRaces
+from warehouse.archive.files import list_kinds
+from warehouse.archive.lists import (
     boats,
     force_checks,
     lamps,
@@ -20,9 +20,9 @@ from herijk.warehouse.archive.lists import (
     tows,
     windows,
 )
-from herijk.warehouse.archive.sheets.outside_limits import misfits
-from herijk.warehouse.archive.sheets.reading import read_list
-from herijk.warehouse.archive.spelling.wording import Wording
+from warehouse.archive.sheets.outside_limits import misfits
+from warehouse.archive.sheets.reading import read_list
+from warehouse.archive.spelling.wording import Wording
 
 TOW = {
     "sleep_id": "2014-001",

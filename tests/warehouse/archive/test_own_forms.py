@@ -11,16 +11,16 @@ import polars as pl
 import pytest
 import xlsxwriter
 
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.archive.check.check import Checked, check_archive
-from herijk.warehouse.archive.check.report import check_report
-from herijk.warehouse.archive.profile.reading import parse_profiles, read_profiles
-from herijk.warehouse.archive.sheets.sheet import read_sheets
-from herijk.warehouse.archive.sheets.unknown_columns import meanings
-from herijk.warehouse.archive.spelling.columns import Column
-from herijk.warehouse.archive.spelling.headers import split_header
+from pipeline.errors import MissingKnowledgeError
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
 from tests.warehouse.archive.test_formats import assert_same, cells_of, lvm
+from warehouse.archive.check.check import Checked, check_archive
+from warehouse.archive.check.report import check_report
+from warehouse.archive.profile.reading import parse_profiles, read_profiles
+from warehouse.archive.sheets.sheet import read_sheets
+from warehouse.archive.sheets.unknown_columns import meanings
+from warehouse.archive.spelling.columns import Column
+from warehouse.archive.spelling.headers import split_header
 
 BEAM = Column("beam_m", "breedte", "length", "m")
 COLUMNS = (Column("fsn_no", "fsn_nr"), Column("name", "sloep"), BEAM)

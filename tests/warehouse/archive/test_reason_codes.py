@@ -9,7 +9,6 @@ from collections.abc import Callable
 import polars as pl
 import pytest
 
-from herijk.warehouse.archive import read_races
 from tests.warehouse.archive.conftest import (
     BOATS,
     FIRST,
@@ -20,6 +19,7 @@ from tests.warehouse.archive.conftest import (
     Scan,
     line_of,
 )
+from warehouse.archive import read_races
 
 Spoil = Callable[[Archive], object]
 ALL = {"2014-001", "2014-002", "2014-003"}

@@ -12,14 +12,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from herijk.pipeline.channels import SAMPLE_SCHEMA
-from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive import SeasonProfile
-from herijk.warehouse.archive.samples import text_files
-from herijk.warehouse.archive.samples.file import read_samples
-from herijk.warehouse.archive.spelling.numbers import parse_number
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.errors import DefectiveInputError
 from tests.reason_codes import REASON_CODES
 from tests.warehouse.archive.conftest import FIRST, HEADER, TOWS, Archive, Scan
+from warehouse.archive import SeasonProfile
+from warehouse.archive.samples import text_files
+from warehouse.archive.samples.file import read_samples
+from warehouse.archive.spelling.numbers import parse_number
 
 PROFILE = SeasonProfile(season=2014)
 ROWS = [

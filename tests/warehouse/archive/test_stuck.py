@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.warehouse.archive.faults import Fault
-from herijk.warehouse.archive.plausibility.run import Run
-from herijk.warehouse.archive.plausibility.whole_runs import (
+from warehouse.archive.faults import Fault
+from warehouse.archive.plausibility.run import Run
+from warehouse.archive.plausibility.whole_runs import (
     _longest_hold,
     _may_hold,
     without_stuck_gps,

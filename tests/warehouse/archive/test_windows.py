@@ -6,12 +6,12 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from herijk.pipeline.method.definition import Method, parse_method
-from herijk.warehouse.build.graph import ARCHIVE, METHOD, REGISTERS
-from herijk.warehouse.build.inputs import Scope
-from herijk.warehouse.store.store import Store
+from pipeline.method.definition import Method, parse_method
 from tests.intake import bring_in as read_archive
 from tests.warehouse.archive.conftest import TOWS, Archive
+from warehouse.derive.graph import ARCHIVE, METHOD, REGISTERS
+from warehouse.derive.inputs import Scope
+from warehouse.store.store import Store
 
 WINDOWS = "sleeplijsten/vensters_2014.csv"
 HEADER = "sleep_id;run;van [s];tot [s];reden\n"

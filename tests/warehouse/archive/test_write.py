@@ -9,7 +9,6 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
 from herijk.simulate.archive_writer import (
     SPELLINGS,
@@ -19,6 +18,7 @@ from herijk.simulate.archive_writer import (
 )
 from herijk.simulate.papers import printed_register
 from herijk.simulate.practice import practices, printed_curve
+from pipeline.errors import HerijkError, MissingKnowledgeError
 
 SETTINGS = WorldSettings(tows_per_season=2, rate_hz=20)
 

@@ -1,0 +1,120 @@
+"""Checks of a finished rebuild, each with how bad it is when it fails.
+
+An error means that a table is not what it promises; a warning, that a person should look.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Final
+
+import dagster as dg
+
+from assets.progress import Progress
+from assets.resources import Setup
+from warehouse.derive import integrity
+from warehouse.derive.database import DATABASE_TABLE
+from warehouse.editions.verify import verify
+from warehouse.queries.change_report import change_report
+
+ERROR, WARN = dg.AssetCheckSeverity.ERROR, dg.AssetCheckSeverity.WARN
+
+
+def _result(
+    wrong: Sequence[object], severity: dg.AssetCheckSeverity = ERROR
+) -> dg.AssetCheckResult:
+    """Passed where nothing is wrong; else with the first twenty rows or sentences of it."""
+    lines = [" ".join(map(str, w)) if isinstance(w, tuple) else str(w) for w in wrong[:20]]
+    return dg.AssetCheckResult(
+        passed=not wrong,
+        severity=severity,
+        metadata={"number": len(wrong), "first": dg.MetadataValue.json(lines)},
+    )
+
+
+def tables_fit_their_schemas(setup: Setup) -> dg.AssetCheckResult:
+    """Every table of the database has the columns, types and ranges it promises."""
+    return _result(integrity.schema_faults(setup.store))
+
+
+def counts_agree(setup: Setup) -> dg.AssetCheckResult:
+    """The database holds what the lake holds."""
+    return _result(integrity.count_faults(setup.store, setup.chosen_methods))
+
+
+def every_listed_tow_accounted_for(setup: Setup) -> dg.AssetCheckResult:
+    """No listed tow of the seasons read is neither accepted nor set aside."""
+    return _result(integrity.lost_tows(setup.store))
+
+
+def every_tow_has_a_curve_row(setup: Setup) -> dg.AssetCheckResult:
+    """Every method has a curve row for every tow."""
+    return _result(integrity.lost_curves(setup.store, setup.chosen_methods))
+
+
+def steps_multiply_to_the_total(setup: Setup) -> dg.AssetCheckResult:
+    """The factors of every ladder multiply to its total."""
+    return _result(integrity.broken_ladders(setup.store, setup.chosen_methods))
+
+
+def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
+    """No more of the listed tows are set aside than the settings allow."""
+    aside, listed = integrity.set_aside_tows(setup.store)
+    return dg.AssetCheckResult(
+        passed=aside <= setup.set_aside_share * listed,
+        severity=WARN,
+        metadata={"set_aside": aside, "listed": listed, "limit": setup.set_aside_share},
+    )
+
+
+def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:
+    """No season's log factor jumped since the last report."""
+    moved = change_report(setup.store).factors
+    jumps = moved.filter((moved["ratio"] - 1.0).abs() > setup.factor_jump)
+    return _result(jumps.rows(), WARN)
+
+
+def boats_stayed_within_their_intervals(setup: Setup) -> dg.AssetCheckResult:
+    """No line of a draft moved by more than its intervals since the last report."""
+    lines = change_report(setup.store).lines
+    beyond = lines.filter(lines["exceeds_interval"].fill_null(value=False))
+    columns = ["to_edition", "fsn_no", "rowers", "crew_class"]
+    return _result(beyond.select(columns).rows(), WARN)
+
+
+def editions_can_be_made_again(setup: Setup) -> dg.AssetCheckResult:
+    """Published editions are what they were, and archive and code of today give them again.
+
+    A file of the archive may be mended after publication, so only a changed edition is an error.
+    """
+    wrong = [f for f in verify(setup.store, afresh=False).findings if f.wrong]
+    changed = any(f.kind == "altered" for f in wrong)
+    return _result([f"{f.edition}: {f.message}" for f in wrong], ERROR if changed else WARN)
+
+
+CHECKS: Final[Sequence[Callable[[Setup], dg.AssetCheckResult]]] = (
+    tables_fit_their_schemas,
+    counts_agree,
+    every_listed_tow_accounted_for,
+    every_tow_has_a_curve_row,
+    steps_multiply_to_the_total,
+    few_tows_set_aside,
+    log_factors_stayed,
+    boats_stayed_within_their_intervals,
+    editions_can_be_made_again,
+)
+
+
+@dg.multi_asset_check(
+    specs=[
+        dg.AssetCheckSpec(check.__name__, asset=DATABASE_TABLE, description=check.__doc__)
+        for check in CHECKS
+    ]
+)
+def of_the_whole(
+    setup: Setup, progress: dg.ResourceParam[Progress]
+) -> Iterator[dg.AssetCheckResult]:
+    """What all checks say of a finished database, in one step."""
+    progress.step("checking the tables")
+    for check in CHECKS:
+        yield check(setup)._replace(
+            asset_key=dg.AssetKey(DATABASE_TABLE), check_name=check.__name__
+        )

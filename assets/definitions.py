@@ -1,0 +1,33 @@
+"""The Dagster code location: what `dg`, `dagster dev` and `herijk serve` load."""
+
+import os
+from pathlib import Path
+
+import dagster as dg
+
+from assets import automation
+from assets.location import assets_of
+from assets.notify import notifier_of
+from assets.resources import Setup
+from assets.settings import Settings, read_settings
+
+
+def build_defs(archive: str, data: str, settings: Settings, address: str = "") -> dg.Definitions:
+    """The same, with the job of a rebuild, and what starts it when nobody asks."""
+    notifier = notifier_of(data, settings)
+    setup = Setup.of(Path(archive), Path(data), settings.methods, settings)
+    by_itself = dg.Definitions(
+        jobs=[automation.rebuild_job],
+        schedules=automation.schedules(settings, bool(address)),
+        sensors=[automation.archive_sensor(Path(archive), bool(address))],
+        resources={"notifier": dg.ResourceDefinition.hardcoded_resource(notifier)},
+    )
+    return dg.Definitions.merge(assets_of(setup, address=address), by_itself)
+
+
+defs = build_defs(
+    os.environ.get("HERIJK_ARCHIVE", "archive"),
+    os.environ.get("HERIJK_DATA", "data"),
+    read_settings(Path(os.environ.get("HERIJK_DATA", "data"))),
+    os.environ.get("HERIJK_SITE", ""),
+)

@@ -1,0 +1,99 @@
+"""A rebuild: the assets that are stale are made again, in one run of Dagster; then a report.
+
+What is stale is known from fingerprints. Dagster is imported when there is work to do: looking
+that there is none takes a second, importing it two.
+"""
+
+import datetime as dt
+from collections.abc import Collection, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from assets import workers
+from assets.progress import Progress
+from assets.report import Done, Report, write_report
+from assets.settings import read_settings
+from assets.stale import Stale, look
+from pipeline.errors import MissingKnowledgeError
+from warehouse.derive.mending import mending
+from warehouse.store.lock import only_writer
+from warehouse.store.machine_faults import machine_faults_explained
+from warehouse.store.methods import KnownMethods
+from warehouse.store.store import Store
+
+if TYPE_CHECKING:
+    import dagster as dg
+
+
+def rebuild(
+    archive: Path,
+    data: Path,
+    methods: Sequence[str],
+    progress: Progress,
+    seasons: Collection[int] | None = None,
+) -> Report:
+    """Brings the data folder up to date with the archive, and reports what that changed.
+
+    Files of ours that turn out to be damaged are made again. Where the archive changes during the
+    rebuild, it begins again.
+
+    Args:
+        archive: the archive folder.
+        data: the data folder; made if it is not there.
+        methods: names of methods; the first is what the others are compared with.
+        progress: is told what happens.
+        seasons: seasons to read; None for all. Others stay as they are.
+
+    Raises:
+        HerijkError: there is no archive, a promise was broken, another rebuild is at work, or the
+            machine is in the way.
+    """
+    check_apart(archive, data)
+    with machine_faults_explained(data):
+        read_settings(data)
+    with machine_faults_explained(data), only_writer(data):
+        store, done = Store(data), Done()
+        known = [KnownMethods.of(store).get(name) for name in methods]
+        checks: list[dg.AssetCheckEvaluation] = []
+
+        def work() -> None:
+            progress.step("looking at what the archive holds")
+            stale = look(archive, store, known, seasons)
+            if stale.assets:
+                checks[:] = make_assets((archive, data), methods, seasons, progress, stale, done)
+
+        mending(store, work, again=lambda: None)
+        return write_report(store, done, checks, dt.datetime.now().astimezone())
+
+
+def make_assets(
+    folders: tuple[Path, Path],
+    methods: Sequence[str],
+    seasons: Collection[int] | None,
+    progress: Progress,
+    stale: Stale,
+    done: Done,
+) -> "Sequence[dg.AssetCheckEvaluation]":
+    """Has Dagster make assets, and notes what was done; gives what the checks said."""
+    settings = read_settings(folders[1])
+    workers.get_ready(settings.dask)
+    from assets.instance import run_assets  # noqa: PLC0415 - see above
+    from assets.resources import Setup  # noqa: PLC0415
+
+    setup = Setup.of(*folders, methods, settings, seasons or ())
+    return run_assets(setup, progress, stale, done)
+
+
+def check_apart(archive: Path, data: Path) -> None:
+    """Refuses an archive in the data folder: a rebuild would write among what it reads.
+
+    Raises:
+        MissingKnowledgeError: the archive is the data folder, or lies in it.
+    """
+    if archive.resolve().is_relative_to(data.resolve()):
+        raise MissingKnowledgeError(
+            "the archive {} lies in the data folder {}, or is the same; name a data "
+            "folder outside the archive with --data",
+            archive,
+            data,
+        )

@@ -1,0 +1,171 @@
+"""What a rebuild leaves to be read: a page, JSON, and a message to anyone who wants one.
+
+They are under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
+about the last that changed something, with the day of the last one after it that changed nothing;
+and a dated JSON for each that changed something.
+"""
+
+import datetime as dt
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from assets.notify import Message, Notifier
+from dashboards.report import (
+    PAGES,
+    Check,
+    found_in_words,
+    headlines,
+    mail,
+    with_later_rebuild,
+)
+from pipeline.words import LANGUAGE
+from pipeline.words.catalogue import speaker
+from warehouse.derive.step import QUARANTINE
+from warehouse.derive.version import code_version
+from warehouse.queries.change_report import (
+    ChangeSummary,
+    change_report,
+    remember,
+    summary_of,
+)
+from warehouse.store.files import written_beside
+from warehouse.store.store import Store
+from warehouse.store.unforeseen import UNFORESEEN, failures
+
+if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
+    import dagster as dg
+
+FIRST_FAILURES: Final = 5
+ERROR: Final = "ERROR"
+"""Dagster's word for a check whose failing means that a table is not what it promises."""
+
+
+@dataclass
+class Done:
+    """What a rebuild did: seasons read again, methods applied again, database made again."""
+
+    seasons: list[int] = field(default_factory=list)
+    methods: list[str] = field(default_factory=list)
+    database: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Report(ChangeSummary):
+    """What a rebuild did, what that changed, and what the checks say.
+
+    Attributes:
+        made_at: the moment, ISO 8601.
+        archive: where it is.
+        simulated: whether the archive is.
+        code_version: of the code that made the tables.
+        headlines: the news in English.
+    """
+
+    made_at: str
+    archive: str
+    simulated: bool
+    code_version: str
+    done: Done
+    checks: list[Check]
+    headlines: list[str]
+
+
+def write_report(
+    store: Store, done: Done, evaluated: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
+) -> Report:
+    """Finds out what changed, and writes page and JSON.
+
+    Where nothing changed, the page about the last change stays, and says so.
+    """
+    changes = change_report(store)
+    about, summary = store.read("about_archive"), summary_of(changes)
+    checks = [*(_check(one) for one in evaluated), *_unforeseen(store)]
+    report = Report(
+        **vars(summary),
+        made_at=now.isoformat(timespec="seconds"),
+        archive=about["root"][0],
+        simulated=about["simulated"][0],
+        code_version=code_version(),
+        done=done,
+        checks=checks,
+        headlines=headlines(summary, checks, speaker("en")),
+    )
+    text = json.dumps(asdict(report), default=str, indent=1)
+    folder = store.root / "report"
+    if not changes.nothing:
+        from dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
+
+        for name, page in report_pages(store, changes, checks, report.made_at).items():
+            _write(folder / name, page)
+        _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
+    else:
+        for language, name in PAGES.items():
+            path = folder / name
+            if path.exists():
+                shown = path.read_text(encoding="utf-8")
+                _write(path, with_later_rebuild(shown, report.made_at, speaker(language)))
+    _write(folder / "latest.json", text)
+    remember(store)
+    return report
+
+
+def _unforeseen(store: Store) -> Iterator[Check]:
+    """On what Herijk itself failed: tows are set aside, anything else is an error."""
+    failed_on = store.read(QUARANTINE).filter(reason_code=UNFORESEEN)
+    tows = [tow or path for tow, path in failed_on.select("tow_id", "path").rows()]
+    for asset, severity, failed in (
+        (QUARANTINE, "WARN", tows),
+        ("site", ERROR, failures(store.root)),
+    ):
+        if failed:
+            found = {"number": len(failed), "first": failed[:FIRST_FAILURES]}
+            yield Check(asset, "nothing_unforeseen", False, severity, found)
+
+
+def _check(evaluated: "dg.AssetCheckEvaluation") -> Check:
+    return Check(
+        asset=evaluated.asset_key.to_user_string(),
+        check=evaluated.check_name,
+        passed=evaluated.passed,
+        severity=evaluated.severity.value,
+        found={name: value.value for name, value in evaluated.metadata.items()},
+    )
+
+
+def _write(path: Path, text: str) -> None:
+    with written_beside(path) as beside:
+        beside.write_text(text, encoding="utf-8")
+
+
+def failed_checks(checks: Sequence[Check]) -> list[str]:
+    """Checks whose failing means that a table is not what it promises."""
+    return [
+        f"{check.check}: {found_in_words(check, speaker(LANGUAGE.get()))}"
+        for check in checks
+        if not check.passed and check.severity == ERROR
+    ]
+
+
+def tell(notifier: Notifier, report: Report) -> list[str]:
+    """Sends the report to those who want it, where something changed or a check failed.
+
+    Returns:
+        A sentence for each message that could not be sent.
+    """
+    if report.nothing_changed and not failed_checks(report.checks):
+        return []
+    subject, text = mail(report, report.checks, report.simulated)
+    return notifier.send(Message(subject, text, asdict(report), _now()))
+
+
+def tell_failure(notifier: Notifier, failure: str) -> list[str]:
+    """Says that a rebuild that nobody watched could not be done."""
+    subject = speaker("nl")("report_failed")
+    return notifier.send(Message(subject, f"{failure}\n", {"failed": failure}, _now()))
+
+
+def _now() -> dt.datetime:
+    return dt.datetime.now().astimezone()

@@ -1,0 +1,133 @@
+"""What assets are given: the folders and the methods to apply, and who is told how far it is."""
+
+import os
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final, TypeVar
+
+import dagster as dg
+from pydantic import Field
+
+from assets.settings import Settings
+from assets.workers import in_parallel
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import Method
+from warehouse.derive.inputs import Scope
+from warehouse.store.lock import only_writer
+from warehouse.store.machine_faults import machine_faults_explained
+from warehouse.store.methods import KnownMethods, methods_to_apply
+from warehouse.store.store import Store
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+QUIET_LOG: Final = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
+"""Nothing on the terminal: what Dagster says is in its records."""
+
+
+class Setup(dg.ConfigurableResource["Setup"]):
+    """The archive that comes in, the data folder that goes out, and the methods to apply.
+
+    While assets are made, nobody else writes in the data folder: another waits for its turn.
+    """
+
+    archive: str = Field(description="the archive folder")
+    data: str = Field(description="the data folder, made if it is not there")
+    methods: list[str] = Field(
+        default_factory=list,
+        description="methods to apply; the others are compared with the first",
+    )
+    seasons: list[int] = Field(default_factory=list, description="to read; none: all asked for")
+    set_aside_share: float = Settings().set_aside_share
+    factor_jump: float = Settings().factor_jump
+    dask: str | None = Field(default=None, description="scheduler of a Dask cluster")
+
+    @classmethod
+    def of(
+        cls,
+        archive: Path,
+        data: Path,
+        methods: Sequence[str],
+        settings: Settings,
+        seasons: Collection[int] = (),
+    ) -> "Setup":
+        """The setup of a data folder with its settings."""
+        return cls(
+            archive=str(archive),
+            data=str(data),
+            methods=list(methods),
+            seasons=list(seasons),
+            set_aside_share=settings.set_aside_share,
+            factor_jump=settings.factor_jump,
+            dask=settings.dask,
+        )
+
+    @contextmanager
+    def yield_for_execution(self, context: dg.InitResourceContext) -> Iterator["Setup"]:  # noqa: ARG002 - Dagster's signature
+        """The folders, with the right to write.
+
+        Raises:
+            MissingKnowledgeError: a server works on other folders.
+        """
+        served = os.environ.get("HERIJK_ARCHIVE"), os.environ.get("HERIJK_DATA")
+        if os.environ.get("HERIJK_SITE") and (self.archive, self.data) != served:
+            raise MissingKnowledgeError("this server works on {} and {} alone", *served)
+        with machine_faults_explained(Path(self.data)), only_writer(Path(self.data), wait=True):
+            yield self
+
+    @property
+    def archive_root(self) -> Path:
+        """The archive."""
+        return Path(self.archive)
+
+    @property
+    def store(self) -> Store:
+        """The data folder."""
+        return Store(Path(self.data))
+
+    @property
+    def chosen_methods(self) -> list[Method]:
+        """The methods to apply; the first is what the others are compared with."""
+        known = KnownMethods.of(self.store)
+        return [known.get(name) for name in methods_to_apply(self.store, self.methods)]
+
+    @property
+    def scope(self) -> Scope:
+        """What all methods together see of the data folder."""
+        return Scope(self.store, self.chosen_methods)
+
+    def wanted(self, partitions: Sequence[str]) -> list[int]:
+        """Those of some seasons that are to be made, or confirmed."""
+        return [int(s) for s in partitions if not self.seasons or int(s) in self.seasons]
+
+    def map(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R]]:
+        """Each task with what came of it, done side by side."""
+        return in_parallel(work, tasks, self.dask)
+
+
+class LogProgress:
+    """Progress as lines in the log of a run."""
+
+    def __init__(self, log: dg.DagsterLogManager) -> None:
+        self._log = log
+
+    def expect(self, tows: int) -> None:
+        """How many tows will be read."""
+        self._log.info(f"{tows} tows to read")
+
+    def tow_read(self, tow_id: str, set_aside: bool) -> None:
+        """A tow was read; only one set aside is worth a line."""
+        if set_aside:
+            self._log.warning(f"{tow_id} is set aside")
+
+    def step(self, what: str) -> None:
+        """A step begins."""
+        self._log.info(what)
+
+
+@dg.resource
+def progress_in_log(context: dg.InitResourceContext) -> LogProgress:
+    """Tells the log of a run how far it is."""
+    assert context.log is not None  # noqa: S101 - Dagster's type
+    return LogProgress(context.log)

@@ -1,0 +1,74 @@
+"""What a rebuild has to make, as fingerprints say. Dagster, slow to import, is not asked."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from assets.site_state import SITE_TABLE, site_is_stale
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import Method
+from warehouse.derive.graph import DATABASE, STEPS
+from warehouse.derive.inputs import forget_other_methods
+from warehouse.intake import seasons as intake
+from warehouse.queries.change_report import is_reported
+from warehouse.store.store import Store
+
+
+@dataclass(frozen=True)
+class Stale:
+    """What has to be made again, or may have to be as what it is made from is.
+
+    Attributes:
+        seasons: whose samples are to be read.
+        assets: names.
+    """
+
+    seasons: Sequence[int]
+    assets: Sequence[str]
+
+
+def look(
+    archive: Path, store: Store, methods: Sequence[Method], wanted: Collection[int] | None
+) -> Stale:
+    """Looks through the archive, and at what was made of it.
+
+    Raises:
+        MissingKnowledgeError: there is no archive, or nothing of the seasons that are wanted.
+    """
+    intake.index(store, archive)
+    intake.forget_unlisted_seasons(store)
+    forget_other_methods(store, {method.name for method in methods})
+    _check_listed(wanted, intake.listed_seasons(store))
+    seasons = intake.stale_seasons(store, archive, wanted)
+    made: list[str] = ["samples", "blocks"] if seasons else []
+    again = {*intake.SEASON_TABLES} if seasons else set()
+    others = _others_were_applied(store, methods)
+    for step in STEPS:
+        if others or not again.isdisjoint(step.reads) or step.stale(store, methods):
+            again.update(step.outputs)
+            made += step.outputs
+    if again.isdisjoint(DATABASE.outputs) and not is_reported(store):
+        made += DATABASE.outputs
+    if made or site_is_stale(store):
+        made += [*intake.INDEXED, SITE_TABLE]
+    return Stale(seasons, made)
+
+
+def _others_were_applied(store: Store, methods: Sequence[Method]) -> bool:
+    """Whether the last rebuild applied other methods than these."""
+    if store.made_from("methods") is None:
+        return True
+    return list(store.read("methods")["method"]) != sorted(method.name for method in methods)
+
+
+def _check_listed(wanted: Collection[int] | None, listed: Sequence[int]) -> None:
+    """Refuses seasons of which the archive lists no tow: a typing error would pass unseen.
+
+    Raises:
+        MissingKnowledgeError: it lists none in any of them.
+    """
+    if wanted is not None and listed and not set(wanted) & set(listed):
+        raise MissingKnowledgeError(
+            "the archive lists no tow in the seasons asked for; it has tows of {}",
+            ", ".join(map(str, listed)),
+        )

@@ -1,0 +1,127 @@
+"""The steps of a build as assets: what `warehouse.derive.graph` declares, as Dagster sees it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import Final
+
+import dagster as dg
+
+from assets.progress import Progress
+from assets.resources import Setup
+from assets.shown import preview
+from pipeline.tables.declare import dy
+from pipeline.tables.schemas import TABLES
+from warehouse.derive.graph import STEPS
+from warehouse.derive.inputs import IN_DATABASE, Scope, read_table, state_of_table
+from warehouse.derive.mending import catch_up, mending
+from warehouse.derive.step import Step
+from warehouse.intake.seasons import SEASON_TABLES
+from warehouse.store.code import code_hash
+from warehouse.store.store import fingerprint
+
+KINDS = {"warehouse_database": "duckdb"}
+"""What an asset is stored as, where that is not Parquet."""
+
+ARCHIVE, METHOD, PUBLISHER = "team:archive", "team:method", "team:register"
+"""Who answers for a table."""
+OWNERS = {"archive": ARCHIVE} | dict.fromkeys(("method", "studies", "lines", "consistency"), METHOD)
+
+READ_AS: Final[Mapping[str, Sequence[str]]] = {
+    **dict.fromkeys(SEASON_TABLES, ("samples",)),
+    "blocks": ("blocks",),
+    "method": ("method_options",),
+    "first_method": ("method_options",),
+    "methods": ("method_options", "register_rules"),
+    "all_tables": IN_DATABASE,
+    **dict.fromkeys(("run_cache", "quarantine_before", "today", "store"), ()),
+}
+"""The assets behind what a step reads, where that is no asset of the same name."""
+
+
+def step_asset(step: Step) -> dg.AssetsDefinition:
+    """The assets of a step: one per table."""
+
+    @dg.multi_asset(
+        name=step.name,
+        description=step.compute.__doc__,
+        specs=[_spec(step, table) for table in step.outputs],
+    )
+    def asset(setup: Setup, progress: dg.ResourceParam[Progress]) -> Iterator[dg.MaterializeResult]:
+        yield from make(step, setup, progress)
+
+    return asset
+
+
+def make(step: Step, setup: Setup, progress: Progress) -> Iterator[dg.MaterializeResult]:
+    """Makes the tables of a step, or confirms them where what they are made of is unchanged."""
+    store, methods = setup.store, setup.chosen_methods
+    new: list[str] = []
+
+    def work() -> None:
+        stale = step.stale(store, methods)
+        if stale:
+            progress.step(step.says)
+        for scope, _ in setup.map(partial(_make, step.name), stale):
+            new.append(scope.at_hand.name)
+
+    mending(store, work, again=partial(catch_up, store, setup.archive_root, methods, step))
+    scope = Scope(store, methods)
+    for table in step.outputs:
+        partitions: Sequence[str | None] = scope.partitions(table) or [None]
+        yield dg.MaterializeResult(
+            asset_key=table,
+            data_version=dg.DataVersion(fingerprint(state_of_table(scope, table))),
+            metadata={
+                "dagster/row_count": sum(store.count_rows(table, p) for p in partitions),
+                "new": list(dict.fromkeys(new)),
+                **preview(table, partial(read_table, scope, table)),
+            },
+        )
+
+
+def _make(name: str, scope: Scope) -> None:
+    """Makes a step by its name: another process has steps of its own."""
+    next(step for step in STEPS if step.name == name).make(scope)
+
+
+def _spec(step: Step, table: str) -> dg.AssetSpec:
+    """A table with its meaning, its columns and what it is made from."""
+    schema = TABLES.get(table)
+    return dg.AssetSpec(
+        table,
+        deps=[_dep(asset) for asset in dict.fromkeys(_assets_read(step))],
+        description=(schema or step.compute).__doc__,
+        metadata=None if schema is None else {"dagster/column_schema": _columns(schema)},
+        group_name=step.group,
+        kinds={KINDS.get(table, "parquet"), "polars"},
+        owners=[OWNERS.get(step.group, PUBLISHER)],
+        tags={} if schema is None else {"herijk/subject": schema.__module__.rpartition(".")[2]},
+        code_version=code_hash(*step.code),
+    )
+
+
+def _assets_read(step: Step) -> Iterator[str]:
+    for name in step.inputs:
+        yield from READ_AS.get(name, (name,))
+
+
+def _dep(asset: str) -> dg.AssetDep:
+    every = dg.AllPartitionMapping() if asset in ("samples", "blocks") else None
+    return dg.AssetDep(asset, partition_mapping=every)
+
+
+def _columns(schema: type[dy.Schema]) -> dg.TableSchema:
+    return dg.TableSchema(
+        columns=[
+            dg.TableColumn(
+                name,
+                str(column.dtype),
+                column.description,
+                dg.TableColumnConstraints(nullable=column.nullable),
+            )
+            for name, column in schema.columns().items()
+        ]
+    )
+
+
+STEP_ASSETS = [step_asset(step) for step in STEPS]

@@ -1,0 +1,146 @@
+"""The certificate of a boat and crew: one page A4, and all of an edition in one file."""
+
+from contextlib import nullcontext
+from typing import Final
+
+import segno
+
+from dashboards.answer import crew_name
+from dashboards.documents import page, pdf
+from dashboards.pictures import curve_picture
+from dashboards.speech import Speech
+from pipeline.tables.row import Row
+from warehouse.queries.documents import certificate_lines, curve_of
+from warehouse.queries.views import Views
+from warehouse.store.unforeseen import Border
+
+READING: Final = ("certificate_read_cw", "certificate_read_curve", "certificate_read_power")
+
+
+def certificates(
+    views: Views,
+    edition: str,
+    fsn_no: str | None,
+    language: str,
+    as_page: bool = False,
+    border: Border = nullcontext,
+) -> bytes | None:
+    """The certificates of a boat in an edition, or of all boats, as PDF or as an HTML page.
+
+    Each is made within a border; nothing is given where none could be made.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition, or no valid line in it.
+    """
+    speech = Speech(language)
+    say = speech.say
+    about = views.about()
+    lines = certificate_lines(views, edition, fsn_no)
+    made = []
+    for line in lines:
+        whose = f"{line['fsn_no']} {line['rowers']}{line['crew_class']}"
+        with border(f"certificate {edition} {whose}"):
+            made.append(_one(line, speech))
+    if not made:
+        return None
+    made_by = lines[0]["code_version"] or about.get("code_version", "")
+    content = {
+        "language": language,
+        "title": f"{say('certificate')} {fsn_no or ''} {edition}".replace("  ", " "),
+        "kind": f"{say('certificate')} · {speech.edition(edition)}",
+        "simulated": say("simulated") if views.simulated(edition) else "",
+        "curve_title": say("boat_curve"),
+        "power_title": say("certificate_power"),
+        "power_head": [say("speed_short"), say("cw"), say("certificate_watts")],
+        "reading_title": say("certificate_reading"),
+        "reading": [say(key) for key in READING],
+        "checking_title": say("certificate_checking"),
+        "footing": f"{say('made_by')} {made_by}",
+        "certificates": made,
+    }
+    return page("certificate.html.j2", content) if as_page else pdf("certificate.typ", content)
+
+
+def _one(line: Row, speech: Speech) -> dict[str, object]:
+    say, number = speech.say, speech.number
+    code = line["verification_code"] or ""
+    crew, curve = crew_name(line, speech), curve_of(line)
+    return {
+        "name": line["name"] or line["fsn_no"],
+        "subtitle": " · ".join(filter(None, (line["fsn_no"], line["boat_type"], crew))),
+        "code": code,
+        "qr": _qr(line, code),
+        "headline": say("certificate_headline").format(
+            cw=number(line["cw_kg_m"], 2), speed=number(line["declared_speed_m_s"], 2)
+        ),
+        "interval": _interval(line, speech),
+        "caution": _caution(line, speech),
+        "left": _numbers(line, speech),
+        "right": _terms(line, speech),
+        "curve": str(curve_picture(curve, line, speech, crew)),
+        "curve_note": say("curve_caption"),
+        "curve_alt": f"{say('boat_curve')} {line['fsn_no']} {crew}",
+        "powers": [
+            [number(speed, 2), number(cw, 2), number(power, 1)] for speed, cw, power in curve
+        ],
+        "checking": say("certificate_check" if code else "certificate_uncheckable").format(
+            code=code, fsn_no=line["fsn_no"], edition=line["edition"]
+        ),
+    }
+
+
+def _qr(line: Row, code: str) -> str:
+    """What a phone reads: the words that the search for a line takes."""
+    if not code:
+        return ""
+    text = f"{line['edition']} {line['fsn_no']} {line['rowers']}{line['crew_class']} {code}"
+    return str(segno.make(text, micro=False).svg_inline(scale=4, border=1))
+
+
+def _caution(line: Row, speech: Speech) -> str:
+    """Why a line is no valid certificate; nothing where it is one."""
+    if not line["verification_code"]:
+        return speech.say("certificate_draft")
+    return speech.say("certificate_expired") if line["status"] == "expired" else ""
+
+
+def _interval(line: Row, speech: Speech) -> str:
+    low, high = line["cw_lo_kg_m"], line["cw_hi_kg_m"]
+    if low is None or high is None:
+        return speech.say("certificate_no_interval")
+    key = "answer_interval" if line["log_known"] else "answer_spread"
+    return speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
+
+
+def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:
+    return [
+        _fact(line, column, digits, speech)
+        for column, digits in (
+            ("a_kg_m", 3), ("b_m_s", 3), ("declared_speed_m_s", 2), ("waterline_length_m", 2),
+            ("beam_m", 2), ("bow_height_m", 2), ("weight_kg", 0),
+        )
+    ]  # fmt: skip
+
+
+def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str]:
+    """A measure with its unit, by the heading of its column."""
+    name = speech.unbroken(f"column.{column}")
+    value = line[column]
+    return name, "\u2013" if value is None else speech.number(value, digits)
+
+
+def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
+    say = speech.say
+    method = say(f"method.{line['method']}") if line["method"] else None
+    if line["basis"] == "printed_rebased":
+        method = f"{method} ({say('code.printed_rebased')})"
+    rows = [
+        ("certificate_tow", line["tow_date"]),
+        ("column.valid_from", line["valid_from"]),
+        ("certificate_until", line["valid_until"]),
+        ("column.edition", speech.edition(line["edition"])),
+        ("column.method", method),
+        ("column.decision", line["decision"]),
+        ("column.empty_thwart", line["empty_thwart"] or say("code.none")),
+    ]
+    return [(say(key), "\u2013" if value is None else str(value)) for key, value in rows]

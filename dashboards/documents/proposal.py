@@ -1,0 +1,247 @@
+"""The document of a meeting: what a method would change, for whom, and how uncertain that is."""
+
+import json
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from math import exp, log
+from typing import Any, Final
+
+import polars as pl
+
+from dashboards import headlines
+from dashboards.documents import pdf
+from dashboards.speech import Speech, stretched_fatigue
+from pipeline.register.register import draft_name
+from pipeline.words import in_per_cent
+from warehouse.queries.answers import compared, replayed
+from warehouse.queries.views import Views
+from warehouse.store.methods import KnownMethods
+
+Part = dict[str, object]
+
+LARGEST: Final = 20
+"""Boats named on each side."""
+
+
+def proposal(
+    views: Views, methods: Sequence[str], against: str, language: str, known: KnownMethods
+) -> bytes:
+    """A proposal of one method, or a ballot of several, as PDF.
+
+    Raises:
+        MissingKnowledgeError: the last rebuild did not apply such a method, or there is no such
+            edition.
+    """
+    speech = Speech(language)
+    say = speech.say
+    lines = {method: compared(views, against, draft_name(method)) for method in methods}
+    about = views.about()
+    titles = {method: known.get(method).titled(language) for method in methods}
+    content = {
+        "language": language,
+        "title": say("proposal_title" if len(methods) == 1 else "proposal_ballot").format(
+            method="; ".join(titles.values())
+        ),
+        "kind": say("proposal"),
+        "simulated": say("simulated") if about.get("simulated") == "true" else "",
+        "opening": [
+            say("proposal_opening").format(old=speech.edition(against)),
+            say("proposal_why"),
+        ],
+        "parts": [
+            *([_ballot(lines, speech)] if len(methods) > 1 else []),
+            *(part for method in methods for part in _parts(views, method, lines[method], speech)),
+            _part(say("proposal_check"), say("proposal_checking")),
+        ],
+        "annexes": [
+            {"title": f"{say('proposal_annex')}: {title}", "text": known.text(method)}
+            for method, title in titles.items()
+        ],
+        "footing": f"{say('made_by')} {about.get('code_version', '')}",
+    }
+    return pdf("proposal.typ", content)
+
+
+def _part(
+    title: str, *sentences: str, head: Sequence[str] = (), rows: Sequence[Sequence[str]] = ()
+) -> Part:
+    """A part of the document: sentences, and a table where it has rows."""
+    return {"title": title, "sentences": sentences, "head": head, "rows": rows}
+
+
+def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
+    """The methods side by side."""
+    rows = []
+    for method, changes in lines.items():
+        known = changes.drop_nulls("cw_ratio")
+        rows.append(
+            [
+                speech.say(f"method.{method}"),
+                str(changes.filter(change="changed").height),
+                _beyond(changes["exceeds_interval"], speech),
+                *(speech.per_cent(ratio) for ratio in _middle_and_ends(known)),
+            ]
+        )
+    heads = (
+        *("method", "code.changed", "column.exceeds_interval"),
+        *("column.median", "column.lowest_ratio", "column.highest_ratio"),
+    )
+    return _part(
+        speech.say("proposal_side_by_side"), head=[*map(speech.unbroken, heads)], rows=rows
+    )
+
+
+def _middle_and_ends(changes: pl.DataFrame) -> tuple[float, float, float]:
+    ratio = pl.col("cw_ratio")
+    middle, low, high = changes.select(
+        ratio.median().alias("middle"), ratio.min().alias("low"), ratio.max().alias("high")
+    ).row(0)
+    return middle, low, high
+
+
+def _beyond(exceeds: pl.Series, speech: Speech) -> str:
+    """How many lines change by more than their uncertainty; none of them need be known."""
+    known = exceeds.drop_nulls()
+    return speech.say("unknown_word") if known.is_empty() else str(known.sum())
+
+
+def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
+    """What a method changes, why, for whom, in races, and what it leaves undecided."""
+    say = speech.say
+    yield _part(
+        say("proposal_what").format(method=say(f"method.{method}")),
+        headlines.changes(lines)(speech),
+        head=[say("column.step"), say("proposal_mean"), say("column.number")],
+        rows=_steps(lines, speech),
+    )
+    yield _types(lines, speech)
+    yield _boats(lines, speech)
+    yield _races(views, lines, speech)
+    unknown = int(lines["exceeds_interval"].null_count())
+    sure = say("proposal_unknown").format(unknown=unknown) if unknown else say("proposal_known")
+    flagged = views.flagged_boats().filter(method=method)["tow_id"].implode()
+    voted = lines.drop_nulls("new_cw_kg_m").select(pl.col("new_tow_id").is_in(flagged))
+    flags = say("proposal_unsure").format(flagged=voted.to_series().sum(), lines=voted.height)
+    yield _part(say("proposal_undecided"), sure, flags)
+
+
+def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
+    """The mean effect of each cause over all lines that have it, the largest first."""
+    factors: dict[str, list[float]] = defaultdict(list)
+    for causes in lines["causes"].to_list():
+        for cause in json.loads(causes):
+            factors[cause.get("step", cause["cause"])].append(log(cause["factor"]))
+    means = {name: sum(values) / len(values) for name, values in factors.items()}
+    return [
+        [speech.say(f"code.{name}"), speech.per_cent(exp(means[name])), str(len(factors[name]))]
+        for name in sorted(means, key=lambda name: -abs(means[name]))
+    ]
+
+
+def _types(lines: pl.DataFrame, speech: Speech) -> Part:
+    """What changes by type and class."""
+    by_type = (
+        lines.drop_nulls("cw_ratio")
+        .with_columns(pl.col("boat_type").fill_null("unknown").replace("", "unknown"))
+        .group_by("boat_type", "crew_class", maintain_order=True)
+        .agg(
+            number=pl.len(),
+            ratio=pl.col("cw_ratio").median(),
+            seconds=pl.col("gain_in_two_hours_s").median(),
+            beyond=pl.col("exceeds_interval"),
+        )
+        .sort("boat_type", "crew_class", descending=[False, True])
+    )
+    heads = (
+        *("type", "column.number", "proposal_median"),
+        *("column.gain_in_two_hours_s", "column.exceeds_interval"),
+    )
+    return _part(
+        speech.say("proposal_types"),
+        speech.say("proposal_seconds"),
+        head=[*map(speech.unbroken, heads)],
+        rows=[
+            [
+                f"{speech.say(f'code.{boat_type}')}, {speech.say(f'crew.{crew_class}')}",
+                str(number),
+                speech.per_cent(ratio),
+                speech.number(seconds, 0, "+"),
+                _beyond(pl.Series(beyond), speech),
+            ]
+            for boat_type, crew_class, number, ratio, seconds, beyond in by_type.rows()
+        ],
+    )
+
+
+def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
+    """The boats that change most, up or down."""
+    shown = largest_changes(lines).head(LARGEST)
+    heads = (
+        *("boat", "column.old_cw_kg_m", "column.new_cw_kg_m", "proposal_change"),
+        *("column.gain_in_two_hours_s", "column.exceeds_interval"),
+    )
+    return _part(
+        speech.say("proposal_boats"),
+        head=[*map(speech.unbroken, heads)],
+        rows=[_boat(line, speech) for line in shown.to_dicts()],
+    )
+
+
+def largest_changes(lines: pl.DataFrame) -> pl.DataFrame:
+    """The lines that change, by the size of the change, whatever its sign."""
+    known = lines.drop_nulls("cw_ratio").filter(change="changed")
+    return known.sort(pl.col("cw_ratio").log().abs(), descending=True, maintain_order=True)
+
+
+def _boat(line: dict[str, Any], speech: Speech) -> list[str]:
+    crew = f"{line['rowers']}{line['crew_class']}"
+    beyond = {None: "unknown_word", True: "yes", False: "no"}[line["exceeds_interval"]]
+    return [
+        " · ".join(filter(None, (line["name"], line["fsn_no"], crew))),
+        speech.number(line["old_cw_kg_m"], 2),
+        speech.number(line["new_cw_kg_m"], 2),
+        speech.per_cent(line["new_cw_kg_m"] / line["old_cw_kg_m"]),
+        speech.number(line["gain_in_two_hours_s"], 0, "+"),
+        speech.say(beyond),
+    ]
+
+
+def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
+    """What it does to the races of the last season: how many places move, and who wins."""
+    say = speech.say
+    winners, moved = replayed(views, lines["from_edition"][0], lines["to_edition"][0])
+    if winners.is_empty():
+        return _part(say("races"), say("no_races"))
+    last = winners.filter(pl.col("race_date").dt.year() == winners["race_date"].dt.year().max())
+    names = dict(views.table("boats").select("fsn_no", "name").rows())
+    return _part(
+        say("proposal_races").format(year=last["race_date"][0].year),
+        *filter(None, [stretched_fatigue(_times(views, last), speech).strip()]),
+        say("proposal_moved").format(moved=moved[0], results=moved[1]),
+        head=[
+            say("column.race"),
+            say("proposal_old"),
+            say("proposal_new"),
+            say("proposal_chance"),
+        ],
+        rows=[
+            [
+                f"{race['race']} {race['race_date']}, {say('crew.' + race['crew_class'])}",
+                names.get(race["old_winner"]) or "\u2013",
+                names.get(race["new_winner"]) or "\u2013",
+                _chance(race["change_probability"], speech),
+            ]
+            for race in last.to_dicts()
+        ],
+    )
+
+
+def _times(views: Views, winners: pl.DataFrame) -> pl.Series:
+    """The times rowed in races of which a winner changes."""
+    races = winners.filter("winner_changed").select("race", "race_date")
+    results = views.store.read("listed_races")
+    return results.join(races, on=["race", "race_date"], how="semi")["rowing_time_s"]
+
+
+def _chance(chance: float | None, speech: Speech) -> str:
+    return speech.say("unknown_word") if chance is None else in_per_cent(chance)

@@ -1,0 +1,73 @@
+"""Charts drawn without a browser, with the font of the pages: the same on every machine."""
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, Final
+
+import altair as alt
+import vl_convert
+
+from dashboards import fonts
+from pipeline.tables.row import Row
+
+VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
+"""The version of the charts."""
+
+LOCALES: Final = {
+    "nl": {"decimal": ",", "thousands": ".", "grouping": [3], "currency": ["€ ", ""]},
+    "en": {"decimal": ".", "thousands": ",", "grouping": [3], "currency": ["€", ""]},
+}
+"""How numbers on axes are written."""
+
+FONTS_OF_MACHINE: Final = "FONTCONFIG_FILE"
+"""The variable that says where fontconfig learns which fonts there are; browsers use it, too."""
+
+
+@contextmanager
+def _only_our_fonts() -> Iterator[None]:
+    """Hides the machine's fonts: one may be named like ours, and each is opened per chart."""
+    before = os.environ.get(FONTS_OF_MACHINE)
+    os.environ[FONTS_OF_MACHINE] = str(fonts.SETTINGS)
+    try:
+        yield
+    finally:
+        del os.environ[FONTS_OF_MACHINE]
+        if before is not None:
+            os.environ[FONTS_OF_MACHINE] = before
+
+
+with _only_our_fonts():
+    vl_convert.register_font_directory(str(fonts.FOLDER))
+
+
+CONFIG: Final = {"font": fonts.FAMILY, "legend": {"titleLimit": 400}}
+
+
+def svg(spec: dict[str, object], language: str) -> str:
+    """A chart as SVG, its numbers as people of a language write them."""
+    return str(
+        vl_convert.vegalite_to_svg(
+            json.dumps(spec, default=str),
+            vl_version=VEGA_LITE,
+            config=CONFIG,
+            format_locale=LOCALES[language],
+        )
+    )
+
+
+def compiled(spec: dict[str, object]) -> dict[str, object]:
+    """A chart's Vega: what follows from the chart alone, without its data.
+
+    No text of an axis is shortened: to see whether one is too long costs a tenth of a drawing.
+    """
+    config = CONFIG | {"axis": {"labelLimit": 0}}
+    return dict(vl_convert.vegalite_to_vega(spec, vl_version=VEGA_LITE, config=config))
+
+
+def compiled_svg(vega: dict[str, Any], rows: list[Row], language: str) -> str:
+    """The same picture as `svg` makes of the chart, with these rows as its data `rows`."""
+    data = [part | {"values": rows} if part["name"] == "rows" else part for part in vega["data"]]
+    text = json.dumps(vega | {"data": data}, default=str)
+    return str(vl_convert.vega_to_svg(text, format_locale=LOCALES[language]))

@@ -1,0 +1,128 @@
+"""The report of a rebuild in words: headlines, and a mail. Its page is in `report_page`.
+
+What changed is found out in `warehouse.queries.change_report`; texts are in `words`.
+"""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from pipeline.tables.row import Row
+from pipeline.words.catalogue import Say, speaker
+from warehouse.queries.change_report import ChangeSummary
+
+LINES_IN_MAIL: Final = 20
+PAGES: Final = {"nl": "latest.html", "en": "latest.en.html"}
+"""The page of each language."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """How a check of a table ended.
+
+    Attributes:
+        asset: the table.
+        check: code of the check.
+        severity: Dagster's word.
+        found: values by the code of their quantity.
+    """
+
+    asset: str
+    check: str
+    passed: bool
+    severity: str
+    found: Mapping[str, object]
+
+
+def outcome_of(check: Check) -> str:
+    """Code of how a check ended."""
+    return "passed" if check.passed else str(check.severity).lower()
+
+
+def found_in_words(check: Check, say: Say) -> str:
+    """What a check found."""
+    return ", ".join(f"{say('code.' + name)} {value}" for name, value in values_found(check))
+
+
+def values_found(check: Check) -> list[tuple[str, str]]:
+    """Code and text of each quantity that a check found."""
+    return [
+        (name, "; ".join(value) if isinstance(value, list) else str(value))
+        for name, value in check.found.items()
+    ]
+
+
+def mail(changes: ChangeSummary, checks: Sequence[Check], simulated: bool) -> tuple[str, str]:
+    """Subject and text of the mail, in Dutch."""
+    say = speaker("nl")
+    lines = headlines(changes, checks, say)
+    marked = f"{say('simulated')}\n\n" if simulated else ""
+    moved = [_line(line) for line in changes.lines[:LINES_IN_MAIL]]
+    more = len(changes.lines) - len(moved)
+    rest = [f"  + {more}"] if more > 0 else []
+    return f"{say('site')}: {lines[0]}", marked + "\n".join([*lines, "", *moved, *rest]) + "\n"
+
+
+def _line(line: Row) -> str:
+    """A changed line of a register, on a line of text."""
+    ratio = "" if line["cw_ratio"] is None else f"Cw {100 * (line['cw_ratio'] - 1):+z.2f} %"
+    crew = f"{line['rowers']}{line['crew_class']}"
+    return f"  {line['to_edition']}: {line['fsn_no']} {crew} {line['change']} {ratio}".rstrip()
+
+
+def headlines(changes: ChangeSummary, checks: Sequence[Check], say: Say) -> list[str]:
+    """What happened in a few lines, the most important first."""
+    sentences = [*_wrong(checks, say), *_moved(changes, say)]
+    return sentences or [say("report_nothing")]
+
+
+def in_short(changes: ChangeSummary, checks: Sequence[Check], say: Say) -> str:
+    """The headlines as sentences of one paragraph."""
+    return " ".join(f"{line.rstrip('.')}." for line in headlines(changes, checks, say))
+
+
+def with_later_rebuild(page: str, made_at: str, say: Say) -> str:
+    """The page about a rebuild, saying that one after it changed nothing."""
+    text = say("report_later").format(made_at=minutes_of(made_at))
+    return _LATER.sub(f"{LATER}{text}", page)
+
+
+def minutes_of(made_at: str) -> str:
+    """A moment as people read it, to the minute."""
+    return made_at.replace("T", " ")[:16]
+
+
+LATER: Final = "<!-- later -->"
+"""Where the page about a rebuild says what came after it."""
+
+_LATER: Final = re.compile(f"{LATER}.*")
+
+
+def _wrong(checks: Sequence[Check], say: Say) -> Iterable[str]:
+    for check in checks:
+        if not check.passed:
+            outcome = say(f"code.{outcome_of(check)}")
+            yield f"{outcome}: {say('failed.' + check.check)} ({found_in_words(check, say)})"
+
+
+def _moved(changes: ChangeSummary, say: Say) -> Iterable[str]:
+    if changes.first:
+        yield say("report_first")
+    if changes.seasons_gone:
+        yield f"{say('report_seasons_gone')}: {', '.join(map(str, changes.seasons_gone))}"
+    for row in changes.methods:
+        yield f"{say('report_method')} {row['method']}: {say('code.' + row['what'])}"
+    counted = (("report_tows", changes.tows), ("report_set_aside", changes.set_aside))
+    for title, rows in counted:
+        by_what: dict[str, int] = {}
+        for row in rows:
+            by_what[row["what"]] = by_what.get(row["what"], 0) + row["number"]
+        if by_what:
+            parts = (f"{number} {say('code.' + what)}" for what, number in by_what.items())
+            yield f"{say(title)}: {', '.join(parts)}"
+    if changes.factors:
+        yield f"{say('report_factors')}: {len(changes.factors)}"
+    if changes.lines:
+        beyond = changes.beyond_interval
+        yield f"{say('report_lines')}: {len(changes.lines)}, {beyond} {say('report_beyond')}"

@@ -1,0 +1,97 @@
+"""The page about a rebuild: what came in, what was set aside, what changed and why, the checks.
+
+It lies beside the site and uses its style.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import polars as pl
+from markupsafe import Markup
+
+from dashboards.report import (
+    LATER,
+    PAGES,
+    Check,
+    in_short,
+    minutes_of,
+    outcome_of,
+    values_found,
+)
+from dashboards.site.parts import Page, Section, Table
+from dashboards.site.render import Edition
+from pipeline.words import LANGUAGES
+from pipeline.words.catalogue import speaker
+from warehouse.queries.change_report import ChangeReport, summary_of
+from warehouse.queries.views import Views
+from warehouse.store.store import Store
+
+TO_SITE: Final = "../site/"
+
+_LATER: Final = Markup(LATER)  # noqa: S704 - a constant
+
+OF_A_CHECK: Final = ("check", "outcome", "quantity", "value")
+_COLUMNS: Final = {
+    "tows": ("what", "tow_id", "fsn_no", "season"),
+    "set_aside": ("what", "path", "tow_id", "line", "reason_code", "message"),
+    "factors": ("method", "season", "old_factor", "new_factor", "ratio"),
+    "lines": (
+        *("to_edition", "name", "fsn_no", "rowers", "crew_class", "change"),
+        *("old_cw_kg_m", "new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s"),
+        *("exceeds_interval", "causes"),
+    ),
+    "checks": (*OF_A_CHECK, "number"),
+}
+
+
+def report_pages(
+    store: Store, changes: ChangeReport, checks: Sequence[Check], made_at: str
+) -> dict[str, str]:
+    """The page by its file name, in each language, with the moment it was made.
+
+    It has what came in, what was set aside, what changed and why, and what the checks say.
+    """
+    of_checks = pl.DataFrame(
+        [
+            [check.check, outcome_of(check), *found]
+            for check in sorted(checks, key=lambda check: check.passed)
+            for found in ([("", "")] if check.passed else values_found(check))
+        ],
+        schema=dict.fromkeys(OF_A_CHECK, pl.String),
+        orient="row",
+    )
+    counted = of_checks.group_by(OF_A_CHECK, maintain_order=True).len("number")
+    frames = {
+        "lines": changes.lines,
+        "tows": changes.tows,
+        "set_aside": changes.set_aside,
+        "factors": changes.factors,
+        "checks": counted,
+    }
+    sections = [
+        Section(f"report_{name}", tables=[Table(name, frame, _COLUMNS[name], f"report_{name}")])
+        if frame.height
+        else Section(f"report_{name}", empty="report_none")
+        for name, frame in frames.items()
+    ]
+    summary = summary_of(changes)
+    in_words = Section(
+        "report_summary",
+        headline=lambda speech: Markup("{} {}").format(
+            in_short(summary, checks, speech.say), _LATER
+        ),
+    )
+    with Views(store) as views:
+        return {
+            PAGES[language]: Edition(views, language).html(
+                Page(
+                    PAGES[language],
+                    "report",
+                    [in_words, *sections],
+                    name=f"{speaker(language)('report')} {minutes_of(made_at)}",
+                    site=TO_SITE,
+                    others=PAGES,
+                )
+            )[0]
+            for language in LANGUAGES
+        }

@@ -1,0 +1,387 @@
+"""One page per boat: the owner's answer, and folded below it how each number was made."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Final, NamedTuple
+
+import polars as pl
+
+from dashboards.answer import Answer
+from dashboards.figures.slides import METHODS
+from dashboards.site.columns import json_by, json_of
+from dashboards.site.parts import (
+    Chart,
+    Page,
+    Section,
+    Select,
+    Table,
+    boat_path,
+    draft_of,
+    methods_select,
+    once_for_methods,
+)
+from warehouse.queries.answers import (
+    answers,
+    newest_edition,
+    own_races,
+    season_faults,
+)
+from warehouse.queries.documents import curve_of
+from warehouse.queries.views import DRAFT, Views
+
+OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
+FOLLOWS = ["tow_id", "method"]
+EXTRA = {
+    "assessments": ("check", "severity", "observed", "limit", "unit"),
+    "hand_windows": ("run", "start_s", "end_s", "reason"),
+}
+"""Tables about tows that are shown where there are any, with the columns shown; which tow and
+method they are of, the selectors say."""
+
+
+AT_ONCE: Final = 64
+"""Boats whose rows are formatted in one go: each go costs time, and each boat memory."""
+
+
+def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Callable[[], Page]]]:
+    """Every boat that the archive lists, with what makes its page."""
+    frames = _frames(views)
+    editions = frames["register"]["edition"].unique().sort().to_list()
+    crews = _answers(views, newest_edition(editions, draft_of(methods)))
+    frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
+    for boats in frames["boats"].iter_slices(AT_ONCE):
+        those = boats[["fsn_no"]]
+        some = _Boats(
+            {
+                n: f.join(those, on="fsn_no", how="semi", maintain_order="left")
+                for n, f in frames.items()
+            }
+        )
+        for fsn_no in boats["fsn_no"]:
+            yield fsn_no, partial(_page, fsn_no, some, methods, crews.get(fsn_no, ()))
+
+
+class _Boats:
+    """Everything that the pages of some boats show, split by boat."""
+
+    def __init__(self, frames: dict[str, pl.DataFrame]) -> None:
+        drawn = {part for parts in DRAWN.values() for part in parts}
+        self._json = {name: json_by(frames[name], "fsn_no") for name in drawn}
+        self._none = {name: json_of(frames[name].drop("fsn_no").clear()) for name in drawn}
+        self._listed = {
+            name: frame.sort("fsn_no", maintain_order=True)
+            for name, frame in frames.items()
+            if name not in drawn
+        }
+        self._places = {name: _places(frame["fsn_no"]) for name, frame in self._listed.items()}
+
+    def json(self, fsn_no: str) -> dict[str, str]:
+        """What the charts of a boat draw."""
+        return {
+            name: ",".join(self._json[part].get(fsn_no, self._none[part]) for part in parts)
+            for name, parts in DRAWN.items()
+        }
+
+    def tables(self, fsn_no: str) -> "dict[str, _Own]":
+        """The rows of a boat, by what they are about."""
+        return {
+            name: _Own(frame, *self._places[name].get(fsn_no, (0, 0)))
+            for name, frame in self._listed.items()
+        }
+
+
+class _Own(NamedTuple):
+    """Rows of a boat within those of several."""
+
+    whole: pl.DataFrame
+    start: int
+    number: int
+
+    @property
+    def rows(self) -> pl.DataFrame:
+        """The boat's rows."""
+        return self.whole.slice(self.start, self.number)
+
+    def table(
+        self,
+        name: str,
+        columns: Sequence[str],
+        caption: str,
+        follows: Sequence[str] = (),
+        exact: bool = True,
+    ) -> Table:
+        """The table of these rows."""
+        within = self.whole, self.start
+        return Table(name, self.rows, columns, caption, follows, exact=exact, within=within)
+
+
+def _places(keys: pl.Series) -> dict[str, tuple[int, int]]:
+    """Where the rows of each key begin, and how many they are; the keys are sorted."""
+    runs = keys.rle().struct.unnest()
+    starts = runs["len"].cum_sum() - runs["len"]
+    return dict(zip(runs["value"], zip(starts, runs["len"], strict=True), strict=True))
+
+
+ALIKE = ("wind", "line", "point", "declared", "stages", "assessments")
+"""Frames of which most rows are the same under several methods."""
+
+
+def _answers(views: Views, edition: str) -> dict[str, list[Answer]]:
+    """What there is to say of each crew, by boat."""
+    lines = answers(views, edition)
+    compared = lines["from_edition"].drop_nulls()
+    races = own_races(views, compared[0] if compared.len() else None, edition)
+    crew = ["fsn_no", "rowers", "crew_class"]
+    by_crew = races.partition_by(crew, as_dict=True, maintain_order=True)
+    faults = season_faults(views) if edition.startswith(DRAFT) else {}  # an edition holds none
+    by_boat: dict[str, list[Answer]] = defaultdict(list)
+    for line in lines.to_dicts():
+        by_boat[line["fsn_no"]].append(
+            Answer(
+                line=line,
+                races=by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts(),
+                curve=curve_of(line),
+                faults=faults.get((line["method"], line["season"]), ()),
+            )
+        )
+    return by_boat
+
+
+def _frames(views: Views) -> dict[str, pl.DataFrame]:
+    """Everything a boat's page draws, of all boats at once."""
+    boat_of = views.table("tows").select("tow_id", "fsn_no")
+    points = views.run_points().with_columns(run_cw_kg_m="cw_kg_m")
+    seconds = views.table("trace_seconds")
+    ends = seconds.group_by("tow_id", "run", maintain_order=True).agg(
+        run_end_s=pl.col("second").max() + 1
+    )
+    register = views.register()
+    curves = views.curves().with_columns(
+        tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
+    )
+    declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
+    intervals = views.table("methods").select("method", "interval")
+    lines = (
+        views.table("curve_points")
+        .join(boat_of, on="tow_id", maintain_order="left")
+        .join(intervals, on="method", maintain_order="left")
+    )
+    lineage = views.table("lineage").with_columns(
+        pl.format("{}{}", "rowers", "crew_class").alias("crew")
+    )
+    frames = {
+        "boats": views.table("boats"),
+        "register": _once(register),
+        "curves": curves,
+        "history": curves.select("fsn_no", *HISTORY),
+        "runs": once_for_methods(points.select("fsn_no", *FOLLOWS, *RUN_COLUMNS)).sort(
+            "tow_id", "run", maintain_order=True
+        ),
+        "wind": points.select("fsn_no", *WIND),
+        "line": _kind(lines, "line", "method", *NUMBERS, "interval"),
+        "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
+        "declared": _kind(declared, "declared", "method", *NUMBERS, "interval"),
+        "stages": _stages(points),
+        "trace": _seconds(seconds.join(boat_of, on="tow_id", maintain_order="left")),
+        "window": _kind(
+            points.join(ends, on=["tow_id", "run"], maintain_order="left"),
+            "window",
+            "method",
+            "run",
+            *WINDOW,
+        ),
+        "lineage": lineage,
+        "budget": views.table("uncertainty_budget")
+        .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
+        .join(boat_of, on="tow_id", maintain_order="left"),
+    }
+    statistics = views.table("run_statistics").join(boat_of, on="tow_id", maintain_order="left")
+    frames |= {
+        "statistics": statistics,
+        "ticks": _ticks(views).drop("method", "b_m_s"),
+        "choices": _choices(views, boat_of),
+    }
+    for name in EXTRA:
+        if views.has(name):
+            rows = views.flagged() if name == "assessments" else views.table(name)
+            frames[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
+    return frames
+
+
+def _ticks(views: Views) -> pl.DataFrame:
+    """Curves under the ticks of the tool of 2015, by the last method under which they are drawn."""
+    curves = views.option_curves()
+    last = [name for name in METHODS if name in curves["method"].unique()]
+    return curves.filter(pl.col("method") == (last or [""])[-1])
+
+
+def _choices(views: Views, boat_of: pl.DataFrame) -> pl.DataFrame:
+    """What each choice does to a tow, as the fleet's chart draws it, without a middle 90 %."""
+    effects = views.table("option_effects").drop_nulls("cw_effect_ratio")
+    none = pl.lit(None, pl.Float64)
+    return effects.select(
+        *("method", "tow_id", "option"),
+        median_ratio="cw_effect_ratio",
+        lo_ratio=none,
+        hi_ratio=none,
+    ).join(boat_of, on="tow_id", maintain_order="left")
+
+
+POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
+WINDOW = ["window_start_s", "window_end_s", "run_end_s", "cut_reason"]
+WIND = ["method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg"]
+HISTORY = ["method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s", "interval"]
+NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
+
+
+def _kind(frame: pl.DataFrame, kind: str, *columns: str) -> pl.DataFrame:
+    return frame.select("fsn_no", "tow_id", *columns, kind=pl.lit(kind))
+
+
+def _stages(points: pl.DataFrame) -> pl.DataFrame:
+    """The runs that count, before and after the air correction."""
+    seen = points.filter("used")
+    shared = ("fsn_no", "method", "tow_id", "run", "direction", "speed_m_s")
+    return pl.concat(
+        [
+            seen.select(*shared, cw_kg_m="gross_cw_kg_m", stage=pl.lit("gross")),
+            seen.select(*shared, "cw_kg_m", stage=pl.lit("net")),
+        ]
+    )
+
+
+def _seconds(traces: pl.DataFrame) -> pl.DataFrame:
+    """Seconds of every run, to the digits that a chart of 110 pixels can show."""
+    rounded = traces.with_columns(
+        pl.col("speed_m_s", "gps_m_s").round(2),
+        pl.col("wind_m_s").round(1),
+        pl.col("force_n").round().cast(pl.Int32),
+    )
+    fields = ("run", "second", "speed_m_s", "gps_m_s", "wind_m_s", "force_n")
+    return _kind(rounded, "trace", *fields)
+
+
+LINE_COLUMNS = (
+    *("edition", "rowers", "crew_class", "tow_date", "valid_until", "status"),
+    *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
+    *("verification_code", "method"),
+)
+CURVE_COLUMNS = (
+    *("tow_date", "rowers", "crew_class", "method", "declared_speed_m_s", "a_kg_m"),
+    *("b_m_s", "b_lo_m_s", "b_hi_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "power_w"),
+    *("weight_kg", "altered", "runs_used", "status", "flags"),
+)
+RUN_COLUMNS = (
+    *(
+        "run",
+        "direction",
+        "window_start_s",
+        "window_end_s",
+        "cut_reason",
+        "used",
+        "reason",
+        "choice",
+    ),
+    *("speed_m_s", "gross_cw_kg_m", "inertia_cw_kg_m", "air_cw_kg_m", "still_air_cw_kg_m"),
+    *("temperature_cw_kg_m", "run_cw_kg_m", "cw_sd"),
+    *("wind_m_s", "wind_angle_deg"),
+)
+FACT_COLUMNS = (
+    *("name", "fsn_no", "ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m"),
+    "weight_kg",
+)
+LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash", "code_version")
+
+
+def _page(fsn_no: str, boats: _Boats, methods: Sequence[str], told: Sequence[Answer]) -> Page:
+    own = boats.tables(fsn_no)
+    facts = Section("facts", tables=[own["boats"].table("boats", FACT_COLUMNS, "facts")])
+    boat = own["boats"].rows.row(0, named=True)
+    name = boat["name"]
+    subtitle = " · ".join(filter(None, (fsn_no, boat["ht_no"], boat["boat_type"])))
+    curves = own["curves"].rows
+    named = dict(zip(curves["tow_id"], curves["tow"], strict=True))
+    if not named:
+        return Page(boat_path(fsn_no), "boat", [facts], name=name, subtitle=subtitle)
+    tows = list(named)
+    selects = [
+        Select("tow_id", "tow", tows, tows[-1], named=lambda tow, _: named[tow]),
+        methods_select(methods),
+    ]
+    return Page(
+        boat_path(fsn_no),
+        "boat",
+        [replace(facts, folded=True), *_sections(own)],
+        name=name,
+        selects=selects,
+        json=boats.json(fsn_no),
+        answers=told,
+        subtitle=subtitle,
+    )
+
+
+DRAWN = {
+    "curve": ("line", "point", "declared"),
+    "traces": ("trace", "window"),
+    "stages": ("stages",),
+    "runs": ("wind",),
+    "curves": ("history",),
+    "budget": ("budget",),
+    "statistics": ("statistics",),
+    "ticks": ("ticks",),
+    "choices": ("choices",),
+}
+"""What the charts draw, by name; rows of several kinds stand one below the other."""
+
+
+def _sections(own: dict[str, _Own]) -> list[Section]:
+    """How the numbers were made: all of it folded."""
+    curve = Chart("resistance_curve", "curve", "boat_curve", OF_THE_CURVE)
+    history = Chart("history", "curves", "boat_history")
+    traces = Chart("traces", "traces", "boat_traces", OF_THE_CURVE)
+    budget = Chart("budget", "budget", "uncertainty_budget", OF_THE_CURVE)
+    sides = [
+        Chart("out_and_back", "stages", "boat_out_back", OF_THE_CURVE),
+        Chart("wind", "runs", "wind", OF_THE_CURVE),
+    ]
+    of_tow = {"tow_id": "tow_id"}
+    ticks = [
+        Chart("slide_ticks", "ticks", "slide_ticks", of_tow),
+        Chart("slide_tick_effects", "choices", "slide_tick_effects", of_tow),
+    ]
+    statistics = Chart("run_statistics", "statistics", "run_statistics", of_tow)
+    curves = own["curves"].table("curves", CURVE_COLUMNS, "boat_history", exact=False)
+    runs = own["runs"].table("run_points", RUN_COLUMNS, "boat_runs", FOLLOWS, exact=False)
+    lines = own["register"].table("register", LINE_COLUMNS, "boat_lines")
+    sections = [
+        Section("boat_lines", tables=[lines]),
+        Section("boat_history", "boat_history_note", [history], [curves]),
+        Section("boat_curve", "boat_curve_note", [curve]),
+        Section("boat_runs", "boat_runs_note", tables=[runs]),
+        Section("boat_traces", "boat_traces_note", [traces]),
+        Section("boat_out_back", "boat_out_back_note", sides),
+        Section("uncertainty_budget", "uncertainty_budget_note", [budget]),
+        Section("boat_ticks", "slides_ticks_note", ticks),
+        Section("boat_statistics", "boat_statistics_note", [statistics]),
+    ]
+    for name, columns in EXTRA.items():
+        rows = own.get(name)
+        if rows is not None and rows.number:
+            follows = [c for c in FOLLOWS if c in rows.whole.columns]
+            table = rows.table(name, columns, name, follows, exact=False)
+            sections.append(Section(name, f"{name}_note", tables=[table]))
+    lineage = own["lineage"].table("lineage", LINEAGE_COLUMNS, "boat_lineage")
+    if own["lineage"].number:
+        sections.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))
+    return [replace(section, folded=True) for section in sections]
+
+
+def _once(register: pl.DataFrame) -> pl.DataFrame:
+    """Without the drafts that say what an edition of the same method says."""
+    same = ["method", "fsn_no", "rowers", "crew_class", "tow_id", "cw_kg_m"]
+    is_draft = pl.col("edition").str.starts_with(DRAFT)
+    editions = register.filter(~is_draft)
+    repeated = register.filter(is_draft).join(editions, on=same, how="semi", nulls_equal=True)
+    return register.join(repeated, on=["edition", *same], how="anti", nulls_equal=True)

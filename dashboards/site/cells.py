@@ -1,0 +1,212 @@
+"""Cells of tables in one language: numbers, codes in words, links and hashes."""
+
+import json
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import repeat
+from typing import Any, Final
+
+import polars as pl
+from markupsafe import Markup, escape
+
+from dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
+from dashboards.speech import Speech, duration
+from pipeline.words import LANGUAGES
+from warehouse.queries.chosen_tows import STATED, spoken_range
+
+DIGITS: Final = (
+    ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
+    ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_percent", 3), ("after_percent", 3),
+    ("slope", 5), ("slope_lo", 5), ("slope_hi", 5), ("_percent", 1), ("size", 1), ("size_lo", 1),
+    ("size_hi", 1),
+)  # fmt: skip
+"""Decimals shown by the ending of a column's name; 4 otherwise."""
+
+KEPT: Final = 7
+"""Significant digits in downloads and charts; the database holds all."""
+
+CODES: Final = {
+    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
+    *("quantity", "explaining", "within", "severity", "check", "shared", "kind", "scope"),
+    *("old_remark", "new_remark", "choice"),
+    *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
+    *("instrument", "verdict", "confused_with"),
+}
+"""Columns that hold codes of the warehouse, shown as words."""
+
+LONG: Final = {
+    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "messages", "decision"),
+    *("candidates", "name", "meanings", "confused_with", "old_remark", "new_remark"),
+}
+"""Columns of texts that may take several lines."""
+
+METHODS: Final = {"method", "from_method", "to_method"}
+EDITIONS: Final = {"edition", "from_edition", "to_edition", "previous"}
+
+Show = Callable[[Any], Markup]
+Key = tuple[object, ...]
+
+_SHORT = Markup("<td class=t>")
+"""A cell of text. End tags are left out: HTML closes a cell and a row by itself, and a boat's page
+has thousands. For the same reason a number is what has no class, and text that may be wide is `w`
+alone; a number that shows fewer digits than it holds has it in `data-v`."""
+_LONG = Markup("<td class=w>")
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a table as HTML.
+
+    Attributes:
+        first: what the selectors show at first.
+        others: all others, which a page does not hold but brings in when they are chosen.
+        keys: the values that selectors choose by; a row has the place of its own.
+    """
+
+    first: Markup
+    others: str
+    keys: Sequence[Key]
+
+
+class Cells:
+    """Makes rows of tables in one language."""
+
+    def __init__(self, speech: Speech) -> None:
+        self.speech = speech
+        self.text = speech.text
+        self._text = cache(self._made)
+        self._of_many: dict[str, tuple[pl.DataFrame, list[str]]] = {}
+
+    def _made(self, name: str, root: str, value: object) -> Markup:
+        """The cell of a text in a column of this name; the same value comes often."""
+        return (_LONG if name in LONG else _SHORT) + self._shower(name, root)(value)
+
+    def rows(self, page: Page, table: Table) -> Rows:
+        """The rows of a table on a page."""
+        frame, follows = table.frame, list(table.follows)
+        cells = self._cells_by_row(page, table)
+        boats = (
+            [f' data-boat="{escape(n)}"' for n in frame["fsn_no"]] if table.linked else repeat("")
+        )
+        keys = zip(*(hashable(frame[name]) for name in follows), strict=True)
+        places: dict[Key, int] = {}
+
+        @cache
+        def marked(key: Key) -> tuple[list[str], str]:
+            """Where rows of a key stand, and how they name it."""
+            own = zip(follows, key, strict=True)
+            is_first = all(is_chosen(value, page.chosen[name]) for name, value in own)
+            place = places.setdefault(key, len(places))
+            return first if is_first else others, f" data-k={place}" if follows else ""
+
+        first: list[str] = []
+        others: list[str] = []
+        for row, boat, key in zip(cells, boats, keys if follows else repeat(()), strict=False):
+            place, marks = marked(key)
+            place.append(f"<tr{boat}{marks}>{row}")
+        return Rows(Markup("\n".join(first)), "\n".join(others), list(places))  # noqa: S704 - escaped parts
+
+    def _cells_by_row(self, page: Page, table: Table) -> list[str]:
+        """The cells of each row, one text; of rows of many pages they are made once."""
+        whole, start = table.within or (table.frame, 0)
+        known, rows = self._of_many.get(table.name, (None, []))
+        if known is not whole:
+            # Column by column, because the cells of a column are made in one way.
+            cells = (self._cells(whole[c], page.root, table.exact) for c in table.columns)
+            rows = list(map("".join, zip(*cells, strict=True)))
+        if table.within:
+            self._of_many[table.name] = whole, rows
+        return rows[start : start + table.frame.height]
+
+    def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[str]:
+        name = column.name
+        if name == "rowing_time_s":
+            return [_SHORT if v is None else _SHORT + duration(v) for v in column]
+        if column.dtype.is_float():
+            return self._numbers(column, exact)
+        if column.dtype.is_integer() and name != "direction":
+            return ["<td>" if v is None else f"<td>{v}" for v in column.to_list()]
+        return [_SHORT if v is None else self._text(name, root, v) for v in hashable(column)]
+
+    def _numbers(self, column: pl.Series, exact: bool) -> list[str]:
+        digits = next((d for ending, d in DIGITS if column.name.endswith(ending)), 4)
+        values = [math.nan if v is None else v for v in column.to_list()]
+        shown = self.speech.numbers(values, digits)
+        if not exact:
+            return [f"<td>{text}" for text in shown]
+        return [_exact(*both) for both in zip(values, shown, strict=True)]
+
+    def _shower(self, name: str, root: str) -> Show:
+        """How values of a column are shown."""
+        if name in ("fsn_no", "influence_boat"):
+            return lambda value: Markup('<a href="{}{}">{}</a>').format(
+                root, boat_path(value), value
+            )
+        if name == "boat_type":
+            return lambda value: self._type(value, root)
+        named = {
+            **dict.fromkeys(("titles", "meanings", "messages"), self._titles),
+            "direction": lambda value: self.text(f"code.direction.{value}"),
+            "causes": self._causes,
+            "candidates": lambda names: Markup(", ").join(
+                self.text(f"candidate.{name}") for name in names
+            ),
+            "tows": lambda value: (
+                self.text(f"code.{value}") if value in STATED else escape(spoken_range(value))
+            ),
+            "unit": lambda value: self._plain("" if value == "1" else value),
+            **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
+            **dict.fromkeys(METHODS, lambda value: self.text(f"method.{value}")),
+            **dict.fromkeys(EDITIONS, self._edition),
+            **dict.fromkeys(CODES, self._code),
+        }
+        return named.get(name, self._plain)
+
+    def _edition(self, value: str) -> Markup:
+        return escape(self.speech.edition(value))
+
+    def _type(self, value: str, root: str) -> Markup:
+        if value in ("unknown", "all"):
+            return self.text(f"code.{value}")
+        return Markup('<a href="{}{}">{}</a>').format(root, type_path(value), value)
+
+    def _plain(self, value: object) -> Markup:
+        if isinstance(value, bool):
+            return self.text("yes" if value else "no")
+        return escape(value)
+
+    def _code(self, value: Any) -> Markup:
+        """A code, or several with commas or as a list, in words."""
+        codes = value.split(",") if isinstance(value, str) else list(value)
+        return Markup(", ").join(self.text(f"code.{code}") for code in codes if code)
+
+    def _causes(self, value: str) -> Markup:
+        """What a change is attributed to (a method's step by its name), each in per cent."""
+        parts = [
+            self.text(f"code.{cause.get('step', cause['cause'])}")
+            + f" {self.speech.per_cent(cause['factor'])}"
+            for cause in json.loads(value)
+        ]
+        return Markup("; ").join(parts)
+
+    def _titles(self, value: Any) -> Markup:
+        """The title in this language, of one in Dutch and one in English."""
+        return escape(value[LANGUAGES.index(self.speech.language)])
+
+
+def hashable(column: pl.Series) -> list[Any]:
+    """Its values; lists as tuples."""
+    values = column.to_list()
+    return [tuple(v) if isinstance(v, list) else v for v in values]
+
+
+def _exact(value: float, shown: str) -> str:
+    """A number that shows fewer digits than it holds, with both."""
+    held = f"{value:.{KEPT}g}"
+    return f"<td>{shown}" if not shown or shown == held else f"<td data-v={held}>{shown}"
+
+
+def _hash(value: str) -> Markup:
+    return Markup("<code>{}</code>").format(value[:12])

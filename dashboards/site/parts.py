@@ -1,0 +1,263 @@
+"""What a page is made of: sections with tables, charts and selectors, as plain data."""
+
+import datetime as dt
+import hashlib
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import polars as pl
+from markupsafe import Markup
+
+from dashboards.answer import Answer
+from dashboards.speech import Headline, Speech
+from pipeline.register.register import draft_name
+from warehouse.derive.studies import STUDIED_METHOD
+from warehouse.queries.chosen_tows import ALL, NEWEST, choices_of, spoken_range
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table on a page.
+
+    Attributes:
+        name: names the download.
+        frame: its rows; columns keep the names they have in the warehouse.
+        columns: what is shown, in order; the download holds the same.
+        caption: key of the text above it.
+        follows: columns that a selector of the page filters on.
+        search: whether it has a search box.
+        linked: whether a selection in a chart filters it by boat.
+        exact: whether cells carry more digits than they show, for the download.
+        cards: on a narrow screen, the columns of a card: its name, then its numbers.
+        within: the rows of many pages, and at which of them `frame` begins: their cells are made
+            at once.
+    """
+
+    name: str
+    frame: pl.DataFrame
+    columns: Sequence[str]
+    caption: str
+    follows: Sequence[str] = ()
+    search: bool = False
+    linked: bool = False
+    exact: bool = True
+    cards: Sequence[str] = ()
+    within: tuple[pl.DataFrame, int] | None = None
+
+    @cached_property
+    def numeric(self) -> set[str]:
+        """Columns that hold numbers."""
+        return {name for name, dtype in self.frame.schema.items() if dtype.is_numeric()}
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A chart on a page.
+
+    Attributes:
+        figure: name in `dashboards.figures.FIGURES`.
+        data: name of the page's data it draws.
+        caption: key of its caption; also what a screen reader says.
+        follows: selector, or several, by data column: only rows that hold what one of them says
+            are drawn, and rows where the column is empty. A column may hold lists: then one of
+            its values has to be chosen.
+        says: what it shows, in one sentence.
+        said: name of the page's data that holds such a sentence, in `nl` and `en`, for what the
+            selectors say: rows of this `figure`, with the columns that it follows.
+    """
+
+    figure: str
+    data: str
+    caption: str
+    follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
+    says: Headline | None = None
+    said: str = ""
+
+
+def _as_it_is(option: str, _: Speech) -> str:
+    return option
+
+
+@dataclass(frozen=True)
+class Select:
+    """A selector: what is chosen filters the charts and tables that follow it.
+
+    Attributes:
+        named: what an option is called in a language.
+    """
+
+    name: str
+    caption: str
+    options: Sequence[str]
+    chosen: str
+    with_all: bool = False
+    named: Callable[[str, Speech], str] = _as_it_is
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading, a note, and what is under them.
+
+    Attributes:
+        links: path of a page, key of its name and key of a sentence about it.
+        pages: path of a page and its name, which is data.
+        files: path of a file to download, and its name, which is data.
+        empty: key of what is said where there is nothing to show.
+        folded: whether it opens only when asked for.
+        headline: what it shows, in each language; see `dashboards.headlines`.
+        terms: key of a word and key of its meaning.
+        key_figures: key of what is counted, and the figure.
+        prose: a text to read, as HTML.
+    """
+
+    title: str
+    note: str | None = None
+    charts: Sequence[Chart] = ()
+    tables: Sequence[Table] = ()
+    links: Sequence[tuple[str, str, str]] = ()
+    pages: Sequence[tuple[str, str]] = ()
+    files: Sequence[tuple[str, str]] = ()
+    empty: str | None = None
+    folded: bool = False
+    headline: Headline | None = None
+    terms: Sequence[tuple[str, str]] = ()
+    key_figures: Sequence[tuple[str, str | Headline]] = ()
+    prose: Callable[[Speech], Markup] | None = None
+
+
+@dataclass(frozen=True)
+class Page:
+    """One HTML file.
+
+    Attributes:
+        path: within the site.
+        title: key of its title.
+        sections: in order.
+        name: of a boat, type or race, data rather than a text; empty elsewhere.
+        subtitle: what tells a boat from one of the same name: its numbers and type.
+        selects: selectors.
+        data: frames that charts draw, by name; of several, the rows come one below the other.
+        json: the same as `site.columns` writes it, where it is made for many pages at once.
+        site: the way to the site, of a page that lies outside it.
+        answers: what an owner asks, of each crew of a boat.
+        others: the same page in other languages, where it lies elsewhere.
+    """
+
+    path: str
+    title: str
+    sections: Sequence[Section]
+    name: str = ""
+    selects: Sequence[Select] = ()
+    data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
+    json: Mapping[str, str] = field(default_factory=dict)
+    site: str = ""
+    answers: Sequence[Answer] = ()
+    others: Mapping[str, str] = field(default_factory=dict)
+    subtitle: str = ""
+
+    @property
+    def chosen(self) -> dict[str, str]:
+        """What each selector says at first."""
+        return {select.name: select.chosen for select in self.selects}
+
+    @property
+    def root(self) -> str:
+        """The way from this page to the first page of its language."""
+        return self.site or "../" * self.path.count("/")
+
+
+def listed(
+    title: str,
+    name: str,
+    frame: pl.DataFrame,
+    columns: Sequence[str],
+    charts: Sequence[Chart] = (),
+    follows: Sequence[str] = ("method",),
+    exact: bool = True,
+    headline: Headline | None = None,
+) -> list[Section]:
+    """A section with one table, and the note of its title; none where there are no rows."""
+    if frame.is_empty():
+        return []
+    table = Table(name, frame, columns, title, follows, exact=exact)
+    return [Section(title, f"{title}_note", charts, [table], headline=headline)]
+
+
+def is_chosen(value: object, *wanted: str) -> bool:
+    """Whether selectors that say `wanted` show a value, or one of a list; "all" says nothing."""
+    values = value if isinstance(value, (list, tuple)) else (value,)
+    said = [text for text in wanted if text]
+    return not said or any(str(one) in said for one in values)
+
+
+def default_method(names: Sequence[str]) -> str:
+    """What is shown first: the default method or its draft, else the last."""
+    wanted = [n for n in names if n in (STUDIED_METHOD, draft_name(STUDIED_METHOD))]
+    return [*names, *wanted][-1]
+
+
+def draft_of(methods: Sequence[str]) -> str:
+    """The draft of the method that is shown first."""
+    return draft_name(default_method(methods))
+
+
+def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "") -> Select:
+    """A selector of methods, by what people call them."""
+    first = chosen or default_method(methods)
+    return Select(name, name, methods, first, named=lambda m, speech: speech.say(f"method.{m}"))
+
+
+def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
+    """A selector of editions; drafts by the name of their method."""
+    return Select(name, "edition", editions, chosen, named=lambda e, speech: speech.edition(e))
+
+
+def tows_select(compared: pl.DataFrame) -> Select:
+    """A selector of tows: all, the newest of each crew, or those of an era or a season."""
+    words = {ALL: "all_tows", NEWEST: "code.newest"}
+    return Select(
+        "tows", "tows", choices_of(compared["season"]), ALL,
+        named=lambda tows, s: s.say(words[tows]) if tows in words else spoken_range(tows),
+    )  # fmt: skip
+
+
+def boat_path(fsn_no: str) -> str:
+    """The page of a boat: its number if that can be a file name, else with a hash of it."""
+    return _path("boats", fsn_no)
+
+
+def type_path(boat_type: str) -> str:
+    """The page of a type of boat."""
+    return _path("types", boat_type)
+
+
+def edition_page(edition: str) -> str:
+    """The page of a published edition."""
+    return _path("editions", edition)
+
+
+def race_path(race: str, day: dt.date) -> str:
+    """The page of a race."""
+    return _path("races", f"{race}-{day}")
+
+
+def _path(folder: str, name: str) -> str:
+    safe = re.sub(r"[^A-Za-z0-9-]+", "-", name)
+    if safe != name:
+        safe += "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
+    return f"{folder}/{safe}.html"
+
+
+def once_for_methods(rows: pl.DataFrame) -> pl.DataFrame:
+    """Rows that are alike under several methods once, with all of these in `method`."""
+    alike = [name for name in rows.columns if name != "method"]
+    return rows.group_by(alike, maintain_order=True).agg("method")
+
+
+def with_page(frame: pl.DataFrame, root: str = "") -> pl.DataFrame:
+    """With the page of each boat, for charts whose points are links; `root` is the way to them."""
+    paths = {fsn_no: root + boat_path(fsn_no) for fsn_no in frame["fsn_no"].unique()}
+    page = pl.col("fsn_no").replace_strict(paths, return_dtype=pl.String)
+    return frame.with_columns(page.alias("page"))

@@ -1,0 +1,304 @@
+"""From pages to files: HTML with the tables, data for the charts, and what all pages share.
+
+Every page is made once per language, in Dutch at the root and in English under `en/`; the data of
+its charts, and the rows of its tables that are not shown at first, once, as a script beside them.
+"""
+
+import base64
+import datetime as dt
+import shutil
+import zlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from functools import cache, partial
+from importlib.metadata import version
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+import jinja2
+import vl_convert
+from markupsafe import Markup
+
+from dashboards import fonts
+from dashboards.answer import told
+from dashboards.html import as_json, environment
+from dashboards.kept import kept
+from dashboards.site.boats import boat_pages
+from dashboards.site.cells import Cells
+from dashboards.site.columns import json_of
+from dashboards.site.downloads import copy_sheets
+from dashboards.site.pages import MENU, method_names, shared_pages
+from dashboards.site.parts import Page, boat_path, race_path, type_path
+from dashboards.site.slides import slides_page
+from dashboards.site.specifications import chart_specifications
+from dashboards.site.still import Stills, first_chart, stills
+from dashboards.speech import Speech
+from pipeline.words import LANGUAGES
+from pipeline.words.catalogue import WORDS, speaker
+from warehouse.queries.views import Views
+from warehouse.store.files import folder_written_beside
+from warehouse.store.store import Store
+from warehouse.store.unforeseen import Border, border
+
+HERE: Final = Path(__file__).parent
+QUICK: Final = 4
+"""How hard data are deflated: a tenth larger than by default, in half the time."""
+NO_STILLS: Final[Mapping[str, Markup]] = MappingProxyType({})
+OWN_FILES: Final = ("site.css", "site.js")
+FOLDERS: Final = {"nl": "", "en": "en/"}
+"""Where the pages of each language lie within the site."""
+
+HEADING: Final = Markup(
+    '<th scope="col" data-c="{column}"{title}{kind}>'
+    '<button type="button" class="sort">{text}</button></th>'
+)
+TITLE: Final = Markup(' title="{}"')
+NUMERIC: Final = Markup(' class="n"')
+
+IN_GLOSSARY: Final = {
+    "crew_class": "crew_class",
+    "a_kg_m": "a",
+    "b_m_s": "b",
+    "cw_kg_m": "cw",
+    "e_n": "e_n",
+}
+"""The term of the glossary that a column holds."""
+
+POLICY: Final = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self' file:",
+        "style-src 'self' file: 'unsafe-inline'",
+        "img-src 'self' file: data:",
+        "font-src data:",
+        "base-uri 'none'",
+        "form-action 'none'",
+    )
+)
+"""What a browser lets a page load: the site's own files and nothing else; no eval, no connection.
+`file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's; the font
+is in the style sheet, because some browsers keep fonts of another folder from such a page."""
+
+
+def build_site(store: Store, other: Executor | None = None) -> dict[str, int]:
+    """Makes all pages from the database and swaps them in.
+
+    Args:
+        store: the data folder.
+        other: a second process, which draws the pictures meanwhile; without, all is done here.
+
+    Returns:
+        Files and bytes of the site.
+    """
+    return build_pages(store, store.root / "site", other=other)
+
+
+def build_pages(
+    store: Store,
+    target: Path,
+    as_of: dt.date | None = None,
+    other: Executor | None = None,
+    bordered: Border | None = None,
+) -> dict[str, int]:
+    """The same in another folder, and as of a day; what stood in the folder is replaced."""
+    bordered = bordered or partial(border, store.root)
+    with folder_written_beside(target) as beside:
+        with Views(store, as_of) as views:
+            _write_pages(bordered, views, beside, other)
+            _write_shared(views, beside)
+        copy_sheets(store, beside)
+        written = [f for f in beside.rglob("*") if f.is_file()]
+        size = sum(f.stat().st_size for f in written)
+    return {"files": len(written), "bytes": size}
+
+
+def _write_shared(views: Views, folder: Path) -> None:
+    static = folder / "static"
+    static.mkdir()
+    for name in OWN_FILES:
+        shutil.copyfile(HERE / "static" / name, static / name)
+    (static / "font.css").write_text(fonts.style_sheet(), encoding="utf-8")
+    (static / "vega.js").write_text(vega_bundle(), encoding="utf-8")
+    for language in LANGUAGES:
+        (static / f"charts-{language}.js").write_text(charts_script(language), encoding="utf-8")
+    (static / "find.js").write_text(_search_script(views), encoding="utf-8")
+
+
+def _write_pages(border: Border, views: Views, folder: Path, other: Executor | None) -> None:
+    """Writes every page; those with a picture last, when the other process has drawn it."""
+    editions = [Edition(views, language) for language in LANGUAGES]
+    methods = method_names(views)
+    shared: list[Page] = []
+    makers = shared_pages(views) | {"slides": lambda: [slides_page(views, methods)]}
+    for name, make in makers.items():
+        with border(f"pages {name}"):
+            shared += make()
+    drawn = [_draw(page, editions, other) for page in shared]
+    for fsn_no, make_page in boat_pages(views, methods):
+        with border(f"page {fsn_no}"):
+            _write_page(folder, make_page(), editions, {})
+    for page, pictures in zip(shared, drawn, strict=True):
+        with border(f"page {page.path}"):
+            _write_page(folder, page, editions, pictures())
+
+
+def _draw(
+    page: Page, editions: Sequence["Edition"], other: Executor | None
+) -> Callable[[], Stills]:
+    """Has the picture of a page drawn, if it has one; gives what waits for it."""
+    first = first_chart(page)
+    if first is None:
+        return dict
+    chart, rows = first
+    captions = {e.speech.language: e.speech.say(chart.caption) for e in editions}
+    task = chart.figure, rows, captions
+    return other.submit(stills, *task).result if other else partial(stills, *task)
+
+
+def _write_page(folder: Path, page: Page, editions: Sequence["Edition"], drawn: Stills) -> None:
+    others = {}
+    for edition in editions:
+        language = edition.speech.language
+        html, others[language] = edition.html(page, drawn.get(language, {}))
+        _put(folder / edition.address(page), html)
+    if page.data or page.json or any(others.values()):
+        _put(folder / _data_path(page), _data_script(page, others))
+
+
+def _put(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+@cache
+def _template() -> jinja2.Template:
+    """The template of every page: to compile it takes as long as a few pages."""
+    names = {"policy": POLICY, "menu": MENU}
+    return environment(HERE / "templates", **names).get_template("page.html.j2")
+
+
+class Edition:
+    """The pages in one language."""
+
+    def __init__(self, views: Views, language: str) -> None:
+        self.speech = Speech(language)
+        self.about = views.about()
+        self._comments = _by_column(views.comments()) if language == "en" else {}
+        self._cells = Cells(self.speech)
+        self._names = {
+            "t": self.speech.text,
+            "speech": self.speech,
+            "heading": cache(self._heading),
+            "told": lambda answer: told(answer, self.speech),
+            "about": self.about,
+        }
+
+    def _heading(self, table: str, column: str, is_number: bool) -> Markup:
+        """The heading of a column, which says what it means when pointed at."""
+        meaning = self._comments.get(f"{table}.{column}") or self._comments.get(column)
+        if not meaning and column in IN_GLOSSARY:
+            meaning = self.speech.say(f"meaning_{IN_GLOSSARY[column]}")
+        return HEADING.format(
+            column=column,
+            title=TITLE.format(meaning) if meaning else "",
+            kind=NUMERIC if is_number else "",
+            text=self.speech.text(f"column.{column}"),
+        )
+
+    def address(self, page: Page) -> str:
+        """Where the page lies within the site."""
+        return FOLDERS[self.speech.language] + page.path
+
+    def html(
+        self, page: Page, stills: Mapping[str, Markup] = NO_STILLS
+    ) -> tuple[str, dict[str, str]]:
+        """The page, and by the number of a table its rows that the selectors hide at first.
+
+        Args:
+            page: what it shows.
+            stills: pictures of its charts, by the name of the figure.
+        """
+        language = self.speech.language
+        depth = self.address(page).count("/")
+        site = page.site or "../" * depth
+        other = next(name for name in LANGUAGES if name != language)
+        tables = {
+            f"{place}-{number}": self._cells.rows(page, table)
+            for place, section in enumerate(page.sections, 1)
+            for number, table in enumerate(section.tables, 1)
+        }
+        others = {number: rows.others for number, rows in tables.items() if rows.others}
+        html = _template().render(
+            **self._names,
+            page=page,
+            stills=stills,
+            tables=tables,
+            language=language,
+            site=site,
+            root=(site + FOLDERS[language]) if page.site else page.root,
+            other=other,
+            other_page=page.others.get(other) or f"{site}{FOLDERS[other]}{page.path}",
+            data_path=_data_path(page) if page.data or page.json or others else "",
+        )
+        return html, others
+
+
+def _data_path(page: Page) -> str:
+    """The script with the data of a page, shared by its languages."""
+    return f"data/{page.path.removesuffix('.html')}.js"
+
+
+def _data_script(page: Page, others: Mapping[str, Mapping[str, str]]) -> str:
+    """A script and not JSON, as a page from disk may load nothing else; deflated, a seventh of it.
+
+    Args:
+        page: gives the data of its charts.
+        others: rows of tables as HTML, by language and number of the table.
+    """
+    charts = {name: ",".join(map(json_of, frames)) for name, frames in page.data.items()}
+    named = ",".join(f"{as_json(name)}:[{text}]" for name, text in {**charts, **page.json}.items())
+    text = f'{{"charts":{{{named}}},"rows":{as_json(others)}}}'
+    packed = base64.b64encode(zlib.compress(text.encode(), QUICK)).decode("ascii")
+    return f'window.HERIJK_DATA = "{packed}";\n'
+
+
+def _search_script(views: Views) -> str:
+    """What the search on every page looks through: boats, types and races, with their pages."""
+    return f"window.HERIJK_FIND = {as_json(list(_findable(views)))};\n"
+
+
+def _findable(views: Views) -> Iterator[list[str]]:
+    boats = views.table("boats").sort("fsn_no")
+    for fsn_no, ht_no, name, boat_type in boats.select(
+        "fsn_no", "ht_no", "name", "boat_type"
+    ).rows():
+        yield [f"{name} · {fsn_no}", f"{ht_no or ''} {boat_type or ''}", boat_path(fsn_no)]
+    for boat_type in views.type_names():
+        yield [boat_type, "", type_path(boat_type)]
+    for race, day in views.race_days():
+        yield [f"{race} {day}", "", race_path(race, day)]
+
+
+def _by_column(comments: dict[str, str]) -> dict[str, str]:
+    """The meaning of a column by its table and name; by its name alone where all tables agree."""
+    meanings: dict[str, set[str]] = {}
+    for name, text in comments.items():
+        meanings.setdefault(name.split(".", 1)[1], set()).add(text)
+    return comments | {name: min(texts) for name, texts in meanings.items() if len(texts) == 1}
+
+
+@cache
+def vega_bundle() -> str:
+    """Vega, Vega-Lite and Vega-Embed in one script, as Altair's own converter ships them."""
+    bundle = vl_convert.javascript_bundle
+    return kept("vega", version("vl-convert-python"), lambda: str(bundle()))  # type: ignore[call-arg]  # its stub lacks the default
+
+
+def charts_script(language: str) -> str:
+    """A script with the figures and their words in one language."""
+    say = speaker(language)
+    named = {key: say(key) for key in WORDS if key.startswith(("column.", "code.", "method."))}
+    words = named | {key: say(key) for key in ("yes", "no", "no_values", "from", "to")}
+    figures = as_json(chart_specifications(language))
+    return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"

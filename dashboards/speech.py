@@ -1,0 +1,72 @@
+"""Numbers and texts as people of one language write them."""
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Final, TypeAlias, cast
+
+import polars as pl
+from markupsafe import Markup, escape
+
+from pipeline.races.race import FATIGUE_REFERENCE
+from pipeline.words import DECIMALS
+from pipeline.words.catalogue import speaker, unbroken
+
+MINUS: Final = "\u2212"
+
+
+class Speech:
+    """Texts, and numbers with the decimal mark of a language and a true minus sign."""
+
+    def __init__(self, language: str) -> None:
+        self.language = language
+        self.say = speaker(language)
+        self.decimal = DECIMALS[language]
+        self.text: Callable[[str], Markup] = cache(lambda key: escape(self.say(key)))
+        """A text, escaped."""
+        self._marks = str.maketrans({".": self.decimal, "-": MINUS})
+
+    def unbroken(self, key: str) -> str:
+        """A heading without the places where it may be broken."""
+        return unbroken(self.say(key))
+
+    def number(self, value: float, digits: int, sign: str = "") -> str:
+        """A number with so many decimals; `sign` is "+" where a plus is to be shown."""
+        return f"{value:{sign}z.{digits}f}".translate(self._marks)
+
+    def numbers(self, values: Sequence[float], digits: int) -> list[str]:
+        """Numbers with so many decimals; those that are unknown (nan) as nothing."""
+        text = "\n".join([f"{{:z.{digits}f}}"] * len(values)).format(*values)
+        return text.translate(self._marks).replace("nan", "").split("\n") if values else []
+
+    def per_cent(self, ratio: float) -> str:
+        """A ratio as a change in per cent, with its sign."""
+        return f"{self.number(100 * (ratio - 1), 1, '+')}\u00a0%"
+
+    def edition(self, edition: str) -> str:
+        """An edition as people call it: a draft by its method."""
+        if not edition.startswith("concept-"):
+            return edition
+        return f"{self.say('draft')}: {self.say('method.' + edition.removeprefix('concept-'))}"
+
+
+def duration(seconds: float) -> str:
+    """A time rowed as people say it: 1:55:11."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"
+
+
+def stretched_fatigue(times_s: pl.Series, speech: Speech) -> str:
+    """That the correction for fatigue is used for times that it was not made for, where it is."""
+    (first, _), (last, _) = FATIGUE_REFERENCE
+    beyond = times_s.filter(~times_s.is_between(first, last))
+    if beyond.is_empty():
+        return ""
+    ends = {
+        name: duration(cast(float, time))
+        for name, time in zip(("low", "high"), (times_s.min(), times_s.max()), strict=True)
+    }
+    return speech.say("fatigue_stretched").format(**ends)
+
+
+Headline: TypeAlias = Callable[[Speech], str]
+"""What a section shows in one sentence, in the language of a page."""

@@ -1,0 +1,169 @@
+"""A batch: tows that share every option of a method, with their runs as arrays.
+
+The bookkeeping between tows and runs: which run is of which tow, columns as arrays, one number per
+tow spread over its runs. No formula of the method.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import BoolArray, FloatArray, IntArray, OnDemand
+from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.channels import BACK, OUT, SECOND_FILE_OFFSET
+
+DOUBTED_SPEED: Final = "speed_not_plausible"
+"""A doubt for which a person must look, but that leaves the tow out of nothing."""
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Tows and their runs, both sorted by tow.
+
+    Attributes:
+        tows: rows of the table `tows`.
+        blocks: their runs; `blocks.runs` has the columns of the table `tow_runs`.
+        tow: index of each run's tow, shape (runs,).
+        cut_from: the batch that it is a part of, with its rows among the runs of that.
+    """
+
+    tows: pl.DataFrame
+    blocks: RunBlocks
+    tow: IntArray
+    cut_from: "tuple[Batch, IntArray] | None" = None
+
+    @classmethod
+    def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> "Batch":
+        """The given tows, with their runs among the given ones."""
+        tows = tows.sort("tow_id")
+        mine = blocks.take(blocks.runs["tow_id"].is_in(tows["tow_id"].implode()).to_numpy())
+        index = tows["tow_id"].search_sorted(mine.runs["tow_id"])
+        return cls(tows, mine, index.to_numpy().astype(np.int64))
+
+    @property
+    def size(self) -> int:
+        """Number of tows."""
+        return self.tows.height
+
+    @cached_property
+    def seasons(self) -> tuple[int, ...]:
+        """Seasons of the tows, sorted."""
+        return tuple(self.tows["season"].unique().sort())
+
+    @cached_property
+    def key(self) -> tuple[str, ...]:
+        """The tows, which tell this batch from others of the same tables."""
+        return tuple(self.tows["tow_id"])
+
+    @cached_property
+    def has_gps(self) -> BoolArray:
+        """Tows with GPS fixes in selected runs, both out and back, shape (tows,)."""
+        return self.both_ways(self.selected & (self.blocks["gps_n"].sum(axis=1) > 0))
+
+    def part(self, tows: BoolArray) -> "Batch":
+        """The tows that are marked, shape (tows,)."""
+        runs = tows[self.tow]
+        tow = (np.cumsum(tows) - 1)[self.tow[runs]]
+        whole, rows = self.whole
+        cut_from = whole, rows[runs]
+        return Batch(self.tows.filter(pl.Series(tows)), self.blocks.take(runs), tow, cut_from)
+
+    @property
+    def whole(self) -> "tuple[Batch, IntArray]":
+        """The largest batch that this is a part of, and its rows among the runs of that."""
+        return self.cut_from or (self, np.arange(len(self.tow)))
+
+    def of_tow(self, column: str) -> FloatArray:
+        """A number of each tow, shape (tows,); NaN where it is not known."""
+        return self._columns[column]
+
+    @cached_property
+    def _columns(self) -> OnDemand:
+        tows = self.tows
+        return OnDemand(tows.columns, lambda name: tows[name].cast(pl.Float64).to_numpy())
+
+    def of_run(self, column: str) -> FloatArray:
+        """A number of each run's tow, shape (runs,); NaN where it is not known."""
+        return self.of_tow(column)[self.tow]
+
+    def measured(self, channel: str) -> BoolArray:
+        """Tows that have a channel, `wind` or `log2`, shape (tows,); all if no column says so."""
+        name = f"{channel}_measured"
+        if name not in self.tows.columns:
+            return np.ones(self.size, dtype=bool)
+        return np.asarray(self.of_tow(name) != 0.0)  # also where it is not known
+
+    @cached_property
+    def trusted(self) -> BoolArray:
+        """Tows that the rest of the archive does not rule out, shape (tows,).
+
+        Tows with a doubted speed are kept: the log may be off, and only those tows can show it.
+        """
+        if "doubts" not in self.tows.columns:
+            return np.ones(self.size, dtype=bool)
+        others = pl.col("doubts").list.set_difference(pl.lit([DOUBTED_SPEED]))
+        return self.tows.select(others.list.len() == 0).to_series().to_numpy()
+
+    @cached_property
+    def direction(self) -> IntArray:
+        """1 out, -1 back, shape (runs,)."""
+        return self.blocks.runs["direction"].to_numpy().astype(np.int64)
+
+    @cached_property
+    def in_second_file(self) -> BoolArray:
+        """Runs of the second file of a combined tow, shape (runs,)."""
+        return self.blocks.runs["run"].to_numpy() > SECOND_FILE_OFFSET
+
+    @property
+    def file(self) -> IntArray:
+        """Index of each run's file, two per tow, shape (runs,)."""
+        return 2 * self.tow + self.in_second_file
+
+    @property
+    def target_speed_ratio(self) -> FloatArray:
+        """Intended speed / declared speed, shape (runs,)."""
+        return self.blocks.runs["target_speed_ratio"].to_numpy()
+
+    @property
+    def lost_s(self) -> FloatArray:
+        """Time left out of each run, shape (runs,); 0 where nothing is said."""
+        runs = self.blocks.runs
+        return runs["lost_s"].to_numpy() if "lost_s" in runs.columns else np.zeros(len(self.tow))
+
+    @property
+    def selected(self) -> BoolArray:
+        """Runs that the tow list says to use, shape (runs,)."""
+        return self.blocks.runs["selected"].to_numpy()
+
+    def count(self, runs: BoolArray) -> IntArray:
+        """Number of marked runs of each tow, shape (tows,)."""
+        return np.bincount(self.tow, runs, self.size).astype(np.int64)
+
+    def any(self, runs: BoolArray) -> BoolArray:
+        """Whether any run of a tow is marked, shape (tows,)."""
+        return self.count(runs) > 0
+
+    def both_ways(self, runs: BoolArray) -> BoolArray:
+        """Whether runs out and runs back of a tow are marked, shape (tows,)."""
+        return self.any(runs & (self.direction == OUT)) & self.any(runs & (self.direction == BACK))
+
+    def mean(self, values: FloatArray, runs: BoolArray) -> FloatArray:
+        """Mean of a run quantity over the marked runs of each tow; 0 where there are none."""
+        total = np.bincount(self.tow, np.where(runs, values, 0.0), self.size)
+        return np.asarray(total / np.maximum(self.count(runs), 1), dtype=np.float64)
+
+    @cached_property
+    def place(self) -> IntArray:
+        """Rank of each run within its tow: 0, 1, 2, ..., shape (runs,)."""
+        first = np.searchsorted(self.tow, self.tow, side="left")
+        return np.asarray(np.arange(len(self.tow)) - first, dtype=np.int64)
+
+    def by_tow(self, values: FloatArray | BoolArray) -> FloatArray:
+        """A run quantity per tow, shape (tows, most runs of a tow); 0 where there is no run."""
+        place = self.place
+        rows = np.zeros((self.size, int(place.max(initial=0)) + 1))
+        rows[self.tow, place] = values
+        return rows

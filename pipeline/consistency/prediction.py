@@ -1,0 +1,140 @@
+"""A second opinion without towing: Cw from what a tape and a scale say.
+
+ln Cw of boats at a standard speed against ln displacement, length, beam and that speed, with a
+random effect of the type; every boat is predicted from the other boats alone.
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import FloatArray
+from pipeline.consistency import mixed
+from pipeline.consistency.observed import (
+    UNKNOWN_TYPE,
+    Observed,
+    curve_at,
+    ln_cw_variance,
+    newest,
+)
+from pipeline.consistency.reml import Design, Problem
+from pipeline.quantiles import NORMAL, t_quantile
+from pipeline.tables.consistency import PredictedCw, PredictionError
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
+from pipeline.tables.keys import LINE
+
+FEWEST_BOATS_PER_COLUMN: Final = 3
+MEASURES: Final = ("displacement_kg", "waterline_length_m", "beam_m", "standard_speed_m_s")
+
+
+def predicted_cw(observed: Observed) -> pl.DataFrame:
+    """Cw of each boat and crew by its newest tow, and as predicted from all other boats.
+
+    The standard speed is the median declared speed of the type and crew class: known without a
+    tow, and within the speeds at which most curves count. A tow's uncertainty is that of its runs
+    at the standard speed or, where wider, that of its interval, which also knows of the log. A tow
+    disagrees where the difference is more than both 95 % uncertainties together (root of the sum of
+    squares). The variances are estimated once, with all boats.
+
+    Returns:
+        Rows of the table `predicted_cw`; tows without weight, or whose curve does not count at the
+        standard speed, are left out; where the prediction is empty, `reason` says why.
+    """
+    boats = newest(observed)
+    speed = pl.col("declared_speed_m_s").median().over("method", "boat_type", "crew_class")
+    boats = Observed(boats.table.with_columns(speed.alias("standard_speed_m_s")), boats.points)
+    parts = [_predicted(fleet) for _, fleet in boats.groups("method")]
+    return pl.concat([PredictedCw.create_empty(), *parts], how="diagonal")
+
+
+def _predicted(fleet: Observed) -> pl.DataFrame:
+    cw = curve_at(fleet, fleet.column("standard_speed_m_s"))
+    weighed = fleet.table["displacement_kg"].is_not_null().to_numpy()
+    fleet = fleet.take(np.flatnonzero(np.isfinite(cw) & weighed))
+    speed = fleet.column("standard_speed_m_s")
+    cw = curve_at(fleet, speed)
+    variance = ln_cw_variance(fleet, speed)
+    rows = fleet.table.select(
+        "method",
+        "tow_id",
+        *LINE,
+        "boat_type",
+        "standard_speed_m_s",
+        pl.Series("cw_kg_m", cw),
+        pl.Series("cw_sd_ratio", np.sqrt(variance)),
+    )
+    x = _columns(fleet)
+    if fleet.table["fsn_no"].n_unique() < FEWEST_BOATS_PER_COLUMN * (x.shape[1] + 1):
+        return rows.with_columns(reason=pl.lit("few_boats"))
+    try:
+        numbers = _second_opinion(fleet, x, cw, variance)
+    except mixed.NotSettledError:
+        return rows.with_columns(reason=pl.lit("not_settled"))
+    both = NORMAL * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
+    return rows.with_columns(
+        *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items())
+    ).with_columns(disagrees=pl.col("ln_ratio").abs() > both, reason=pl.lit(""))
+
+
+def _second_opinion(
+    fleet: Observed, x: FloatArray, cw: FloatArray, variance: FloatArray
+) -> dict[str, FloatArray]:
+    design = Design.of(x, fleet.table["hull"].to_numpy(), _types(fleet))
+    problem = Problem.of(design, np.log(cw), variance)
+    fit = mixed.fit(problem, (mixed.BOAT, mixed.OTHER))
+    left_out = fit.leave_boats_out()
+    known = np.isfinite(left_out.variance)
+    ratio = np.where(known, left_out.error, np.nan)
+    total = np.where(known, left_out.variance * fit.scale, np.nan)
+    sd = np.sqrt(np.maximum(total - variance, 0.0))
+    half = float(t_quantile(fit.dof)) * sd
+    return {
+        "predicted_cw_kg_m": cw * np.exp(-ratio),
+        "predicted_lo_kg_m": cw * np.exp(-ratio - half),
+        "predicted_hi_kg_m": cw * np.exp(-ratio + half),
+        "predicted_sd_ratio": sd,
+        "ln_ratio": ratio,
+    }
+
+
+def _columns(fleet: Observed) -> FloatArray:
+    """Level and centred logarithms of the measures, without those that add nothing."""
+    kept = np.ones((fleet.table.height, 1))
+    for name in MEASURES:
+        values = np.log(fleet.column(name))
+        rest = values - kept @ np.linalg.lstsq(kept, values)[0] if len(values) else values
+        if len(values) and np.sqrt((rest**2).mean()) > 1e-6:
+            kept = np.column_stack([kept, values - values.mean()])
+    return kept
+
+
+def _types(fleet: Observed) -> list[str]:
+    """The type of each boat; a boat of no type is one by itself."""
+    named = zip(fleet.table["boat_type"], fleet.table["fsn_no"], strict=True)
+    return [f"{UNKNOWN_TYPE}/{fsn}" if t == UNKNOWN_TYPE else t for t, fsn in named]
+
+
+def prediction_error(predicted: pl.DataFrame) -> dy.DataFrame[PredictionError]:
+    """Cross-validated error of the prediction, next to the uncertainty of a tow, per method.
+
+    Args:
+        predicted: rows of `predicted_cw`.
+
+    Returns:
+        Rows of the table `prediction_error`.
+    """
+    known = predicted.drop_nulls("ln_ratio")
+    rows = [
+        {
+            "method": method,
+            "n": group.height,
+            "n_boats": group["fsn_no"].n_unique(),
+            "rmse_ratio": float(np.sqrt((group["ln_ratio"].to_numpy() ** 2).mean())),
+            "tow_sd_ratio": float(np.sqrt((group["cw_sd_ratio"].to_numpy() ** 2).mean())),
+            "share_disagreeing": float(group["disagrees"].to_numpy().mean()),
+        }
+        for (method,), group in known.sort("method").group_by("method", maintain_order=True)
+    ]
+    return frame_of(PredictionError, rows)

@@ -1,0 +1,162 @@
+"""How far two tows of one unaltered boat agree: pairs, repeatability and reproducibility.
+
+ISO 5725 with the season as the laboratory: s_r within a tow, s_R between tows. Which seasons stand
+apart is in `eras`, how the spread divides over boat, season and the rest in `components`.
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from pipeline.arrays import FloatArray
+from pipeline.consistency.components import DISTINCT, WITHIN_TYPE
+from pipeline.consistency.eras import ERAS
+from pipeline.consistency.observed import Observed, bend_of_curve
+from pipeline.quantiles import LEVEL
+from pipeline.tables.consistency import RepeatPairs, Reproducibility
+from pipeline.tables.frames import frame_of
+from pipeline.tables.keys import LINE
+
+ALL_PAIRS: Final = "all"
+
+
+def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Consecutive tows of one boat and crew without an alteration between them.
+
+    The two are compared at the older tow's declared speed, where the older curve was measured, each
+    with its log and load cell as the other boats show them. A boat that took part in its
+    own correction would agree with itself too well. E_n is their difference in units of both 95 %
+    intervals (ISO 13528): above 1 they disagree.
+
+    Returns:
+        Rows of the table `repeat_pairs`.
+    """
+    line = ["method", *LINE]
+    dated = (
+        curves.filter((pl.col("status") != "rejected") & pl.col("cw_kg_m").is_not_null())
+        .join(tows.select("tow_id", "tow_date", "altered"), on="tow_id", maintain_order="left")
+        .with_columns(
+            (0.5 * (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()).alias("half"),
+            (pl.col("cw_others_kg_m") / pl.col("cw_kg_m")).log().fill_null(0.0).alias("by_others"),
+        )
+        .sort(*line, "tow_date", "tow_id")
+    )
+    before = [
+        pl.col(name).shift(1).over(line).alias(f"{name}_before")
+        for name in ("tow_id", "season", "cw_kg_m", "declared_speed_m_s", "half", "by_others")
+    ]
+    pairs = dated.with_columns(before).filter(
+        pl.col("tow_id_before").is_not_null() & ~pl.col("altered")
+    )
+    return (
+        pairs.with_columns(pl.Series("at_old_speed", _cw_at_old_speed(pairs)))
+        .filter(pl.col("at_old_speed") > 0)
+        .with_columns(
+            ln_ratio=(pl.col("at_old_speed") / pl.col("cw_kg_m_before")).log()
+            + pl.col("by_others")
+            - pl.col("by_others_before")
+        )
+        .with_columns(_e_n(), cw_ratio=pl.col("ln_ratio").exp())
+        .select(RepeatPairs.column_names())
+    )
+
+
+def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
+    """New curve at the old declared speed, 0 where that is not below B."""
+    a, cw, v, old = (
+        pairs[name].to_numpy().astype(np.float64)
+        for name in ("a_kg_m", "cw_kg_m", "declared_speed_m_s", "declared_speed_m_s_before")
+    )
+    left = 1.0 - bend_of_curve(a, cw, v) * old**2
+    return np.where(left > 0, a / np.where(left > 0, left, 1.0), 0.0)
+
+
+def _e_n() -> pl.Expr:
+    width = (pl.col("half") ** 2 + pl.col("half_before") ** 2).sqrt()
+    known = width.is_finite() & (width > 0)
+    return pl.when(known).then(pl.col("ln_ratio") / width).alias("e_n")
+
+
+def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
+    """Standard deviation of one tow from repeat pairs, per method and era of the older tow.
+
+    A pair differs by sqrt(2) times the deviation of one tow, so s^2 = sum(d^2) / (2 n), with a
+    chi-squared interval: s_R of ISO 5725-2 with the season as the laboratory. Two pairs that share
+    a tow are correlated by -1/2; with m of these there are n / (1 + m / 2 n) degrees of freedom
+    (Satterthwaite 1946). Beside it s_r: what the scatter of a tow's own runs does to its Cw.
+
+    Args:
+        pairs: rows of `repeat_pairs`.
+        observed: all tows, for the scatter within a tow.
+
+    Returns:
+        Rows of the table `reproducibility`, one per method and scope, also where it has no pairs.
+    """
+    scopes = [(ALL_PAIRS, -9999, 9999), *((era.name, era.first, era.last) for era in ERAS)]
+    rows = []
+    for method in observed.table["method"].unique().sort():
+        own = pairs.filter(pl.col("method") == method)
+        runs = observed.table.filter(pl.col("method") == method)
+        rows += [
+            {"method": method, "scope": name}
+            | _spread(own.filter(pl.col("season_before").is_between(first, last)))
+            | _scatter(runs.filter(pl.col("season").is_between(first, last)))
+            for name, first, last in scopes
+        ]
+    return frame_of(Reproducibility, rows).drop("distinct_categories")
+
+
+def told_apart(reproducibility: pl.DataFrame, components: pl.DataFrame) -> pl.DataFrame:
+    """Adds `distinct_categories`: how many classes of boats of a type the test tells apart.
+
+    1.41 s_boat / s_R (Measurement Systems Analysis, AIAG), with s_boat from `variance_components`
+    within types.
+    """
+    boats = components.filter(pl.col("scope") == WITHIN_TYPE, pl.col("component") == "boat").select(
+        "method", pl.col("sd_ratio").alias("boat_sd_ratio")
+    )
+    return (
+        reproducibility.join(boats, on="method", how="left", maintain_order="left")
+        .with_columns(
+            pl.when(pl.col("sd_ratio") > 0)
+            .then(DISTINCT * pl.col("boat_sd_ratio") / pl.col("sd_ratio"))
+            .alias("distinct_categories")
+        )
+        .drop("boat_sd_ratio")
+    )
+
+
+def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
+    difference = pairs["ln_ratio"].to_numpy()
+    n = len(difference)
+    if n == 0:
+        return {"n_pairs": 0}
+    total = float((difference**2).sum())
+    chained = pairs.join(pairs, left_on="tow_id_before", right_on="tow_id", how="semi").height
+    dof = n / (1.0 + chained / (2.0 * n))
+    low, high = (float(scipy.special.chdtri(dof, 0.5 + end * LEVEL / 2)) for end in (-1, 1))
+    e_n = pairs["e_n"].drop_nulls().to_numpy()
+    return {
+        "n_pairs": n,
+        "sd_ratio": float(np.sqrt(total / (2 * n))),
+        "lo": float(np.sqrt(total / (2 * n) * dof / low)),
+        "hi": float(np.sqrt(total / (2 * n) * dof / high)),
+        "share_within_1pct": float((np.abs(difference) < 0.01).mean()),
+        "share_within_2pct": float((np.abs(difference) < 0.02).mean()),
+        "share_e_n_above_1": float((np.abs(e_n) > 1).mean()) if len(e_n) else None,
+    }
+
+
+def _scatter(tows: pl.DataFrame) -> dict[str, float | int | None]:
+    """Scatter of a single run about its curve, and what it does to the Cw of a tow (s_r)."""
+    if tows.is_empty():
+        return {"n_tows": 0}
+    run = float(tows["run_rss_ratio2"].to_numpy().sum() / tows["run_dof"].to_numpy().sum())
+    unit = float(tows["c0_unit_variance"].to_numpy().mean())
+    return {
+        "n_tows": tows.height,
+        "run_sd_ratio": float(np.sqrt(run)),
+        "within_sd_ratio": float(np.sqrt(run * unit)),
+    }

@@ -1,0 +1,245 @@
+"""Does the bend of a curve follow the speed of the tow? If the hyperbola is true, it does not.
+
+And what a slow tow does to race power: its curve is used at speeds at which it was never towed.
+"""
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline import curve
+from pipeline.arrays import BoolArray, FloatArray
+from pipeline.consistency import mixed
+from pipeline.consistency.homogeneity import height_given_bend, shared_bend
+from pipeline.consistency.observed import (
+    ALL_TYPES,
+    UNKNOWN_TYPE,
+    Observed,
+    counts_at,
+    curve_anywhere,
+    newest,
+    q_at,
+)
+from pipeline.consistency.reml import Design, Problem
+from pipeline.curve import LEAST_MARGIN, VALID_RATIO
+from pipeline.hull import hull_speed_m_s
+from pipeline.quantiles import NORMAL
+from pipeline.races.race import mean_speed_m_s, power_per_rower_w
+from pipeline.tables.consistency import SlowTows, SpeedTrend
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
+from pipeline.tables.keys import LINE
+from pipeline.tables.row import Row
+
+SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
+"""Power per rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
+2015). Women tow at 40-55 W instead of 70-90 W: the same share of their range (inferred)."""
+
+BORDERLINE_POWER_W: Final = {"H": 70.0, "D": 40.0}
+RACED_POWER_W: Final = {"H": 100.0, "D": 57.0}
+"""The upper end of "60-70 Watt", and "meer dan 100 Watt" in a race; women's inferred alike."""
+
+LOW, MIDDLE, HIGH = "low", "middle", "high"
+MIDDLE_RATIO: Final = (0.67, 0.80)
+"""Tow speed / hull speed: between these "the curve is relatively flat", below it the wave
+resistance rises (Cw-kromme, R. Pot 2015, "Totale weerstand")."""
+
+ADVANTAGED, DISADVANTAGED = "advantaged", "disadvantaged"
+TEXT_SAYS: Final = {
+    (HIGH, "faster"): DISADVANTAGED,
+    (HIGH, "slower"): DISADVANTAGED,
+    (MIDDLE, "faster"): DISADVANTAGED,
+    (MIDDLE, "slower"): ADVANTAGED,
+    (LOW, "faster"): ADVANTAGED,
+}
+"""Who is wronged by a race faster or slower than the curve counts (Cw-kromme, R. Pot 2015, "Effect
+van verkeerde snelheid kiezen"); of a low tow raced slower the text says nothing."""
+
+FEWEST_BOATS: Final = 4
+FEWEST_OTHERS: Final = 2
+ENDS: Final = ("", "_lo", "_hi")
+
+
+def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> BoolArray:
+    """Whether a tow was made with less power per rower than its class's limit, shape (rows,)."""
+    limit = pl.col("crew_class").replace_strict(limits, return_dtype=pl.Float64)
+    slow = table.select((pl.col("power_w") < limit).fill_null(value=False)).to_series()
+    return slow.to_numpy()
+
+
+def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
+    """Trend of the bend q at a type's standard speed with the speed of the tow.
+
+    Per type and over all types, each about its own level. The trend is per unit of ln v0; 0.1 of
+    it is what 10 % of tow speed does to q.
+
+    Returns:
+        Rows of the table `speed_trend`.
+    """
+    boats = newest(observed)
+    rows: list[Row] = []
+    to_fit: list[tuple[Row, Problem]] = []
+    for (method,), fleet in boats.groups("method"):
+        typed = {t: own for (t,), own in fleet.rows_by("boat_type") if t != UNKNOWN_TYPE}
+        every = np.concatenate([np.zeros(0, np.int64), *typed.values()])
+        for boat_type, own in [*typed.items(), (ALL_TYPES, every)]:
+            facts, problem = _trend(fleet.take(own))
+            rows.append({"method": method, "boat_type": boat_type} | facts)
+            if problem is not None:
+                to_fit.append((rows[-1], problem))
+    fits = mixed.fit_all([problem for _, problem in to_fit], (mixed.BOAT,))
+    for (row, _), fit in zip(to_fit, fits, strict=True):
+        if fit is None:
+            row["reason"] = "not_settled"
+            continue
+        slope, lo, hi = (float(e[-1]) for e in fit.coefficients())
+        row |= {"slope": slope, "slope_lo": lo, "slope_hi": hi}
+    return frame_of(SpeedTrend, rows)
+
+
+def _trend(boats: Observed) -> tuple[Row, Problem | None]:
+    """How many tows a trend is of, and its problem; without one, why."""
+    median = pl.col("declared_speed_m_s").median().over("boat_type")
+    speed = boats.table.select(median).to_series().to_numpy()
+    q, unit = q_at(boats, speed)
+    known = np.isfinite(q)
+    hull, boat_type = (boats.table[name].to_numpy()[known] for name in ("hull", "boat_type"))
+    types = (boat_type[:, None] == np.unique(boat_type)).astype(np.float64)
+    n_boats = boats.table["fsn_no"].to_frame().filter(pl.Series(known)).n_unique()
+    counts = {"n": len(hull), "n_boats": n_boats}
+    if n_boats < max(FEWEST_BOATS, types.shape[1] + 2):
+        return counts | {"reason": "few_boats"}, None
+    x = np.log(boats.column("declared_speed_m_s") / speed)[known]
+    centred = x - types @ np.linalg.lstsq(types, x)[0]
+    if np.abs(centred).max() < 1e-9:
+        return counts | {"reason": "equal_values"}, None
+    variance = unit * boats.column("run_sd_ratio") ** 2
+    design = Design.of(np.column_stack([types, centred]), hull)
+    return counts | {"reason": ""}, Problem.of(design, q[known], variance[known])
+
+
+def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
+    """The fastest race of each boat and crew between this tow and its next, per method and tow.
+
+    Args:
+        observed: all tows.
+        results: `race_date, distance_m, stream_m, rowing_time_s` and the line.
+
+    Returns:
+        `method, tow_id, races, raced_speed_m_s` (through the water).
+    """
+    through_water = results["distance_m"] - results["stream_m"].fill_null(0.0)
+    speed = mean_speed_m_s(through_water, results["rowing_time_s"])
+    races = results.select(*LINE, "race_date", pl.Series("raced_speed_m_s", speed))
+    tows = observed.table.select("method", "tow_id", "tow_date", *LINE)
+    after = pl.col("race_date") >= pl.col("tow_date")
+    last = pl.col("tow_date") == pl.col("tow_date").max().over("method", *LINE, "race_date")
+    return (
+        tows.join(races, on=LINE, maintain_order="left")
+        .filter(after)
+        .filter(last)
+        .group_by("method", "tow_id", maintain_order=True)
+        .agg(pl.len().cast(pl.Int32).alias("races"), pl.col("raced_speed_m_s").max())
+    )
+
+
+def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
+    """Tows whose curve is used where it was not measured, and what that does to race power.
+
+    Towed with little power, or raced at speeds at which the curve does not count. The tow's own
+    curve is compared with the curve of the same runs that has the bend of the type's other boats,
+    at the speed that its crew will really row, the median declared speed of the type's other crews
+    of that class (inferred), and at the fastest speed that it raced. The interval is that of the
+    tow's own bend alone.
+
+    Args:
+        observed: all tows.
+        results: as `raced` takes them.
+
+    Returns:
+        Rows of the table `slow_tows`; the ratios are empty where the type has no other boats.
+    """
+    table = observed.table.join(
+        raced(observed, results), on=["method", "tow_id"], how="left", maintain_order="left"
+    )
+    tows = Observed(table, observed.points)
+    slow = is_slow(table)
+    raced_speed = table["raced_speed_m_s"].to_numpy().astype(np.float64)
+    beyond = np.isfinite(raced_speed) & ~counts_at(tows, raced_speed)
+    chosen = tows.take(np.flatnonzero(is_slow(table, BORDERLINE_POWER_W) | beyond))
+    rowed, bend = _of_others(chosen, newest(tows.take(np.flatnonzero(~slow))))
+    declared = chosen.column("declared_speed_m_s")
+    raced_speed = chosen.column("raced_speed_m_s")
+    raced_cw = curve_anywhere(chosen, raced_speed)
+    raced_power = power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))
+    columns = {"rowed_speed_m_s": rowed, "raced_power_w": raced_power}
+    for at, speed in (("rowed", rowed), ("raced", raced_speed)):
+        ends = _power_ratio(chosen, bend, speed)
+        columns |= {f"power_ratio_{at}{end}": ends[i] for i, end in enumerate(ENDS)}
+    ratio = declared / hull_speed_m_s(chosen.column("waterline_length_m"))
+    case = speed_case(ratio)
+    high = chosen.table["crew_class"].replace_strict(RACED_POWER_W, return_dtype=pl.Float64)
+    return (
+        chosen.table.with_columns(
+            *(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in columns.items()),
+            pl.Series("slow", is_slow(chosen.table), pl.Boolean),
+            pl.Series("tow_hull_ratio", ratio, pl.Float64),
+            pl.Series("speed_case", case, pl.String),
+            pl.Series("text_says", _text_says(case, raced_speed / declared), pl.String),
+        )
+        .with_columns((pl.col("raced_power_w") > high).alias("raced_high"))
+        .select(SlowTows.column_names())
+        .sort("method", "tow_id")
+    )
+
+
+def _of_others(chosen: Observed, others: Observed) -> tuple[FloatArray, FloatArray]:
+    """Of a type's other boats: the speed they row and the s they share; NaN where too few."""
+    rowed, bend = np.full((2, chosen.table.height), np.nan)
+    by_type = dict(others.rows_by("method", "boat_type"))
+    for key, rows in chosen.rows_by("method", "boat_type"):
+        own = others.take(by_type.get(key, np.zeros(0, np.int64)))
+        if key[1] != UNKNOWN_TYPE and own.table["fsn_no"].n_unique() >= FEWEST_OTHERS:
+            rowed[rows] = _rowed_speed(chosen.table["crew_class"][rows], own)
+            bend[rows] = shared_bend(own)
+    return rowed, bend
+
+
+def speed_case(tow_hull_ratio: FloatArray) -> list[str]:
+    """Which of the three cases of Cw-kromme each tow is, by its speed / hull speed."""
+    low, high = MIDDLE_RATIO
+    return [LOW if r < low else MIDDLE if r < high else HIGH for r in tow_hull_ratio]
+
+
+def _text_says(case: list[str], raced_ratio: FloatArray) -> list[str | None]:
+    """What the text expects of a race at that part of the tow speed; null where it counts."""
+    slowest, fastest = VALID_RATIO
+    expected: list[str | None] = []
+    for one, ratio in zip(case, raced_ratio, strict=True):
+        pace = "faster" if ratio > fastest else "slower" if ratio < slowest else ""
+        expected.append(TEXT_SAYS.get((one, pace)))
+    return expected
+
+
+def _rowed_speed(crew_class: pl.Series, others: Observed) -> FloatArray:
+    """Median declared speed of the others of the same crew class, NaN without any."""
+    median = others.table.group_by("crew_class", maintain_order=True).agg(
+        pl.col("declared_speed_m_s").median()
+    )
+    by_class = dict(median.iter_rows())
+    return np.array([by_class.get(c, np.nan) for c in crew_class], dtype=np.float64)
+
+
+def _power_ratio(tows: Observed, s_s2_m2: FloatArray, speed_m_s: FloatArray) -> FloatArray:
+    """Power by the own curve / by the shared bend with its interval, shape (3, rows)."""
+    shared = curve.cw(height_given_bend(tows.points, s_s2_m2), s_s2_m2, speed_m_s)
+    own_s, q = tows.column("s_s2_m2"), tows.column("q")
+    own = curve.cw(tows.column("c0_kg_m") / (1.0 + q), own_s, speed_m_s)
+    known = np.isfinite(shared) & np.isfinite(own)
+    ratio = np.where(known, own, np.nan) / np.where(known, shared, 1.0)
+    x = (speed_m_s / tows.column("declared_speed_m_s")) ** 2 - 1.0
+    slope = x / np.maximum(1.0 - q * x, LEAST_MARGIN)
+    sd = np.abs(slope) * np.sqrt(tows.column("q_unit_variance")) * tows.column("run_sd_ratio")
+    return np.stack([ratio, ratio * np.exp(-NORMAL * sd), ratio * np.exp(NORMAL * sd)])

@@ -1,0 +1,580 @@
+"""The hyperbola Cw(v) = A / (1 - (v/B)^2): fitting many curves at once, and their intervals.
+
+Belongs here: the least-squares fit through run points, the cap on B, what scatter of the points
+says about Cw and B, and the closed-form re-base of a curve. Does not belong here: how a run point
+is made, which runs count, hull speed, and whether a curve is acceptable.
+
+A and B are what the register prints, but they are nearly collinear (correlation 0.98). Inside, a
+curve is stored as A and s = 1/B^2. s <= 0 is an ordinary flat or falling curve: it has no B. For
+errors a curve is described by C0 = Cw(v0) and q = r / (1 - r) with r = s v0^2, which are nearly
+independent: Cw(v) = C0 / (1 - q ((v/v0)^2 - 1)).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.errors import BrokenPromiseError
+from pipeline.quantiles import t_quantile
+
+LEAST_MARGIN: Final = 0.05
+"""1 - (v/B)^2 is kept above this where a speed is only supposed: beyond B there is no curve."""
+
+VALID_RATIO: Final = (0.85, 1.15)
+"""Speeds at which a curve counts, as ratios of its declared speed (Cw-kromme, R. Pot 2015)."""
+
+CHUNK_FITS: Final = 8192
+"""Fits worked on at a time, so that the working arrays stay in the processor's cache."""
+
+MAX_ITERATIONS: Final = 100
+TOLERANCE: Final = 1e-13
+"""A fit is done when a step would move the fitted points by less than this share of the data."""
+
+MIN_SPREAD: Final = 1e-6
+"""Relative spread of v^2 below which the speeds count as one speed and determine no bend."""
+
+WIDEST_LOG_INTERVAL: Final = 100.0
+"""Half widths are cut at a factor e^100, which says nothing any more, to keep bounds finite."""
+
+BISECTIONS: Final = 55
+"""Halvings of the search interval for a bound of B: to the last bit of a float64."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """Run points of a batch of curves.
+
+    Attributes:
+        speed_m_s: (n_fits, n_points) speed through water, positive where used.
+        cw_kg_m: resistance coefficient, likewise.
+        used: whether the point counts; the others may hold anything.
+
+    Raises:
+        BrokenPromiseError: shapes differ, or a used point is not finite and positive.
+    """
+
+    speed_m_s: FloatArray
+    cw_kg_m: FloatArray
+    used: BoolArray
+
+    def __post_init__(self) -> None:
+        shapes = {self.speed_m_s.shape, self.cw_kg_m.shape, self.used.shape}
+        if len(shapes) != 1 or self.speed_m_s.ndim != 2 or self.speed_m_s.shape[1] == 0:
+            raise BrokenPromiseError(
+                "Points need three arrays of one shape (n_fits, n_points), not {}.", shapes
+            )
+        for name, values in (("speed_m_s", self.speed_m_s), ("cw_kg_m", self.cw_kg_m)):
+            unsound = self.used & ~(np.isfinite(values) & (values > 0))
+            if unsound.any():
+                faulty = np.flatnonzero(unsound.any(axis=1))
+                raise BrokenPromiseError(
+                    "{}: {} curves use a point that is not a positive number, the first is curve "
+                    "{}. Set such points to unused beforehand.",
+                    name,
+                    faulty.size,
+                    faulty[0],
+                )
+
+    @classmethod
+    def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:
+        """Points from anything array-like; one curve may be one row; by default all are used."""
+        speed = np.atleast_2d(np.asarray(speed_m_s, dtype=np.float64))
+        cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))
+        mask = np.ones(speed.shape, bool) if used is None else np.atleast_2d(np.asarray(used, bool))
+        return cls(speed, cw, mask)
+
+    @classmethod
+    def stack(cls, parts: Sequence[Self]) -> Self:
+        """The points of several batches, all with the same number of points per curve."""
+        return cls(
+            np.concatenate([part.speed_m_s for part in parts]),
+            np.concatenate([part.cw_kg_m for part in parts]),
+            np.concatenate([part.used for part in parts]),
+        )
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Fitted curves, one per row of the points; every array has shape (n_fits,), nothing is NaN.
+
+    Attributes:
+        a_kg_m: A, resistance coefficient at v = 0.
+        s_s2_m2: s = 1/B^2; zero or negative for a flat or falling curve.
+        rss_kg2_m2: residual sum of squares of the used points.
+        n_points: number of used points.
+        converged: False where the points determine no curve (fewer than two speeds, force that
+            falls with speed, B prescribed below a measured speed), or the search for it did not
+            come to rest. A and s are then those of the flat curve through the mean, A = 0 without
+            any point.
+        b_capped: True where B was lowered to its cap.
+    """
+
+    a_kg_m: FloatArray
+    s_s2_m2: FloatArray
+    rss_kg2_m2: FloatArray
+    n_points: IntArray
+    converged: BoolArray
+    b_capped: BoolArray
+
+    @property
+    def b_determined(self) -> BoolArray:
+        """Whether the curve has a finite B; `b_interval` says how well it is known."""
+        return self.converged & (self.s_s2_m2 > 0)
+
+    @property
+    def b_m_s(self) -> FloatArray:
+        """B where determined, infinite where not."""
+        return _b_of_s(np.where(self.b_determined, self.s_s2_m2, 0.0))
+
+    def cw_at(self, speed_m_s: ArrayLike) -> FloatArray:
+        """Cw [kg/m] of every curve at its own speed, shape (n_fits,); infinite from B on."""
+        return cw(self.a_kg_m, self.s_s2_m2, speed_m_s)
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Scatter of single run points about their curve: own residuals or pooled over a season.
+
+    Attributes:
+        variance_kg2_m2: (n_fits,) variance of a point.
+        dof: (n_fits,) degrees of freedom it rests on, infinite if known. At 0 nothing is known
+            of the scatter and every interval is unbounded, whatever the variance says.
+    """
+
+    variance_kg2_m2: FloatArray
+    dof: FloatArray
+
+
+@dataclass(frozen=True)
+class Covariance:
+    """Covariance of (C0, q) of every curve; shape (n_fits,).
+
+    A systematic component (say the season's log factor) is a covariance of the same two numbers
+    at the same reference speed, and adds to it term by term.
+
+    Attributes:
+        reference_speed_m_s: v0, the speed that C0 and q belong to.
+        c0_variance_kg2_m2, q_variance: infinite where they are not known.
+        c0_q_covariance_kg_m: 0 where it is not known.
+    """
+
+    reference_speed_m_s: FloatArray
+    c0_variance_kg2_m2: FloatArray
+    q_variance: FloatArray
+    c0_q_covariance_kg_m: FloatArray
+
+
+class Interval(NamedTuple):
+    """Bounds of every curve, shape (n_fits,). A missing upper bound is infinite."""
+
+    lo: FloatArray
+    hi: FloatArray
+
+
+# The model
+
+
+def cw(a_kg_m: ArrayLike, s_s2_m2: ArrayLike, speed_m_s: ArrayLike) -> FloatArray:
+    """Cw [kg/m] on the hyperbola A / (1 - s v^2); arguments broadcast; infinite from B on."""
+    a, s, v = (np.asarray(x, dtype=np.float64) for x in (a_kg_m, s_s2_m2, speed_m_s))
+    denominator = 1.0 - s * v * v
+    valid = denominator > 0
+    return np.where(valid, a / np.where(valid, denominator, 1.0), np.inf)
+
+
+def s_of_b(b_m_s: ArrayLike) -> FloatArray:
+    """Gives s = 1/B^2 [s2/m2] of a B [m/s]; 0 for an infinite B."""
+    b = np.asarray(b_m_s, dtype=np.float64)
+    return 1.0 / (b * b)
+
+
+def to_c0_q(
+    a_kg_m: ArrayLike, s_s2_m2: ArrayLike, reference_speed_m_s: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """C0 = Cw(v0) [kg/m] and q = r / (1 - r), r = s v0^2; both infinite if v0 is not below B."""
+    s, v0 = np.asarray(s_s2_m2, dtype=np.float64), np.asarray(reference_speed_m_s, dtype=np.float64)
+    # (1 - s v^2) = 1 / (1 + q), so q + 1 is the hyperbola with A = 1.
+    return cw(a_kg_m, s, v0), cw(1.0, s, v0) - 1.0
+
+
+def from_c0_q(
+    c0_kg_m: ArrayLike, q: ArrayLike, reference_speed_m_s: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """A [kg/m] and s [s2/m2] from C0 and q > -1 at the reference speed; inverse of `to_c0_q`."""
+    c0, ratio = np.asarray(c0_kg_m, dtype=np.float64), np.asarray(q, dtype=np.float64)
+    v0 = np.asarray(reference_speed_m_s, dtype=np.float64)
+    return c0 / (1.0 + ratio), ratio / (1.0 + ratio) / (v0 * v0)
+
+
+def rebase(
+    a_kg_m: ArrayLike, b_m_s: ArrayLike, log_factor: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """A [kg/m] and B [m/s] of a curve whose every speed has to be multiplied by the log factor.
+
+    A pure scale error of the log maps hyperbolas onto hyperbolas: A / y^2 and B y, with A B^2
+    unchanged. Exact as long as no wind correction depends on the speed. An infinite B stays so.
+    """
+    a, b, y = (np.asarray(x, dtype=np.float64) for x in (a_kg_m, b_m_s, log_factor))
+    return a / (y * y), b * y
+
+
+# The fit
+
+
+def fit(points: Points) -> Curves:
+    """Least squares in Cw through the used points, for all curves at once.
+
+    Variable projection (Golub & Pereyra 1973): for a given bend the height is linear, so only the
+    bend is searched, by damped Gauss-Newton steps. The bend is taken as q at the root mean square
+    speed: the same minimum as in s, but with height and bend nearly independent. A curve's result
+    does not depend on which others are in the batch. `converged` says where there is none.
+    """
+    curves = _flat(points)
+    for start in range(0, len(curves.a_kg_m), CHUNK_FITS):
+        chunk = slice(start, start + CHUNK_FITS)
+        speed, cw_kg_m, used = points.speed_m_s[chunk], points.cw_kg_m[chunk], points.used[chunk]
+        _fit_chunk(speed, cw_kg_m, used, curves, start)
+    return curves
+
+
+def fit_given_b(points: Points, b_m_s: ArrayLike) -> Curves:
+    """Least squares for A alone, with B given per curve.
+
+    Args:
+        points: run points of n_fits curves.
+        b_m_s: (n_fits,) or one for all; infinite for a flat curve. Where it is not above every
+            used speed there is no curve (`converged` is False).
+    """
+    s = np.broadcast_to(s_of_b(b_m_s), points.used.shape[:1])
+    return _fit_given_s(points, s)
+
+
+def fit_capped(points: Points, free: Curves, b_cap_m_s: ArrayLike) -> Curves:
+    """Least squares with B at most its cap; A is fitted again where the cap works.
+
+    A missing B (s <= 0) counts as infinitely large and is capped too: the cap used by the
+    federation is three times hull speed (presentation of 24 January 2015).
+
+    Args:
+        points: run points of n_fits curves.
+        free: their free fit (`fit`).
+        b_cap_m_s: (n_fits,) or one for all; infinite caps only at the flat curve.
+    """
+    s_min = np.broadcast_to(s_of_b(b_cap_m_s), free.s_s2_m2.shape)
+    too_flat = free.converged & (free.s_s2_m2 < s_min)
+    capped = _fit_given_s(points, s_min)
+    chosen = _where(too_flat, capped, free)
+    return replace(chosen, b_capped=too_flat & capped.converged)
+
+
+def _where(chosen: BoolArray, one: Curves, other: Curves) -> Curves:
+    """The chosen curves of the one, and those of the other elsewhere."""
+    return Curves(
+        *(
+            np.where(chosen, getattr(one, field.name), getattr(other, field.name))
+            for field in fields(Curves)
+        )
+    )
+
+
+def _flat(points: Points) -> Curves:
+    """Flat curves through the means, marked as not converged: what is left without a fit."""
+    c = np.where(points.used, points.cw_kg_m, 0.0)
+    n = points.used.sum(axis=1)
+    mean = c.sum(axis=1) / np.maximum(n, 1)
+    residual = np.where(points.used, c - mean[:, None], 0.0)
+    return Curves(
+        a_kg_m=mean,
+        s_s2_m2=np.zeros_like(mean),
+        rss_kg2_m2=(residual * residual).sum(axis=1),
+        n_points=n,
+        converged=np.zeros(mean.shape, bool),
+        b_capped=np.zeros(mean.shape, bool),
+    )
+
+
+def _fit_given_s(points: Points, s: FloatArray) -> Curves:
+    flat = _flat(points)
+    rss, a, valid = _profile(_arrange(points.speed_m_s, points.cw_kg_m, points.used), s)
+    valid &= flat.n_points > 0
+    return _where(valid, replace(flat, a_kg_m=a, s_s2_m2=s, rss_kg2_m2=rss, converged=valid), flat)
+
+
+class _Arranged(NamedTuple):
+    """Points turned to (n_points, n_fits), 0 where not used.
+
+    Sums over points then run along whole rows: fast, and always in the same order.
+    """
+
+    u: FloatArray  # v^2
+    c: FloatArray  # Cw
+    w: FloatArray  # 1 where used
+
+
+def _arrange(speed: FloatArray, cw_kg_m: FloatArray, used: BoolArray) -> _Arranged:
+    v = np.where(used, speed, 0.0)
+    c = np.where(used, cw_kg_m, 0.0)
+    u, c, w = (np.ascontiguousarray(x.T, dtype=np.float64) for x in (v * v, c, used))
+    return _Arranged(u, c, w)
+
+
+def _profile(arranged: _Arranged, s: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Residual sum of squares and best A for a given s, and whether s leaves all points below B."""
+    u, c, w = arranged
+    denominator = 1.0 - s * u
+    below_b = denominator > 0
+    g = w / np.where(below_b, denominator, 1.0)
+    gg = _sum(g * g)
+    a = _sum(g * c) / np.where(gg > 0, gg, 1.0)
+    residual = c - a * g
+    return _sum(residual * residual), a, np.asarray(below_b.all(axis=0))
+
+
+def _fit_chunk(
+    speed: FloatArray, cw_kg_m: FloatArray, used: BoolArray, curves: Curves, start: int
+) -> None:
+    """Fit one chunk and write what was solved into `curves` from row `start` on."""
+    u, c, w = _arrange(speed, cw_kg_m, used)
+    n = _sum(w)
+    u_mean = _sum(u) / np.maximum(n, 1.0)
+    z = w * (u / np.where(u_mean > 0, u_mean, 1.0) - 1.0)
+    solvable = np.flatnonzero((n >= 2) & (_sum(z * z) > n * MIN_SPREAD**2))
+    if not solvable.size:
+        return
+    q, c0, rss, converged = _gauss_newton(*(x.take(solvable, axis=1) for x in (z, c, w)))
+    solved = solvable[converged]
+    a, s = from_c0_q(c0[converged], q[converged], np.sqrt(u_mean[solved]))
+    rows = start + solved
+    curves.a_kg_m[rows] = a
+    curves.s_s2_m2[rows] = s
+    curves.rss_kg2_m2[rows] = rss[converged]
+    curves.converged[rows] = True
+
+
+class _State(NamedTuple):
+    """Where a search has come to: bend, best height there, and the undamped next step."""
+
+    q: FloatArray
+    c0: FloatArray
+    rss: FloatArray
+    step: FloatArray
+    movement: FloatArray  # length of that step in the space of the fitted points, kg/m
+
+
+def _gauss_newton(
+    z: FloatArray, c: FloatArray, w: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Minimise over q; z = (v/v_pivot)^2 - 1, Cw and weights (1 or 0) are (n_points, n_fits).
+
+    The bend stays between q = -1 (A infinite, s = -infinity) and the q that puts B on the fastest
+    point: a step goes at most half way to either, and is halved until the sum of squares falls.
+    """
+    n_fits = z.shape[1]
+    q_out, c0_out, rss_out = np.zeros(n_fits), np.zeros(n_fits), np.zeros(n_fits)
+    converged = np.zeros(n_fits, bool)
+    upper = 1.0 / z.max(axis=0)
+    cc = _sum(c * c)
+    open_fits = np.arange(n_fits)
+    state = _evaluate(np.clip(_start(z, c), -0.9, 0.9 * upper), z, c, w)
+    damping = np.ones(n_fits)
+    for _ in range(MAX_ITERATIONS):
+        done = state.movement <= TOLERANCE * np.sqrt(cc)
+        if done.any():
+            rows = open_fits[done]
+            q_out[rows], c0_out[rows] = state.q[done], state.c0[done]
+            rss_out[rows], converged[rows] = state.rss[done], True
+            going = np.flatnonzero(~done)
+            if not going.size:
+                break
+            open_fits, damping = open_fits[going], damping[going]
+            upper, cc = upper[going], cc[going]
+            z, c, w = (x.take(going, axis=1) for x in (z, c, w))
+            state = _State(*(x[going] for x in state))
+        trial_q = np.maximum(state.q + damping * state.step, 0.5 * (state.q - 1.0))
+        trial = _evaluate(np.minimum(trial_q, 0.5 * (state.q + upper)), z, c, w)
+        # The slack lets the last steps pass, whose gain is below the rounding of the sum.
+        better = trial.rss <= state.rss + TOLERANCE * cc
+        damping = np.where(better, 1.0, 0.5 * damping)
+        if better.all():
+            state = trial
+        else:
+            state = _State(*(np.where(better, t, old) for t, old in zip(trial, state, strict=True)))
+    return q_out, c0_out, rss_out, converged
+
+
+def _start(z: FloatArray, c: FloatArray) -> FloatArray:
+    """Bend of the straight line 1/Cw = (1 - q z) / C0, weighted with Cw^4 to act as a fit in Cw."""
+    c3 = c * c * c
+    c4 = c3 * c
+    weight = _sum(c4)
+    z_mean = _sum(c4 * z) / weight
+    dz = z - z_mean
+    slope = _sum(c3 * dz) / _sum(c4 * dz * dz)
+    intercept = _sum(c3) / weight - slope * z_mean
+    return np.where(intercept > 0, -slope / np.where(intercept > 0, intercept, 1.0), 0.0)
+
+
+def _evaluate(q: FloatArray, z: FloatArray, c: FloatArray, w: FloatArray) -> _State:
+    """Project out the height at bend q and take the Gauss-Newton step of what remains."""
+    g = w / (1.0 - q * z)
+    gg = _sum(g * g)
+    c0 = _sum(g * c) / gg
+    residual = c - c0 * g
+    tangent = z * g * g
+    tangent -= g * (_sum(g * tangent) / gg)
+    tt = _sum(tangent * tangent)
+    tr = _sum(tangent * residual)
+    return _State(q, c0, _sum(residual * residual), tr / (c0 * tt), np.abs(tr) / np.sqrt(tt))
+
+
+def _sum(x: FloatArray) -> FloatArray:
+    """Sum over points (axis 0), one after the other: the same to the bit in any batch.
+
+    NumPy adds rows one after the other, but the numbers of a single column in pairs.
+    """
+    return np.asarray(np.add.reduce(x) if x.shape[1] > 1 else x.cumsum(axis=0)[-1])
+
+
+# Intervals
+
+
+def own_scatter(curves: Curves) -> Scatter:
+    """Scatter of a curve's own points about it, with n - 2 degrees of freedom."""
+    dof = np.maximum(curves.n_points - 2, 0).astype(np.float64)
+    variance = np.where(dof > 0, curves.rss_kg2_m2 / np.maximum(dof, 1.0), 0.0)
+    return Scatter(variance, dof)
+
+
+def covariance(
+    points: Points, curves: Curves, scatter: Scatter, reference_speed_m_s: ArrayLike
+) -> Covariance:
+    """Covariance of (C0, q) that follows from the scatter of the points: variance (J'J)^-1.
+
+    B counts as free; for a capped curve the result is therefore too wide rather than too narrow.
+
+    Args:
+        points: run points the curves were fitted to.
+        scatter: own or pooled scatter of a point.
+        reference_speed_m_s: v0, (n_fits,) or one for all; usually the declared speed.
+    """
+    v0 = np.broadcast_to(np.asarray(reference_speed_m_s, dtype=np.float64), curves.a_kg_m.shape)
+    height, bend = _sensitivities(curves, v0[:, None], points.speed_m_s, points.used)
+    hh, hb, bb = ((x * y).sum(axis=1) for x, y in ((height, height), (height, bend), (bend, bend)))
+    determinant = hh * bb - hb * hb
+    known = curves.converged & (scatter.dof > 0) & (determinant > 0)
+    unit = np.where(known, scatter.variance_kg2_m2 / np.where(known, determinant, 1.0), 0.0)
+    return Covariance(
+        reference_speed_m_s=v0,
+        c0_variance_kg2_m2=np.where(known, unit * bb, np.inf),
+        q_variance=np.where(known, unit * hh, np.inf),
+        c0_q_covariance_kg_m=np.where(known, -unit * hb, 0.0),
+    )
+
+
+def cw_interval(
+    curves: Curves, errors: Covariance, dof: ArrayLike, speed_m_s: ArrayLike
+) -> Interval:
+    """95 % interval of Cw [kg/m] at one speed per curve, from the covariance of (C0, q).
+
+    Taken on the logarithm, since errors of speed and force act as factors; so it is positive. It
+    runs from 0 to infinity where the covariance is not known or the speed is not below B.
+
+    Args:
+        errors: covariance of (C0, q): scatter alone, or with systematic components added.
+        dof: (n_fits,) degrees of freedom of the t-quantile; infinite for a normal quantile.
+        speed_m_s: (n_fits,) or one for all; any speed, not only the reference speed.
+    """
+    v0 = errors.reference_speed_m_s
+    speed = np.broadcast_to(np.asarray(speed_m_s, dtype=np.float64), v0.shape)
+    centre = curves.cw_at(speed)
+    known = np.isfinite(errors.c0_variance_kg2_m2) & np.isfinite(centre)
+    height, bend = _sensitivities(curves, v0, speed, known)
+    variance = (
+        height * height * np.where(known, errors.c0_variance_kg2_m2, 0.0)
+        + 2.0 * height * bend * errors.c0_q_covariance_kg_m
+        + bend * bend * np.where(known, errors.q_variance, 0.0)
+    )
+    safe_centre = np.where(known, centre, 1.0)
+    sd_ratio = np.sqrt(np.maximum(variance, 0.0)) / safe_centre
+    half_width = np.where(known, _t_quantile(dof) * sd_ratio, 0.0)
+    factor = np.exp(np.minimum(half_width, WIDEST_LOG_INTERVAL))
+    return Interval(
+        np.where(known, safe_centre / factor, 0.0), np.where(known, safe_centre * factor, np.inf)
+    )
+
+
+def b_interval(points: Points, curves: Curves, scatter: Scatter) -> Interval:
+    """95 % interval of B [m/s] by profile likelihood: every B whose fit is not significantly worse.
+
+    The set {s: RSS(s) - RSS_min <= t^2 variance}, the standard answer where a parameter may not be
+    identifiable (Raue et al. 2009). The upper bound is infinite ("none") where a flat curve is
+    among them; the lower bound too where Cw falls so clearly that no finite B is. Without any
+    knowledge of the scatter every B above the fastest point is possible.
+
+    Args:
+        points: run points the curves were fitted to.
+        curves: their free fit (`fit`): a capped curve is not the minimum.
+        scatter: own or pooled scatter of a point.
+    """
+    known = curves.converged & (scatter.dof > 0)
+    quantile = _t_quantile(scatter.dof)
+    increase = np.where(known, quantile * quantile * scatter.variance_kg2_m2, np.inf)
+    limit = curves.rss_kg2_m2 + increase
+    fastest = np.where(points.used, points.speed_m_s, 0.0).max(axis=1, initial=0.0)
+    s_edge = np.where(fastest > 0, 1.0 / np.where(fastest > 0, fastest, 1.0) ** 2, np.inf)
+    best = np.where(curves.converged, curves.s_s2_m2, 0.0)
+    arranged = _arrange(points.speed_m_s, points.cw_kg_m, points.used)
+    s_hi = _last_below(arranged, best, np.where(known, s_edge, best), limit)
+    s_hi = np.where(known, s_hi, s_edge)
+    s_lo = _last_below(arranged, best, np.minimum(best, 0.0), limit)
+    b_lo = np.where(fastest > 0, _b_of_s(s_hi), 0.0)
+    return Interval(b_lo, np.where(known, _b_of_s(s_lo), np.inf))
+
+
+def _b_of_s(s: FloatArray) -> FloatArray:
+    positive = s > 0
+    return np.where(positive, 1.0 / np.sqrt(np.where(positive, s, 1.0)), np.inf)
+
+
+def _sensitivities(
+    curves: Curves, v0: FloatArray, speed: FloatArray, wanted: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """dCw/dC0 and dCw/dq at a speed, 0 where not wanted or where v0 or the speed is not below B.
+
+    Written with Cw(v)/C0 = 1 / (1 - q x), x = (v/v0)^2 - 1; shapes as `speed`.
+    """
+    extra_axes = (...,) + (None,) * (speed.ndim - 1)
+    a, s = curves.a_kg_m[extra_axes], curves.s_s2_m2[extra_axes]
+    v = np.where(wanted, speed, 0.0)
+    c0, c = cw(a, s, v0), cw(a, s, v)
+    valid = wanted & np.isfinite(c0) & np.isfinite(c) & (c0 > 0)
+    height = np.where(valid, np.where(valid, c, 0.0) / np.where(valid, c0, 1.0), 0.0)
+    c0 = np.where(valid, c0, 0.0)
+    return height, c0 * height * height * ((v / v0) ** 2 - 1.0) * valid
+
+
+def _t_quantile(dof: ArrayLike) -> FloatArray:
+    """Two-sided t-quantile; 0 degrees of freedom give that of 1: callers treat them apart."""
+    return t_quantile(np.maximum(dof, 1.0))
+
+
+def _last_below(
+    arranged: _Arranged, inside: FloatArray, outside: FloatArray, limit: FloatArray
+) -> FloatArray:
+    """The s farthest from `inside` towards `outside` with RSS(s) <= limit, by bisection.
+
+    `outside` itself is the answer where its RSS is still below the limit.
+    """
+    rss, _, valid = _profile(arranged, outside)
+    reaches = valid & (rss <= limit)
+    near, far = inside, outside
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (near + far)
+        rss, _, valid = _profile(arranged, middle)
+        below = valid & (rss <= limit)
+        near, far = np.where(below, middle, near), np.where(below, far, middle)
+    return np.where(reaches, outside, near)

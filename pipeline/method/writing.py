@@ -1,0 +1,87 @@
+"""A method as the text of a method file; reading one is in `pipeline.method.definition`."""
+
+import json
+from collections.abc import Mapping
+
+from pipeline.method.definition import LAST_SEASON, Method
+
+
+def method_text(method: Method) -> str:
+    """A method as TOML that stands alone: every option of every season, nothing inherited.
+
+    Reading it gives a method with the same content hash and register rule.
+    """
+    lines = [
+        *key_lines(
+            {
+                "name": method.name,
+                "title": method.title,
+                "title_en": method.title_en,
+                "description": method.description,
+                "seasons": covered(method),
+            }
+        ),
+        "",
+        "[register]",
+        *key_lines(method.validity.model_dump(exclude_none=True)),
+    ]
+    for block in method.ranges:
+        steps = block.steps.model_dump(mode="json", exclude_none=True)
+        lines += ["", *override_lines(range_text(block.first, block.last), steps)]
+    return "\n".join(lines) + "\n"
+
+
+BEGINNING = """
+# For all seasons: a line such as
+#   [steps.wind]
+#   side = 0.3
+# For some of them:
+#   [[overrides]]
+#   range = "2009:2011"
+#   wind = { side = 0.3 }
+"""
+
+
+def beginning_text(name: str, base: Method) -> str:
+    """A new method file that extends another, with every option of the other as a comment."""
+    head = {
+        "name": name,
+        "title": name,
+        "description": "",
+        "extends": base.name,
+        "seasons": covered(base),
+    }
+    listed = [f"# What {base.name} says:"]
+    for block in base.ranges:
+        steps = step_lines(block.steps.model_dump(mode="json", exclude_none=True))
+        seasons = f"Seasons {range_text(block.first, block.last)}"
+        listed += ["#", *(f"# {line}" for line in (seasons, *steps))]
+    return "\n".join([*key_lines(head), BEGINNING, *listed]) + "\n"
+
+
+def override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]]) -> list[str]:
+    """The lines of an `[[overrides]]` block."""
+    return ["[[overrides]]", *key_lines({"range": range_of}), *step_lines(steps)]
+
+
+def step_lines(steps: Mapping[str, Mapping[str, object]]) -> list[str]:
+    """One line per step, with its options."""
+    return [f"{step} = {{ {', '.join(key_lines(options))} }}" for step, options in steps.items()]
+
+
+def key_lines(values: Mapping[str, object]) -> list[str]:
+    """Texts, numbers, truth values or lists as TOML, which differs from JSON in one character."""
+    return [
+        f"{key} = {json.dumps(value, ensure_ascii=False)}".replace("\x7f", "\\u007f")
+        for key, value in values.items()
+    ]
+
+
+def covered(method: Method) -> str:
+    """All seasons of a method, as method files write them."""
+    return range_text(method.ranges[0].first, method.ranges[-1].last)
+
+
+def range_text(first: int, last: int) -> str:
+    """A season range as method files write it."""
+    return f"{first}:" if last == LAST_SEASON else f"{first}:{last}"

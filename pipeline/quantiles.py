@@ -1,0 +1,30 @@
+"""The level of the intervals, the quantiles that go with it, and a robust spread."""
+
+from typing import Final
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from pipeline.arrays import FloatArray
+
+LEVEL: Final = 0.95
+
+NORMAL: Final = 1.959963984540054
+"""Standard deviations to either side of a normal number, in an interval of `LEVEL`.
+
+Written out, as to compute it would load SciPy wherever this is imported; a test compares the two.
+"""
+
+MAD_TO_SD: Final = 1.4826
+"""Standard deviation over median distance from the median, of normal numbers."""
+
+
+def t_quantile(dof: ArrayLike) -> FloatArray:
+    """Two-sided quantile of Student's t: an interval of `LEVEL` is +- so many deviations.
+
+    Args:
+        dof: degrees of freedom, of any shape, positive.
+    """
+    freedom = np.asarray(dof, dtype=np.float64)
+    return np.asarray(scipy.special.stdtrit(freedom, 0.5 * (1.0 + LEVEL)), dtype=np.float64)

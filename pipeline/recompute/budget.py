@@ -1,0 +1,371 @@
+"""The uncertainty of a curve: the random part from its points, and the budget of every component.
+
+Here outcomes are given to `pipeline.uncertainty.propagation`, which has the formulas, and the
+interval of Cw at the declared speed comes back. A method with estimated season factors knows the
+whole archive: its scatter is pooled over a season. Any other method is taken at its word, tow by
+tow: its interval rests on the tow's own points and holds if its log factors are right.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline import curve
+from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.recompute.outcome import Outcome
+from pipeline.season_log import SeasonFactors
+from pipeline.steps.calibration import USUAL_RUN_SCATTER, mean_over_both_ways
+from pipeline.steps.speed import log_part
+from pipeline.uncertainty.misfit import Departure, departure_of_boats
+from pipeline.uncertainty.propagation import (
+    Assumed,
+    budget,
+    residual_scatter,
+    run_point_uncertainty,
+)
+
+DECLARED: Final = 1.0
+"""The declared speed among speed ratios."""
+
+CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(850, 1151, 25))
+"""Speeds of the points of a curve / declared speed: the range in which a curve is valid, with
+`DECLARED` in the middle."""
+
+MOST_BENT: Final = 0.9
+"""r beyond which a curve tells nothing."""
+
+UNTOLD_DRIFT: Final = 0.5
+"""Standard uncertainty of a stream's drift, as a share of what was taken off: nobody wrote down how
+long the turn took between the runs out and those back (inferred)."""
+
+USUAL_BEND: Final = 0.4
+"""q where the archive is not asked for it (inferred: r of 0.3)."""
+
+
+def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
+    """Scatter of single run points: of the season, or of each tow alone."""
+    return pooled_scatter(o) if pooled else curve.own_scatter(o.free)
+
+
+def pooled_scatter(o: Outcome) -> curve.Scatter:
+    """Scatter of single run points about their curve, pooled over the tows of a season."""
+    ratio, used, on_curve = _residuals(o)
+    return _of_height(*residual_scatter(ratio, used, _season(o)), used, on_curve)
+
+
+def _season(o: Outcome) -> IntArray:
+    return o.batch.of_tow("season").astype(np.int64)
+
+
+def _of_height(
+    ratio: FloatArray, dof: FloatArray, used: BoolArray, on_curve: FloatArray
+) -> curve.Scatter:
+    """A relative scatter in the coefficient of each tow.
+
+    Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0.
+    """
+    known = np.isfinite(ratio) & used.any(axis=1)
+    height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
+    return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
+
+
+def _residuals(o: Outcome) -> tuple[FloatArray, BoolArray, FloatArray]:
+    """(point - curve) / curve, which points count, and the curve there, (tows, points) each."""
+    on_curve = curve.cw(
+        o.free.a_kg_m[:, None],
+        o.free.s_s2_m2[:, None],
+        np.where(o.points.used, o.points.speed_m_s, 0.0),
+    )
+    used = o.points.used & np.isfinite(on_curve) & o.free.converged[:, None]
+    ratio = np.where(used, o.points.cw_kg_m / np.where(used, on_curve, 1.0) - 1.0, 0.0)
+    return ratio, used, on_curve
+
+
+def _departure(o: Outcome, speed_ratios: Sequence[float]) -> Departure:
+    """How far the hulls of a batch lie from their curves."""
+    ratio, used, _ = _residuals(o)
+    batch = o.batch
+    return Departure.of(
+        ratio,
+        used & batch.trusted[:, None],
+        o.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None],
+        batch.by_tow(batch.direction.astype(np.float64)),
+        batch.by_tow(batch.target_speed_ratio),
+        np.array(speed_ratios),
+    )
+
+
+def files_log_sd(o: Outcome) -> FloatArray:
+    """Standard deviation of a combined tow's mean ln log factor, by how its files differ; (tows,).
+
+    Each file has a log of its own. What two of them differ by says how far their mean may be off:
+    half as far. Pooled over the season's combined tows; 0 for others, and where each is calibrated.
+    """
+    ratio, used, _ = _residuals(o)
+    second = o.batch.by_tow(o.batch.in_second_file.astype(np.float64)) > 0
+    files = [used & ~second, used & second]
+    combined = files[0].any(axis=1) & files[1].any(axis=1) & ~o.prepared.calibrated
+    of_first, of_second = (
+        np.where(mine, ratio, 0.0).sum(axis=1) / np.maximum(mine.sum(axis=1), 1) for mine in files
+    )
+    r = np.clip(o.free.s_s2_m2 * o.batch.of_tow("declared_speed_m_s") ** 2, -1.0, MOST_BENT)
+    apart = np.where(combined, of_second - of_first, 0.0) * (1.0 - r) / 2.0
+    season = np.unique(o.batch.of_tow("season"), return_inverse=True)[1]
+    square = np.bincount(season, apart**2) / np.maximum(np.bincount(season, combined), 1)
+    return np.where(combined, 0.5 * np.sqrt(square[season]), 0.0)
+
+
+def stream_scatter(o: Outcome) -> tuple[FloatArray, IntArray]:
+    """Standard deviation of ln y by a current that is not the same in runs one way, and its dof.
+
+    A drift that was taken off is uncertain too. Both of shape (tows,); 0 where no tow is
+    calibrated by itself.
+    """
+    batch, used = o.batch, _run_calibrations(o)[1]
+    scatter, dof = _unsteady_stream(o)
+    drifts = (np.where(used, x, 0.0) for x in (o.prepared.stream_m_s, o.prepared.means.speed_m_s))
+    drift, speed = (
+        mean_over_both_ways(x, batch.direction, batch.tow, used, batch.size)[0] for x in drifts
+    )
+    drift_sd = UNTOLD_DRIFT * drift / np.where(speed > 0, speed, 1.0)
+    return np.where(dof > 0, np.hypot(scatter, drift_sd), 0.0), dof
+
+
+def _unsteady_stream(o: Outcome) -> tuple[FloatArray, IntArray]:
+    """Standard deviation of ln y by GPS over log that differs between runs one way, and its dof.
+
+    In one file it differs by no more than `USUAL_RUN_SCATTER`. What is beyond moves the mean of n
+    runs by its root-n-th part. Both of shape (tows,).
+    """
+    batch, (ratio, used) = o.batch, _run_calibrations(o)
+    group = 4 * batch.tow + 2 * batch.in_second_file + (batch.direction > 0)
+    count = np.bincount(group, used, 4 * batch.size)
+    mean = np.bincount(group, used * ratio, 4 * batch.size) / np.maximum(count, 1)
+    square = np.bincount(batch.tow, used * (ratio - mean[group]) ** 2, batch.size)
+    dof = np.maximum(count - 1, 0).reshape(-1, 4).sum(axis=1).astype(np.int64)
+    beyond = np.maximum(square / np.maximum(dof, 1) - USUAL_RUN_SCATTER**2, 0.0)
+    return np.sqrt(beyond / np.maximum(batch.count(used), 1)), dof
+
+
+def _run_calibrations(o: Outcome) -> tuple[FloatArray, BoolArray]:
+    """GPS / log of each run, and whether it is a run of a tow calibrated by itself; (runs,)."""
+    p = o.prepared
+    gps, log = p.means.gps_m_s - p.stream_m_s, p.means.speed_m_s
+    used = p.used & np.isfinite(gps) & (gps > 0) & (log > 0) & p.calibrated[o.batch.tow]
+    used &= o.steps.calibration.rule == "gps_per_tow"
+    return np.where(used, gps, 1.0) / np.where(used, log, 1.0), used
+
+
+def run_point_ratio(o: Outcome) -> FloatArray:
+    """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
+    season, source = _season(o)[o.batch.tow], o.steps.speed.source
+    return run_point_uncertainty(o.batch.blocks, o.prepared.windows.mask, season, source)
+
+
+def budget_of(
+    outcomes: Sequence[Outcome], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
+) -> pl.DataFrame:
+    """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
+
+    Away from the declared speed the random part grows, and a speed error acts through the
+    elasticity there.
+
+    Args:
+        outcomes: all batches of a method.
+        estimated: its season factors, if it has estimated ones.
+        speed_ratios: those speeds / declared speed.
+
+    Returns:
+        Rows as `pipeline.uncertainty.propagation.budget` gives them.
+    """
+    misfit = misfit_of(outcomes, estimated, speed_ratios)
+    return pl.concat([_budget_of_batch(o, estimated, speed_ratios, misfit) for o in outcomes])
+
+
+def misfit_of(
+    outcomes: Sequence[Outcome], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
+) -> pl.DataFrame:
+    """How far the hull of each tow lies from its curve, by all tows of the boat.
+
+    Returns:
+        `tow_id, speed_ratio, misfit` (as a ratio, hull over curve less 1) and `misfit_variance`; 0
+        where no season factors are estimated: such a method is taken at its word.
+    """
+    each = [_departure(o, speed_ratios) for o in outcomes]
+    tows = pl.concat([o.batch.tows.select("tow_id", "fsn_no") for o in outcomes])
+    boat = tows["fsn_no"].rank("dense").to_numpy().astype(np.int64) - 1
+    value, variance = departure_of_boats(
+        Departure(*(np.concatenate([getattr(d, n) for d in each]) for n in ("ratio", "variance"))),
+        boat,
+    )
+    asked = 0.0 if estimated is None else 1.0
+    return pl.concat(
+        [
+            tows.select(
+                "tow_id",
+                pl.lit(ratio).alias("speed_ratio"),
+                pl.Series("misfit", asked * value[:, place]),
+                pl.Series("misfit_variance", asked * variance[:, place]),
+            )
+            for place, ratio in enumerate(speed_ratios)
+        ]
+    )
+
+
+def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFrame:
+    """Curves over the speeds at which they are valid, with the 95 % interval of Cw at each.
+
+    Args:
+        outcomes: all batches of a method.
+        bounds: of their budget, as `propagation.combine` gives them.
+
+    Returns:
+        `tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`: a row per tow and speed of
+        `CURVE_SPEED_RATIOS`, none at speeds from B on.
+    """
+    points = pl.concat([_at_speeds(o, CURVE_SPEED_RATIOS) for o in outcomes])
+    at = ["tow_id", "speed_ratio"]
+    return points.join(bounds, on=at, maintain_order="left").select(
+        "tow_id",
+        "speed_m_s",
+        "cw_kg_m",
+        (pl.col("cw_kg_m") * pl.col("lo_ratio")).alias("cw_lo_kg_m"),
+        (pl.col("cw_kg_m") * pl.col("hi_ratio")).alias("cw_hi_kg_m"),
+    )
+
+
+def _budget_of_batch(
+    o: Outcome,
+    estimated: SeasonFactors | None,
+    speed_ratios: Sequence[float],
+    misfit: pl.DataFrame,
+) -> pl.DataFrame:
+    scatter = scatter_of(o, estimated is not None)
+    terms = _terms_of_tows(o, estimated, scatter)
+    cw, bend = pl.col("cw_kg_m"), pl.col("bend")
+    r = (bend / (1.0 + bend) * pl.col("speed_ratio") ** 2).clip(-1.0, MOST_BENT)
+    random = np.concatenate([_random_ratio(o, scatter, ratio) for ratio in speed_ratios])
+    rows = (
+        _at_speeds(o, speed_ratios)
+        .with_columns(pl.Series("random_ratio", random))
+        .filter(cw.is_finite())
+        .join(terms, on="tow_id", maintain_order="left")
+        .join(misfit, on=["tow_id", "speed_ratio"], maintain_order="left")
+        .with_columns(
+            (2.0 / (1.0 - r)).alias("kappa"),
+            (pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt().alias("misfit_ratio"),
+            (pl.col("net_air_kg_m") / cw).alias("air_ratio"),
+            (pl.col("air_per_coefficient_kg_m") / cw).alias("air_per_coefficient"),
+            (pl.col("still_air_kg_m") / cw).alias("still_air_ratio"),
+        )
+    )
+    return budget(rows, _assumed(o, estimated))
+
+
+def _at_speeds(o: Outcome, speed_ratios: Sequence[float]) -> pl.DataFrame:
+    """Every tow at every speed: `tow_id, speed_ratio, speed_m_s, cw_kg_m`, NaN from B on."""
+    return pl.concat(
+        [
+            o.batch.tows.select(
+                "tow_id",
+                pl.lit(ratio).alias("speed_ratio"),
+                (ratio * pl.col("declared_speed_m_s")).alias("speed_m_s"),
+                pl.Series("cw_kg_m", o.cw_at(ratio)),
+            )
+            for ratio in speed_ratios
+        ]
+    )
+
+
+def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
+    """Relative random uncertainty of Cw at a speed / declared speed, shape (tows,)."""
+    speed = speed_ratio * o.batch.of_tow("declared_speed_m_s")
+    errors = curve.covariance(o.points, o.free, scatter, speed)
+    cw = o.free.cw_at(speed)
+    known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
+    variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
+    return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0)
+
+
+def _terms_of_tows(
+    o: Outcome, factors: SeasonFactors | None, scatter: curve.Scatter
+) -> pl.DataFrame:
+    """What `propagation.budget` asks of tows, as far as it is the same at any speed."""
+    p = o.prepared
+    batch = o.batch
+    estimated = np.isfinite(p.estimated.ln_sd)
+    usual = USUAL_BEND if factors is None else _median_bend(o)
+    bend = np.where(np.isfinite(p.estimated.bend), p.estimated.bend, usual)
+    # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
+    # taken off, and only what is put back for still air has it.
+    taken_off = 0.0 if o.steps.wind.coefficients == "archive" else o.air_kg_m
+    net_air = batch.mean(taken_off - o.still_air_kg_m, p.used)
+    # A larger coefficient takes more off as felt and puts more back for still air.
+    still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
+    felt_unit = p.by_true_speed(p.means.air.ahead + p.means.air.behind)
+    per_coefficient = batch.mean(still_unit - felt_unit, p.used)
+    stream_sd, stream_dof = stream_scatter(o)
+    return batch.tows.select(
+        "tow_id",
+        "season",
+        log_part(o.steps.speed.source),
+        pl.lit(o.steps.speed.source).alias("log"),
+        pl.Series("random_dof", scatter.dof),
+        pl.Series("bend", bend),
+        pl.Series("calibrated", p.calibrated),
+        pl.Series("askew_ratio", p.estimated.askew_ratio).fill_nan(None),
+        pl.Series("log_sd", np.where(estimated, p.estimated.ln_sd, 0.0)),
+        pl.Series("log_dof", np.where(estimated, p.estimated.dof, np.inf)),
+        pl.Series("tow_log_sd", _tow_log_sd(o, factors)),
+        pl.Series("stream_sd", stream_sd),
+        pl.Series("stream_dof", stream_dof),
+        pl.Series("net_air_kg_m", net_air),
+        pl.Series("wind_ln_sd", p.wind_ln_sd).fill_nan(None),
+        pl.Series("air_per_coefficient_kg_m", per_coefficient),
+        pl.Series("wind_measured", batch.measured("wind")),
+        pl.Series("still_air_kg_m", batch.mean(o.still_air_kg_m, p.used)),
+        pl.Series("temperature_known", p.temperature_known),
+        pl.Series("water_off_c", p.water_off_c),
+        force_uncertainty(batch.tows).alias("force_sd"),
+    )
+
+
+def force_uncertainty(tows: pl.DataFrame) -> pl.Expr:
+    """Standard uncertainty of a tow's force by the record of its load cell; null without one.
+
+    The force is not corrected by the record, so what the cell was off is part of it (GUM F.2.4.5).
+    """
+    if "load_cell_ratio" not in tows.columns:
+        return pl.lit(None, pl.Float64)
+    off = pl.col("load_cell_ratio") - 1.0
+    return (off**2 + pl.col("load_cell_sd") ** 2).sqrt()
+
+
+def _median_bend(o: Outcome) -> float:
+    """Median of q at the declared speed over the batch."""
+    declared = o.batch.of_tow("declared_speed_m_s")
+    r = np.where(o.free.converged, o.free.s_s2_m2 * declared**2, np.nan)
+    known = np.isfinite(r) & (r > 0.0) & (r < 1.0)
+    return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
+
+
+def _tow_log_sd(o: Outcome, estimated: SeasonFactors | None) -> FloatArray:
+    """Standard deviation of ln of the log factor from tow to tow, by era; 0 where calibrated."""
+    if estimated is None:
+        return np.zeros(o.batch.size)
+    log_sd = estimated.tow_log_sd_of(o.batch.of_tow("season"))
+    return np.where(o.prepared.calibrated, 0.0, np.hypot(log_sd, files_log_sd(o)))
+
+
+def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
+    """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
+    assumed = Assumed()
+    if estimated is not None:
+        assumed = assumed.beside_repeats(estimated.tow_sd, estimated.calibration_sd)
+    assumed = replace(assumed, unmeasured_wind=o.prepared.expected_wind.sd)
+    if o.steps.wind.coefficients == "archive" and np.isfinite(o.coefficient_sd):
+        assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
+    return assumed

@@ -1,0 +1,291 @@
+"""The results of a method as tables of the warehouse.
+
+Arrays in, frames out; a number that is not known becomes null here, never NaN. What is computed
+is in `pipeline.recompute.recompute`; its uncertainty, in `pipeline.recompute.budget`; what a
+person should look at, in `pipeline.assessment.assess`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import polars as pl
+from numpy.typing import ArrayLike
+
+from pipeline import curve
+from pipeline.arrays import BoolArray
+from pipeline.assessment.assess import assess, with_status
+from pipeline.assessment.run_choice import with_run_choice
+from pipeline.method.definition import Method
+from pipeline.quantiles import t_quantile
+from pipeline.races.race import power_per_rower_w
+from pipeline.recompute.anemometer import anemometer_diagnosis
+from pipeline.recompute.best import with_best
+from pipeline.recompute.budget import (
+    CURVE_SPEED_RATIOS,
+    DECLARED,
+    budget_of,
+    curve_points,
+    misfit_of,
+    run_point_ratio,
+    scatter_of,
+)
+from pipeline.recompute.facts import with_expected_water
+from pipeline.recompute.outcome import Outcome
+from pipeline.recompute.season_factors import tow_instruments
+from pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
+from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, NOT_SETTLED
+from pipeline.steps.speed import log_factor
+from pipeline.tables.frames import dtypes
+from pipeline.tables.season_log import (
+    BestEstimateWeights,
+    LogFactors,
+    RetowChoice,
+    SeasonLinks,
+    SeasonSteps,
+    TowInstruments,
+)
+from pipeline.uncertainty.propagation import combine
+
+OF_ALL_TOWS: Final = {
+    "season_links": SeasonLinks,
+    "retow_choice": RetowChoice,
+    "season_steps": SeasonSteps,
+    "tow_instruments": TowInstruments,
+    "best_estimate_weights": BestEstimateWeights,
+}
+"""Tables of what all tows together tell, by name."""
+
+
+@dataclass(frozen=True)
+class Recomputed:
+    """The tables of one method, named as in the warehouse, and the season factors behind them.
+
+    Attributes:
+        factors: with their covariance, for the ensemble; None if the method estimates none.
+    """
+
+    run_points: pl.DataFrame
+    curves: pl.DataFrame
+    log_factors: pl.DataFrame
+    assessments: pl.DataFrame
+    uncertainty_budget: pl.DataFrame
+    curve_points: pl.DataFrame
+    season_links: pl.DataFrame
+    retow_choice: pl.DataFrame
+    season_steps: pl.DataFrame
+    season_diagnosis: pl.DataFrame
+    tow_instruments: pl.DataFrame
+    best_estimate_weights: pl.DataFrame
+    factors: SeasonFactors | None
+
+
+def as_tables(
+    method: Method,
+    tows: pl.DataFrame,
+    outcomes: Sequence[Outcome],
+    estimated: SeasonFactors | None,
+    with_bands: bool,
+) -> Recomputed:
+    """The tables of a method from its batches; tows are assessed when all curves are there."""
+    name = pl.lit(method.name).alias("method")
+
+    def together(frames: list[pl.DataFrame]) -> pl.DataFrame:
+        return pl.concat(frames).select(name, pl.all())
+
+    pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
+    run_points = with_run_choice(together([_run_points(o, pooled) for o in outcomes]))
+    budget = budget_of(outcomes, estimated, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
+    bounds = combine(budget)
+    curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
+    misfit = misfit_of(outcomes, estimated, (DECLARED,))
+    curves = with_best(curves, estimated, budget.filter(at_declared), misfit)
+    diagnosis = _diagnosis(estimated, outcomes)
+    assessments = assess(curves, run_points, with_expected_water(tows), diagnosis)
+    rejecting = [
+        (season, check)
+        for season in tows["season"].unique().sort()
+        for check in method.for_season(season).assessment.reject
+    ]
+    return Recomputed(
+        run_points=run_points,
+        curves=with_status(curves, assessments, rejecting),
+        log_factors=together([_log_factors(o, estimated) for o in outcomes]).unique(
+            "season", keep="first", maintain_order=True
+        ),
+        assessments=assessments,
+        uncertainty_budget=budget.filter(at_declared).select(
+            name,
+            pl.exclude("speed_ratio", "dof"),
+            pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
+        ),
+        curve_points=together([curve_points(outcomes, bounds)]) if with_bands else pl.DataFrame(),
+        season_diagnosis=diagnosis.select(name, pl.all()),
+        **{table: rows.select(name, pl.all()) for table, rows in _of_all_tows(estimated).items()},
+        factors=estimated,
+    )
+
+
+def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
+    p = o.prepared
+    means, has_window, tow = p.means, p.windows.exists, o.batch.tow
+    on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], p.speed_m_s)
+    log1 = np.where(has_window, means.log1_m_s, 1.0)
+    has_limits = o.steps.window.rule != "all"
+    wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
+    log2_ratio = means.log2_m_s / log1
+    log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
+    numbers = {
+        "window_start_s": p.windows.start_s,
+        "window_end_s": p.windows.end_s,
+        "end_speed_m_s": p.windows.ends.speed_m_s,
+        "end_force_ratio": p.windows.ends.force_ratio,
+        "end_wind_m_s": p.windows.ends.wind_m_s,
+        "speed_factor": p.speed_factor,
+        "speed_m_s": p.speed_m_s,
+        "gross_cw_kg_m": p.by_true_speed(means.gross_kg_m),
+        "inertia_cw_kg_m": p.by_true_speed(means.inertia_kg_m),
+        "air_cw_kg_m": o.air_kg_m,
+        "still_air_cw_kg_m": o.still_air_kg_m,
+        "temperature_cw_kg_m": p.temperature_kg_m,
+        "wind_coefficient_ahead": o.ahead,
+        "wind_coefficient_behind": o.behind,
+        "cw_kg_m": o.cw_kg_m,
+        "cw_sd": p.by_true_speed(means.sd_kg_m),
+        "u_ratio": run_point_ratio(o) if pooled else np.nan,
+        "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
+        "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
+        "log2_ratio": np.where(log2, log2_ratio, np.nan),
+    }
+    return o.batch.blocks.runs.select(
+        "tow_id", "run", "direction", "target_speed_ratio"
+    ).with_columns(
+        pl.Series("lost_s", o.batch.lost_s),
+        *(_column(name, values, has_window) for name, values in numbers.items()),
+        _column("ends_ratio", p.windows.ends.in_limits(o.steps.window), has_window & has_limits),
+        _column("gps_ratio", means.gps_m_s / log1, has_window),
+        pl.Series("gps_delay_s", means.gps_delay_s, pl.Int8),
+        _column("fitted_cw_kg_m", on_curve, has_window & o.curves.converged[tow]),
+        pl.Series("cut_reason", p.windows.reasons, pl.String),
+        pl.Series("used", p.used),
+        pl.Series("reason", p.reasons, pl.String),
+    )
+
+
+def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
+    tows = o.batch.tows
+    declared = o.batch.of_tow("declared_speed_m_s")
+    cw = o.cw_at_declared
+    sound = np.isfinite(cw)
+    mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
+    lo, hi = (mine[name].fill_null(np.nan).to_numpy() for name in ("lo_ratio", "hi_ratio"))
+    b_interval = curve.b_interval(o.points, o.free, scatter_of(o, pooled))
+    safe_cw = np.where(sound, cw, 1.0)
+    residual = np.sqrt(o.curves.rss_kg2_m2 / np.maximum(o.curves.n_points - 2, 1)) / safe_cw
+    # A cap is the method's choice, and coefficients searched run by run leave no scatter.
+    own_b = ~o.curves.b_capped & (o.steps.wind.coefficients != "per_run")
+    numbers = {
+        "a_kg_m": o.curves.a_kg_m,
+        "cw_kg_m": cw,
+        "cw_lo_kg_m": cw * lo,
+        "cw_hi_kg_m": cw * hi,
+        "b_lo_m_s": np.where(own_b, b_interval.lo, np.nan),
+        "b_hi_m_s": np.where(own_b, b_interval.hi, np.nan),
+        "power_w": power_per_rower_w(safe_cw, declared, o.batch.of_tow("rowers")),
+        "residual_sd_ratio": residual,
+    }
+    return tows.select(
+        "tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s"
+    ).with_columns(
+        *(_column(name, values, sound) for name, values in numbers.items()),
+        _column("b_m_s", o.curves.b_m_s, sound & o.curves.b_determined),
+        _column(
+            "calibration_factor", o.prepared.calibration_factor, o.steps.calibration.rule != "none"
+        ),
+        pl.Series("b_capped", o.curves.b_capped),
+        pl.Series("runs_used", o.batch.count(o.prepared.used), pl.Int8),
+    )
+
+
+def _log_factors(o: Outcome, estimated: SeasonFactors | None) -> pl.DataFrame:
+    """The factor of each season: from GPS, estimated, prescribed or none, in this order.
+
+    Tows without GPS in a season that has it are in a batch behind the others, and give no row.
+    With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
+    A tow's own factor is in `run_points.speed_factor`.
+    """
+    seasons = o.batch.tows["season"].unique().sort()
+    if o.steps.calibration.rule != "none":
+        rows = [_mean_factor(o, season) for season in seasons]
+    else:
+        rows = [_factor_row(o, season, estimated) for season in seasons]
+    schema = dtypes(LogFactors, without=["method"])
+    return pl.DataFrame(rows, schema=schema, orient="row")
+
+
+FactorRow = tuple[int, float, float | None, float | None, str]
+
+
+def _mean_factor(o: Outcome, season: int) -> FactorRow:
+    p = o.prepared
+    mine = (o.batch.of_tow("season") == season) & p.calibrated
+    ln_factor = np.log((p.known_factor * p.calibration_factor)[mine])
+    n = len(ln_factor)
+    if n == 0:
+        return season, 1.0, None, None, "none"
+    mean = float(ln_factor.mean())
+    if n == 1:
+        return season, float(np.exp(mean)), None, None, "gps"
+    half = float(t_quantile(n - 1) * ln_factor.std(ddof=1) / np.sqrt(n))
+    return (
+        season,
+        float(np.exp(mean)),
+        float(np.exp(mean - half)),
+        float(np.exp(mean + half)),
+        "gps",
+    )
+
+
+def _factor_row(o: Outcome, season: int, estimated: SeasonFactors | None) -> FactorRow:
+    speed = o.steps.speed
+    if estimated is not None and speed.correction == "estimated":
+        known = estimated.of_season(season, speed.source)
+        if known is not None:
+            return (season, *known)
+    nothing = np.array([np.nan])
+    factor = float(log_factor(speed, nothing, nothing)[0])
+    if estimated is not None and estimated.is_refused(season, speed.source):
+        return season, factor, None, None, NOT_SETTLED
+    return season, factor, None, None, "none" if factor == 1.0 else "prescribed"
+
+
+def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
+    """The tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
+    schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
+    if estimated is None:
+        return {name: pl.DataFrame(schema=schema) for name, schema in schemas.items()}
+    links = pl.concat([estimated.factors, other_log_factors(estimated)], how="diagonal_relaxed")
+    of_links = schemas["season_links"].items()
+    return {
+        "season_links": links.select(pl.col(column).cast(kind) for column, kind in of_links),
+        "retow_choice": retow_choice(estimated),
+        "season_steps": estimated.steps,
+        "tow_instruments": tow_instruments(estimated),
+        "best_estimate_weights": estimated.weights,
+    }
+
+
+def _diagnosis(estimated: SeasonFactors | None, outcomes: Sequence[Outcome]) -> pl.DataFrame:
+    """What is wrong with the instruments of each season; no rows without an estimate."""
+    joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
+    both = pl.concat([joint, anemometer_diagnosis(outcomes)])
+    return both.sort("season", "part", "instrument")
+
+
+def _column(name: str, values: ArrayLike, known: BoolArray | bool) -> pl.Series:
+    """A column of numbers, null where nothing is known or the number is infinite."""
+    numbers = np.asarray(values, dtype=np.float64)
+    sound = known & np.isfinite(numbers)
+    column = pl.Series(name, np.where(sound, numbers, 0.0))
+    return pl.select(pl.when(pl.Series(sound)).then(column).alias(name)).to_series()

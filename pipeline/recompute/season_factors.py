@@ -1,0 +1,361 @@
+"""Season factors: what the joint estimate is given, and what it gives to the tows.
+
+Every tow is first computed without any factor for the seasons whose factor is estimated; from
+those curves the factors follow, twice: at the speeds as read, then at true speed. They are applied
+after. The statistics are in `pipeline.season_log`.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline import curve
+from pipeline.arrays import FloatArray
+from pipeline.blocks.batch import Batch
+from pipeline.method.definition import Calibration, Steps, Wind
+from pipeline.recompute.budget import (
+    files_log_sd,
+    force_uncertainty,
+    pooled_scatter,
+    stream_scatter,
+)
+from pipeline.recompute.outcome import Outcome, TowFactor
+from pipeline.season_log import (
+    SeasonFactors,
+    estimate_season_factors,
+    other_log_factors,
+)
+from pipeline.season_log.network import GROUP
+from pipeline.steps.calibration import gps_factor
+from pipeline.steps.speed import log_part
+from pipeline.tables.keys import LINE
+
+FEWEST_OF_TYPE: Final = 5
+"""A type's own bend is taken from so many anchored tows on."""
+
+LEAST_SPREAD: Final = 1e-6
+"""Variance of the bend between boats of a type: none at all would leave nothing to divide by."""
+
+LOG_SCATTER: Final = 0.005
+"""Standard deviation of ln y from tow to tow where too few are calibrated to show it (inferred)."""
+
+GPS: Final = "gps_per_tow"
+
+OTHER_LOG: Final = {"log1": "log2", "log2": "log1"}
+"""The log beside the one in use; none where their mean is used."""
+
+
+def is_estimated(steps: Steps) -> bool:
+    """Whether these steps ask for an estimated log factor."""
+    return steps.speed.correction == "estimated"
+
+
+def without_gps(steps: Steps) -> Steps:
+    """The steps of a tow that has no GPS, where the method says what it then gets."""
+    if steps.calibration.without_gps == "no_curve":
+        return steps
+    speed = steps.speed.model_copy(update={"correction": "estimated"})
+    calibration = Calibration(rule="none")
+    return steps.model_copy(update={"speed": speed, "calibration": calibration})
+
+
+def without_factor(steps: Steps) -> Steps:
+    """The steps from which log factors are estimated: with the log as it reads, without wind.
+
+    A method that leaves the wind on a season's coefficients would compare water and wind there
+    with water alone elsewhere, and call the difference an error of the log.
+    """
+    if steps.wind.model == "none":
+        steps = steps.model_copy(update={"wind": Wind(model="oblique")})
+    if not is_estimated(steps):
+        return steps
+    speed = steps.speed.model_copy(update={"correction": "none"})
+    return steps.model_copy(update={"speed": speed})
+
+
+def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
+    """The log factors of all seasons, from tows computed without them.
+
+    Tows of a line are compared at one true speed. A first estimate, from the speeds as read, says
+    what the logs read there. At those speeds themselves a log that is 6 % low would be compared at
+    the edge of what was towed, and all would hang on the bend.
+
+    Args:
+        outcomes: all batches under `without_factor`.
+    """
+    as_read = _estimate(outcomes, {})
+    known = as_read.instruments.drop_nulls("factor")
+    return _estimate(outcomes, dict(known.select("tow_id", pl.col("factor").log()).iter_rows()))
+
+
+def _estimate(outcomes: Sequence[Outcome], ln_factor: Mapping[str, float]) -> SeasonFactors:
+    rows = _tow_rows(outcomes, ln_factor)
+    return estimate_season_factors(_with_calibrations(_with_kappa(rows)))
+
+
+def _tow_rows(outcomes: Sequence[Outcome], ln_factor: Mapping[str, float]) -> pl.DataFrame:
+    """One row per tow with a sound curve, at one speed per line: its median declared speed.
+
+    Args:
+        outcomes: all batches under `without_factor`.
+        ln_factor: of the logs of tows, as far as it is known; 0 of the others.
+    """
+    declared = pl.concat([o.batch.tows.select(*LINE, "declared_speed_m_s") for o in outcomes])
+    reference = declared.group_by(LINE, maintain_order=True).agg(
+        pl.col("declared_speed_m_s").median().alias("speed")
+    )
+    return pl.concat([_rows(o, reference, ln_factor) for o in outcomes]).drop_nulls("ln_cw")
+
+
+@dataclass(frozen=True)
+class Instruments:
+    """What was estimated of the instruments of some tows, matched to each batch once per log.
+
+    Attributes:
+        rows: of the table `tow_instruments`; None where nothing was estimated.
+    """
+
+    rows: pl.DataFrame | None = None
+    _known: dict[tuple[tuple[str, ...], str, bool], TowFactor] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, estimated: SeasonFactors | None) -> "Instruments":
+        """What season factors say of them; nothing without an estimate."""
+        return cls(None if estimated is None else tow_instruments(estimated))
+
+    def of_tows(self, batch: Batch, steps: Steps) -> TowFactor:
+        """What was estimated of each tow of a batch, as far as its steps ask for it."""
+        key = (batch.key, steps.speed.source, is_estimated(steps))
+        if key not in self._known:
+            self._known[key] = _factor_of_tows(batch, steps, self.rows)
+        return self._known[key]
+
+
+def _factor_of_tows(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> TowFactor:
+    if rows is None:
+        nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
+        return TowFactor(nothing, nothing, nothing, one, none, nothing, nothing)
+    season, part, log = log_group(steps)
+    own = batch.tows.select("tow_id", season, part.alias("part"), log).join(
+        rows, on=["tow_id", "log"], how="left", maintain_order="left"
+    )
+    # A tow that takes no part in the estimate had the instruments of its season all the same.
+    of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
+    corrections = own.with_columns(of_season.fill_null(of_season.mean().over("season", "part")))
+    if not is_estimated(steps):
+        corrections = corrections.with_columns(pl.lit(None, pl.Float64).alias("factor"))
+    corrections = corrections.with_columns(
+        pl.col("force_factor").fill_null(1.0), pl.col("force_zero_n").fill_null(0.0)
+    )
+    names = (own_field.name for own_field in fields(TowFactor))
+    return TowFactor(**{name: corrections[name].cast(pl.Float64).to_numpy() for name in names})
+
+
+def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
+    """What was estimated of the instruments of each tow; of the other log, by the ratio of both.
+
+    Returns:
+        `tow_id, log`, and the fields of `TowFactor`.
+    """
+    other = (
+        estimated.tows.filter(~pl.col("anchored"))
+        .select("tow_id", "season", part="other_part", log="other_log")
+        .join(
+            other_log_factors(estimated).select(*GROUP, "factor", "ln_sd", "dof"),
+            on=GROUP,
+            maintain_order="left",
+        )
+    )
+    shared = estimated.instruments.select(
+        "tow_id", "force_factor", "force_zero_n", "bend", "askew_ratio"
+    )
+    return pl.concat(
+        [
+            estimated.instruments.drop("others_ln_ratio"),
+            other.drop("season", "part").join(shared, on="tow_id", maintain_order="left"),
+        ],
+        how="diagonal",
+    ).sort("tow_id", "log")
+
+
+def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
+    """What names the log of a tow: `GROUP`, from the columns of `tows`."""
+    source = steps.speed.source
+    return pl.col("season"), log_part(source), pl.lit(source).alias("log")
+
+
+def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -> pl.DataFrame:
+    """Per tow its curve at its line's true `speed`, with uncertainty, and its GPS ratio."""
+    p = o.prepared
+    batch, steps = o.batch, o.steps
+    lines = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
+    reference_ln = np.array([ln_factor.get(name, 0.0) for name in batch.tows["tow_id"]])
+    true_speed = lines["speed"].to_numpy()
+    speed = true_speed * np.exp(-reference_ln)
+    water = _water_points(o)
+    curves = curve.fit(water)
+    cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
+    errors = curve.covariance(water, curves, pooled_scatter(o), speed)
+    sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
+    sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
+    safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
+    calibrated = steps.calibration.rule == GPS
+    gps, gps_sd, has_gps = _gps_ratio(o)
+    own_sd, q = np.hypot(files_log_sd(o), stream_scatter(o)[0]), safe_r / (1.0 - safe_r)
+    by_log = (2.0 + 2.0 * q, 2.0 * q * (1.0 + q))
+    y = np.where(p.calibrated, p.calibration_factor, 1.0)
+    numbers = {
+        "ln_cw": np.where(sound, np.log(safe), np.nan),
+        "ln_cw_sd": np.sqrt(
+            np.where(sure, errors.c0_variance_kg2_m2 / safe**2, 1.0)
+            + (by_log[0] * own_sd) ** 2
+            + (_unmeasured_wind_kg_m(o) / safe) ** 2
+        ),
+        "q": q,
+        "q_sd": np.hypot(np.where(sure, np.sqrt(errors.q_variance), 1.0), by_log[1] * own_sd),
+        "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
+        + by_log[0] * by_log[1] * own_sd**2,
+        "other_ln_ratio": _other_ln_ratio(o),
+        "own_calibration_ln": np.where(p.calibrated, np.log(p.known_factor * y), np.nan),
+        "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
+        "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, own_sd), np.nan),
+    }
+    names = ("tow_id", *LINE, "altered", "declared_speed_m_s")
+    return batch.tows.select(
+        *names,
+        pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
+        _boat_type(batch.tows),
+        pl.col("tow_date").dt.ordinal_day().cast(pl.Float64).alias("day"),
+        *log_group(steps),
+        pl.lit(OTHER_LOG.get(steps.speed.source)).alias("other_log"),
+        log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
+        pl.lit(calibrated).alias("anchored"),
+        pl.Series("temperature_known", p.temperature_known),
+        pl.Series("water_off_c", p.water_off_c),
+        force_uncertainty(batch.tows).alias("force_sd"),
+        pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / true_speed),
+        pl.Series("reference_ln", reference_ln),
+        *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
+    )
+
+
+def _unmeasured_wind_kg_m(o: Outcome) -> FloatArray:
+    """Standard uncertainty of Cw by wind that nobody measured, shape (tows,); 0 where it was."""
+    still = o.batch.mean(o.still_air_kg_m, o.prepared.used)
+    return np.where(o.batch.measured("wind"), 0.0, still * o.prepared.expected_wind.sd)
+
+
+def _water_points(o: Outcome) -> curve.Points:
+    """Run points of the water alone: the still-air part does not scale with the log's error."""
+    water = o.batch.by_tow(o.cw_kg_m - o.still_air_kg_m)
+    return curve.Points(o.points.speed_m_s, water, o.points.used & (water > 0))
+
+
+def _other_ln_ratio(o: Outcome) -> FloatArray:
+    """Mean of ln(log in use / other log) over each tow's runs; NaN where there is none."""
+    p = o.prepared
+    source = o.steps.speed.source
+    if source not in OTHER_LOG:
+        return np.full(o.batch.size, np.nan)
+    mean = {"log1": p.means.log1_m_s, "log2": p.means.log2_m_s}
+    turning = p.used & (mean["log1"] > 0) & (mean["log2"] > 0)
+    turning &= o.batch.measured("log2")[o.batch.tow]
+    turning &= mean["log1"] != mean["log2"]  # a run without its log 2 has log 1 in its place
+    ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
+    ln_ratio = np.log(np.where(turning, ratio, 1.0))
+    return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)
+
+
+def _boat_type(tows: pl.DataFrame) -> pl.Expr:
+    known = "boat_type" in tows.columns
+    return pl.col("boat_type") if known else pl.lit(None, dtype=pl.String).alias("boat_type")
+
+
+def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
+    """Gives ln(GPS / log) of each tow with runs both ways, its random part, and where known.
+
+    The random part is the scatter of run ratios about their direction's mean, pooled over the
+    batch: one tow's six runs are too few.
+    """
+    p = o.prepared
+    batch, gps, log = o.batch, p.means.gps_m_s, p.means.speed_m_s
+    used = p.used & np.isfinite(gps)
+    y, both = gps_factor(gps, log, batch.direction, batch.tow, used, batch.size)
+    ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
+    spread, count = 0.0, 0.0
+    for way in (1, -1):
+        mine = used & (batch.direction == way)
+        deviation = np.where(mine, ratio - batch.mean(ratio, mine)[batch.tow], 0.0)
+        spread += float((deviation**2).sum())
+        count += float(np.maximum(batch.count(mine) - 1, 0).sum())
+    run_sd = np.sqrt(spread / count) if count else 1.0
+    runs = np.maximum(batch.count(used), 1)
+    return np.log(np.where(both, y, 1.0)), run_sd / np.sqrt(runs), both
+
+
+def _with_calibrations(rows: pl.DataFrame) -> pl.DataFrame:
+    """Adds what dGPS says of a log in its other tows: `others_calibration_ln` and its `_sd`.
+
+    The mean of ln y over the tows of a season that are calibrated, and its standard deviation by
+    the scatter within all such seasons; null where there are none.
+    """
+    y = pl.col("own_calibration_ln")
+    within = (y - y.mean().over(GROUP)) ** 2
+    spread, tows, groups = (
+        rows.drop_nulls("own_calibration_ln")
+        .select(within.sum().alias("spread"), pl.len(), pl.struct(GROUP).n_unique().alias("groups"))
+        .row(0)
+    )
+    scatter = (
+        math.sqrt(spread / (tows - groups)) if tows - groups >= FEWEST_OF_TYPE else LOG_SCATTER
+    )
+    return rows.with_columns(
+        y.mean().over(GROUP).alias("others_calibration_ln"),
+        pl.when(y.count().over(GROUP) > 0)
+        .then(scatter / y.count().over(GROUP).sqrt())
+        .alias("others_calibration_sd"),
+    )
+
+
+def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
+    """Adds `kappa`, the elasticity of the line's true curve, from the bend of its anchored tows.
+
+    One tow's bend is uncertain, and boats of a type differ. So the mean of a line's own anchored
+    tows is drawn towards its type (the fleet, where that has few) as far as its uncertainty is
+    large against the spread between boats. Without this the difference between boats, times a log
+    error of 5 %, passes for scatter of the log between tows.
+    """
+    anchored = rows.filter("anchored")
+    trusted = anchored if anchored.height else rows
+    by_type = trusted.group_by("boat_type", maintain_order=True).agg(
+        pl.col("q").median().alias("q_type"), pl.len()
+    )
+    usual = by_type.filter(pl.col("len") >= FEWEST_OF_TYPE).select("boat_type", "q_type")
+    fleet = trusted["q"].median()
+
+    def typed(frame: pl.DataFrame) -> pl.DataFrame:
+        return frame.join(
+            usual, on="boat_type", how="left", nulls_equal=True, maintain_order="left"
+        ).with_columns(pl.col("q_type").fill_null(pl.lit(fleet, pl.Float64)))
+
+    deviation = (pl.col("q") - pl.col("q_type")).alias("deviation")
+    seen = typed(anchored).with_columns(deviation)
+    # The median of a squared standard normal number is 0.455.
+    spread = seen.select((deviation**2).median() / 0.455 - (pl.col("q_sd") ** 2).median()).item()
+    own = seen.group_by(LINE, maintain_order=True).agg(
+        (pl.col("deviation") / pl.col("q_sd") ** 2).sum().alias("pull"),
+        (pl.col("q_sd") ** -2.0).sum().alias("weight"),
+    )
+    between = max(spread or 0.0, LEAST_SPREAD)
+    shift = pl.col("pull") / (pl.col("weight") + 1.0 / between)
+    q = pl.col("q_type") + shift.fill_null(0.0)
+    return (
+        typed(rows)
+        .join(own, on=LINE, how="left", maintain_order="left")
+        .with_columns((2.0 + 2.0 * q).alias("kappa"))
+        .drop("q_type", "pull", "weight")
+    )

@@ -1,0 +1,250 @@
+"""What changes for a boat between two registers, in terms that crews notice, and why.
+
+Compared are lines of the same boat and crew, at the old declared speed: resistance, power at that
+speed, and time over a distance at equal power. Which registers are compared, and what is known
+about their inputs and code, is not decided here.
+"""
+
+import json
+import math
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import FloatArray
+from pipeline.assessment.seen import POWER_W
+from pipeline.choice import SAME_SHARE
+from pipeline.curve import cw
+from pipeline.races.power import curve_of_lines, speed_at_power
+from pipeline.races.race import power_per_rower_w
+from pipeline.register.register import LINE
+from pipeline.tables.frames import dtypes
+from pipeline.tables.register import Register
+from pipeline.tables.row import Row
+from pipeline.tables.studies import CorrectionSteps
+
+SAME_RATIO: Final = 5e-4
+"""A difference up to 0.05 % counts as the same (docs/method.md, 11; inferred)."""
+
+NO_FACTOR: Final = SAME_SHARE
+"""A factor this near to 1 is rounding and is not listed as a cause."""
+
+RACE_S: Final = 7200.0
+"""The race in which a change is expressed in seconds."""
+
+PART_SCHEMA: Final = {
+    **{name: dtypes(Register)[name] for name in LINE},
+    "cause": pl.String(),
+    **{name: dtypes(CorrectionSteps)[name] for name in ("step", "factor")},
+}
+NO_PARTS: Final = pl.DataFrame(schema=PART_SCHEMA)
+"""Parts of changes whose cause is known: per line and cause a factor on Cw; `step` where the cause
+is the method."""
+
+
+def register_changes(
+    old: pl.DataFrame,
+    new: pl.DataFrame,
+    parts: pl.DataFrame = NO_PARTS,
+    grounds: pl.DataFrame | None = None,
+) -> pl.DataFrame:
+    """Compares two editions line by line.
+
+    A change is the product of its known parts and of one factor for everything else, whose name
+    the caller knows too.
+
+    Args:
+        old, new: rows of the table `register`, each of one edition.
+        parts: what is known of the causes, in order; `PART_SCHEMA`.
+        grounds: per line the `ground` of what the parts do not explain; without it `printed` where
+            a line names no tow, `tow` where another one counts, else `method`.
+
+    Returns:
+        Rows of the table `register_changes`. `causes` is JSON: a list of `cause`, `factor` and,
+        where the cause is `method`, the `step`; the factors multiply to `cw_ratio`. A ratio is null
+        where the new curve says nothing about the old declared speed.
+    """
+    pairs = _pairs(old, new)
+    known = pairs["both"].to_numpy()
+    cw_ratio, time_ratio = _ratios(pairs)
+    compared = known & np.isfinite(cw_ratio)
+    same = np.abs(cw_ratio - 1.0) <= SAME_RATIO
+    change = np.select(
+        [known & same, known, pairs["cw_kg_m"].is_null().to_numpy()],
+        ["same", "changed", "added"],
+        "removed",
+    )
+    return pairs.select(
+        pl.lit(old["edition"][0]).alias("from_edition"),
+        pl.lit(new["edition"][0]).alias("to_edition"),
+        *LINE,
+        pl.Series("change", change, pl.String),
+        *(
+            pl.when(pl.Series(compared)).then(pl.Series(values)).alias(name)
+            for name, values in (
+                ("cw_ratio", cw_ratio),
+                ("power_ratio", cw_ratio),
+                ("time_ratio", time_ratio),
+            )
+        ),
+        pl.Series("causes", _causes(pairs, compared, cw_ratio, parts, grounds), pl.String),
+    )
+
+
+def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
+    """The steps of a ladder as parts of the changes of the lines whose tow they are of.
+
+    Args:
+        register: lines with their `tow_id`.
+        ladder: `tow_id`, `position`, `step`, `factor`.
+    """
+    steps = (
+        register.select(*LINE, "tow_id")
+        .join(ladder, on="tow_id", maintain_order="left")
+        .sort(*LINE, "position")
+    )
+    return steps.select(
+        *LINE, pl.lit("method").alias("cause"), "step", pl.col("factor").cast(pl.Float64)
+    )
+
+
+def side_by_side(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
+    """The numbers of both editions on one line, in the order of `register_changes`.
+
+    Args:
+        old, new: as for `register_changes`, with the intervals of Cw.
+
+    Returns:
+        Per line with a curve in either: tow, A, B, Cw, declared speed and rank in both; the power
+        per rower at the old declared speed. Also the seconds that the new register gives in a
+        two-hour race; more time for the same power counts as gain. Also whether the change is
+        larger than the 95 % intervals of both together; of two numbers from one tow, which share
+        its errors, whether it is larger than that of the old one. Null where an interval is not
+        known. The rank is among all boats of the class with a curve: 1 is the fastest at equal
+        power per rower.
+    """
+    pairs = _pairs(_ranked(old), _ranked(new))
+    cw_ratio, time_ratio = _ratios(pairs)
+    known = pairs["both"].to_numpy() & np.isfinite(cw_ratio)
+    power = power_per_rower_w(pairs["cw_kg_m"], pairs["declared_speed_m_s"], pairs["rowers"])
+    of_one_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False).to_numpy()
+    of_old = _half_width(pairs, "")
+    width = np.where(of_one_tow, of_old, np.hypot(of_old, _half_width(pairs, "_new")))
+    exceeds = np.abs(np.log(np.where(known, cw_ratio, 1.0))) > width
+    numbers = {
+        "new_power_w": power * cw_ratio,
+        "gain_in_two_hours_s": RACE_S * (time_ratio - 1.0),
+        "exceeds_interval": exceeds,
+    }
+    both = {"tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "rank"}
+    return pairs.select(
+        *LINE,
+        *(
+            column.alias(f"{side}_{name}")
+            for name in sorted(both)
+            for side, column in (("old", pl.col(name)), ("new", pl.col(f"{name}_new")))
+        ),
+        pl.Series("old_power_w", power).fill_nan(None),
+        *(
+            pl.when(pl.Series(known & (np.isfinite(width) | (name != "exceeds_interval"))))
+            .then(pl.Series(values))
+            .alias(name)
+            for name, values in numbers.items()
+        ),
+    )
+
+
+def _pairs(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
+    """Lines with a curve in either edition, sorted; `both` where there is one in each."""
+    pairs = _with_curve(old).join(
+        _with_curve(new),
+        on=LINE,
+        how="full",
+        coalesce=True,
+        suffix="_new",
+        maintain_order="left_right",
+    )
+    both = (pl.col("cw_kg_m").is_not_null() & pl.col("cw_kg_m_new").is_not_null()).alias("both")
+    return pairs.with_columns(both).sort(LINE)
+
+
+def _with_curve(register: pl.DataFrame) -> pl.DataFrame:
+    chosen = register.filter(pl.col("cw_kg_m").is_not_null())
+    optional = [c for c in ("cw_lo_kg_m", "cw_hi_kg_m", "rank") if c in chosen.columns]
+    numbers = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")
+    return chosen.select(*LINE, "tow_id", *numbers, *optional)
+
+
+def _ratios(pairs: pl.DataFrame) -> tuple[FloatArray, FloatArray]:
+    """New / old Cw at the old declared speed, and new / old time at the power of that speed.
+
+    NaN where either has no curve, or a curve says nothing about that speed.
+    """
+    cw_ratio, time_ratio = (np.full(pairs.height, np.nan) for _ in range(2))
+    both = pairs["both"].to_numpy()
+    lines = pairs.filter("both")
+    speed = lines["declared_speed_m_s"].to_numpy()
+    old, new = curve_of_lines(lines), curve_of_lines(lines, "_new")
+    before, after = cw(*old, speed), cw(*new, speed)
+    sound = np.isfinite(before) & np.isfinite(after)
+    power = np.where(sound, before, 0.0) * speed**3
+    same_power_speed = np.where(sound, speed_at_power(*new, power), 1.0)
+    cw_ratio[both] = np.where(sound, after, np.nan) / np.where(sound, before, 1.0)
+    time_ratio[both] = np.where(sound, speed / same_power_speed, np.nan)
+    return cw_ratio, time_ratio
+
+
+def _ranked(register: pl.DataFrame) -> pl.DataFrame:
+    lines = register.filter(pl.col("cw_kg_m").is_not_null())
+    power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64)
+    speed = speed_at_power(*curve_of_lines(lines), (power * lines["rowers"]).to_numpy())
+    rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
+    return lines.with_columns(pl.Series("speed", speed)).with_columns(rank.alias("rank"))
+
+
+def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:
+    """Half the 95 % interval of ln Cw; infinite where it is not known."""
+    low, high = (pairs[f"cw_{end}_kg_m{suffix}"].to_numpy() for end in ("lo", "hi"))
+    known = np.isfinite(low) & np.isfinite(high) & (low > 0)
+    ratio = np.where(known, high, 1.0) / np.where(known, low, 1.0)
+    return np.where(known, 0.5 * np.log(ratio), np.inf)
+
+
+def _causes(
+    pairs: pl.DataFrame,
+    compared: np.ndarray,
+    ratio: FloatArray,
+    parts: pl.DataFrame,
+    grounds: pl.DataFrame | None,
+) -> list[str]:
+    """The causes of each change with their factors on Cw, as JSON."""
+    moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
+    of_line = moved.group_by(LINE, maintain_order=True).agg(
+        pl.struct("cause", "step", "factor").alias("parts")
+    )
+    known = pairs.select(LINE).join(of_line, on=LINE, how="left", maintain_order="left")["parts"]
+    rests = _grounds(pairs, grounds)
+    return [
+        json.dumps(_factors(parts_of_line or [], float(factor), rest) if both else [])
+        for parts_of_line, both, factor, rest in zip(
+            known.to_list(), compared, ratio, rests, strict=True
+        )
+    ]
+
+
+def _grounds(pairs: pl.DataFrame, grounds: pl.DataFrame | None) -> list[str]:
+    if grounds is None:
+        grounds_by_tow = {None: "printed", True: "method", False: "tow"}
+        return [grounds_by_tow[same] for same in pairs["tow_id"] == pairs["tow_id_new"]]
+    named = pairs.select(LINE).join(grounds, on=LINE, how="left", maintain_order="left")
+    return named["ground"].to_list()
+
+
+def _factors(parts: list[Row], total: float, rest: str) -> list[Row]:
+    """The known parts, and one factor for the rest, which multiply to the total."""
+    causes = [{k: v for k, v in part.items() if v is not None} for part in parts]
+    left = total / math.prod(part["factor"] for part in parts)
+    if abs(left - 1.0) > NO_FACTOR or not parts:
+        causes.append({"cause": rest, "factor": left})
+    return causes

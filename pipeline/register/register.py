@@ -1,0 +1,189 @@
+"""The register: which tow counts for a boat and crew, and until when.
+
+Here the rule of validity and the choice of the tow. How decisions of people are written down, and
+the freezing of an edition, belong to `warehouse`. A boat without a valid tow is listed as such: the
+pair A, B with Cw = 1 of the old spreadsheet never comes back.
+"""
+
+import datetime as dt
+from typing import Final
+
+import polars as pl
+
+from pipeline.method.definition import RegisterRule
+from pipeline.tables.keys import LINE as CREW
+
+LINE: Final = (*CREW, "empty_thwart")
+"""What a line is for. A curve measured with a thwart left free holds only with that thwart free
+(Sleepproef, R. Pot 2017, "Bemanning"); `NO_EMPTY_THWART` where all are manned."""
+
+NO_EMPTY_THWART: Final = ""
+CURVE_COLUMNS: Final = (
+    "tow_id",
+    "tow_date",
+    "valid_until",
+    "declared_speed_m_s",
+    "a_kg_m",
+    "b_m_s",
+    "cw_kg_m",
+    "cw_lo_kg_m",
+    "cw_hi_kg_m",
+    "flags",
+)
+CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+DOUBTED: Final = "doubted"
+"""Status of a line whose tows the rest of the archive rules out."""
+
+EXCLUDE, PREFER = "exclude", "prefer"
+DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
+NO_DECISIONS: Final = pl.DataFrame(schema=DECISION_SCHEMA)
+
+
+def with_empty_thwart(lines: pl.DataFrame) -> pl.DataFrame:
+    """Lines that were made before they said which thwart was left free."""
+    if "empty_thwart" in lines.columns:
+        return lines
+    return lines.with_columns(pl.lit(NO_EMPTY_THWART).alias("empty_thwart"))
+
+
+def draft_name(method: str) -> str:
+    """Name of the unpublished edition that a method would give."""
+    return f"concept-{method}"
+
+
+def valid_until(tow_date: pl.Expr, rule: RegisterRule) -> pl.Expr:
+    """The last day on which a tow counts: the end of its last calendar year."""
+    year = tow_date.dt.year()
+    years = pl.lit(rule.valid_years)
+    if rule.six_years_from is not None:
+        years = pl.when(year >= rule.six_years_from).then(6).otherwise(years)
+    return pl.date(year + years, 12, 31)
+
+
+def reference_day(tows: pl.DataFrame, results: pl.DataFrame) -> dt.date:
+    """The day on which drafts and the due list judge validity: that of the last tow or race.
+
+    Not today: the same archive gives the same tables.
+    """
+    day: dt.date = max([*tows["tow_date"], *results["race_date"]])
+    return day
+
+
+def draft_register(
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    boats: pl.DataFrame,
+    on_date: dt.date,
+    rule: RegisterRule,
+    decisions: pl.DataFrame = NO_DECISIONS,
+) -> pl.DataFrame:
+    """One line per boat and crew under one method: the newest sound tow, valid or not.
+
+    Args:
+        curves: rows of the warehouse's `curves` of one method.
+        tows: rows of `tows`.
+        boats: listed boats with `fsn_no`, `rowers`, `crew_class`; those never towed are listed too.
+        on_date: the day on which validity is judged; later tows do not exist yet.
+        rule: how long a tow counts, and which of its estimates.
+        decisions: `tow_id` and `verdict`: a tow to `exclude`, or to `prefer` over newer ones.
+
+    Returns:
+        Rows of the table `register`, `as_of` that day. Their status is `valid`, `expired`,
+        `never_towed` or one of these. `rejected`: towed, but no tow gives a curve. `doubted`: the
+        rest of the archive rules its tows out; a person may look and prefer one. `excluded`: by
+        decision, and there is no other tow.
+    """
+    towed = _towed(as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
+    curved = towed.filter(pl.col("status") != "rejected")
+    sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
+    chosen = (
+        _in_order(sound, rule, decisions)
+        .group_by(LINE, maintain_order=True)
+        .last()
+        .with_columns(
+            pl.when(pl.col("valid_until") >= on_date)
+            .then(pl.lit("valid"))
+            .otherwise(pl.lit("expired"))
+            .alias("status")
+        )
+        .select(*LINE, *CURVE_COLUMNS, "status")
+    )
+    crews = boats.drop_nulls(["rowers", "crew_class"]).select(
+        *LINE[:-1], pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
+    )
+    without = [
+        (sound.join(chosen, on=LINE, how="anti"), "excluded"),
+        (curved.join(sound, on=LINE, how="anti"), DOUBTED),
+        (towed.join(curved, on=LINE, how="anti"), "rejected"),
+        (crews.join(towed, on="fsn_no", how="anti"), "never_towed"),
+    ]
+    lines = [
+        frame.select(LINE).unique().with_columns(pl.lit(status).alias("status"))
+        for frame, status in without
+    ]
+    both = pl.concat([chosen, *lines], how="diagonal")
+    return both.with_columns(pl.lit(on_date).alias("as_of")).sort(LINE)
+
+
+def lines_of_all_days(
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    rule: RegisterRule,
+    decisions: pl.DataFrame = NO_DECISIONS,
+) -> pl.DataFrame:
+    """Every line that a register of one method had at some time.
+
+    In such an order that on any day the last one counts whose `tow_date` is not after it, as in
+    `draft_register`.
+
+    Args:
+        curves, tows, rule, decisions: as for `draft_register`.
+
+    Returns:
+        `LINE` and `CURVE_COLUMNS` of every tow that can count.
+    """
+    curved = _towed(as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
+    sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
+    return _in_order(sound, rule, decisions).select(*LINE, *CURVE_COLUMNS)
+
+
+def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Curves with the day of their tow and the thwart that was left free."""
+    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
+    return curves.join(
+        tows.select("tow_id", "tow_date", thwart), on="tow_id", maintain_order="left"
+    )
+
+
+def _in_order(sound: pl.DataFrame, rule: RegisterRule, decisions: pl.DataFrame) -> pl.DataFrame:
+    """Tows that may count, with their last day; the one that takes precedence comes last."""
+    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
+    preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
+    return allowed.sort(preferred, "tow_date", "tow_id").with_columns(
+        valid_until(pl.col("tow_date"), rule).alias("valid_until")
+    )
+
+
+def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
+    """Tows that the rest of the archive rules out and nobody preferred after looking."""
+    if "doubts" not in tows.columns:
+        return tows.clear()
+    doubted = tows.filter(pl.col("doubts").list.len() > 0)
+    return doubted.join(_with_verdict(decisions, PREFER), on="tow_id", how="anti")
+
+
+def as_ruled(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
+    """Curves with the estimate that the rule asks for; A follows Cw, B stays."""
+    if rule.estimate == "as_measured":
+        return curves
+    best = pl.col("cw_best_kg_m").is_not_null()
+    ratio = pl.when(best).then(pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).otherwise(1.0)
+    chosen = {name: f"cw_best{name.removeprefix('cw')}" for name in CW_COLUMNS}
+    return curves.with_columns(
+        pl.col("a_kg_m") * ratio,
+        *(pl.when(best).then(other).otherwise(own).alias(own) for own, other in chosen.items()),
+    )
+
+
+def _with_verdict(decisions: pl.DataFrame, verdict: str) -> pl.DataFrame:
+    return decisions.filter(pl.col("verdict") == verdict)

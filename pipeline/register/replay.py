@@ -1,0 +1,271 @@
+"""Races replayed under a register: power, rank and podium, and what another register changes.
+
+The formulas are in `pipeline.races.race` and `pipeline.curve`; here they are put together for a
+whole race file. Which rules a race was rowed under is data: `RaceRules`. Wind, waves and depth are
+no part of the handicap (presentation R. Pot, 24 January 2015).
+"""
+
+import operator
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import FloatArray
+from pipeline.curve import VALID_RATIO, cw
+from pipeline.races.power import curve_of_lines
+from pipeline.races.race import fatigue_factor, mean_speed_m_s, power_per_rower_w
+from pipeline.register.register import LINE, NO_EMPTY_THWART
+from pipeline.tables.frames import dtypes
+from pipeline.tables.register import RaceChanges
+from pipeline.uncertainty.ensemble import share_first
+
+Fatigue = Literal["none", "known", "extend"]
+
+RACE: Final = ("race", "race_date")
+CLASSIFICATION: Final = (*RACE, "crew_class")
+RESULT: Final = (*RACE, *LINE[:-1], "rowing_time_s")
+PODIUM: Final = 3
+
+WINNER_SCHEMA: Final = {
+    **{name: dtypes(RaceChanges)[name] for name in CLASSIFICATION},
+    "old_winner": pl.String(),
+    "new_winner": pl.String(),
+    "winner_changed": pl.Boolean(),
+    "change_probability": pl.Float64(),
+}
+
+CURVE: Final = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")
+
+NOT_IN_REGISTER = "not_in_register"
+NO_LINE_THAT_DAY = "no_line_that_day"
+THWART_NOT_GIVEN = "thwart_not_given"
+ABOVE_B = "speed_not_below_b"
+BEYOND_CURVE = "beyond_curve"
+
+
+@dataclass(frozen=True)
+class RaceRules:
+    """How results are computed; the distance that the current carried a boat comes off first.
+
+    Attributes:
+        fatigue: `none`; `known`: between the two published points, refused outside; `extend`: the
+            power law between them, for every time.
+    """
+
+    fatigue: Fatigue = "extend"
+
+
+def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.DataFrame:
+    """Power and rank of every result under the lines that counted on its day.
+
+    Args:
+        lines: `LINE`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`, `a_kg_m`, `b_m_s`,
+            `cw_kg_m`; of all days, those that take precedence last (`lines_of_all_days`).
+        results: `race`, `race_date`, `LINE` (the thwart null where it is not given), `distance_m`,
+            `rowing_time_s`, `stream_m`, `penalty_w` (watt per rower, taken off).
+        rules: how they are computed.
+
+    Returns:
+        The results, sorted by race, class and rank. Added are `tow_id` and `declared_cw_kg_m` (Cw
+        at the declared speed) of the line that counted, `speed_m_s`, `cw_kg_m`, `fatigue_factor`,
+        `power_w` (per rower, corrected, less the penalty) and `rank` within the race and class.
+        `remark` says why there is no power (`not_in_register`, `no_line_that_day`,
+        `thwart_not_given`, `speed_not_below_b`), or that the speed lies outside 85-115 % of the
+        declared one, where the curve does not hold (`beyond_curve`); else it is empty.
+
+    Raises:
+        MissingKnowledgeError: a race time outside what is known of fatigue.
+    """
+    rowed = _with_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
+    through_water = rowed["distance_m"] - rowed["stream_m"].fill_null(0.0)
+    speed = mean_speed_m_s(through_water, rowed["rowing_time_s"])
+    a, s = curve_of_lines(rowed)
+    resistance = cw(np.nan_to_num(a), np.nan_to_num(s), speed)
+    has_line = np.isfinite(a)
+    sound = has_line & np.isfinite(resistance)
+    fatigue = _fatigue(rowed, rules)
+    power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, rowed["rowers"]) * fatigue
+    penalty = rowed["penalty_w"].fill_null(0.0).to_numpy()
+    low, high = (ratio * rowed["declared_speed_m_s"].to_numpy() for ratio in VALID_RATIO)
+    beyond = (speed < low) | (speed > high)
+    without = rowed["without"].to_numpy()
+    remark = np.select([~has_line, ~sound, beyond], [without, ABOVE_B, BEYOND_CURVE], "")
+    rank = pl.col("power_w").rank("min", descending=True).over(CLASSIFICATION).cast(pl.Int32)
+    return (
+        rowed.drop("without", "tow_date", "valid_until", "declared_speed_m_s")
+        .rename({"cw_kg_m": "declared_cw_kg_m"})
+        .with_columns(
+            pl.Series("speed_m_s", speed),
+            pl.Series("fatigue_factor", fatigue),
+            _where(sound, "cw_kg_m", resistance),
+            _where(sound, "power_w", power - penalty),
+            pl.Series("remark", remark, pl.String),
+        )
+        .with_columns(rank.alias("rank"))
+        .sort(*CLASSIFICATION, "rank", *LINE, nulls_last=True)
+    )
+
+
+def _with_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
+    """Results with the line that counted on their day, or `without`: why there is none.
+
+    A result that names no empty thwart was rowed with all manned, where the boat has such a line;
+    else with the one thwart free that its line asks for.
+    """
+    crew = LINE[:-1]
+    facts = (*("tow_id", "tow_date", "valid_until"), *CURVE)
+    numbered = results.with_row_index("result").rename({"empty_thwart": "given"})
+    pairs = numbered.select("result", "race_date", *crew, "given").join(
+        lines.select(*LINE, *facts), on=crew, maintain_order="left_right"
+    )
+    fits = pl.col("given").is_null() | (pl.col("given") == pl.col("empty_thwart"))
+    begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= pl.col("race_date"))
+    counts = pl.col("valid_until").is_null() | (pl.col("valid_until") >= pl.col("race_date"))
+    newest = (
+        pairs.filter(fits & begun)
+        .group_by("result", "empty_thwart", maintain_order=True)
+        .last()
+        .filter(counts)
+    )
+    all_manned = (pl.col("empty_thwart") == NO_EMPTY_THWART).any().over("result")
+    chosen = newest.filter(~all_manned | (pl.col("empty_thwart") == NO_EMPTY_THWART))
+    told = chosen.filter(pl.len().over("result") == 1)
+    known, several = pairs["result"].unique().implode(), chosen["result"].unique().implode()
+    without = (
+        pl.when(pl.col("result").is_in(several))
+        .then(pl.lit(THWART_NOT_GIVEN))
+        .when(pl.col("result").is_in(known))
+        .then(pl.lit(NO_LINE_THAT_DAY))
+        .otherwise(pl.lit(NOT_IN_REGISTER))
+    )
+    return (
+        numbered.join(
+            told.select("result", "empty_thwart", *facts),
+            on="result",
+            how="left",
+            maintain_order="left",
+        )
+        .with_columns(
+            without.alias("without"),
+            pl.coalesce("empty_thwart", "given", pl.lit(NO_EMPTY_THWART)).alias("empty_thwart"),
+        )
+        .drop("result", "given")
+    )
+
+
+def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
+    """What another register does to races: power, place and podium of every result.
+
+    Places are among the crews of a class with a power under both registers: a crew that only one
+    of them ranks would move all others.
+
+    Args:
+        old, new: `replay` of the same results under two registers.
+
+    Returns:
+        Per result `old_power_w`, `new_power_w`, `old_remark`, `new_remark`, `old_rank`, `new_rank`,
+        and whether it is on the podium in one of the two only (`podium_changed`); the last three
+        are null where a register has no power.
+    """
+    columns = ["power_w", "rank", "remark"]
+    before, after = _placed_under_both(old, new), _placed_under_both(new, old)
+    pairs = before.select(*RESULT, *columns).join(
+        after.select(*RESULT, "empty_thwart", *columns),
+        on=RESULT,
+        suffix="_new",
+        maintain_order="left",
+    )
+    podiums = (pl.col(name) <= PODIUM for name in ("rank", "rank_new"))
+    return pairs.select(
+        *RACE,
+        *LINE,
+        "rowing_time_s",
+        pl.col("power_w").alias("old_power_w"),
+        pl.col("power_w_new").alias("new_power_w"),
+        pl.col("remark").alias("old_remark"),
+        pl.col("remark_new").alias("new_remark"),
+        pl.col("rank").alias("old_rank"),
+        pl.col("rank_new").alias("new_rank"),
+        operator.ne(*podiums).alias("podium_changed"),
+    ).sort(*CLASSIFICATION, "new_rank", "fsn_no", nulls_last=True)
+
+
+def _placed_under_both(results: pl.DataFrame, others: pl.DataFrame) -> pl.DataFrame:
+    """Results with `rank` among those of race and class with a power in `others` too, else null."""
+    both = others.drop_nulls("power_w").select(*RESULT, shared=pl.lit(True))
+    placed = results.join(both, on=RESULT, how="left", maintain_order="left")
+    among = pl.when(pl.col("shared")).then("rank")
+    rank = among.rank("min").over(CLASSIFICATION).cast(pl.Int32)
+    return placed.with_columns(rank.alias("rank")).drop("shared")
+
+
+def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) -> pl.DataFrame:
+    """Who wins each race and class under two registers, and how likely it is not the old winner.
+
+    Of the crews that both registers rank, as in `race_changes`. How likely is the share of equally
+    likely new registers in which another of them has the highest power. A line without members
+    (carried over from print) is taken as it stands.
+
+    Args:
+        old, new: `replay` of the same results under two registers.
+        members: rows of the table `ensemble` for tows of the new one; may be empty, then nothing is
+            known.
+
+    Returns:
+        One row per race and class: `old_winner`, `new_winner` (boat; null where nobody has a
+        power), `winner_changed` and `change_probability` (null where it is not known).
+    """
+    rows = []
+    old, new = _placed_under_both(old, new), _placed_under_both(new, old)
+    for key, results in new.group_by(CLASSIFICATION, maintain_order=True):
+        before = old.filter(*(pl.col(n) == k for n, k in zip(CLASSIFICATION, key, strict=True)))
+        winners = [_winner(results_of) for results_of in (before, results)]
+        rows.append(
+            dict(zip(CLASSIFICATION, key, strict=True))
+            | {
+                "old_winner": None if winners[0] is None else winners[0][0],
+                "new_winner": None if winners[1] is None else winners[1][0],
+                "winner_changed": winners[0] != winners[1],
+                "change_probability": _change_probability(results, winners[0], members),
+            }
+        )
+    return pl.DataFrame(rows, schema=WINNER_SCHEMA).sort(CLASSIFICATION)
+
+
+def _winner(results: pl.DataFrame) -> tuple[object, ...] | None:
+    first = results.filter(pl.col("rank") == 1).sort(LINE).select(LINE)
+    return None if first.is_empty() else first.row(0)
+
+
+def _change_probability(
+    results: pl.DataFrame, old_winner: tuple[object, ...] | None, members: pl.DataFrame
+) -> float | None:
+    named = pl.col("tow_id").fill_null(pl.concat_str(LINE, separator=" "))
+    crews = results.drop_nulls("rank").select(
+        *LINE, "power_w", "penalty_w", named, pl.col("declared_cw_kg_m").alias("cw_kg_m")
+    )
+    if members.is_empty() or old_winner is None or old_winner not in crews.select(LINE).rows():
+        return None
+    certain = crews.join(members, on="tow_id", how="anti").join(
+        members.select("member").unique(), how="cross"
+    )
+    columns = ["tow_id", "member", "cw_kg_m"]
+    drawn = pl.concat([members.select(columns), certain.select(columns)])
+    shares = share_first(drawn, crews)
+    mine = pl.all_horizontal(pl.col(n) == w for n, w in zip(LINE, old_winner, strict=True))
+    return 1.0 - float(shares.filter(mine)["share"][0])
+
+
+def _fatigue(results: pl.DataFrame, rules: RaceRules) -> FloatArray:
+    """Factor against the fastest sloop of the race."""
+    if rules.fatigue == "none":
+        return np.ones(results.height)
+    fastest = results.select(pl.col("rowing_time_s").min().over(RACE)).to_series()
+    outside: Literal["refuse", "extend"] = "refuse" if rules.fatigue == "known" else "extend"
+    return fatigue_factor(results["rowing_time_s"], fastest, outside)
+
+
+def _where(known: np.ndarray, name: str, values: FloatArray) -> pl.Expr:
+    return pl.when(pl.Series(known)).then(pl.Series(np.where(known, values, 0.0))).alias(name)

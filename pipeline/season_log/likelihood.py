@@ -1,0 +1,242 @@
+"""What the tows of a boat say together: their joint normal density, unreported changes summed.
+
+Each tow gives three numbers: ln Cw and the bend q of its own curve, and ln(GPS / log). The boat's
+level and bend are random and integrated out. The level drifts in a way of the boat's own, as paint,
+wear and fouling differ: a random walk over the seasons. A boat may have been altered between two
+tows without a report, and any tow of the years before steering was aided may have been pulled
+askew. At most one of these per boat: each, and that there is none, is a component of a normal
+mixture.
+
+Belongs here: that density with its slopes, per boat, as arrays. Does not: what moves the numbers of
+a tow (`effects`) and the search for the unknowns (`posterior`).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.season_log.assumed import Settings
+
+LEVEL, BEND, GPS = range(3)
+"""The numbers of a tow."""
+
+LEVEL_SD: Final = 1.0
+"""Spread of ln Cw between boats: so wide that no boat's level is drawn to that of others."""
+
+
+@dataclass(frozen=True)
+class Patterns:
+    """Patterns of changes of boats with the same number of tows, as many of them early.
+
+    Attributes:
+        tow: (boats, tows) index of each tow.
+        altered: (patterns, gaps) whether the boat was altered between two tows.
+        askew: (patterns, tows) whether a tow was pulled askew.
+        level, bend: (patterns, tows, tows) prior covariance of the boat's level and bend.
+        drift: (boats, tows, tows) years that the drift of two tows has in common.
+        excess: (patterns, tows) mean of what being pulled askew adds to ln Cw.
+        excess_variance: of that.
+    """
+
+    tow: IntArray
+    altered: BoolArray
+    askew: BoolArray
+    level: FloatArray
+    bend: FloatArray
+    drift: FloatArray
+    excess: FloatArray
+    excess_variance: float
+
+    @property
+    def changes(self) -> IntArray:
+        """Number of alterations, and of tows pulled askew, (patterns, 2)."""
+        return np.stack([self.altered.sum(axis=1), self.askew.sum(axis=1)], axis=1)
+
+    @property
+    def possible(self) -> IntArray:
+        """Where a boat may have each, (2,)."""
+        return np.array([self.altered.any(axis=0).sum(), self.askew.any(axis=0).sum()])
+
+    def prior(self, shares: FloatArray) -> FloatArray:
+        """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
+        unchanged = self.possible - self.changes
+        ln_prior = self.changes @ np.log(shares) + unchanged @ np.log1p(-shares)
+        return ln_prior - _normalised(ln_prior)[0]
+
+
+def patterns_of(
+    boat: IntArray, season: FloatArray, early: BoolArray, settings: Settings
+) -> list[Patterns]:
+    """Boats by their number of tows and of early ones, with every pattern of at most one change.
+
+    Args:
+        boat: index of the boat as it was until a reported alteration, (tows,), sorted by time.
+        season: year of each tow, (tows,).
+        early: whether a tow is from before steering straight was aided, (tows,).
+    """
+    order = np.argsort(boat, kind="stable")
+    first, count = np.unique(boat[order], return_index=True, return_counts=True)[1:]
+    kinds = np.stack([count, np.bincount(boat, early).astype(np.int64)], axis=1)
+    return [
+        _patterns(order[first[mine][:, None] + np.arange(kind[0])], season, int(kind[1]), settings)
+        for kind in np.unique(kinds, axis=0)
+        for mine in [(kinds == kind).all(axis=1)]
+    ]
+
+
+def _patterns(tow: IntArray, season: FloatArray, early: int, settings: Settings) -> Patterns:
+    tows = tow.shape[1]
+    since_first = season[tow] - season[tow[:, :1]]
+    gaps = tows - 1
+    there = np.eye(1 + gaps + early, 1 + gaps + tows, dtype=bool)[:, 1:]
+    altered, askew = there[:, :gaps], there[:, gaps:]
+    after = np.tri(tows, gaps, -1)
+    step = np.einsum("pg,kg,lg->pkl", altered, after, after)
+    return Patterns(
+        tow,
+        altered,
+        askew,
+        LEVEL_SD**2 + settings.changed_sd**2 * step,
+        settings.bend_sd**2 + settings.changed_bend_sd**2 * step,
+        np.minimum(since_first[:, :, None], since_first[:, None, :]),
+        settings.askew_excess.mean * askew,
+        settings.askew_excess.sd**2,
+    )
+
+
+@dataclass(frozen=True)
+class Told:
+    """What boats with the same number of tows say, at given unknowns; 3 x tows numbers per boat.
+
+    Attributes:
+        ln_density: (boats,) of what was observed, over all patterns.
+        weight: (boats, patterns) posterior of each pattern.
+        pull: (boats, patterns, n) precision of the numbers times their residual.
+        mean_precision, mean_pull: that precision and pull, averaged over patterns.
+        drift: (boats, n, n) part of the covariance of the numbers that is the boats' drift.
+        slope: (boats, n, unknowns) of the numbers by the unknowns.
+    """
+
+    patterns: Patterns
+    ln_density: FloatArray
+    weight: FloatArray
+    pull: FloatArray
+    mean_precision: FloatArray
+    mean_pull: FloatArray
+    drift: FloatArray
+    slope: FloatArray
+
+    @property
+    def observed_precision(self) -> FloatArray:
+        """Precision of the numbers, less what the pattern being unknown takes off (Louis 1982)."""
+        off = self.pull - self.mean_pull[:, None]
+        return np.asarray(self.mean_precision - np.einsum("bp,bpi,bpj->bij", self.weight, off, off))
+
+    @property
+    def information(self) -> FloatArray:
+        """Observed information on the unknowns, per boat."""
+        return np.asarray(np.swapaxes(self.slope, 1, 2) @ self.observed_precision @ self.slope)
+
+    @property
+    def complete_information(self) -> FloatArray:
+        """The same as if the pattern of each boat were known."""
+        return np.asarray(np.swapaxes(self.slope, 1, 2) @ self.mean_precision @ self.slope)
+
+    @property
+    def score(self) -> FloatArray:
+        """Slope of the ln density, summed over boats."""
+        return np.asarray(np.einsum("bi,bip->p", self.mean_pull, self.slope))
+
+
+def tell(
+    groups: list[Patterns],
+    residual: FloatArray,
+    covariance: FloatArray,
+    state: FloatArray,
+    slope: FloatArray,
+    drift_variance: float,
+    shares: FloatArray,
+) -> Iterator[Told]:
+    """The density of all boats.
+
+    Args:
+        groups: boats by number of tows.
+        residual: (tows, 3) observed less predicted, level centred per boat.
+        covariance: (tows, 3, 3) of what is a tow's own.
+        state: (tows, 3, 2) slope of the numbers by the boat's level and bend.
+        slope: (tows, 3, unknowns).
+        drift_variance: of the drift of a boat's level, per year.
+        shares: of gaps between tows in which a boat was altered without a report, and of early
+            tows that were pulled askew.
+    """
+    for group in groups:
+        boats, tows = group.tow.shape
+        n = 3 * tows
+        full, drift = covariance_of(group, covariance, state, drift_variance)
+        precision = np.linalg.inv(full)
+        own = np.repeat(residual[group.tow][:, None], len(group.askew), axis=1)
+        own[..., LEVEL] -= group.excess
+        own = own.reshape(boats, -1, n)
+        pull = np.einsum("bpij,bpj->bpi", precision, own)
+        ln_density = -0.5 * ((pull * own).sum(axis=2) + np.linalg.slogdet(full)[1])
+        ln_joint = ln_density + group.prior(shares)
+        ln_all, weight = _normalised(ln_joint)
+        yield Told(
+            group,
+            ln_all,
+            weight,
+            pull,
+            np.einsum("bp,bpij->bij", weight, precision),
+            np.einsum("bp,bpi->bi", weight, pull),
+            drift,
+            slope[group.tow].reshape(boats, n, -1),
+        )
+
+
+def covariance_of(
+    group: Patterns, covariance: FloatArray, state: FloatArray, drift_variance: float
+) -> tuple[FloatArray, FloatArray]:
+    """Covariance of the numbers of each boat.
+
+    Args:
+        covariance, state, drift_variance: as `tell` takes them.
+
+    Returns:
+        Under each pattern, (boats, patterns, n, n), and the part of it that is drift, (boats, n,
+        n).
+    """
+    boats, tows = group.tow.shape
+    z = state[group.tow].reshape(boats, 3 * tows, 2)
+    by_level, by_bend = (z[:, :, None, i] * z[:, None, :, i] for i in range(2))
+    full = by_level[:, None] * _per_number(group.level)
+    full += by_bend[:, None] * _per_number(group.bend)
+    drift = by_level * _per_number(drift_variance * group.drift)
+    full += drift[:, None]
+    of_pairs = full.reshape(boats, -1, tows, 3, tows, 3)
+    each = np.arange(tows)
+    # Indexing twice with one array puts that axis first.
+    of_pairs[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
+    of_pairs[:, :, each, LEVEL, each, LEVEL] += group.excess_variance * group.askew
+    return full, drift
+
+
+def _per_number(of_tows: FloatArray) -> FloatArray:
+    """What each pair of tows has, (..., tows, tows), for each pair of their numbers."""
+    return np.repeat(np.repeat(of_tows, 3, axis=-1), 3, axis=-2)
+
+
+def _normalised(ln_weight: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ln of the sum of weights along the last axis, and the weights with a sum of 1.
+
+    What others add to the largest counts in full, as in `scipy.special.logsumexp`, which takes ten
+    times as long on arrays as small as these.
+    """
+    top: FloatArray = ln_weight.max(axis=-1, keepdims=True)
+    weight, largest = np.exp(ln_weight - top), ln_weight == top
+    often = largest.sum(axis=-1)
+    others = np.where(largest, 0.0, weight).sum(axis=-1) / often
+    ln_sum = np.log1p(others) + np.log(often) + top[..., 0]
+    return ln_sum, weight / weight.sum(axis=-1, keepdims=True)

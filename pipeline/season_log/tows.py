@@ -1,0 +1,209 @@
+"""What the posterior says of single tows: instrument errors, and the boat's best estimate.
+
+The measurand is ln Cw of the hull at its reference speed on the day of the tow. As measured, a tow
+stands alone with the corrections of its instruments; the best estimate adds what the boat's other
+tows say. Its weights on the boat's tows sum to 1: the boat's level is its own.
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from pipeline.arrays import BoolArray, FloatArray
+from pipeline.quantiles import LEVEL as INTERVAL_LEVEL
+from pipeline.season_log.effects import FORCE, ZERO, ZERO_DRIFT, slopes
+from pipeline.season_log.likelihood import LEVEL, Told
+from pipeline.season_log.posterior import Fit, Posterior, Problem
+
+BISECTIONS: Final = 40
+LIKELY: Final = 0.05
+"""A tow that was less likely pulled askew is taken for straight: the interval leaves that out."""
+FARTHEST_SD: Final = 12.0
+LEAST_WEIGHT: Final = 0.005
+"""A smaller share of what an estimate rests on is left out of the list."""
+
+
+def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
+    """What the instruments did to each tow.
+
+    A fault counts where it is likelier than not, and not at all where it is not.
+
+    Args:
+        change: of every unknown of the fit without each boat, (boats, unknowns).
+
+    Returns:
+        `tow_id, log`, `factor` of the log (null where the season is not determined; 1 with dGPS),
+        `force_factor` and `force_zero_n` of the load cell: read = true x factor + zero; `bend`, q
+        of the boat; `askew_ratio`, what being pulled askew may have added to ln Cw (root mean
+        square; not corrected, and 0 where it is unlikely); `ln_sd` and `dof` of what the
+        instruments do to ln Cw, per unit of the elasticity 2 + 2 q; `others_ln_ratio`, change of ln
+        Cw with the instruments as the other boats alone show them. In the order of the network.
+    """
+    problem, network, speed = posterior.problem, posterior.problem.network, posterior.of_log
+    level = np.where(posterior.of_boats, 0.0, posterior.design[:, LEVEL])
+    share = problem.share[:, posterior.places]
+    corrected = np.isin(posterior.places, problem.faults)
+    force = corrected & (posterior.names == FORCE)
+    zero = corrected & np.isin(posterior.names, (ZERO, ZERO_DRIFT))
+    variance = ((level @ posterior.covariance) * level).sum(axis=1)
+    own = np.append(posterior.scatter_of_means, 0.0)[network.group]  # -1, anchored, reads the last
+    by_log = posterior.fit.slopes.ways["speed"][:, LEVEL] ** 2
+    variance += own * (2.0 * variance / problem.settings.log_sd**2 - by_log)
+    determined = network.log_known
+    known = np.sqrt(np.maximum(variance, 0.0)) / (2.0 + 2.0 * problem.q)
+    applied = np.where(speed | force | zero, level, 0.0)
+    others = -(applied * change[network.cluster]).sum(axis=1)
+    return network.tows.select(
+        "tow_id",
+        "log",
+        _where(determined, "factor", np.exp(share[:, speed] @ posterior.mean[speed])),
+        pl.Series("force_factor", np.exp(share[:, force] @ posterior.mean[force])),
+        pl.Series("force_zero_n", share[:, zero] @ posterior.mean[zero]),
+        pl.Series("bend", problem.q),
+        pl.Series("askew_ratio", _askew(posterior.fit, len(problem.q))),
+        pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
+        pl.Series("dof", posterior.fit.dof(level)),
+        _where(determined, "others_ln_ratio", others),
+    )
+
+
+def _askew(fit: Fit, tows: int) -> FloatArray:
+    """Root mean square of what being pulled askew added to ln Cw of each tow."""
+    square = np.zeros(tows)
+    for t in fit.told:
+        boats, of_boat = t.patterns.tow.shape
+        pull = t.pull.reshape(boats, -1, of_boat, 3)[..., LEVEL]
+        own = np.einsum("bpkk->bpk", fit.precision(t))[..., LEVEL::3]
+        variance = t.patterns.excess_variance
+        mean = t.patterns.excess + variance * pull
+        weight = t.weight[:, :, None] * t.patterns.askew
+        weight *= weight.sum(axis=1, keepdims=True) > LIKELY
+        there = (weight * (mean**2 + variance - variance**2 * own)).sum(axis=1)
+        square[t.patterns.tow] = there
+    return np.sqrt(square)
+
+
+def _where(known: BoolArray, name: str, values: FloatArray) -> pl.Series:
+    """A column of numbers, null where not known."""
+    return pl.Series(name, np.where(known, values, np.nan)).fill_nan(None)
+
+
+def best_estimates(
+    posterior: Posterior, instruments: pl.DataFrame
+) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """What all tows of a boat, and all boats, say of ln Cw at each tow.
+
+    Args:
+        instruments: as `instrument_errors` gives them.
+
+    Returns:
+        `tow_id, as_measured, ln_cw, sd, lo, hi` (95 %), in the order of the network: ln Cw by the
+        tow alone with the corrections of `instrument_errors`, then by all; and the shares
+        `tow_id, rests_on, weight` that sum to 1 per tow.
+    """
+    problem, network = posterior.problem, posterior.problem.network
+    true_level = np.where(posterior.of_boats, posterior.design[:, LEVEL], 0.0)
+    numbers = np.zeros((len(problem.q), 4))
+    shares = []
+    for told in posterior.fit.told:
+        numbers[told.patterns.tow], weight = _of_boats(told, posterior, true_level)
+        tows = told.patterns.tow.shape[1]
+        shares.append(
+            pl.DataFrame(
+                {
+                    "tow": np.repeat(told.patterns.tow, tows, axis=1).ravel(),
+                    "other": np.tile(told.patterns.tow, (1, tows)).ravel(),
+                    "weight": weight.ravel(),
+                }
+            )
+        )
+    base = problem.boat_level + true_level @ posterior.mean
+    ln_cw, sd, lo, hi = numbers.T
+    names = network.tows["tow_id"]
+    lost_tows = np.flatnonzero(~network.log_known)
+    weights = (
+        pl.concat(shares)
+        .with_columns(
+            pl.when(pl.col("tow").is_in(lost_tows.tolist()))
+            .then((pl.col("tow") == pl.col("other")).cast(pl.Float64))
+            .otherwise("weight")
+            .alias("weight")
+        )
+        .filter(pl.col("weight").abs() >= LEAST_WEIGHT)
+        .sort("tow", "other")
+        .select(
+            "tow",
+            "other",
+            pl.col("weight") / pl.col("weight").sum().over("tow"),
+        )
+    )
+    return (
+        network.tows.select(
+            "tow_id",
+            pl.Series("as_measured", _as_measured(problem, instruments)),
+            pl.Series("ln_cw", base + ln_cw),
+            pl.Series("sd", sd),
+            pl.Series("lo", base + lo),
+            pl.Series("hi", base + hi),
+        ),
+        weights.select(
+            tow_id=names.gather(weights["tow"]),
+            rests_on=names.gather(weights["other"]),
+            weight=weights["weight"],
+        ),
+    )
+
+
+def _as_measured(problem: Problem, errors: pl.DataFrame) -> FloatArray:
+    """Ln Cw of each tow alone, with its instruments corrected as `instrument_errors` says."""
+    factor, scale, zero = (
+        errors[name].fill_null(1.0).to_numpy()
+        for name in ("factor", "force_factor", "force_zero_n")
+    )
+    by_log = slopes(problem.q, problem.force_n, np.log(factor), problem.reference_ln).predicted
+    by_force = np.log(scale) - np.log1p(-zero / problem.force_n)
+    return np.asarray(problem.network.numbers("ln_cw") - by_log[:, LEVEL] - by_force)
+
+
+def _of_boats(
+    told: Told, posterior: Posterior, true_level: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Boats with the same number of tows: (boats, tows, 4) numbers, (boats, tows, tows) shares."""
+    tow = told.patterns.tow
+    boats, tows = tow.shape
+    state = posterior.fit.slopes.state[tow][..., 0]
+    # Covariance of the level at each tow with every number of the boat, per pattern.
+    drift = posterior.fit.state.drift_variance * told.patterns.drift
+    level = told.patterns.level + drift[:, None]
+    with_level = np.einsum("bpkl,bli->bpkli", level, state)
+    with_level = with_level.reshape(boats, -1, tows, 3 * tows)
+    gain = with_level @ posterior.fit.precision(told)
+    prior = np.einsum("bpkk->bpk", level)
+    variance = prior - (gain * with_level).sum(axis=3)
+    by = true_level[tow][:, None] - gain @ posterior.design[tow].reshape(boats, 1, 3 * tows, -1)
+    mean = np.einsum("bpkn,bpn->bpk", with_level, told.pull)
+    shared = np.einsum("bpkf,fg,bpkg->bpk", by, posterior.covariance, by, optimize=True)
+    variance = np.maximum(variance + shared, 1e-12)
+    weight = np.repeat(told.weight[:, :, None], tows, axis=2)
+    average = (weight * mean).sum(axis=1)
+    spread = (weight * (variance + (mean - average[:, None]) ** 2)).sum(axis=1)
+    bounds = _quantiles(weight, mean, np.sqrt(variance))
+    numbers = np.stack([average, np.sqrt(spread), *bounds], axis=2)
+    on_level = gain.reshape(boats, -1, tows, tows, 3)[..., LEVEL]
+    return numbers, np.einsum("bp,bpkl->bkl", told.weight, on_level)
+
+
+def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> list[FloatArray]:
+    """Bounds of the 95 % interval of normal mixtures over axis 1, by bisection."""
+    bounds = []
+    for level in (0.5 - INTERVAL_LEVEL / 2, 0.5 + INTERVAL_LEVEL / 2):
+        low = (mean - FARTHEST_SD * sd).min(axis=1)
+        high = (mean + FARTHEST_SD * sd).max(axis=1)
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            below = (weight * scipy.special.ndtr((middle[:, None] - mean) / sd)).sum(axis=1)
+            low, high = np.where(below < level, middle, low), np.where(below < level, high, middle)
+        bounds.append(0.5 * (low + high))
+    return bounds

@@ -1,0 +1,148 @@
+"""Calibration: the factor y that brings the log of a tow's file to ground speed.
+
+`y = mean(v_dGPS) / mean(v_log)` over the steady parts of all runs together, as many out as back,
+so that the current drops out (Sleepproef, R. Pot 2017, "IJking snelheid"). Every run weighs the
+same, whatever the length of its window: with unequal windows and 5 cm/s of current a ratio over
+samples is wrong by 0.5 % (docs/method.md, 4).
+"""
+
+from typing import Final
+
+import numpy as np
+
+from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.blocks.batch import Batch
+from pipeline.channels import BACK, OUT
+
+USUAL_RUN_SCATTER: Final = 0.006
+"""Standard deviation of GPS over log between runs one way in a steady current (inferred: half of
+simulated sound tows stay under 0.3 %, one in a hundred exceeds 0.6 %)."""
+
+BY_CHANCE: Final = 2.0
+"""Standard deviations up to which chance may explain a drift of the current (inferred)."""
+
+
+def mean_over_both_ways(
+    values: FloatArray, direction: IntArray, tow: IntArray, used: BoolArray, tows: int
+) -> tuple[FloatArray, BoolArray]:
+    """Mean of the run means out and of those back, then the mean of the two, per tow.
+
+    With as many runs out as back this is the plain mean of run means; with one run lost it still
+    lets a constant current drop out.
+
+    Args:
+        values: one number per run, shape (runs,).
+        direction: 1 out, -1 back, shape (runs,).
+        tow: index of the run's tow, shape (runs,).
+        used: runs that count, shape (runs,).
+        tows: number of tows.
+
+    Returns:
+        The mean per tow, shape (tows,), 0 where a way has no run; and whether both ways have one.
+    """
+    ways = []
+    counted = np.ones(tows, dtype=bool)
+    for way in (OUT, BACK):
+        weight = (used & (direction == way)).astype(np.float64)
+        count = np.bincount(tow, weight, tows)
+        counted &= count > 0
+        ways.append(np.bincount(tow, weight * values, tows) / np.maximum(count, 1.0))
+    return np.where(counted, 0.5 * (ways[0] + ways[1]), 0.0), counted
+
+
+def stream_drift_m_s(
+    batch: Batch, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray
+) -> FloatArray:
+    """What a current that rises or falls evenly from run to run adds to the GPS of each run.
+
+    Runs out come before runs back, so that such a current does not drop out of their mean. It shows
+    within both ways, with opposite signs; a log that is not linear, towed faster and faster, shows
+    with the same sign. What chance makes of it is taken off: the slope counts by 1 - c^2 / its
+    square, or not at all, with c `BY_CHANCE` standard deviations by the scatter about it, or one by
+    `USUAL_RUN_SCATTER` where that is more.
+
+    Args:
+        gps_m_s, log_m_s, used: as in `gps_factor`.
+
+    Returns:
+        Shape (runs,), m/s; 0 where no way of a file has two runs.
+    """
+    direction, file, files = batch.direction, batch.file, 2 * batch.size
+    number = batch.blocks.runs["run"].to_numpy().astype(np.int64)
+    with_fix = used & np.isfinite(gps_m_s) & (log_m_s > 0)
+    counted = with_fix.astype(np.float64)
+    gps, log = (np.where(with_fix, speed, 0.0) for speed in (gps_m_s, log_m_s))
+    of_log = np.bincount(file, log, files)
+    y = np.bincount(file, gps, files) / np.where(of_log > 0, of_log, 1.0)
+    way = 2 * file + (direction == OUT)
+
+    def about_its_way(values: FloatArray) -> FloatArray:
+        count = np.maximum(np.bincount(way, counted, 2 * files), 1.0)
+        mean = np.bincount(way, counted * values, 2 * files) / count
+        return np.asarray(counted * (values - mean[way]), dtype=np.float64)
+
+    order = about_its_way(number.astype(np.float64))
+    excess = about_its_way(gps - y[file] * log)
+    square = np.bincount(file, order**2, files)
+    known = square > 0
+    slope = np.bincount(file, direction * order * excess, files) / np.where(known, square, 1.0)
+    count = np.maximum(np.bincount(file, counted, files), 1.0)
+    rest = excess - counted * direction * slope[file] * order
+    scatter = np.bincount(file, rest**2, files) / np.maximum(count - 3.0, 1.0)
+    usual = (USUAL_RUN_SCATTER * of_log / count) ** 2
+    chance = np.maximum(BY_CHANCE**2 * scatter, usual) / np.where(known, square, 1.0)
+    moves = known & (slope**2 > chance)
+    slope = np.where(moves, slope - chance / np.where(moves, slope, 1.0), 0.0)
+    middle = np.bincount(file, counted * number, files) / count
+    return np.asarray(direction * slope[file] * (number - middle[file]), dtype=np.float64)
+
+
+def gps_factor(
+    gps_m_s: FloatArray,
+    log_m_s: FloatArray,
+    direction: IntArray,
+    tow: IntArray,
+    used: BoolArray,
+    tows: int,
+) -> tuple[FloatArray, BoolArray]:
+    """The factor y of every tow, and whether it could be determined (runs both ways).
+
+    Arguments as in `mean_over_both_ways`, with the run means of ground speed, NaN without a fix,
+    and of log speed. Undetermined factors are given as 1 and must not be used.
+    """
+    with_fix = used & np.isfinite(gps_m_s)
+    fixed = np.where(with_fix, gps_m_s, 0.0)
+    gps, both = mean_over_both_ways(fixed, direction, tow, with_fix, tows)
+    log, _ = mean_over_both_ways(log_m_s, direction, tow, with_fix, tows)
+    return np.where(both, gps / np.where(both, log, 1.0), 1.0), both
+
+
+def gps_factor_of_files(
+    batch: Batch, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray, steady: BoolArray
+) -> tuple[FloatArray, BoolArray]:
+    """The factor y of every file of a tow, and whether it could be determined.
+
+    "Log1 bij elke sleep calibreren aan dGPS" (presentation 2015): the files of a combined tow are
+    two tows, each with a log of its own. A file whose used runs all go one way is calibrated over
+    all its steady runs, those that were not chosen too; one that was only towed one way shares the
+    factor of the tow.
+
+    Args:
+        gps_m_s, log_m_s, used: as in `gps_factor`.
+        steady: runs with a steady window, chosen or not, shape (runs,).
+
+    Returns:
+        Both of shape (tows, 2): by tow, of the first and of the second file.
+    """
+
+    def factor(of: IntArray, runs: BoolArray, count: int) -> tuple[FloatArray, BoolArray]:
+        return gps_factor(gps_m_s, log_m_s, batch.direction, of, runs, count)
+
+    files = 2 * batch.size
+    y, known = factor(batch.file, used, files)
+    of_all, known_of_all = factor(batch.file, steady, files)
+    of_tow, known_of_tow = factor(batch.tow, used, batch.size)
+    known_of_all &= np.repeat(batch.any(batch.in_second_file), 2)
+    y = np.select([known, known_of_all], [y, of_all], np.repeat(of_tow, 2))
+    known = known | known_of_all | np.repeat(known_of_tow, 2)
+    return y.reshape(-1, 2), known.reshape(-1, 2)

@@ -1,0 +1,255 @@
+"""From a window of a run to its point: means, and what is corrected on the coefficient.
+
+Per sample the gross coefficient is `Cw = F / (v y)^2` (Sleepproef, R. Pot 2017, "IJking
+snelheid"). Everything here is in the speed that the log reads; a factor k that turns it into true
+speed divides every coefficient by k^2, and is applied last (`pipeline.recompute.outcome`). Which
+runs count and which factor holds is decided elsewhere.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.blocks.batch import Batch
+from pipeline.blocks.run_blocks import RunBlocks, WindowSums
+from pipeline.hull import front_area_m2, side_area_m2
+from pipeline.method.definition import RunPoint, Steps, Temperature
+from pipeline.steps.fix_delay import fix_delay_s, fixes_in_time
+from pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
+from pipeline.steps.wind import (
+    AirParts,
+    air_parts,
+    mean_wind_angle_deg,
+    with_averaged_wind,
+)
+from pipeline.steps.window import END_SECONDS, end_masks
+
+LOG2_AGREES_RATIO: Final = 0.01
+"""Log 2 takes part in a mean of both only if its speed is within 1 % of log 1 (inferred from the
+0.01 m/s of Sleepproef 2017, "Log 1 en 2", which no pair of 2014 met)."""
+
+WETTED_SURFACE_RATIO: Final = 3.0
+"""Wetted surface / sqrt(displaced volume x waterline length). Stated assumption: the Delft formula
+`(1.97 + 0.171 B/T) (0.65/Cm)^(1/3)` gives it at a beam of six draughts, as sloops have."""
+
+
+@dataclass(frozen=True)
+class RunMeans:
+    """Means over each run's window in log speed, shape (runs,).
+
+    Attributes:
+        speed_m_s: mean speed.
+        gross_kg_m: F / v^2.
+        sd_kg_m: standard deviation of the samples' F / v^2.
+        inertia_kg_m: part of it that accelerated the boat.
+        air: air resistance / v^2 for drag coefficients of 1.
+        gps_m_s: mean ground speed, NaN without a fix.
+        gps_delay_s: by how much the GPS was late, which is taken off.
+        log1_m_s, log2_m_s, wind_m_s: mean reading of each log and of the anemometer.
+        wind_angle_deg: circular mean of the vane.
+    """
+
+    speed_m_s: FloatArray
+    gross_kg_m: FloatArray
+    sd_kg_m: FloatArray
+    inertia_kg_m: FloatArray
+    air: AirParts
+    gps_m_s: FloatArray
+    gps_delay_s: IntArray
+    log1_m_s: FloatArray
+    log2_m_s: FloatArray
+    wind_m_s: FloatArray
+    wind_angle_deg: FloatArray
+
+    def with_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
+        """These means for a load cell that reads true force x factor + zero, shape (runs,)."""
+        zero = zero_n / _or_one(self.speed_m_s) ** 2
+        return replace(self, gross_kg_m=(self.gross_kg_m - zero) / factor)
+
+    def with_wind(self, scale: FloatArray) -> "RunMeans":
+        """These means for an anemometer that reads the wind x scale, shape (runs,)."""
+        return replace(self, air=self.air.times(scale**-2.0))
+
+
+@dataclass(frozen=True)
+class OverWindow:
+    """Sums over the window of every run, for means of all kinds.
+
+    Attributes:
+        whole: over all of it.
+        first, last: over its two ends.
+        averaged: the blocks by the seconds over which their wind is averaged, as far as asked for.
+    """
+
+    whole: WindowSums
+    first: WindowSums
+    last: WindowSums
+    averaged: dict[int, RunBlocks]
+
+    @classmethod
+    def of(
+        cls, blocks: RunBlocks, window: BoolArray, averaged: dict[int, RunBlocks] | None = None
+    ) -> "OverWindow":
+        """Of blocks that count, shape (runs, seconds); `averaged` may serve other windows too."""
+        first, last = (WindowSums(blocks, end) for end in end_masks(window))
+        return cls(WindowSums(blocks, window), first, last, {} if averaged is None else averaged)
+
+    def with_wind(self, averaging_s: int) -> WindowSums:
+        """Over all of it, with the air terms of a wind that is averaged over some seconds."""
+        if not averaging_s:
+            return self.whole
+        if averaging_s not in self.averaged:
+            self.averaged[averaging_s] = with_averaged_wind(self.whole.blocks, averaging_s)
+        return WindowSums(self.averaged[averaging_s], self.whole.window)
+
+
+def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
+    """Means of every run over its window.
+
+    Args:
+        sums: of its blocks.
+        steps: speed source, estimator, wind model and inertia of the method.
+    """
+    whole, windy = sums.whole, sums.with_wind(steps.wind.averaging_s)
+    source = steps.speed.source
+    both_logs = _both_logs_good(batch, whole) if source == "mean" else None
+
+    def by_log(over: WindowSums, quantity: str) -> FloatArray:
+        """A mean by the log in use: of both, log 1 alone where they do not agree."""
+        values = over.mean(f"{source}_{quantity}")
+        if both_logs is None:
+            return values
+        return np.where(both_logs, values, over.mean(f"log1_{quantity}"))
+
+    speed, ratio = by_log(whole, "v"), by_log(whole, "cw")
+    square = _or_one(speed) ** 2
+    of_ratios = steps.run_point.estimator == "mean_of_ratios"
+
+    def air_term(name: str) -> FloatArray:
+        return by_log(windy, name) if of_ratios else windy.mean(name) / square
+
+    delay = _gps_delay_s(batch, steps)
+    rise = by_log(sums.last, "v") - by_log(sums.first, "v")
+    seconds_apart = np.maximum(whole.window.sum(axis=1) - END_SECONDS, 1)
+    return RunMeans(
+        speed_m_s=speed,
+        gross_kg_m=ratio if of_ratios else whole.mean("force") / square,
+        sd_kg_m=np.sqrt(np.maximum(by_log(whole, "cw2") - ratio**2, 0.0)),
+        inertia_kg_m=_inertia(batch, steps.run_point, rise / seconds_apart, square),
+        air=air_parts(
+            steps.wind,
+            air_term,
+            front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m")),
+            side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m")),
+        ),
+        gps_m_s=_gps_m_s(whole, delay, source),
+        gps_delay_s=delay,
+        log1_m_s=whole.mean("log1_v"),
+        log2_m_s=whole.mean("log2_v"),
+        wind_m_s=whole.mean("wind_v"),
+        wind_angle_deg=mean_wind_angle_deg(whole),
+    )
+
+
+def _both_logs_good(batch: Batch, sums: WindowSums) -> BoolArray:
+    """Runs of tows in which log 2 agrees with log 1 over all runs together."""
+    log1, log2 = (sums.mean(f"{log}_v") for log in ("log1", "log2"))
+    seen = log1 > 0
+    ratio = batch.mean(log2, seen) / _or_one(batch.mean(log1, seen))
+    return ((np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO) & batch.measured("log2"))[batch.tow]
+
+
+def _gps_delay_s(batch: Batch, steps: Steps) -> IntArray:
+    """By how much the GPS of each run is late, where the method takes that off, shape (runs,)."""
+    if steps.calibration.delay == "none":
+        return np.zeros(len(batch.tow), dtype=np.int64)
+    return fix_delay_s(batch.blocks, batch.of_run("season").astype(np.int64))
+
+
+def _gps_m_s(whole: WindowSums, delay_s: IntArray, source: str) -> FloatArray:
+    """Mean ground speed of each run over its window, NaN without a fix, shape (runs,).
+
+    Of a late GPS the fixes of the last seconds are missing: the log says how much faster or slower
+    the boat was there.
+    """
+    fixes = whole.total("gps_n")
+    gps = np.where(fixes > 0, whole.total("gps") / np.maximum(fixes, 1.0), np.nan)
+    late = np.flatnonzero(delay_s)
+    if not len(late):
+        return gps
+    blocks, window = whole.blocks.take(delay_s != 0), whole.window[late]
+    sums = fixes_in_time(blocks, delay_s[late])
+    count = np.where(window, sums["gps_n"], 0.0)
+    log = (count * blocks.block_means(f"{source}_v")).sum(axis=1)
+    ground = np.where(window, sums["gps"], 0.0).sum(axis=1)
+    there = count.sum(axis=1)
+    with_fixes = (ground - log) / np.where(there > 0, there, np.nan)
+    gps[late] = with_fixes + whole.mean(f"{source}_v")[late]
+    return gps
+
+
+def _inertia(
+    batch: Batch, rule: RunPoint, acceleration_m_s2: FloatArray, square_m2_s2: FloatArray
+) -> FloatArray:
+    """Part of F / v^2 that accelerates boat, crew and water: m_eff a / v^2.
+
+    m_eff = (boat + crew) (1 + added mass); source: docs/method.md, 6. 0 where no weight is
+    known.
+    """
+    if rule.inertia == "none":
+        return np.zeros_like(square_m2_s2)
+    mass = (1.0 + rule.added_mass_ratio) * np.nan_to_num(displaced_mass_kg(batch))[batch.tow]
+    return mass * acceleration_m_s2 / square_m2_s2
+
+
+def displaced_mass_kg(batch: Batch) -> FloatArray:
+    """Boat and crew, shape (tows,), kg; NaN where a weight is not known."""
+    return batch.of_tow("weight_kg") + batch.of_tow("crew_weight_kg")
+
+
+def temperature_change_kg_m(
+    batch: Batch, rule: Temperature, speed_m_s: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """What brings Cw to the reference temperature: friction there minus friction as towed.
+
+    Friction by the ITTC-57 line, without form factor, on the wetted surface of
+    `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
+
+    Args:
+        speed_m_s: true speed of each run, shape (runs,).
+
+    Returns:
+        Change of Cw, shape (runs,), kg/m, 0 where temperature or weight is missing; and for which
+        tows both were recorded, shape (tows,). Where the rule expects a temperature that nobody
+        recorded, the change is that of `expected_water_c`.
+    """
+    recorded = batch.of_tow("water_temperature_c")
+    mass = displaced_mass_kg(batch)
+    known = np.isfinite(recorded) & np.isfinite(mass)
+    if rule.rule == "none":
+        return np.zeros_like(speed_m_s), known
+    temperature = recorded
+    if rule.unrecorded == "expected":
+        temperature = np.where(known, recorded, batch.of_tow("expected_water_c"))
+    told = np.isfinite(temperature) & np.isfinite(mass)
+    celsius = np.where(told, temperature, rule.reference_c)
+    length = batch.of_run("waterline_length_m")
+    surface = wetted_surface_m2(np.where(told, mass, 0.0)[batch.tow], length)
+    speed = _or_one(speed_m_s)
+    at_reference, as_towed = (
+        friction_cw_kg_m(speed, length, surface, t) for t in (rule.reference_c, celsius[batch.tow])
+    )
+    return at_reference - as_towed, known
+
+
+def wetted_surface_m2(mass_kg: FloatArray, waterline_length_m: FloatArray) -> FloatArray:
+    """Wetted surface of a boat with its crew: c sqrt(V L), with V in fresh water, m2."""
+    volume_m3 = mass_kg / water_density_kg_m3(15.0)
+    return np.asarray(WETTED_SURFACE_RATIO * np.sqrt(volume_m3 * waterline_length_m))
+
+
+def _or_one(values: FloatArray) -> FloatArray:
+    """The values, with 1 in place of 0, for a quotient that is not used there."""
+    return np.where(values > 0, values, 1.0)

@@ -1,0 +1,43 @@
+"""The correction of a speed log that is known to be wrong, before any calibration on GPS.
+
+In 2009-2011 the propeller logs were worn and read low; the correction found in 2013 was up to
+6 % (presentation 2015, "Meten van de sleepsnelheid"). Whether one multiplies by 1.06 or divides
+by 0.94 is written nowhere: both are options. A percentage in the tow list goes before the
+season's prescribed one. How a season's factor is estimated instead is in `pipeline.season_log`.
+"""
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import FloatArray
+from pipeline.method.definition import Speed
+
+
+def log_part(source: str) -> pl.Expr:
+    """Part of the season by the log that a method uses: a new one begins when it is replaced."""
+    parts = pl.col("log1_part"), pl.col("log2_part")
+    return {"log1": parts[0], "log2": parts[1], "mean": parts[0] + parts[1]}[source].alias("part")
+
+
+def log_factor(
+    speed: Speed, tow_list_ratio: FloatArray, estimated_factor: FloatArray
+) -> FloatArray:
+    """True speed / log speed for each tow.
+
+    Args:
+        tow_list_ratio: correction of the tow list as a ratio (0.06 for 6 %), NaN where the list
+            gives none, shape (tows,).
+        estimated_factor: factor estimated for the tow's season and log, NaN where there is none,
+            shape (tows,). Where it is used, the correction of the tow list does not count.
+
+    Returns:
+        Factor of shape (tows,): `1 + ratio` when multiplying, `1 / (1 - ratio)` when dividing.
+        Where an estimate is asked for and there is none, the prescribed factor.
+    """
+    if speed.correction == "none":
+        return np.ones(len(tow_list_ratio))
+    ratio = np.where(np.isnan(tow_list_ratio), speed.correction_ratio, tow_list_ratio)
+    prescribed = 1.0 + ratio if speed.operation == "multiply" else 1.0 / (1.0 - ratio)
+    if speed.correction == "prescribed":
+        return np.asarray(prescribed, dtype=np.float64)
+    return np.where(np.isnan(estimated_factor), prescribed, estimated_factor)

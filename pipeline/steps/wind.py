@@ -1,0 +1,163 @@
+"""Wind: the resistance in air that is taken off, and the still-air resistance put back.
+
+The air force is taken away as the wind was felt on the moving boom, and the force in still air
+at boat speed is added (Sleepproef, R. Pot 2017, "Wind"; the same structure as ITTC 7.5-04-01-01.1
+eq. 9). Divided by boat speed squared, the still-air part is a constant of the boat. Here: the two
+formulas and the coefficients that are searched. Areas are in `pipeline.hull`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from pipeline.arrays import FloatArray
+from pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks, WindowSums
+from pipeline.hull import AIR_DENSITY_KG_M3
+from pipeline.method.definition import Wind
+
+PER_RUN_BOUNDS: Final = (0.0, 1.0)
+"""Between which the old tool searched, run by run (presentation 2015, "Tegenwind en
+omstroom-coefficient")."""
+
+PER_TOW_BOUNDS: Final = (0.3, 0.7)
+"""Between which a value shared by all runs may lie (same source, "Omstroom-coefficient")."""
+
+
+@dataclass(frozen=True)
+class AirParts:
+    """Air resistance / v^2 of each run for drag coefficients of 1, shape (runs,), kg/m.
+
+    v is the speed as the log reads.
+
+    Attributes:
+        ahead, behind: of the wind from ahead (positive) and from behind (negative) on the front.
+        side: of the oblique wind on the side; 0 for the head-wind model.
+    """
+
+    ahead: FloatArray
+    behind: FloatArray
+    side: FloatArray
+
+    def total(self, ahead: FloatArray, behind: FloatArray, side: float) -> FloatArray:
+        """The air part for given coefficients, shape (runs,), kg/m."""
+        return ahead * self.ahead + behind * self.behind + side * self.side
+
+    def times(self, factor: FloatArray) -> "AirParts":
+        """These parts times a factor of each run, shape (runs,)."""
+        return AirParts(self.ahead * factor, self.behind * factor, self.side * factor)
+
+
+def air_parts(
+    wind: Wind,
+    term: Callable[[str], FloatArray],
+    front_area_m2: FloatArray,
+    side_area_m2: FloatArray,
+) -> AirParts:
+    """Air resistance of each run for drag coefficients of 1.
+
+    - head: F = rho/2 front Cvt u|u| with u = w cos a (presentation 2015, "Windweerstand")
+    - oblique: F = rho/2 (front |cos a| Cvt + side |sin a| Cvd) (w cos a)^2, with the sign of cos a
+      ("Dwarse tegenwind")
+
+    Args:
+        term: gives the mean over the window of a term of `AIR_SUMS` / v^2, shape (runs,).
+        front_area_m2, side_area_m2: shape (runs,).
+    """
+    nothing = np.zeros(len(front_area_m2))
+    if wind.model == "none":
+        return AirParts(nothing, nothing, nothing)
+    front = 0.5 * AIR_DENSITY_KG_M3 * front_area_m2
+    if wind.model == "head":
+        return AirParts(front * term("head_ahead"), front * term("head_behind"), nothing)
+    side = 0.5 * AIR_DENSITY_KG_M3 * side_area_m2
+    return AirParts(front * term("front_ahead"), front * term("front_behind"), side * term("side"))
+
+
+def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]:
+    """Air terms of each block from the mean wind of some seconds around it.
+
+    The vane jitters, and the square of a jittering wind is not the square of its mean: per
+    sample the force comes out -17 to +12 % wrong (docs/method.md, 5). Mean wind is the mean
+    speed in the circular mean direction: a mean vector would be too short, by 3 % at 13 degrees of
+    jitter.
+
+    Args:
+        averaging_s: length of the centred average; shorter at the ends of a run.
+
+    Returns:
+        Means by name of `AIR_SUMS`, each of shape (runs, seconds), m2/s2.
+    """
+    count = np.maximum(_centred_sum(blocks.n, averaging_s), 1.0)
+    speed = _centred_sum(blocks["wind_v"], averaging_s) / count
+    cos_sum = _centred_sum(blocks["wind_cos"], averaging_s)
+    sin_sum = _centred_sum(blocks["wind_sin"], averaging_s)
+    length = np.maximum(np.hypot(cos_sum, sin_sum), 1e-9)
+    cos, sin = cos_sum / length, sin_sum / length
+    along = speed * cos
+    head = along * np.abs(along)
+    ahead, behind = np.maximum(head, 0.0), np.minimum(head, 0.0)
+    front = np.abs(cos)
+    terms = ahead, behind, ahead * front, behind * front, head * np.abs(sin)
+    return dict(zip(AIR_SUMS, terms, strict=True))
+
+
+def with_averaged_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
+    """The same blocks with the sums of their air terms as `averaged_terms` gives them."""
+    terms = averaged_terms(blocks, averaging_s)
+
+    def made(name: str) -> FloatArray:
+        if name in AIR_SUMS:
+            return terms[name] * blocks.n
+        source, _, term = name.partition("_")
+        return terms[term] * blocks[f"{source}_inv_v2"] if term in AIR_SUMS else blocks[name]
+
+    return blocks.with_sums(made)
+
+
+def _centred_sum(values: FloatArray, width: int) -> FloatArray:
+    """Sum over `width` neighbours along axis 1, centred, cut off at the ends."""
+    total = np.zeros_like(values)
+    seconds = values.shape[1]
+    before, after = min(width // 2, seconds - 1), min((width - 1) // 2, seconds - 1)
+    for shift in range(-before, after + 1):
+        low, high = max(0, -shift), min(seconds, seconds - shift)
+        total[:, low:high] += values[:, low + shift : high + shift]
+    return total
+
+
+def nearest_coefficients(air: AirParts, excess_kg_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The coefficients within `PER_RUN_BOUNDS` that bring each run nearest to a given value.
+
+    The wind that is felt most is searched first, the other takes what is left.
+
+    Args:
+        air: air parts of the runs.
+        excess_kg_m: what the air part should be, shape (runs,).
+
+    Returns:
+        Coefficients for wind from ahead and from behind, each of shape (runs,).
+    """
+    mostly_ahead = np.abs(air.ahead) >= np.abs(air.behind)
+    larger = np.where(mostly_ahead, air.ahead, air.behind)
+    smaller = np.where(mostly_ahead, air.behind, air.ahead)
+    first = _clipped_quotient(excess_kg_m, larger)
+    # Within its bounds the first takes all: what is left then is rounding.
+    within = (first > PER_RUN_BOUNDS[0]) & (first < PER_RUN_BOUNDS[1])
+    second = _clipped_quotient(np.where(within, 0.0, excess_kg_m - first * larger), smaller)
+    return np.where(mostly_ahead, first, second), np.where(mostly_ahead, second, first)
+
+
+def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
+    """Quotient within `PER_RUN_BOUNDS`; its lower bound where there is no wind at all."""
+    some = np.abs(denominator) > 1e-12
+    return np.clip(
+        np.where(some, numerator, 0.0) / np.where(some, denominator, 1.0), *PER_RUN_BOUNDS
+    )
+
+
+def mean_wind_angle_deg(sums: WindowSums) -> FloatArray:
+    """Circular mean of the vane over each window, shape (runs,), degrees in [0, 360)."""
+    sin, cos = sums.total("wind_sin"), sums.total("wind_cos")
+    return np.asarray(np.degrees(np.arctan2(sin, cos)) % 360.0, dtype=np.float64)

@@ -1,0 +1,174 @@
+"""What the texts claim or print, compared with the archive: the promise, print, the tool's figures.
+
+Frames of the warehouse in, frames out. Does not belong here: how a number is made, and what
+two methods do to it (`summaries`, `ladder`).
+"""
+
+from typing import Final
+
+import polars as pl
+
+from pipeline.tables.keys import LINE
+
+PROMISED: Final = {"1pct": 0.01, "2pct": 0.02}
+"""Presentation 2015, "N.B.": within 2 % for the great majority; less than 1 % for all."""
+
+
+def promise(curves: pl.DataFrame, pairs: pl.DataFrame) -> pl.DataFrame:
+    """Is Cw within 2 % for most and within 1 % for all, per method and season?
+
+    Judged twice: by half the 95 % interval that a curve itself states, and by what repeat tows
+    show: the difference of a tow from the boat's tow before it over root 2, since both are off.
+
+    Args:
+        curves: the table of that name, of several methods.
+        pairs: rows of `repeat_pairs`.
+
+    Returns:
+        Rows of the table `promise`; `outside_2pct` names the tows of which either is beyond 2 %.
+    """
+    key = ["method", "season"]
+    stated = curves.drop_nulls("cw_kg_m").select(
+        *key, "tow_id", half=(pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log() / 2.0
+    )
+    seen = pairs.select(*key, "tow_id", off=pl.col("ln_ratio").abs() / 2.0**0.5)
+    both = stated.join(
+        seen.drop("season"), on=["method", "tow_id"], how="left", maintain_order="left"
+    )
+    beyond = (pl.col("half") > PROMISED["2pct"]) | (pl.col("off") > PROMISED["2pct"])
+    return (
+        both.group_by(key, maintain_order=True)
+        .agg(
+            pl.len().cast(pl.Int32).alias("tows"),
+            pl.col("half").median().alias("half_interval_ratio"),
+            *((pl.col("half") < m).mean().alias(f"share_stated_{n}") for n, m in PROMISED.items()),
+            pl.col("off").count().cast(pl.Int32).alias("n_pairs"),
+            *((pl.col("off") < m).mean().alias(f"share_seen_{n}") for n, m in PROMISED.items()),
+            pl.col("tow_id").filter(beyond).sort().alias("outside_2pct"),
+        )
+        .sort(key)
+    )
+
+
+def print_reproduction(
+    printed: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
+) -> pl.DataFrame:
+    """Printed A, B and Cw of each tow next to those of each method, at the printed speed.
+
+    Args:
+        printed: lines of registers as printed (`warehouse.archive.read_published_registers`); of a
+            tow printed in several the first counts.
+        curves: the table of that name.
+        tows: `tow_id, tow_date` and the line.
+
+    Returns:
+        Rows of the table `print_reproduction`; a printed line without a tow in the archive has
+        none.
+    """
+    of_tow = (
+        printed.filter("has_valid_curve")
+        .sort("season")
+        .join(
+            tows.select("tow_id", "tow_date", *LINE), on=["tow_date", *LINE], maintain_order="left"
+        )
+        .unique("tow_id", keep="first", maintain_order=True)
+        .select(
+            "tow_id",
+            pl.col("season").alias("printed_in"),
+            pl.col("declared_speed_m_s").alias("speed_m_s"),
+            pl.col("a_kg_m").alias("printed_a_kg_m"),
+            pl.col("b_m_s").alias("printed_b_m_s"),
+            pl.col("cw_kg_m").alias("printed_cw_kg_m"),
+        )
+    )
+    ratio_at_v0 = 1.0 - pl.col("a_kg_m") / pl.col("cw_kg_m")
+    bend = ratio_at_v0 * (pl.col("speed_m_s") / pl.col("declared_speed_m_s")) ** 2
+    cw = pl.when(bend < 1.0).then(pl.col("a_kg_m") / (1.0 - bend))
+    return (
+        curves.drop_nulls("cw_kg_m")
+        .select(
+            "method", "tow_id", "season", *LINE, "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s"
+        )
+        .join(of_tow, on="tow_id", maintain_order="left")
+        .with_columns(cw.alias("cw_kg_m"))
+        .with_columns((pl.col("printed_cw_kg_m") / pl.col("cw_kg_m")).alias("cw_ratio"))
+        .drop("declared_speed_m_s")
+        .sort("method", "tow_id")
+    )
+
+
+def print_summary(reproduced: pl.DataFrame) -> pl.DataFrame:
+    """How near each method comes to print, per season: the first thing to look at.
+
+    Args:
+        reproduced: rows of `print_reproduction`.
+
+    Returns:
+        Rows of the table `print_summary`: what is left unexplained is median and spread of the
+        ratio printed / recomputed Cw.
+    """
+    ratio = pl.col("cw_ratio")
+    return (
+        reproduced.drop_nulls("cw_ratio")
+        .group_by("method", "season", maintain_order=True)
+        .agg(
+            pl.len().cast(pl.Int32).alias("tows"),
+            ratio.median().alias("median_ratio"),
+            ratio.min().alias("lowest_ratio"),
+            ratio.max().alias("highest_ratio"),
+            ((ratio - 1.0).abs() < PROMISED["1pct"]).mean().alias("share_within_1pct"),
+        )
+        .sort("method", "season")
+    )
+
+
+CHANNELS: Final = {
+    "log1": "log1_v",
+    "log2": "log2_v",
+    "gps": "gps",
+    "force": "force",
+    "wind": "wind_v",
+    "cw": "log1_cw",
+}
+
+
+def run_statistics(blocks: pl.DataFrame) -> pl.DataFrame:
+    """The tool's figures of a run: mean, sd, median, their ratios, and speed / log 1.
+
+    The tool took them over 50,000 samples; here over means of a second, which leaves out what
+    swings faster. The mean is the same.
+
+    Args:
+        blocks: rows of `pipeline.blocks.sums.block_sums` with `tow_id`.
+
+    Returns:
+        Rows of the table `run_statistics`, one per tow, run and channel that was recorded.
+    """
+    key = ["tow_id", "run"]
+    value = pl.col("value")
+    of_channels = [  # one at a time: all of them are several times as large as the blocks
+        blocks.select(*key, n="gps_n" if name == "gps" else "n", value=column)
+        .filter(pl.col("n") > 0)
+        .with_columns(value / pl.col("n"))
+        .group_by(key, maintain_order=True)
+        .agg(
+            pl.lit(name).alias("channel"),
+            value.mean().alias("mean"),
+            value.std().fill_null(0.0).alias("sd"),
+            value.median().alias("median"),
+        )
+        for name, column in CHANNELS.items()
+    ]
+    log1 = pl.col("mean").filter(pl.col("channel") == "log1").first().over(key)
+    is_speed = pl.col("channel").is_in(["log1", "log2", "gps"])
+    return (
+        pl.concat(of_channels)
+        .sort(*key, "channel")
+        .with_columns(
+            pl.when(pl.col("mean") > 0).then(pl.col("sd") / pl.col("mean")).alias("sd_ratio"),
+            pl.when(pl.col("mean") > 0)
+            .then(pl.col("median") / pl.col("mean"))
+            .alias("median_ratio"),
+            pl.when(is_speed & (log1 > 0)).then(pl.col("mean") / log1).alias("log1_ratio"),
+        )
+    )

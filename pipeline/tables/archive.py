@@ -1,0 +1,101 @@
+"""What the archive holds: boats, tows, their runs, windows given by hand, and what is set aside."""
+
+from functools import partial
+from typing import Final
+
+from pipeline.tables import column
+from pipeline.tables.bases import PerRun, RunList, TowFacts
+from pipeline.tables.declare import dy
+
+LOST: Final = partial(
+    column.text,
+    "what it costs: seconds, run, tow, file, or a row of a list, or a cell, that costs no tow",
+    regex="^(seconds|run|tow|file|row|cell)$",
+)
+
+
+class Boats(dy.Schema):
+    """Boats of `sloependata.csv`, one row each."""
+
+    fsn_no = column.fsn_no(primary_key=True)
+    ht_no = column.text("number in the HT register", nullable=True)
+    name = column.text("name of the boat")
+    boat_type = column.text("type, empty where not known", nullable=True)
+    waterline_length_m = column.waterline_length("length on the waterline", nullable=True)
+    beam_m = column.beam("breadth", nullable=True)
+    bow_height_m = column.bow_height("height of the bow", nullable=True)
+    weight_kg = column.boat_weight("empty boat with oars", nullable=True)
+
+
+class Seasons(dy.Schema):
+    """What a rebuild read of each season."""
+
+    season = column.season(primary_key=True)
+    listed = dy.Int32(description="tows in the tow list that could be read", min=0)
+    tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
+    runs_set_aside = dy.Int32(description="runs of these that are set aside", min=0)
+    lost_s = column.number("s", "time left out of the other runs, all channels", min=0)
+
+
+class Tows(TowFacts):
+    """Tows accepted into the warehouse, one row each."""
+
+    runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
+    gps_step_m_s = column.number(
+        "m/s", "step in which its GPS is written; empty without GPS", nullable=True, min=0
+    )
+    force_step_n = column.number(
+        "N",
+        "step in which its force is written",
+        nullable=True,
+        min=0,
+    )
+    doubts = column.texts(
+        description="checks by which all other tows rule this one out: it needs a look, and takes "
+        "no part in what tows share",
+    )
+    unusual = column.texts(
+        description="checks by which it stands out among all other tows, though chance can do "
+        "that: it needs a look, and its numbers stand",
+    )
+
+
+class TowRuns(RunList):
+    """Runs of every tow of which samples can be used."""
+
+    lost_s = column.number("s", "most that is left out of a channel: dropouts, spikes", min=0)
+
+
+class HandWindows(PerRun):
+    """Windows that a person gave, one row per run; a method may use them (`by_hand`)."""
+
+    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0, max=600)
+    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1, max=600)
+    reason = column.text("why, in the person's words")
+
+
+class TraceSeconds(PerRun):
+    """Means over every second of every run: what the instruments said."""
+
+    second = dy.Int16(primary_key=True, description="second of the run, from 0", min=0)
+    speed_m_s = column.speed("log 1: speed through the water as the log said")
+    gps_m_s = column.speed("speed over ground; empty without GPS", nullable=True)
+    force_n = column.number("N", "tow force")
+    wind_m_s = column.number("m/s", "apparent wind speed")
+    wind_angle_deg = column.number("deg", "circular mean of the apparent wind", min=0, max=360)
+
+
+class Quarantine(dy.Schema):
+    """What is set aside, from seconds to files, each with the reason in a plain sentence."""
+
+    path = column.text("file, relative to the archive")
+    tow_id = column.tow_id(nullable=True)
+    line = dy.Int64(description="line in the file", nullable=True, min=1)
+    reason_code = column.text("short stable code")
+    message = column.text("what is wrong and what to do, in a sentence")
+    message_nl = column.text("the same in Dutch")
+    cause = column.text("what faults of one cause share: the sentence, with what differs left open")
+    lost = LOST()
+    run = column.run(nullable=True)
+    lost_s = column.number("s", "time that is lost", nullable=True, min=0)
+    first_seen = dy.Date(description="day on which this fault was first found")

@@ -1,0 +1,99 @@
+"""Columns that several tables begin with, and inherit."""
+
+from pipeline.tables import column
+from pipeline.tables.declare import dy
+
+
+class PerMethod(dy.Schema):
+    """Rows that a method made."""
+
+    method = column.method(primary_key=True)
+
+
+class PerTow(PerMethod):
+    """Rows per method and tow."""
+
+    tow_id = column.tow_id(primary_key=True)
+
+
+class PerCrewTow(PerTow):
+    """The same, with the boat and crew that was towed."""
+
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+
+
+class PerPart(PerMethod):
+    """Rows per method, season and part of it."""
+
+    season = column.season(primary_key=True)
+    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
+
+
+class PerRun(dy.Schema):
+    """Rows per run, whatever the method."""
+
+    tow_id = column.tow_id(primary_key=True)
+    run = column.run(primary_key=True)
+
+
+class RunList(PerRun):
+    """Runs of every tow; runs 21 and on are runs 1 and on of the second file."""
+
+    direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
+    target_speed_ratio = column.number("1", "intended speed / declared speed", min_exclusive=0)
+    selected = dy.Bool(description="the tow list says to use it")
+
+
+class TowFacts(dy.Schema):
+    """What the lists say of a tow, one row each."""
+
+    tow_id = column.tow_id(primary_key=True)
+    season = column.season()
+    tow_date = dy.Date(description="day of the tow")
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    declared_speed_m_s = column.declared_speed()
+    waterline_length_m = column.waterline_length("length on the waterline that day")
+    beam_m = column.beam("breadth that day")
+    bow_height_m = column.bow_height(
+        "height of the bow that day; empty only where no wind was measured", nullable=True
+    )
+    weight_kg = column.boat_weight("empty boat with oars, before", nullable=True)
+    weight_after_kg = column.boat_weight("the same, after", nullable=True)
+    crew_weight_kg = column.number(
+        "kg", "crew and ballast on board", nullable=True, min=0, max=6_000
+    )
+    water_temperature_c = column.number("C", "water temperature", nullable=True, min=0, max=35)
+    speed_correction_ratio = column.number(
+        "1", "speed correction entered by hand, 0.06 for 6 %", nullable=True, min=-0.5, max=0.5
+    )
+    altered = dy.Bool(description="the boat was altered since its previous tow")
+    sample_rate_hz = dy.Int32(
+        description="samples per second", metadata={"unit": "Hz"}, min=1, max=100_000
+    )
+    empty_thwart = column.text("thwart left free", nullable=True)
+    freeboard_lowest_m = column.freeboard("freeboard at its lowest")
+    freeboard_bow_m = column.freeboard("freeboard at the bow")
+    freeboard_stern_m = column.freeboard("freeboard at the stern")
+    load_cell_ratio = column.number(
+        "1", "load cell / known weight, when it was last checked", nullable=True, min_exclusive=0
+    )
+    load_cell_sd = column.number("1", "its standard uncertainty", nullable=True, min=0)
+    lamp_ratio = column.number(
+        "1",
+        "largest part of a run in which a warning lamp burned; empty where nobody noted it",
+        nullable=True,
+        min=0,
+    )
+    remark = column.text("remark in the tow list", nullable=True)
+    wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
+    log2_measured = dy.Bool(description="there was a second log that can be used")
+    log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
+    log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
+    samples_path = column.text("samples file in the archive")
+    samples_sha256 = column.sha256("its content hash")
+    second_path = column.text("second samples file, if two tows were combined", nullable=True)
+    second_sha256 = column.sha256("its content hash", nullable=True)

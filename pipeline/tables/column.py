@@ -1,0 +1,45 @@
+"""Columns that many tables share, each declared once: meaning, unit and limits."""
+
+from functools import partial
+from typing import Any, Final
+
+from pipeline.tables.declare import dy
+
+LOWER_END: Final = (
+    "lower end of its 95 % interval; where methods.interval is runs_alone, of the spread of the "
+    "runs alone: the log's error is not in it"
+)
+"""Description of the lower end of an interval of Cw or B."""
+
+
+def text(description: str, **rules: Any) -> dy.String:
+    """Text."""
+    return dy.String(description=description, **rules)
+
+
+def number(unit: str, description: str, **rules: Any) -> dy.Float64:
+    """A number with its unit; `1` for a ratio."""
+    return dy.Float64(description=description, metadata={"unit": unit}, **rules)
+
+
+texts: Final = partial(dy.List, dy.String())
+tow_id: Final = partial(text, "tow, as named in the tow list")
+fsn_no: Final = partial(text, "boat: its number with the federation")
+method: Final = partial(text, "name of the method that made the row")
+season: Final = partial(dy.Int32, description="year of the tow list", min=1990, max=2100)
+run: Final = partial(dy.Int8, description="run", min=1, max=40)
+rowers: Final = partial(dy.Int32, description="rowers the curve is valid for", min=1, max=30)
+crew_class: Final = partial(text, "H men, D women", regex="^[HD]$")
+empty_thwart: Final = partial(
+    text, "thwart that must be left free; empty text where all are manned"
+)
+declared_speed: Final = partial(number, "m/s", "speed v0 the crew declared", min=0.5, max=6.0)
+
+# Of these a table gives the meaning.
+waterline_length: Final = partial(number, "m", min=2.0, max=25.0)
+beam: Final = partial(number, "m", min=0.5, max=6.0)
+bow_height: Final = partial(number, "m", min=0.1, max=4.0)
+boat_weight: Final = partial(number, "kg", min=50.0, max=20_000.0)
+freeboard: Final = partial(number, "m", nullable=True, min=-0.5, max=4.0)
+speed: Final = partial(number, "m/s", min=0.0, max=15.0)
+sha256: Final = partial(text, regex="^[0-9a-f]{64}$")

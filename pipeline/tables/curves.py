@@ -1,0 +1,90 @@
+"""Resistance curves, what checks say of them, and how uncertain they are."""
+
+from typing import Final
+
+from pipeline.tables import column
+from pipeline.tables.bases import PerTow
+from pipeline.tables.declare import dy
+from pipeline.tables.severity import SEVERITY_PATTERN
+
+STATUSES: Final = ("accepted", "flagged", "rejected")
+
+
+class Curves(PerTow):
+    """One curve Cw = A / (1 - (v/B)^2) per method and tow."""
+
+    fsn_no = column.fsn_no()
+    season = column.season()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    declared_speed_m_s = column.speed("speed v0 the crew declared")
+    a_kg_m = column.number("kg/m", "A: coefficient at v = 0", nullable=True)
+    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True, min=0)
+    b_capped = dy.Bool(description="B was brought down to its cap and A fitted again")
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
+    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
+    cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+    cw_best_kg_m = column.number(
+        "kg/m", "best estimate: by this tow, the boat's others and all seasons", nullable=True
+    )
+    cw_best_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
+    cw_best_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+    cw_others_kg_m = column.number(
+        "kg/m",
+        "Cw with log and load cell as all other boats show them; empty: nothing is estimated",
+        nullable=True,
+    )
+    b_lo_m_s = column.number("m/s", f"{column.LOWER_END}; empty: cannot be told", nullable=True)
+    b_hi_m_s = column.number("m/s", "upper end; empty: no upper bound", nullable=True)
+    power_w = column.number("W", "power per rower at the declared speed", nullable=True)
+    residual_sd_ratio = column.number("1", "sd of the points about the curve / Cw", nullable=True)
+    calibration_factor = column.number("1", "GPS speed / log speed", nullable=True)
+    runs_used = dy.Int8(description="points the curve is fitted through", min=0)
+    status = column.text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
+    flags = column.texts(description="codes of what a person should look at")
+
+
+class CurvePoints(PerTow):
+    """Curves over the speeds at which they are valid, 85 to 115 % of the declared speed."""
+
+    speed_m_s = column.speed("speed through the water", primary_key=True)
+    cw_kg_m = column.number("kg/m", "Cw at this speed", min_exclusive=0)
+    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, min_exclusive=0)
+    cw_hi_kg_m = column.number("kg/m", "upper end", min_exclusive=0)
+
+
+class Assessments(PerTow):
+    """What each check found, one row per method, tow and check; a check not made has no row."""
+
+    check = column.text("code of the check", primary_key=True)
+    severity = column.text(
+        "note: worth knowing; look: somebody must decide; refuse: nothing to register",
+        regex=SEVERITY_PATTERN,
+    )
+    observed = column.number("as in unit", "what was observed")
+    limit = column.number("as in unit", "the limit that is exceeded, or the nearest")
+    unit = column.text("unit of both; 1 for a ratio, a count or yes (1) and no (0)")
+    flagged = dy.Bool(description="the observed number is beyond its limit")
+
+
+class UncertaintyBudget(PerTow):
+    """What makes Cw at the declared speed uncertain, per method, tow and component."""
+
+    component = column.text("what is uncertain", primary_key=True)
+    shared = column.text("single, season or archive: with whom the error is shared")
+    key = column.text("rows with one key share one error")
+    effect_ratio = column.number("1", "change of ln Cw by one standard deviation of it")
+    u_ratio = column.number("1", "relative standard uncertainty", min=0)
+    dof = column.number("1", "degrees of freedom; empty: not limited", nullable=True)
+
+
+class Ensemble(PerTow):
+    """Equally likely values of Cw, with the errors that tows share drawn together.
+
+    Kept in the lake, a file per method, and not in the database.
+    """
+
+    member = dy.Int16(
+        primary_key=True, description="equal numbers of different tows belong together", min=1
+    )
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed", min_exclusive=0)

@@ -1,0 +1,138 @@
+"""The register: its lines, when they expire, and what differs between two registers."""
+
+from functools import partial
+from typing import Final
+
+from pipeline.tables import column
+from pipeline.tables.bases import PerMethod
+from pipeline.tables.declare import dy
+
+PLACE: Final = (
+    "place in race and class by the old edition, among the crews that both editions rank; null for "
+    "a crew that one of them does not"
+)
+PODIUM_CHANGED: Final = "among the first three in one of the two only; null without a place"
+REMARK: Final = (
+    "why there is no power (not_in_register, no_line_that_day, thwart_not_given, "
+    "speed_not_below_b), or that the speed lies outside 85-115 % of the declared one "
+    "(beyond_curve); by the old edition"
+)
+
+
+_FLAGS: Final = partial(
+    column.texts, description="codes of what a person should look at in its tow", nullable=True
+)
+
+
+class _Line(dy.Schema):
+    """What every line of a register has."""
+
+    edition = column.text("edition; a draft is called concept-METHOD", primary_key=True)
+    method = column.method()
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    empty_thwart = column.empty_thwart(primary_key=True)
+    tow_id = column.tow_id(nullable=True)
+    tow_date = dy.Date(description="day of the tow: from then on the line counts", nullable=True)
+    valid_until = dy.Date(description="last day the line counts", nullable=True)
+    declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
+    a_kg_m = column.number("kg/m", "A", nullable=True)
+    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True)
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
+    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
+    cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+
+
+class Register(_Line):
+    """One line per edition, boat and crew."""
+
+    status = column.text("valid, or why there is no valid curve")
+    as_of = dy.Date(
+        description="day on which validity was judged: that of the archive's last tow or race, or "
+        "from which an edition counts",
+        nullable=True,
+    )
+    waterline_length_m = column.waterline_length("length on the waterline that day", nullable=True)
+    beam_m = column.beam("breadth that day", nullable=True)
+    bow_height_m = column.bow_height("height of the bow that day", nullable=True)
+    weight_kg = column.boat_weight("empty boat with oars that day", nullable=True)
+    flags = _FLAGS()
+    verification_code = column.text(
+        "ten letters and digits that follow from all that made the line; drafts have none",
+        nullable=True,
+    )
+
+
+class RegisterHistory(_Line):
+    """Every line that an edition's register had at some time, by the tow it rests on.
+
+    On a day counts, of the lines whose tow was made by then, the one with the highest position; it
+    is valid up to its last day.
+    """
+
+    position = dy.Int32(primary_key=True, description="the highest goes before", min=1)
+    flags = _FLAGS()
+
+
+class DueList(PerMethod):
+    """How long the tow of each boat and crew counts, and the speed of its next tow."""
+
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    empty_thwart = column.empty_thwart(primary_key=True)
+    as_of = dy.Date(description="day on which it was judged: that of the last tow or race")
+    status = column.text("valid, or why there is no valid curve")
+    tow_id = column.tow_id(nullable=True)
+    tow_date = dy.Date(description="day of the tow", nullable=True)
+    valid_until = dy.Date(description="last day it counts", nullable=True)
+    declared_speed_m_s = column.speed("speed that was declared for it", nullable=True)
+    power_w = column.number("W", "power per rower at that speed", nullable=True)
+    raced_speed_m_s = column.speed(
+        "fastest race of the past year, through the water", nullable=True
+    )
+    lowest_speed_m_s = column.speed("speed at 70 W per rower (men) or 40 W (women)", nullable=True)
+    highest_speed_m_s = column.speed("speed at 90 W or 55 W", nullable=True)
+    tow_speed_m_s = column.speed("speed proposed for the next tow", nullable=True)
+    speed_reason = column.text("why that speed")
+    beyond_curve = dy.Bool(
+        description="it lies outside 85-115 % of the last declared speed", nullable=True
+    )
+
+
+class RegisterChanges(dy.Schema):
+    """What differs between two editions, per boat and crew."""
+
+    from_edition = column.text("old edition", primary_key=True)
+    to_edition = column.text("new edition", primary_key=True)
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    empty_thwart = column.empty_thwart(primary_key=True)
+    change = column.text("added, removed, changed or same", regex="^(added|removed|changed|same)$")
+    cw_ratio = column.number("1", "new / old Cw at the old declared speed", nullable=True)
+    power_ratio = column.number("1", "new / old power at that speed", nullable=True)
+    time_ratio = column.number("1", "new / old time at equal power", nullable=True)
+    causes = column.text("what made the change, with its factor on Cw, as JSON")
+
+
+class RaceChanges(dy.Schema):
+    """Races replayed under two editions: power, rank and podium of every result."""
+
+    from_edition = column.text("old edition", primary_key=True)
+    to_edition = column.text("new edition", primary_key=True)
+    race = column.text("name of the race", primary_key=True)
+    race_date = dy.Date(primary_key=True, description="day of the race")
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    empty_thwart = column.empty_thwart(primary_key=True)
+    rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
+    old_power_w = column.number("W", "power per rower by the old edition", nullable=True)
+    new_power_w = column.number("W", "the same by the new one", nullable=True)
+    old_remark = column.text(REMARK, nullable=True)
+    new_remark = column.text("the same by the new one", nullable=True)
+    old_rank = dy.Int32(description=PLACE, nullable=True)
+    new_rank = dy.Int32(description="the same by the new one", nullable=True)
+    podium_changed = dy.Bool(description=PODIUM_CHANGED, nullable=True)

@@ -1,0 +1,69 @@
+"""The tables of the warehouse, each declared once: names, dtypes, units, ranges and meaning.
+
+Other programs rely on these names; a column may be added, none is renamed or dropped without a
+line in the changelog. Units are in the names (SI); ratios are ratios. What a number means
+physically is explained in the module that computes it; how tables are stored is in
+`warehouse.store.store`.
+"""
+
+import re
+from types import ModuleType
+from typing import Final
+
+import polars as pl
+
+from pipeline.tables import (
+    about,
+    archive,
+    consistency,
+    curves,
+    editions,
+    register,
+    runs,
+    season_log,
+    studies,
+)
+from pipeline.tables.declare import dy
+
+
+def _declared_in(*modules: ModuleType) -> dict[str, type[dy.Schema]]:
+    """The tables of modules by name: that of the class, in snake case."""
+    return {
+        re.sub("(?<!^)(?=[A-Z])", "_", name).lower(): declared
+        for module in modules
+        for name, declared in vars(module).items()
+        if isinstance(declared, type) and declared.__module__ == module.__name__
+        if not name.startswith("_")
+    }
+
+
+TABLES: Final = _declared_in(
+    archive, runs, curves, season_log, register, editions, studies, consistency
+)
+"""Every class of these modules but those that begin with an underscore, which tables inherit."""
+
+ABOUT: Final = _declared_in(about)
+"""Tables of the database about itself."""
+
+
+def ordered(name: str, frame: pl.DataFrame) -> pl.DataFrame:
+    """The declared columns of a table, in order, sorted by its key."""
+    schema = TABLES[name]
+    return frame.select(schema.column_names()).sort(schema.primary_key() or schema.column_names())
+
+
+def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:
+    """The same, checked.
+
+    Whole numbers get the declared width: counts come wider than they are kept.
+
+    Raises:
+        dataframely.exc.ValidationError, SchemaError: the frame is not what was declared.
+    """
+    schema = TABLES[name]
+    whole = [
+        pl.col(column).cast(declared.dtype)
+        for column, declared in schema.columns().items()
+        if declared.dtype.is_integer() and frame.schema[column].is_integer()
+    ]
+    return schema.validate(ordered(name, frame.with_columns(whole)))

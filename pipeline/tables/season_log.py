@@ -1,0 +1,137 @@
+"""How far each season's speed log was off, and what that rests on."""
+
+from pipeline.tables import column
+from pipeline.tables.bases import PerMethod, PerPart, PerTow
+from pipeline.tables.declare import dy
+
+
+class LogFactors(PerMethod):
+    """True speed = log speed x factor, per method and season."""
+
+    season = column.season(primary_key=True)
+    factor = column.number("1", "true speed / log speed", min_exclusive=0)
+    lo = column.number("1", "lower end of the 95 % interval; empty where unknown", nullable=True)
+    hi = column.number("1", "upper end", nullable=True)
+    source = column.text(
+        "none, prescribed, estimated, gps, or not settled (the search did not come to rest, or the "
+        "factor contradicts the season's repeat tows and is not used)",
+        regex="^(none|prescribed|estimated|gps|not settled)$",
+    )
+
+
+class SeasonLinks(PerPart):
+    """What each estimated log factor rests on, per method, season, part of it and log."""
+
+    log = column.text("speed source", primary_key=True)
+    source = column.text(
+        "estimated, gps, other log (by the ratio of both), not determined, or not settled"
+    )
+    n_tows = dy.Int32(description="tows of the season", min=0)
+    n_links = dy.Int32(description="boats also towed in other seasons", min=0)
+    component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
+    critical_boats = dy.Int32(
+        description="boats without any of which the season is undetermined", nullable=True, min=0
+    )
+    factor = column.number("1", "true speed / log speed; empty: not determined", nullable=True)
+    lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    hi = column.number("1", "upper end", nullable=True)
+    ln_sd = column.number("1", "standard deviation of ln factor", nullable=True)
+    dof = column.number("1", "its degrees of freedom", nullable=True)
+    influence = column.number("1", "largest change when one boat is left out", nullable=True)
+    influence_boat = column.text("that boat", nullable=True)
+    factor_no_boats = column.number(
+        "1", "the same without boat identity, a check; empty too if not settled", nullable=True
+    )
+    lo_no_boats = column.number("1", "lower end of its 95 % interval", nullable=True)
+    hi_no_boats = column.number("1", "upper end", nullable=True)
+    agreement = column.number("1", "difference of the two in standard deviations", nullable=True)
+
+
+class SeasonSteps(PerPart):
+    """Whether a season's step against the boats' other tows is the log's or the load cell's."""
+
+    log = column.text("speed source", primary_key=True)
+    n_boats = dy.Int32(description="boats also towed in other seasons", min=0)
+    level_step = column.number("1", "step of ln Cw, by the log as it reads", nullable=True)
+    level_step_sd = column.number("1", "its standard deviation", nullable=True)
+    force_step = column.number("1", "the part of it in ln force, as the bend shows", nullable=True)
+    force_step_sd = column.number("1", "its standard deviation", nullable=True)
+    cause = column.text(
+        "log, force (a log error may have come with it), none (no step), or not told",
+        regex="^(log|force|none|not told)$",
+    )
+
+
+class SeasonDiagnosis(PerPart):
+    """What is wrong with the instruments of each season: each possible fault with its odds."""
+
+    instrument = column.text(
+        "log_scale, log_trend (end of the season against its middle), log_change (from a tow on), "
+        "gps_scale (plain GPS), force_scale, force_zero, force_zero_drift (end against middle), "
+        "anemometer_scale (wind read / wind), season_bend (the bend of all boats as this season's "
+        "logs show it), water_temperature (not recorded), or fleet_step (all boats changed with "
+        "this season)",
+        primary_key=True,
+    )
+    unit = column.text("1 for the logarithm of a factor, N for a force")
+    estimate = column.number("as in unit", "expected size; 0 where surely nothing is wrong")
+    lo = column.number("as in unit", "lower end of its 95 % interval")
+    hi = column.number("as in unit", "upper end")
+    p_fault = column.number(
+        "1", "probability of such a fault; empty for what there always is", nullable=True, min=0
+    )
+    distance_sd = column.number(
+        "1", "what is seen against what is assumed, in standard deviations", nullable=True
+    )
+    verdict = column.text(
+        "sound, would not show (one of the usual size would not be found), fault (likelier than "
+        "not), cannot be told (10 to 50 %), alarm (4 standard deviations apart); of a log's factor "
+        "estimated or not determined; not settled (the search did not come to rest: no estimate of "
+        "the method can be relied on)",
+        regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined"
+        "|not settled)$",
+    )
+    alarm = dy.Bool(
+        description="a person should look: fault, cannot be told, alarm, or not settled"
+    )
+    first_tow = column.text("likeliest first tow after a log changed", nullable=True)
+    rests_on = column.text("what tells")
+    confused_with = column.text("what else would explain it, likeliest first", nullable=True)
+
+
+class TowInstruments(PerTow):
+    """What was found of the instruments of each tow, and is corrected in its curve."""
+
+    log = column.text("speed source", primary_key=True)
+    factor = column.number(
+        "1", "true speed / log speed; 1 with dGPS; empty: not determined", nullable=True
+    )
+    force_factor = column.number("1", "force read / true force; 1 where no fault was found")
+    force_zero_n = column.number("N", "force read without any; 0 where no fault was found")
+    bend = column.number("1", "q = r / (1 - r) of the boat, r = (v/B)^2 at its usual speed")
+    askew_ratio = column.number(
+        "1", "of Cw, by being pulled askew: root mean square; 0 where that is unlikely", min=0
+    )
+    ln_sd = column.number("1", "their standard deviation in ln Cw / the elasticity 2 + 2 q", min=0)
+    dof = column.number("1", "its degrees of freedom", nullable=True)
+
+
+class BestEstimateWeights(PerTow):
+    """What the best estimate of a tow rests on: shares of the boat's tows, 1 together."""
+
+    rests_on = column.text("the tow that it rests on", primary_key=True)
+    weight = column.number("1", "its share")
+
+
+class RetowChoice(PerMethod):
+    """Which few boats to tow again, with dGPS, to narrow the season factors most."""
+
+    position = dy.Int32(primary_key=True, description="order: 1 reduces the uncertainty most")
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    seasons = column.text("seasons without dGPS in which it was towed as it is now")
+    factor_sd_before_ratio = column.number(
+        "1", "typical uncertainty of a season's factor before", min=0
+    )
+    factor_sd_after_ratio = column.number("1", "the same when this boat is towed too", min=0)

@@ -1,0 +1,168 @@
+"""What the steps and options of a method change, and counts over many tows."""
+
+from pipeline.tables import column
+from pipeline.tables.bases import PerMethod, PerRun, PerTow
+from pipeline.tables.declare import dy
+from pipeline.tables.severity import SEVERITY_PATTERN
+
+
+class CorrectionSteps(dy.Schema):
+    """The ladder: what each step from one method to another does to a tow's Cw."""
+
+    from_method = column.text("method the ladder begins with", primary_key=True)
+    to_method = column.text("method it ends with", primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    position = dy.Int8(primary_key=True, description="place of the step; 0 is the start", min=0)
+    step = column.text("step of the method that was exchanged")
+    factor = column.number(
+        "1", "Cw after / before the step; they multiply to the total", min_exclusive=0
+    )
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed after the step")
+
+
+class SeasonLadder(dy.Schema):
+    """The ladder per season: what each step does to Cw on average."""
+
+    from_method = column.text("method the ladder begins with", primary_key=True)
+    to_method = column.text("method it ends with", primary_key=True)
+    season = column.season(primary_key=True)
+    position = dy.Int8(primary_key=True, description="place of the step", min=1)
+    step = column.text("step of the method that was exchanged")
+    tows = dy.Int32(description="tows", min=1)
+    factor = column.number(
+        "1", "geometric mean of the factor on Cw; they multiply", min_exclusive=0
+    )
+
+
+class SeasonChanges(PerMethod):
+    """Cw of each method / Cw of the first method, of the same tows, per season."""
+
+    from_method = column.text("first method, which the others are compared with")
+    season = column.season(primary_key=True)
+    tows = dy.Int32(description="tows with a curve under both", min=1)
+    median_ratio = column.number("1", "median of the ratio", min_exclusive=0)
+    lowest_ratio = column.number("1", "lowest ratio of a tow", min_exclusive=0)
+    highest_ratio = column.number("1", "highest ratio of a tow", min_exclusive=0)
+
+
+_STUDY = "judgement: what could be chosen either way; tool: what the tool of 2015 let one tick"
+
+
+class OptionEffects(PerMethod):
+    """How much choices matter, on top of a method: of judgement, and those of the tool of 2015."""
+
+    study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
+    tow_id = column.tow_id(primary_key=True)
+    option = column.text("option of a step, or all", primary_key=True)
+    cw_effect_ratio = column.number("1", "Cw with the second value / with the first", nullable=True)
+    b_effect_ratio = column.number("1", "the same for B", nullable=True)
+    cw_sd_ratio = column.number("1", "spread of Cw over all combinations", nullable=True, min=0)
+    b_sd_ratio = column.number("1", "the same for B", nullable=True, min=0)
+    cw_interval_ratio = column.number("1", "half the 95 % interval of ln Cw", nullable=True, min=0)
+    b_interval_ratio = column.number("1", "the same for B; empty: no bound", nullable=True, min=0)
+
+
+class OptionCurves(PerTow):
+    """Curves of a tow under every combination of the ticks of the tool of 2015, at each speed."""
+
+    speed = column.text(
+        "the log as_read, with the method's dgps or estimated factor, or its percentage by which "
+        "to multiply or divide",
+        primary_key=True,
+        regex="^(as_read|dgps|estimated|multiply|divide)$",
+    )
+    optimisation = dy.Bool(description="air coefficients searched per run", primary_key=True)
+    trimming = dy.Bool(description="only the steady part of a run", primary_key=True)
+    vane = dy.Bool(description="wind averaged over 3 s", primary_key=True)
+    b_from_length = dy.Bool(description="B is hull speed", primary_key=True)
+    a_kg_m = column.number("kg/m", "A")
+    b_m_s = column.number("m/s", "B; empty where Cw does not rise", nullable=True)
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed")
+
+
+class OptionSummary(PerMethod):
+    """How much each option moves Cw over all tows to which it can matter."""
+
+    study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
+    option = column.text("option of a step", primary_key=True)
+    tows = dy.Int32(description="tows", min=1)
+    median_ratio = column.number("1", "median of Cw with the second value / with the first")
+    lo_ratio = column.number("1", "5 % of the tows lie below")
+    hi_ratio = column.number("1", "5 % of the tows lie above")
+
+
+class QualityCounts(PerMethod):
+    """How many curves have each status and flag, and how many runs do not count, and why."""
+
+    kind = column.text("status, flag or run", primary_key=True, regex="^(status|flag|run)$")
+    code = column.text("the status, flag or reason", primary_key=True)
+    scope = column.text("a season, or all", primary_key=True)
+    number = dy.Int32(description="how many", min=1)
+
+
+class CheckCounts(PerMethod):
+    """How often each check was made, and found something beyond its limit."""
+
+    check = column.text("code of the check", primary_key=True)
+    severity = column.text("note, look or refuse", regex=SEVERITY_PATTERN)
+    tows = dy.Int32(description="tows on which it was made", min=1)
+    beyond = dy.Int32(description="of which beyond the limit", min=0)
+
+
+class Promise(PerMethod):
+    """Within 2 % for most tows and 1 % for all? Per method and season, as stated and as seen."""
+
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    tows = dy.Int32(description="tows with a curve", min=1)
+    half_interval_ratio = column.number(
+        "1", "half the 95 % interval of ln Cw, median", nullable=True
+    )
+    share_stated_1pct = column.number("1", "share of tows that state less than 1 %", nullable=True)
+    share_stated_2pct = column.number("1", "the same for 2 %", nullable=True)
+    n_pairs = dy.Int32(description="of which a repeat of an unaltered boat", min=0)
+    share_seen_1pct = column.number(
+        "1", "share of those off by less than 1 % (difference / root 2)", nullable=True
+    )
+    share_seen_2pct = column.number("1", "the same for 2 %", nullable=True)
+    outside_2pct = column.texts(description="tows beyond 2 %, stated or seen")
+
+
+class PrintReproduction(PerTow):
+    """Does a method reproduce print? A, B and Cw of a tow as printed, next to each method's."""
+
+    season = column.season()
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    printed_in = dy.Int32(description="year of the first register that printed it")
+    speed_m_s = column.speed("declared speed as printed; without it no Cw", nullable=True)
+    printed_a_kg_m = column.number("kg/m", "A as printed", nullable=True)
+    a_kg_m = column.number("kg/m", "A by the method", nullable=True)
+    printed_b_m_s = column.number("m/s", "B as printed", nullable=True)
+    b_m_s = column.number("m/s", "B by the method", nullable=True)
+    printed_cw_kg_m = column.number("kg/m", "Cw as printed", nullable=True)
+    cw_kg_m = column.number("kg/m", "Cw by the method at the printed speed", nullable=True)
+    cw_ratio = column.number("1", "printed / recomputed Cw", nullable=True)
+
+
+class PrintSummary(PerMethod):
+    """How near each method comes to print, per season; look here before re-basing."""
+
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    tows = dy.Int32(description="tows that were printed", min=1)
+    median_ratio = column.number("1", "printed / recomputed Cw, median")
+    lowest_ratio = column.number("1", "lowest of a tow")
+    highest_ratio = column.number("1", "highest of a tow")
+    share_within_1pct = column.number("1", "share of tows within 1 % of print")
+
+
+class RunStatistics(PerRun):
+    """What the tool of 2014 showed of a run, per channel, over means of a second."""
+
+    channel = column.text("log1, log2, gps, force, wind or cw", primary_key=True)
+    mean = column.number("as channel", "mean")
+    sd = column.number("as channel", "standard deviation of the means of a second", min=0)
+    median = column.number("as channel", "their median")
+    sd_ratio = column.number("1", "sd / mean", nullable=True)
+    median_ratio = column.number("1", "median / mean", nullable=True)
+    log1_ratio = column.number("1", "speed / that of log 1; speeds only", nullable=True)

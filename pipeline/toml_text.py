@@ -1,0 +1,100 @@
+"""TOML that people write: its tables, or a `ValueError` that says in words what is wrong."""
+
+import re
+import tomllib
+from typing import TYPE_CHECKING, Final
+
+from pipeline.words import Sentence, say
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
+LONGEST_TEXT: Final = 1_000_000
+MOST_DOTS: Final = 1_000
+"""In a line. A key of 20,000 parts takes 1.6 GB to read; one of 100,000 takes minutes."""
+
+
+def decoded(content: bytes) -> str:
+    """The text of a file.
+
+    Raises:
+        ValueError: it is not UTF-8.
+    """
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise ValueError(
+            say("a letter in line {} is not in UTF-8; save the file as UTF-8", line)
+        ) from error
+
+
+def parse_toml(text: str) -> dict[str, object]:
+    """The tables of a text.
+
+    Raises:
+        ValueError: it is not TOML, or larger or deeper than a file of settings can be.
+    """
+    most = max((line.count(".") for line in text.splitlines()), default=0)
+    if len(text) > LONGEST_TEXT or most > MOST_DOTS:
+        raise ValueError(
+            say(
+                "{} letters, up to {} dots in a line; at most {} and {} can be right",
+                *(len(text), most, LONGEST_TEXT, MOST_DOTS),
+            )
+        )
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        place = re.search(r"at line (\d+)", str(error))
+        raise ValueError(
+            say(
+                "line {} cannot be read; a number has a decimal point, text is put between "
+                "quotes, and a key occurs once in its table",
+                int(place[1]) if place else len(text.splitlines()),
+            )
+        ) from error
+    except RecursionError as error:
+        raise ValueError(say("tables within tables, too deep to read")) from error
+
+
+PROBLEMS: Final = {
+    "missing": "missing",
+    "extra_forbidden": "unknown key",
+    "literal_error": "must be one of {expected}",
+    "greater_than": "must be more than {gt}",
+    "greater_than_equal": "must be at least {ge}",
+    "less_than": "must be less than {lt}",
+    "less_than_equal": "must be at most {le}",
+    "finite_number": "must be a number",
+    "float_type": "must be a number",
+    "float_parsing": "must be a number",
+    "int_type": "must be a whole number",
+    "int_parsing": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "bool_type": "must be true or false",
+    "bool_parsing": "must be true or false",
+    "string_type": "must be a text between quotes",
+    "string_pattern_mismatch": "must have the form {pattern}",
+    "list_type": "must be a list between [ and ]",
+    "tuple_type": "must be a list between [ and ]",
+    "dict_type": "must be a table",
+    "model_type": "must be a table",
+}
+"""What is wrong, by Pydantic's name for it."""
+
+
+def problem_in_words(problem: "ErrorDetails") -> Sentence:
+    """What is wrong with a value, and the value if `problem` holds it."""
+    kind, limits = problem["type"], problem.get("ctx", {})
+    if kind == "value_error":  # of a check of our own
+        what = say("{}", limits["error"])
+    elif kind in PROBLEMS:
+        # As text: a limit is written with a point in TOML, in any language.
+        named = {key: str(value).replace(" or ", ", ") for key, value in limits.items()}
+        what = say(PROBLEMS[kind], **named)
+    else:
+        what = say("{}", problem["msg"])
+    if "input" not in problem or kind in {"missing", "extra_forbidden"}:
+        return what
+    return say("{}, not {!r}", what, problem["input"])

@@ -1,0 +1,349 @@
+"""The uncertainty of a run point and of Cw of a tow, component by component.
+
+Belongs here: what the unrest of force and speed within runs says about a run mean, the budget of a
+tow with what its components share with other tows, and the interval that follows. Does not: the
+covariance of a curve's parameters (`curve`), the season log factors (`season_log`) and drawing
+from the budget (`ensemble`).
+
+Everything is relative: standard deviations of ln Cw. Components that a season or the archive
+shares are kept apart from those of a single tow, because they do not average out.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.quantiles import t_quantile
+
+LONGEST_LAG_S: Final = 10
+"""Lags up to here count: surge and wander of the force have died away, and a window is 30-50 s."""
+
+LEAST_OF_WHITE: Final = 0.1
+"""Swinging noise averages out better than white noise, but a mean is never taken to be more than
+ten times as sure as white noise would make it."""
+
+CURVE_PARAMETERS: Final = 2
+
+SINGLE: Final = "single"
+SEASON: Final = "season"
+ARCHIVE: Final = "archive"
+
+COMPONENTS: Final = (
+    "random",
+    "misfit",
+    "calibration",
+    "stream_drift",
+    "between_tows",
+    "force",
+    "wind",
+    "anemometer",
+    "mass",
+    "temperature",
+    "straightness",
+    "season_log",
+)
+
+
+# Run points
+
+
+def run_point_uncertainty(
+    blocks: RunBlocks, window: BoolArray, season: IntArray, source: str = "log1"
+) -> FloatArray:
+    """Relative standard uncertainty of the mean F/v^2 over each run's window.
+
+    50,000 samples are not 50,000 measurements: the variance of a mean is that of the noise at
+    frequency zero over its length. One run is too short for its own autocovariance, so that of
+    its 1-s blocks is pooled over the season's runs, with the bias by each run's own mean taken
+    out (docs/method.md, 9).
+
+    Args:
+        blocks: the runs.
+        window: blocks that count, shape (runs, seconds); one stretch per run.
+        season: season of each run, shape (runs,).
+        source: speed source, as in `pipeline.blocks.run_blocks`.
+
+    Returns:
+        Shape (runs,); infinite where a window, or all windows of a season, are too short to tell.
+    """
+    present = window & (blocks.n > 0)
+    length = present.sum(axis=1).astype(np.float64)
+    level = np.where(present, blocks.block_means(f"{source}_cw"), 0.0)
+    mean = level.sum(axis=1) / np.maximum(length, 1.0)
+    deviation = np.where(present, level / np.where(mean > 0, mean, 1.0)[:, None] - 1.0, 0.0)
+    _, group = np.unique(season, return_inverse=True)
+    lags = min(LONGEST_LAG_S, blocks.seconds - 1)
+    raw = np.stack([_pooled_product(deviation, present, group, lag) for lag in range(lags + 1)])
+    runs = np.bincount(group, length > 0)
+    mean_length = np.bincount(group, length) / np.maximum(runs, 1.0)
+    # The mean of a run lowers every autocovariance by the variance of that mean.
+    lag = np.arange(lags + 1)
+    taper = _taper(lag, mean_length)
+    room = 1.0 - taper.sum(axis=0) / np.maximum(mean_length, 1.0)
+    known = (mean_length > 2 * lags) & (room > 0)
+    lost = (taper * raw).sum(axis=0) / (np.maximum(mean_length, 1.0) * np.where(known, room, 1.0))
+    covariance = raw + lost
+    at_zero = (_taper(lag, length) * covariance[:, group]).sum(axis=0)
+    at_zero = np.maximum(at_zero, LEAST_OF_WHITE * covariance[0, group])
+    sure = known[group] & (length > lags)
+    variance = np.maximum(at_zero, 0.0) / np.maximum(length, 1.0)
+    return np.where(sure, np.sqrt(variance), np.inf)
+
+
+def _pooled_product(
+    deviation: FloatArray, present: BoolArray, group: IntArray, lag: int
+) -> FloatArray:
+    """Mean product of blocks a lag apart, over all runs of each group, shape (groups,)."""
+    end = deviation.shape[1] - lag
+    product = (deviation[:, :end] * deviation[:, lag:]).sum(axis=1)
+    pairs = (present[:, :end] & present[:, lag:]).sum(axis=1)
+    total = np.bincount(group, product)
+    return np.asarray(total / np.maximum(np.bincount(group, pairs), 1.0), dtype=np.float64)
+
+
+def _taper(lag: IntArray, length: FloatArray) -> FloatArray:
+    """How often each lag, to both sides, occurs in a mean over `length`; shape (lags, lengths)."""
+    weight = 1.0 - lag[:, None] / np.maximum(length, 1.0)[None, :]
+    return np.asarray(np.where(lag[:, None] > 0, 2.0, 1.0) * np.maximum(weight, 0.0))
+
+
+def residual_scatter(
+    residual_ratio: FloatArray, used: BoolArray, season: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Relative scatter of run points about their curves, pooled over each season's tows.
+
+    Four degrees of freedom per tow are too few for its own (docs/method.md, 9). This is the
+    check on `run_point_uncertainty`: it also has in it what differs from run to run.
+
+    Args:
+        residual_ratio: (point - curve) / curve, shape (tows, points).
+        used: points that count, same shape.
+        season: season of each tow, shape (tows,).
+
+    Returns:
+        Standard deviation and degrees of freedom for each tow's season, shape (tows,); infinite
+        and 0 where no tow of the season has a point to spare.
+    """
+    _, group = np.unique(season, return_inverse=True)
+    spare = np.maximum(used.sum(axis=1) - CURVE_PARAMETERS, 0)
+    squares = np.where(used & (spare > 0)[:, None], residual_ratio, 0.0) ** 2
+    dof = np.bincount(group, spare)[group].astype(np.float64)
+    total = np.bincount(group, squares.sum(axis=1))[group]
+    known = dof > 0
+    return np.where(known, np.sqrt(total / np.where(known, dof, 1.0)), np.inf), dof
+
+
+# The budget of a tow
+
+
+UNRECORDED_WATER_C: Final = 4.0
+"""Standard deviation of a season's water about the reference where nobody wrote it down: boats are
+towed early in the year. The season log assumes the same (`season_log.assumed`)."""
+
+
+@dataclass(frozen=True)
+class Assumed:
+    """Standard uncertainties that the archive itself cannot show (docs/method.md, 9).
+
+    Attributes:
+        calibration_speed_ratio: dGPS calibration of the speed of a tow.
+        stream_drift_speed_ratio: current that changes between the runs out and those back, which
+            the calibration then takes for speed.
+        force_ratio: calibration of the load cell, as daily with a known weight.
+        wind_coefficient: of a prescribed air drag coefficient: 0.2 either way, all equally likely.
+        unmeasured_wind: where there was no anemometer, net wind correction / still-air part: wind
+            as fast as the boat, from ahead out and from behind back, makes it 1.
+        anemometer_ratio: wind speed by an anemometer that is taken as it reads.
+        mass_ratio: crew and gear, on Cw.
+        temperature_known_c, temperature_unknown_c: water temperature with and without a record,
+            this one where a method does not estimate the logs.
+        temperature_ratio_per_c: change of Cw with water temperature.
+        temperature_formula_ratio: wetted surface and friction formula.
+        straightness_ratio: tows that are pulled slightly askew.
+        force_standard_ratio: the part of `force_ratio` that all seasons share: what differs
+            between them is estimated with the log.
+        mass_standard_ratio: the part of `mass_ratio` that all tows of a boat share.
+        between_tows_ratio: what repeat tows show of all that differs from tow to tow.
+    """
+
+    calibration_speed_ratio: float = 0.002
+    stream_drift_speed_ratio: float = 0.003
+    force_ratio: float = 0.003
+    wind_coefficient: float = 0.115
+    unmeasured_wind: float = 1.0
+    anemometer_ratio: float = 0.05
+    mass_ratio: float = 0.006
+    temperature_known_c: float = 0.3
+    temperature_unknown_c: float = 2.0
+    temperature_ratio_per_c: float = 0.003
+    temperature_formula_ratio: float = 0.002
+    straightness_ratio: float = 0.002
+    force_standard_ratio: float = 0.002
+    mass_standard_ratio: float = 0.002
+    between_tows_ratio: float = 0.0
+
+    def beside_repeats(self, tow_sd: float, calibration_sd: float) -> "Assumed":
+        """What remains assumed where repeat tows show how far tows scatter.
+
+        Calibration with current drift, which move speed, and recorded temperature, straightness and
+        the weighing of the crew, which do not, differ from tow to tow: repeat tows show both sums.
+        What repeat tows share cancels in their difference, so they never shrink it (ISO 5725-1;
+        GUM, type B).
+
+        Args:
+            tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log, from
+                the network of repeat tows (`season_log`).
+            calibration_sd: of the ln speed of tows calibrated on dGPS, from there too.
+        """
+        return replace(
+            self,
+            between_tows_ratio=tow_sd,
+            force_ratio=self.force_standard_ratio,
+            calibration_speed_ratio=calibration_sd,
+            stream_drift_speed_ratio=0.0,
+            mass_ratio=self.mass_standard_ratio,
+            temperature_known_c=0.0,
+            temperature_unknown_c=UNRECORDED_WATER_C,
+            straightness_ratio=0.0,
+        )
+
+
+def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
+    """Every component of the uncertainty of Cw at one speed, per tow.
+
+    A speed error acts through the elasticity kappa of the boat. A tow without dGPS has the wander
+    of its log in place of calibration and current drift: a log feels the water, not the current.
+
+    Args:
+        tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
+            `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
+            points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
+            `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
+            where calibrated), `tow_log_sd` of the log (0 where calibrated); `stream_sd` with
+            `stream_dof`, of ln speed by a current that differs between runs one way; `air_ratio`,
+            net wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
+            coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is
+            taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air
+            part / Cw;
+            `temperature_known`; `water_off_c`, of the water from its day's; `askew_ratio`, by being
+            pulled askew, null where repeat tows do not tell; `force_sd`, of the load cell by its
+            record, null without one.
+        assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
+            came to where that was used.
+
+    Returns:
+        One row per tow, speed and component: `tow_id, speed_ratio, component`, `shared` (single,
+        season or archive), `key` (rows with one key share one error), `effect_ratio` (change of
+        ln Cw by one standard deviation of it, signed), `u_ratio` (its size), `dof` (infinite for
+        assumed numbers).
+    """
+    kappa, calibrated = pl.col("kappa"), pl.col("calibrated")
+    known = pl.col("temperature_known")
+    recorded_c = pl.max_horizontal(assumed.temperature_known_c, "water_off_c")
+    temperature_c = pl.when(known).then(recorded_c).otherwise(assumed.temperature_unknown_c)
+    speed_ratio = (
+        pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("tow_log_sd"))
+    )
+    drift = pl.when(calibrated).then(assumed.stream_drift_speed_ratio).otherwise(0.0)
+    drift_ratio = (drift**2 + pl.col("stream_sd") ** 2).sqrt()
+    drift_dof = pl.when(pl.col("stream_sd") > drift).then("stream_dof").otherwise(np.inf)
+    coefficient = pl.col("air_per_coefficient") * assumed.wind_coefficient
+    wind_speed = pl.col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
+    no_wind = pl.col("still_air_ratio") * assumed.unmeasured_wind
+    effects = {
+        "random": pl.col("random_ratio"),
+        "misfit": pl.col("misfit_ratio"),
+        "calibration": kappa * speed_ratio,
+        "stream_drift": kappa * drift_ratio,
+        "between_tows": pl.lit(assumed.between_tows_ratio),
+        "force": pl.col("force_sd").fill_null(assumed.force_ratio),
+        "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
+        "anemometer": 2.0 * wind_speed * pl.col("air_ratio"),
+        "mass": pl.lit(assumed.mass_ratio),
+        "temperature": (
+            (assumed.temperature_ratio_per_c * temperature_c) ** 2
+            + assumed.temperature_formula_ratio**2
+        ).sqrt(),
+        "straightness": pl.col("askew_ratio").fill_null(assumed.straightness_ratio),
+        "season_log": kappa * pl.col("log_sd"),
+    }
+    shared = {
+        "force": pl.lit(SEASON),
+        "wind": pl.when("wind_measured").then(pl.lit(ARCHIVE)).otherwise(pl.lit(SINGLE)),
+        "anemometer": pl.lit(SEASON),
+        "temperature": pl.when(known).then(pl.lit(SINGLE)).otherwise(pl.lit(SEASON)),
+        "season_log": pl.lit(SEASON),
+    }
+    dof = {
+        "random": pl.col("random_dof"),
+        "season_log": pl.col("log_dof"),
+        "stream_drift": drift_dof,
+    }
+    parts = [
+        tows.select(
+            "tow_id",
+            "speed_ratio",
+            pl.lit(name).alias("component"),
+            shared.get(name, pl.lit(SINGLE)).alias("shared"),
+            _key(name, shared.get(name, pl.lit(SINGLE))).alias("key"),
+            effects[name].cast(pl.Float64).alias("effect_ratio"),
+            effects[name].cast(pl.Float64).abs().alias("u_ratio"),
+            dof.get(name, pl.lit(np.inf)).cast(pl.Float64).alias("dof"),
+        )
+        for name in COMPONENTS
+    ]
+    return pl.concat(parts)
+
+
+def _key(component: str, shared: pl.Expr) -> pl.Expr:
+    """What has this error in common: the tow alone, its season (and log), or all."""
+    season = pl.col("season").cast(pl.String)
+    if component == "season_log":
+        return log_key(pl.col("season"), pl.col("part"), pl.col("log"))
+    whose = (
+        pl.when(shared == SINGLE)
+        .then(pl.col("tow_id"))
+        .when(shared == SEASON)
+        .then(season)
+        .otherwise(pl.lit(""))
+    )
+    return pl.concat_str(pl.lit(component), whose, separator="/")
+
+
+def log_key(season: pl.Expr, part: pl.Expr, log: pl.Expr) -> pl.Expr:
+    """Key of the error of one log factor."""
+    return pl.concat_str(
+        pl.lit("season_log"), season.cast(pl.String), part.cast(pl.String), log, separator="/"
+    )
+
+
+def combine(components: pl.DataFrame) -> pl.DataFrame:
+    """Adds a budget up per tow and speed.
+
+    Args:
+        components: rows of `budget`.
+
+    Returns:
+        One row per tow and speed, in the order of `components`: `tow_id, speed_ratio, u_ratio`,
+        `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`: the 95 % bounds of Cw / its value, a
+        t interval on the logarithm.
+    """
+    square = pl.col("u_ratio") ** 2
+    rows = (
+        components.group_by("tow_id", "speed_ratio", maintain_order=True)
+        .agg(
+            square.sum().sqrt().alias("u_ratio"),
+            (square**2 / pl.col("dof").clip(lower_bound=1.0)).sum().alias("spread"),
+        )
+        .with_columns((pl.col("u_ratio") ** 4 / pl.col("spread")).alias("dof"))
+        .with_columns(pl.col("dof").fill_nan(np.inf))
+    )
+    quantile = t_quantile(rows["dof"].clip(1.0).to_numpy())
+    half = rows["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)
+    return rows.drop("spread").with_columns(
+        (-half).exp().alias("lo_ratio"), half.exp().alias("hi_ratio")
+    )

@@ -1,0 +1,112 @@
+"""What is wrong with the archive: the record of one fault.
+
+A reason code is stable: it is in the quarantine table, and `docs/archive.md` says what it means.
+Detecting a fault belongs to the module that reads the thing.
+"""
+
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+from pipeline.errors import DefectiveInputError
+from pipeline.words import Sentence, cause_of, say, spoken
+from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, traced
+
+Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
+"""What a fault costs: seconds of one channel of a run, a run, a tow, or a file; or a row of a list
+that costs no tow, as one of a race, or one of its cells."""
+
+
+OF_A_HEADER: Final = ("missing_column", "unknown_column", "duplicate_column", "unknown_unit")
+"""Reason codes of a header: of a list, they cost all of it."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Something that is set aside: seconds, a run, a tow, a file or a row of a list.
+
+    Attributes:
+        path: posix path relative to the archive.
+        tow_id: the tow it costs, None where the fault belongs to a file or a boat.
+        line: line in `path` (the header is line 1), where there is one.
+        reason_code: short stable code.
+        message: a sentence a volunteer understands.
+        lost: what it costs; None for a tow, a row or a file, as it has a tow, a line or neither.
+        run: the run that it costs, or seconds of which.
+        lost_s: how many seconds.
+        cause: what faults of one cause share.
+        message_nl: the message in Dutch.
+    """
+
+    path: str
+    tow_id: str | None
+    line: int | None
+    reason_code: str
+    message: str
+    lost: Lost | None = None
+    run: int | None = None
+    lost_s: float | None = None
+    cause: str = field(init=False)
+    message_nl: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Says the message in Dutch too, and what it shares with others."""
+        object.__setattr__(self, "cause", cause_of(self.message))
+        object.__setattr__(self, "message_nl", spoken(self.message, "nl"))
+
+
+class DefectiveFileError(DefectiveInputError):
+    """A `DefectiveInputError` that knows which of a tow's files it is about.
+
+    Args:
+        reason_code: short stable code.
+        message: a sentence that a volunteer understands.
+        line: line in the file, where there is one.
+        path: posix path relative to the archive.
+    """
+
+    def __init__(self, reason_code: str, message: str, line: int | None, path: str) -> None:
+        super().__init__(reason_code, message, line)
+        self.path = path
+
+
+def place(line: int, path: str) -> Sentence:
+    """A line of a file, for a sentence."""
+    return say("line {line} of {path}", line=line, path=path)
+
+
+def at_line(line: int, what: str) -> Sentence:
+    """A sentence with the line that it is about."""
+    return say("Line {line}: {what}", line=line, what=what)
+
+
+@dataclass(frozen=True)
+class Failure(Fault):
+    """A list, or a row of one, on which Herijk itself failed.
+
+    Attributes:
+        trace: the traceback.
+    """
+
+    trace: str = ""
+
+
+def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fault:
+    """The fault an error stands for; `path` serves where the error knows none itself.
+
+    Raises:
+        BaseException: the error, where it is neither about the input nor a fault of Herijk.
+    """
+    if not isinstance(error, DefectiveInputError):
+        if not is_unforeseen(error):
+            raise error
+        return Failure(path, tow_id, None, UNFORESEEN, _failed(error), trace=traced(error))
+    where = error.path if isinstance(error, DefectiveFileError) else path
+    return Fault(where, tow_id, error.line, error.reason_code, error.message)
+
+
+def _failed(error: BaseException) -> Sentence:
+    return say(
+        "Herijk itself failed on this list ({}). It may be sound. Please report this to whoever "
+        "maintains Herijk, with the folder unforeseen of the data folder.",
+        in_short(error),
+    )

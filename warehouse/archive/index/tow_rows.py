@@ -1,0 +1,75 @@
+"""The rows of all tow lists, and what `archief.toml` says that none of them has."""
+
+import datetime as dt
+from pathlib import Path
+
+from pipeline.errors import DefectiveInputError
+from pipeline.words import say
+from warehouse.archive.faults import Fault, fault_from
+from warehouse.archive.files.finding import list_files
+from warehouse.archive.files.list_kinds import TOWS
+from warehouse.archive.files.names import PROFILE_FILE
+from warehouse.archive.index.entry import Entry
+from warehouse.archive.lists import tows as tow_list
+from warehouse.archive.profile.definition import Profiles
+from warehouse.archive.sheets.reading import read_list
+from warehouse.archive.sheets.row import ListRow
+
+
+def read_tow_lists(
+    root: Path, profiles: Profiles, faults: list[Fault]
+) -> tuple[list[Entry], set[int]]:
+    """The rows of all tow lists, and the seasons of lists that cannot be read."""
+    entries: list[Entry] = []
+    unread_seasons: set[int] = set()
+    for file in list_files(root, TOWS, profiles.wording.files):
+        try:
+            rows = read_list(root, TOWS, file.path, profiles.wording)
+        except BaseException as error:
+            faults.append(fault_from(error, file.path))
+            unread_seasons.add(file.season)
+            continue
+        entries += [
+            Entry(row, file.path, file.season or _year_of(row), profiles)
+            for row in tow_list.per_tow(rows)
+        ]
+    return entries, unread_seasons
+
+
+def _year_of(row: ListRow) -> int:
+    """The season of a row in a list of all years; 0 where its date cannot be read."""
+    day = _day_of(row)
+    return 0 if day is None else day.year
+
+
+def _day_of(row: ListRow) -> dt.date | None:
+    try:
+        return row.date("tow_date")
+    except DefectiveInputError:
+        return None
+
+
+def idle_settings(profiles: Profiles, entries: list[Entry]) -> list[Fault]:
+    """What `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
+    days = {_day_of(entry.row) for entry in entries}
+    seasons = {entry.season for entry in entries}
+    tows = {entry.tow_id for entry in entries}
+    idle = [
+        *(("set_aside", str(one.date)) for one in profiles.set_aside if one.date not in days),
+        *(
+            ("log_replaced", str(one.date))
+            for one in profiles.log_replaced
+            if one.date.year not in seasons
+        ),
+        *(("plan", tow) for plan in profiles.plan for tow in plan.tows if tow not in tows),
+        *(
+            (name, f"{first}:{last}")
+            for name, (first, last) in profiles.season_ranges
+            if not any(first <= season <= last for season in seasons)
+        ),
+    ]
+    message = "[[{table}]] is for {what}, and no tow list has that: is it mistyped?"
+    return [
+        Fault(PROFILE_FILE, None, None, "idle_setting", say(message, table=table, what=what))
+        for table, what in idle
+    ]

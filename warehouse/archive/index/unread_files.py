@@ -1,0 +1,82 @@
+"""What lies in an archive and is not read, and what is not there though it must be."""
+
+from pathlib import Path
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.words import say
+from warehouse.archive.faults import Fault
+from warehouse.archive.files.finding import (
+    list_files,
+    list_misnamed,
+    list_strangers,
+)
+from warehouse.archive.files.list_kinds import BOATS, TOWS
+from warehouse.archive.files.names import (
+    BOATS_FILE,
+    PACKED,
+    SAMPLES,
+    SPREADSHEETS,
+)
+from warehouse.archive.index.recognise import recognised
+from warehouse.archive.profile.definition import Profiles
+from warehouse.archive.spelling.text import fold
+
+
+def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
+    """What is not there of that without which nothing can be read.
+
+    Raises:
+        MissingKnowledgeError: there is no archive.
+    """
+    if not root.is_dir():
+        raise MissingKnowledgeError(
+            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
+            "meetdata_<jaar>/.",
+            root,
+            BOATS_FILE,
+        )
+    named = profiles.wording.files
+    lacking = []
+    if not list_files(root, BOATS, named):
+        lacking.append(
+            (BOATS_FILE, say("there is no list of boats: {path} is expected.", path=BOATS_FILE))
+        )
+    if not list_files(root, TOWS, named):
+        path = "sleeplijsten/sleeplijst_<jaar>.csv"
+        lacking.append((path, say("there is no list of tows: {path} is expected.", path=path)))
+    return [Fault(path, None, None, "missing_list", said) for path, said in lacking]
+
+
+def strangers(root: Path, profiles: Profiles) -> list[Fault]:
+    """What lies in the archive and is not read; what it can be, where that can be told."""
+    message = "The name of '{name}' has letters that cannot be read; give it another name."
+    misnamed = [
+        Fault(path, None, None, "unrecognised_file", say(message, name=path))
+        for path in list_misnamed(root)
+    ]
+    return misnamed + [
+        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
+        for path in list_strangers(root, profiles.wording.files)
+        if fold(path) not in profiles.wording.ignore
+    ]
+
+
+def _about_stranger(root: Path, path: str) -> str:
+    """The sentence about what is not read."""
+    kind = Path(path)
+    if kind.suffix.lower() in PACKED:
+        return say("'{path}' is not read: it is packed. Unpack it in its folder.", path=path)
+    if kind.suffix.lower() in SPREADSHEETS and kind.parts[0].casefold().startswith(SAMPLES):
+        message = "'{path}' is not read: samples are read from text. Save the sheet as CSV."
+        return say(message, path=path)
+    can_be = dict(recognised(root, path))
+    if not can_be:
+        message = "'{path}' is not recognised. It may be put under ignore in archief.toml."
+        return say(message, path=path)
+    return say(
+        "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; "
+        "say so under [files] in archief.toml.",
+        path=path,
+        kinds=", ".join(sorted(set(can_be.values()))),
+        can_be=tuple(sorted(can_be.items())),
+    )

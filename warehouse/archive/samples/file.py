@@ -1,0 +1,132 @@
+"""Reading one samples file, or only what its start says."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import polars as pl
+import pyarrow as pa  # type: ignore[import-untyped]
+import pyarrow.parquet as pq  # type: ignore[import-untyped]
+
+from pipeline.channels import FEWEST_RUNS
+from pipeline.errors import DefectiveInputError
+from warehouse.archive.files.contents import not_whole, read_bytes, read_start
+from warehouse.archive.files.names import kind_of
+from warehouse.archive.limits import SAMPLES_MAX_BYTES
+from warehouse.archive.profile.season import SeasonProfile
+from warehouse.archive.samples.binary_files import BINARY, next_line, read_binary
+from warehouse.archive.samples.columns import check_nothing_misspelt
+from warehouse.archive.samples.frame import (
+    check_runs,
+    check_time,
+    to_schema,
+    turned_back,
+    with_runs,
+    without_runs,
+)
+from warehouse.archive.samples.labview import read_tdms
+from warehouse.archive.samples.text_files import HEAD_BYTES, find_body, read_text
+from warehouse.archive.spelling.columns import find_columns, unknown_headers
+
+_FOR_A_RATE: Final = 500
+"""Samples from which the rate is seen."""
+
+
+def read_samples(
+    path: Path,
+    profile: SeasonProfile,
+    sample_rate_hz: int | None = None,
+    run: int | None = None,
+) -> pl.DataFrame:
+    """Reads one samples file.
+
+    Args:
+        path: text, also LabVIEW's, packed or not; `.parquet`; `.tdms`.
+        profile: names and units of the columns in that season.
+        sample_rate_hz: rate the time column must agree with; not checked when None.
+        run: the run that the file is, where it is one of several.
+
+    Returns:
+        A frame with the columns of `SAMPLE_SCHEMA`, one row per sample in the order of the file.
+        What was not measured is null throughout: a GPS that is absent or empty, and what the
+        profile declares absent. Wind angles are brought to [0, 360); one outside -180..360 cannot
+        be an angle and is left as it is, for `judge_samples` to find.
+
+    Raises:
+        DefectiveInputError: the first fault that costs the whole file, with its line.
+    """
+    if kind_of(path) in BINARY:
+        raw, line_of = read_binary(path, profile), next_line
+    else:
+        body = find_body(read_bytes(path, SAMPLES_MAX_BYTES), profile)
+        raw, line_of = read_text(body), body.line
+    samples = to_schema(with_runs(raw, run), line_of, profile.wind_zero_deg)
+    check_runs(samples["run"], line_of)
+    if "time" in raw.columns:
+        time_s = raw["time"].to_numpy()
+        turned = turned_back(samples["run"], time_s)
+        check_time(samples["run"], time_s, sample_rate_hz, line_of, turned)
+        samples = without_runs(samples, turned)
+    return samples
+
+
+def check_header(path: Path, profile: SeasonProfile) -> None:
+    """Reads the columns of a samples file, not its samples.
+
+    Raises:
+        DefectiveInputError: as `read_samples`, for a fault of the header.
+    """
+    names = _header_of(path, profile)
+    check_nothing_misspelt(names, find_columns(names, profile.columns), profile)
+
+
+def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
+    kind = kind_of(path)
+    if kind == ".parquet":
+        try:
+            with pq.ParquetFile(path) as file:
+                return list(file.schema_arrow.names)
+        except (OSError, pa.ArrowException) as error:
+            raise not_whole(path, "Parquet", error) from error
+    if kind == ".tdms":
+        return read_tdms(path, most_rows=0).columns
+    return find_body(read_start(path, HEAD_BYTES), profile).header
+
+
+def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
+    """The samples per second at the start of a file; None where it has no times to say."""
+    try:
+        if kind_of(path) in BINARY:
+            frame = read_binary(path, profile, _FOR_A_RATE)
+        else:
+            body = find_body(read_start(path, HEAD_BYTES), profile)
+            if "time" not in body.columns:
+                return None
+            frame = read_text(replace(body, data=body.data[: body.data.rfind(b"\n") + 1]))
+    except DefectiveInputError:
+        return None
+    if "time" not in frame.columns or frame.height < 2:
+        return None
+    step = float(np.nanmedian(np.diff(frame["time"].to_numpy()[:_FOR_A_RATE])))
+    return 1.0 / step if step > 0 else None
+
+
+def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[tuple[str, str], ...]:
+    """`run` or `time` with a column nobody knows as which it tells the runs of a file."""
+    header = _header_of(path, profile)
+    unknown = unknown_headers(header, find_columns(header, profile.columns))
+    pairs = [(key, name) for key in ("run", "time") for name in unknown]
+    return tuple(pair for pair in pairs if _tells_runs(path, profile, *pair))
+
+
+def _tells_runs(path: Path, profile: SeasonProfile, key: str, name: str) -> bool:
+    columns = tuple(
+        replace(column, header=name) if column.key == key else column for column in profile.columns
+    )
+    try:
+        runs = read_samples(path, replace(profile, columns=columns))["run"]
+    except DefectiveInputError:
+        return False
+    return runs.n_unique() >= FEWEST_RUNS

@@ -1,0 +1,253 @@
+"""Reading samples from text.
+
+There are two ways: a fast one that polars does whole, and a careful one that knows lines; the fast
+one is trusted only where it gives the same.
+"""
+
+import re
+import unicodedata
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.errors import DefectiveInputError
+from pipeline.words import say
+from warehouse.archive.profile.season import SeasonProfile
+from warehouse.archive.samples.columns import check_nothing_misspelt, seconds_of_clock, to_si
+from warehouse.archive.samples.labview import is_labview, labview_as_table
+from warehouse.archive.spelling.columns import (
+    FoundColumn,
+    find_columns,
+    find_header,
+    score_of,
+)
+from warehouse.archive.spelling.headers import with_units
+from warehouse.archive.spelling.numbers import NUMBER_PATTERN
+from warehouse.archive.spelling.text import decode, find_delimiter, split_line
+from warehouse.archive.spelling.units import Scale
+
+_BLANKS: Final = " \t"
+_BLANKS_OUTSIDE: Final = re.compile(rb"^[ \t]+|[ \t]+(?=\r?$)", re.MULTILINE)
+_BLANKS_WITHIN: Final = re.compile(rb"[ \t]+")
+_RUN_NAMED: Final = r"(?i)^(?:run|vaart|lauf|passage)[ \t._:-]*([0-9]{1,2})$"
+"""A run with its number behind the word: `run 1`."""
+HEAD_BYTES: Final = 65_536
+"""The header is looked for in so much of a file."""
+_QUOTED_DECIMAL_COMMA: Final = r'"([ \t]*[+-]?[0-9]*),([0-9][0-9eE+ \t-]*)"'
+_THOUSAND: Final = {
+    ",": r"^[+-]?[0-9]{1,3},[0-9]{3}$",
+    ".": r"^[+-]?[0-9]{1,3}\.[0-9]{3}$",
+}
+
+
+@dataclass(frozen=True)
+class Body:
+    """The text below the header, and what the header says of it.
+
+    Attributes:
+        header_line: line in the file of the header.
+        first_line: that of the first row.
+        places: lines of the rows where they do not follow each other, else empty.
+        clock: the time is written as a time of day.
+    """
+
+    data: bytes
+    delimiter: str
+    header: Sequence[str]
+    columns: Mapping[str, FoundColumn]
+    header_line: int
+    first_line: int
+    places: Sequence[int] = ()
+    clock: bool = False
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return len(self.header)
+
+    def line(self, row: int) -> int:
+        """Line in the file of a row, counted from 0; of the header where it is negative."""
+        if row < 0:
+            return self.header_line
+        return self.places[row] if row < len(self.places) else self.first_line + row
+
+
+def read_text(body: Body) -> pl.DataFrame:
+    """The wanted columns as Float64, in SI units; an absent or empty gps is left out."""
+    fast = _read_fast(body)
+    columns = _read_carefully(body) if fast is None else fast
+    return to_si(columns, body.columns)
+
+
+def find_body(data: bytes, profile: SeasonProfile) -> Body:
+    """Finds the header, below titles if there are any, and what it says of the columns."""
+    if not data.isascii() or b"\x00" in data or not data[:100].strip():
+        data = unicodedata.normalize("NFC", decode(data)).encode()
+    places: list[int] = []
+    if is_labview(data[:200].decode(errors="replace")):
+        table, places = labview_as_table(data.decode())
+        data = table.encode()
+    lines = data[:HEAD_BYTES].decode(errors="ignore").split("\n")
+    place = find_header(lines, profile.columns)
+    header_line, below = lines[place].rstrip("\r"), place + 1
+    if profile.header is not None and not score_of(
+        split_line(header_line, find_delimiter(header_line)), profile.columns
+    ):
+        header_line, below = profile.header, place
+    delimiter = find_delimiter(lines[place])
+    header = split_line(header_line, find_delimiter(header_line))
+    if units := with_units(header, _cells_of_line(lines, below, delimiter)):
+        header, below = units, below + 1
+    line = places[0] if places else place + 1
+    columns = find_columns(header, profile.columns, line)
+    check_nothing_misspelt(header, columns, profile)
+    data = data[_start_of_line(data, below) :]
+    if not data.strip(b"\r\n"):
+        said = say("There are no samples below the header.")
+        raise DefectiveInputError("unreadable_file", said)
+    if delimiter == " ":
+        data, delimiter = _BLANKS_WITHIN.sub(b"\t", _BLANKS_OUTSIDE.sub(b"", data)), "\t"
+    first_line, rows = below + 1, places[1:]
+    says_runs = rows or {"run", "time"} & columns.keys()
+    if not says_runs and (parted := _parted_by_blank_lines(data, delimiter)):
+        data, rows = parted[0], [first_line + row for row in parted[1]]
+        header = [*header, "run"]
+        columns = {**columns, "run": FoundColumn(len(header) - 1, "run", Scale())}
+    clock = _is_clock(data, delimiter, columns.get("time"))
+    return Body(data, delimiter, header, columns, line, first_line, rows, clock)
+
+
+def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int]] | None:
+    """The rows with the number of their run behind them, and the place of each.
+
+    A run is what is between blank lines; None where there are none between rows. In a file
+    without a column of runs or times nothing else can be meant by them.
+    """
+    nothing = delimiter.encode() + b" \t\r"
+    lines = data.split(b"\n")
+    full = np.array([bool(line.strip(nothing)) for line in lines])
+    places = np.flatnonzero(full)
+    begins = np.diff(places, prepend=places[:1]) > 1
+    if not begins.any():
+        return None
+    runs = 1 + np.cumsum(begins)
+    rows = (
+        lines[place].rstrip(b"\r") + delimiter.encode() + str(run).encode()
+        for place, run in zip(places.tolist(), runs.tolist(), strict=True)
+    )
+    return b"\n".join(rows) + b"\n", places.tolist()
+
+
+def _cells_of_line(lines: Sequence[str], number: int, delimiter: str) -> list[str]:
+    """The cells of a line that may not be a row of samples; none where there is no line."""
+    if number >= len(lines) or any(map(str.isdigit, lines[number])):
+        return []
+    return lines[number].split(None if delimiter == " " else delimiter)
+
+
+def _start_of_line(data: bytes, number: int) -> int:
+    """Place of the first byte of a line, counted from 0."""
+    start = 0
+    for _ in range(number):
+        start = data.find(b"\n", start) + 1 or len(data)
+    return start
+
+
+def _is_clock(data: bytes, delimiter: str, time: FoundColumn | None) -> bool:
+    if time is None:
+        return False
+    cells = data.partition(b"\n")[0].split(delimiter.encode())
+    return time.index < len(cells) and b":" in cells[time.index]
+
+
+def _read_fast(body: Body) -> pl.DataFrame | None:
+    """The columns, or None where the careful way has to judge.
+
+    That is also where a carriage return is within a line: Polars takes it for a blank. And
+    where there are commas and points: Polars takes either for the decimal mark.
+    """
+    mixed = b"," in body.data and b"." in body.data
+    if _has_stray_return(body.data) or (mixed and body.delimiter != ","):
+        return None
+    quoted = b'"' in body.data
+    wanted = {column.index: key for key, column in body.columns.items()}
+    number = pl.String() if quoted else pl.Float64()
+    schema = {
+        wanted.get(index, f"ignored {index}"): number
+        if index in wanted and not (body.clock and wanted[index] == "time")
+        else pl.String()
+        for index in range(body.width)
+    }
+    try:
+        frame = pl.read_csv(
+            body.data,
+            has_header=False,
+            separator=body.delimiter,
+            quote_char='"' if quoted else None,
+            decimal_comma=body.delimiter != ",",
+            schema=schema,
+        ).select(wanted.values())
+        if body.clock:
+            frame = frame.with_columns(seconds_of_clock(frame["time"]))
+        if quoted:
+            text = pl.selectors.string()
+            frame = frame.with_columns(text.str.replace(",", ".", literal=True).cast(pl.Float64()))
+    except pl.exceptions.PolarsError:
+        return None
+    return frame if all(map(_all_finite, frame.iter_columns())) else None
+
+
+def _has_stray_return(data: bytes) -> bool:
+    """Whether a carriage return is anywhere but before a line feed."""
+    if b"\r" not in data:
+        return False
+    letters = np.frombuffer(data, np.uint8)
+    stray = (letters[:-1] == ord("\r")) & (letters[1:] != ord("\n"))
+    return data.endswith(b"\r") or bool(stray.any())
+
+
+def _all_finite(numbers: pl.Series) -> bool:
+    """Whether every cell holds a number; NumPy is quicker at it than Polars."""
+    return numbers.null_count() == 0 and bool(np.isfinite(numbers.to_numpy()).all())
+
+
+def _read_carefully(body: Body) -> pl.DataFrame:
+    """The same columns, NaN where a cell is not a number or its row has not all its fields."""
+    text = body.data.rstrip(b"\r\n").decode()
+    lines = pl.Series("line", text.split("\n")).str.strip_suffix("\r")
+    if body.delimiter == ",":
+        lines = lines.str.replace_all(_QUOTED_DECIMAL_COMMA, '"$1.$2"')
+    fields = lines.str.split(body.delimiter)
+    whole = fields.list.len() == body.width
+    columns: dict[str, pl.Series] = {}
+    for key, column in body.columns.items():
+        cells = fields.list.get(column.index, null_on_oob=True)
+        cells = cells.str.strip_chars(_BLANKS).str.replace(r'^"([^"]*)"$', "$1")
+        cells = cells.str.strip_chars(_BLANKS)
+        if key == "gps" and (cells == "").all():
+            continue
+        if key == "run":
+            cells = cells.str.replace(_RUN_NAMED, "$1")
+        if key == "time" and body.clock:
+            cells = seconds_of_clock(cells).cast(pl.String()).fill_null(cells)
+        columns[key] = _to_numbers(cells, whole)
+    return pl.DataFrame(columns)
+
+
+def _to_numbers(cells: pl.Series, whole: pl.Series) -> pl.Series:
+    """Text as numbers; NaN where it is not one or the row is not whole.
+
+    In a column of decimal commas 1.012 can be a thousand and twelve: it is not a number either, nor
+    is 1,012 among points.
+    """
+    spelled = cells.str.contains(NUMBER_PATTERN)
+    commas, points = (cells.str.contains(mark, literal=True).sum() for mark in ",.")
+    for mark, rarer in ((",", commas <= points), (".", points <= commas)):
+        if commas and points and rarer:
+            spelled &= ~cells.str.contains(_THOUSAND[mark])
+    numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
+    good = (spelled & whole & numbers.is_finite()).fill_null(value=False)
+    return pl.select(pl.when(good).then(numbers).otherwise(float("nan"))).to_series()

@@ -1,0 +1,179 @@
+"""Reading a list: a small table with one header, and the values in its rows."""
+
+import unicodedata
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import polars as pl
+
+from pipeline.errors import DefectiveInputError
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
+from pipeline.tables.row import Row
+from warehouse.archive.faults import Fault, at_line, fault_from
+from warehouse.archive.files.contents import read_bytes
+from warehouse.archive.files.finding import list_files, path_inside
+from warehouse.archive.files.list_kinds import ListKind
+from warehouse.archive.files.names import split_sheet
+from warehouse.archive.limits import LIST_MAX_BYTES
+from warehouse.archive.sheets.crews import CREW, with_crews_apart
+from warehouse.archive.sheets.outside_limits import misfits
+from warehouse.archive.sheets.row import ListRow, Reading
+from warehouse.archive.sheets.sheet import Sheet, read_sheets
+from warehouse.archive.sheets.unknown_columns import about_unknown, check_named, meanings_in
+from warehouse.archive.spelling.columns import (
+    Column,
+    FoundColumn,
+    find_columns,
+    unknown_headers,
+)
+from warehouse.archive.spelling.dates import date_order
+from warehouse.archive.spelling.numbers import decimal_mark
+from warehouse.archive.spelling.synonyms import NOTHING
+from warehouse.archive.spelling.text import fold, fold_word
+from warehouse.archive.spelling.wording import Wording
+
+
+def read_rows(
+    data: bytes,
+    columns: Sequence[Column],
+    reason_code: str,
+    table: type[dy.Schema],
+) -> list[ListRow]:
+    """The rows of a table of text that anybody made; other columns are ignored.
+
+    Args:
+        data: content of the file.
+        columns: the columns to look for.
+        reason_code: what a bad value in this table is called.
+        table: declares the type and the limits of each value.
+
+    Raises:
+        DefectiveInputError: the table as a whole cannot be read.
+    """
+    sheet = read_sheets(data, columns)[0]
+    places = find_columns(sheet.header, columns, sheet.line)
+    return _rows(sheet, Reading(places, reason_code, {}, "", "", table))
+
+
+def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[ListRow]:
+    """The rows of a list of the archive; empty ones are left out.
+
+    Args:
+        root: folder of the archive.
+        kind: which list.
+        path: the list, relative to the archive.
+        wording: how the lists of this archive are worded.
+
+    Raises:
+        DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
+            it can be a misspelt one, and left out in silence would change numbers.
+    """
+    data = read_bytes(path_inside(root, path), LIST_MAX_BYTES)
+    wanted = wording.with_names(kind.columns)
+    file, sheet = split_sheet(path)
+    suffix = file[file.rfind(".") :].casefold()
+    sheets = [with_crews_apart(s, wanted) for s in read_sheets(data, wanted, suffix, sheet)]
+    cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
+    order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
+    told = wording.decimals.get(path, wording.decimals.get("*", ""))
+    return [
+        row
+        for sheet in sheets
+        for row in _rows(
+            sheet,
+            Reading(
+                _columns_of(sheet, wanted, wording, kind.table),
+                kind.reason_code,
+                wording.words,
+                order,
+                told or decimal_mark(cells),
+                kind.table,
+                sheet.name,
+                bool(told),
+            ),
+        )
+    ]
+
+
+def read_lists(
+    root: Path,
+    kind: ListKind,
+    wording: Wording,
+    read_row: Callable[[ListRow, int], Row],
+) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+    """Reads the lists of a kind: rows of its table, and a fault for each that cannot be read.
+
+    Args:
+        root: folder of the archive.
+        kind: which lists; its table has `path` and `line` too.
+        wording: how the lists are worded.
+        read_row: from a row and the year in the file's name to the other values.
+    """
+    good: list[Row] = []
+    faults: list[Fault] = []
+    for file in list_files(root, kind, wording.files):
+        try:
+            rows = read_list(root, kind, file.path, wording)
+        except BaseException as error:
+            faults.append(fault_from(error, file.path))
+            continue
+        for row in rows:
+            try:
+                row.check_whole()
+                values = read_row(row, file.season)
+            except BaseException as error:
+                faults.append(fault_from(error, file.path))
+            else:
+                good.append({**values, "path": file.path, "line": row.line})
+    frame = frame_of(kind.table, good)
+    for misfit, why in misfits(kind.table, frame):
+        place, said = (misfit["path"], None, misfit["line"]), at_line(misfit["line"], why)
+        faults.append(Fault(*place, kind.reason_code, said))
+    return kind.table.filter(frame).result, tuple(faults)
+
+
+def _columns_of(
+    sheet: Sheet, wanted: Sequence[Column], wording: Wording, table: type[dy.Schema]
+) -> dict[str, FoundColumn]:
+    """The columns of a list; one that nobody knows is a fault."""
+    optional = [replace(column, required=False) for column in wanted]
+    places = find_columns(sheet.header, optional, sheet.line)
+    strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
+    free = [column for column in wanted if column.key not in places]
+    check_named(sheet, {column.index for column in places.values()})
+    if strange:
+        raise DefectiveInputError(
+            "unknown_column", about_unknown(meanings_in(strange, free, sheet, table)), sheet.line
+        )
+    columns = find_columns(sheet.header, wanted, sheet.line)
+    if not sheet.crews:
+        return columns
+    of_crews = {key: replace(columns[key], header=sheet.crews) for key in CREW if key in columns}
+    return columns | of_crews
+
+
+def _rows(sheet: Sheet, reading: Reading) -> list[ListRow]:
+    return [
+        ListRow(row.line, _cells(row.fields, reading), reading, row.problem) for row in sheet.rows
+    ]
+
+
+def _cells(fields: Sequence[str], reading: Reading) -> dict[str, str]:
+    cells = {
+        key: _meant(fields[column.index].strip(), reading.words)
+        for key, column in reading.columns.items()
+        if column.index < len(fields)
+    }
+    if "tow_id" in cells:  # 2014/17 would be a folder in names of pages and files
+        cells["tow_id"] = cells["tow_id"].replace("/", "-")
+    return cells
+
+
+def _meant(cell: str, words: Mapping[str, str]) -> str:
+    """What a cell stands for: the archive's own words first, then nothing for `n.v.t.`."""
+    folded = fold_word(cell)
+    if folded in words:
+        return words[folded]
+    return "" if folded in NOTHING else unicodedata.normalize("NFC", cell)

@@ -1,0 +1,265 @@
+"""The rows of a table of text or of a spreadsheet, as fields of text with their line.
+
+Titles, blank lines and Excel's `sep=;` above the header are passed over, and so are totals and
+notes below the rows. A header may take two rows, the second for units or the rest of the names.
+What the columns mean is in `lists`; samples are read faster, in `samples`.
+"""
+
+import datetime as dt
+import io
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+from pipeline.errors import DefectiveInputError
+from pipeline.words import say
+from warehouse.archive.files.names import SPREADSHEETS
+from warehouse.archive.limits import MOST_COLUMNS, MOST_LISTED_ROWS
+from warehouse.archive.spelling.columns import (
+    HEADER_WITHIN,
+    Column,
+    find_header,
+    header_among,
+    score_of,
+)
+from warehouse.archive.spelling.headers import is_rest_of_header, split_header, with_units
+from warehouse.archive.spelling.text import (
+    decode,
+    find_delimiter,
+    fold,
+    shorten,
+    split_line,
+    split_or_nothing,
+)
+
+FEWEST_OF_A_LIST: Final = 4
+"""Columns: in a list of that many, a row of one cell is not one of its rows."""
+_TOTALS: Final = frozenset(
+    {"totaal", "totalen", "subtotaal", "total", "som", "sum", "summe", "gesamt", "aantal",
+     "gemiddelde", "gemiddeld", "average", "mean", "mittelwert"}
+)  # fmt: skip
+"""What the first cell of a row below a table begins with where it is not one of its rows."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row: its line, its fields, and what is wrong with it as a whole."""
+
+    line: int
+    fields: list[str]
+    problem: str | None = None
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table: the cells of its header, the header's line, the rows below it, and its name.
+
+    `crews` is the heading of the column that held rowers and class, where that was split.
+    """
+
+    header: list[str]
+    line: int
+    rows: list[Row]
+    name: str = ""
+    crews: str = ""
+
+
+def read_sheets(
+    data: bytes, columns: Sequence[Column], suffix: str = ".csv", only: str = ""
+) -> list[Sheet]:
+    """The tables in a file: of a workbook the sheets that name the columns.
+
+    A sheet that names less than half as many columns as the best is about something else. Only
+    where there are several tables has each its name.
+
+    Args:
+        data: content of the file.
+        columns: the columns that are looked for; the header is the line that names most of them.
+        suffix: kind of file, in lower case.
+        only: name of the sheet to read; empty for all.
+
+    Raises:
+        DefectiveInputError: the file cannot be read, it has no such sheet, or a quotation mark in
+            its header is open.
+    """
+    if suffix in SPREADSHEETS:
+        sheets = list(sheets_of_workbook(data, columns))
+        return _named(sheets, only) if only else _alike(sheets, columns)
+    lines = decode(data).removeprefix("\ufeff").split("\n")
+    lines = [line.rstrip("\r") for line in lines]
+    place = find_header(lines, columns)
+    delimiter = find_delimiter(lines[place])
+    above = [split_or_nothing(line, delimiter) for line in lines[: place + 3]]
+    header, place = _whole_header(above, place, columns)
+    rows = [
+        _text_row(number, line, delimiter, len(header))
+        for number, line in enumerate(lines[place + 1 :], start=place + 2)
+    ]
+    return [Sheet(header, place + 1, _only_rows(rows, header))]
+
+
+def _named(sheets: Sequence[Sheet], name: str) -> list[Sheet]:
+    named = [replace(sheet, name="") for sheet in sheets if fold(sheet.name) == fold(name)]
+    if not named:
+        names = joined(sheet.name for sheet in sheets)
+        said = say("The workbook has no sheet '{name}'; it has {names}.", name=name, names=names)
+        raise DefectiveInputError("unreadable_file", said)
+    return named
+
+
+def _alike(sheets: Sequence[Sheet], columns: Sequence[Column]) -> list[Sheet]:
+    scores = [score_of(sheet.header, columns) for sheet in sheets]
+    most = max(scores)
+    kept = [s for s, score in zip(sheets, scores, strict=True) if 2 * score >= max(most, 1)]
+    return kept if len(kept) > 1 else [replace(s, name="") for s in kept or sheets[:1]]
+
+
+def _whole_header(
+    rows: Sequence[list[str]], place: int, columns: Sequence[Column]
+) -> tuple[list[str], int]:
+    """The header, with what belongs to it in the rows next to it, and its last row.
+
+    Args:
+        rows: the first rows of the table.
+        place: the row that names most columns.
+        columns: the columns that are looked for.
+    """
+    header = rows[place]
+    if place > 0 and (upper := _joined_rows(rows[place - 1], header)):
+        header = max((header, upper), key=lambda cells: score_of(cells, columns))
+    if place + 1 < len(rows):
+        below = rows[place + 1]
+        if units := with_units(header, below):
+            return units, place + 1
+        lower = _joined_rows(header, below)
+        if lower and (is_rest_of_header(header, below) or _names_more(lower, header, columns)):
+            return lower, place + 1
+    return header, place
+
+
+def _names_more(one: Sequence[str], other: Sequence[str], columns: Sequence[Column]) -> bool:
+    return score_of(one, columns) > score_of(other, columns)
+
+
+def _joined_rows(upper: Sequence[str], lower: Sequence[str]) -> list[str] | None:
+    """Two rows of one header as one: `Gewicht` over `voor` and `na` goes for both."""
+    if len(lower) > len(upper) or not any(map(str.strip, upper)):
+        return None
+    joined, last = [], ""
+    for above, below in zip(upper, [*lower, *[""] * (len(upper) - len(lower))], strict=True):
+        last = above.strip() or last
+        name = last if below.strip() else above.strip()
+        joined.append(f"{name} {below.strip()}".strip())
+    return joined
+
+
+def _only_rows(rows: Iterable[Row], header: Sequence[str]) -> list[Row]:
+    """The rows that hold something, without totals, remarks, and the header once more.
+
+    Notes below the last row are left out. A heading between the rows is told as such.
+    """
+    names = {name for cell in header for name in (fold(cell), split_header(cell)[0]) if name}
+    filled = [(row, [cell.strip() for cell in row.fields if cell.strip()]) for row in rows]
+    kept = [(row, cells) for row, cells in filled if cells and not _is_beside(cells, names)]
+    while len(kept) > 1 and len(kept[-1][1]) == 1 and " " in kept[-1][1][0]:
+        kept.pop()
+    if len(header) < FEWEST_OF_A_LIST:
+        return [row for row, _ in kept]
+    return [_as_heading(row, cells[0]) if len(cells) == 1 else row for row, cells in kept]
+
+
+def _is_beside(cells: Sequence[str], names: Collection[str]) -> bool:
+    """Whether a row is a total, a remark behind a `#`, or the header once more."""
+    is_header = len(cells) > 1 and all(fold(cell) in names for cell in cells)
+    return is_header or cells[0].startswith("#") or _is_total(cells[0])
+
+
+def _as_heading(row: Row, cell: str) -> Row:
+    said = say(
+        "there is only '{text}' in this row. A heading or a remark may begin with #.",
+        text=shorten(cell),
+    )
+    return replace(row, problem=row.problem or said)
+
+
+def _is_total(cell: str) -> bool:
+    return fold(cell.partition(" ")[0]) in _TOTALS
+
+
+def _text_row(number: int, line: str, delimiter: str, width: int) -> Row:
+    """Reads line by line: a quotation mark left open would swallow the rows below."""
+    try:
+        fields = split_line(line, delimiter)
+    except DefectiveInputError:
+        problem = say("a quotation mark is not closed, or in mid-field.")
+        return Row(number, line.split(delimiter), problem)
+    if len(fields) < width or any(field.strip() for field in fields[width:]):
+        problem = say(
+            "the row has {fields} fields where the header has {width}.",
+            fields=len(fields),
+            width=width,
+        )
+        return Row(number, fields, problem)
+    return Row(number, fields)
+
+
+def sheets_of_workbook(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet]:
+    """Gives the sheets of a workbook, each from its header on."""
+    import python_calamine  # noqa: PLC0415 - only where there is a spreadsheet
+
+    try:
+        book = python_calamine.load_workbook(io.BytesIO(data))
+        grids = [book.get_sheet_by_name(name) for name in book.sheet_names]
+    except (python_calamine.CalamineError, OSError, ValueError) as error:
+        said = say("The file is not a spreadsheet that can be read: {error}.", error=error)
+        raise DefectiveInputError("unreadable_file", said) from error
+    for grid in grids:
+        if grid.total_height > MOST_LISTED_ROWS or grid.total_width > MOST_COLUMNS:
+            said = say("Sheet '{name}' has too many rows or columns for a list.", name=grid.name)
+            raise DefectiveInputError("too_large", said)
+    for grid in grids:
+        yield replace(_sheet(_cells_of(grid), columns, grid.start), name=grid.name)
+
+
+def _cells_of(grid: Any) -> list[list[str]]:
+    """The cells of a sheet as text; what is in merged cells is in each of them."""
+    rows = [[_as_text(cell) for cell in row] for row in grid.iter_rows()]
+    top, left = grid.start or (0, 0)
+    for (first_row, first), (last_row, last) in grid.merged_cell_ranges or ():
+        if first_row == last_row and last - first + 1 >= len(rows[0]) - 1:
+            continue  # a title over the table
+        for row in rows[first_row - top : last_row - top + 1]:
+            row[first - left : last - left + 1] = [rows[first_row - top][first - left]] * (
+                last - first + 1
+            )
+    return rows
+
+
+def _sheet(
+    rows: list[list[str]], columns: Sequence[Column], start: tuple[int, int] | None
+) -> Sheet:
+    above = start[0] if start else 0
+    if not rows:
+        return Sheet([], above + 1, [])
+    header, place = _whole_header(rows, header_among(rows[:HEADER_WITHIN], columns), columns)
+    below = (Row(above + i + 1, row) for i, row in enumerate(rows) if i > place)
+    return Sheet(header, above + place + 1, _only_rows(below, header))
+
+
+def _as_text(cell: object) -> str:
+    """A cell as it would be in a table of text."""
+    if isinstance(cell, bool):
+        return "ja" if cell else "nee"
+    if isinstance(cell, float):
+        return f"{cell:.0f}" if cell.is_integer() and abs(cell) < 1e15 else repr(cell)
+    if isinstance(cell, dt.datetime):
+        midnight = cell.time() == dt.time()
+        return cell.date().isoformat() if midnight else cell.isoformat(" ", "seconds")
+    if isinstance(cell, dt.timedelta):
+        return str(cell)
+    return str(cell)
+
+
+def joined(names: Iterable[str]) -> str:
+    """Names in quotes with commas between them."""
+    return ", ".join(f"'{name}'" for name in names)

@@ -1,0 +1,200 @@
+"""The tables about the archive: boats, tows with their runs, and everything that is set aside."""
+
+import dataclasses
+import datetime as dt
+from collections.abc import Mapping
+
+import polars as pl
+
+from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.errors import MissingKnowledgeError
+from pipeline.recompute.facts import with_boat_types
+from pipeline.tables.frames import frame_of
+from pipeline.tables.lake import Faults
+from pipeline.words import say
+from warehouse.archive.faults import OF_A_HEADER
+from warehouse.archive.lists.windows import outside_run
+from warehouse.derive.inputs import Blocks
+from warehouse.derive.plausible import gross_faults, judge, with_doubts
+from warehouse.derive.same_samples import CONTENT, same_samples
+from warehouse.store.unforeseen import tow_key
+
+
+class NothingSoundError(MissingKnowledgeError):
+    """No tow of the archive can be used.
+
+    Attributes:
+        tables: what is known all the same, of which the quarantine says why.
+    """
+
+    def __init__(self, message: str, tables: Mapping[str, pl.DataFrame]) -> None:
+        super().__init__(message)
+        self.tables = tables
+
+
+def archive_tables(
+    list_faults: pl.DataFrame,
+    listed_boats: pl.DataFrame,
+    listed_windows: pl.DataFrame,
+    season_tows: pl.DataFrame,
+    season_runs: pl.DataFrame,
+    season_index: pl.DataFrame,
+    blocks: Blocks,
+    failed_tows: pl.DataFrame,
+    quarantine_before: pl.DataFrame,
+    today: dt.date,
+) -> dict[str, pl.DataFrame]:
+    """Boats, sound tows with their runs and windows, and everything that was set aside.
+
+    Raises:
+        NothingSoundError: no tow is sound.
+    """
+    index = _with_failed(season_index, season_tows, failed_tows)
+    sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
+    contents = blocks.columns("tow_id", "run", "second", *CONTENT)
+    contents = contents.join(sound, on="tow_id", how="semi", maintain_order="left")
+    present = contents.group_by("tow_id", "run", maintain_order=True).agg(
+        seconds=pl.col("second").max() + 1
+    )
+    listed = _with_what_was_read(season_tows.join(sound, on="tow_id", how="semi"), index)
+    runs_read = season_runs.join(present, on=["tow_id", "run"], how="semi")
+    tows, contradicted = judged_tows(
+        with_boat_types(listed, listed_boats), blocks.of_runs(runs_read), contents
+    )
+    sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
+    windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
+    beyond = frame_of(Faults, map(dataclasses.asdict, outside_run(windows, present)))
+    losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
+    known = [name for name in Faults.column_names() if name in index.columns]
+    unsound = index.drop_nulls("reason_code").select(known)
+    set_aside = pl.concat([list_faults, beyond, unsound, losses, contradicted], how="diagonal")
+    tables = {
+        "boats": listed_boats.unique("fsn_no", keep="last", maintain_order=True),
+        "seasons": _seasons(season_tows, sound, losses),
+        "tows": _with_lost_runs(tows, losses),
+        "tow_runs": _with_lost_seconds(runs, losses),
+        "hand_windows": windows.join(beyond, on=["path", "line"], how="anti"),
+        "quarantine": _dated(set_aside, quarantine_before, today),
+    }
+    if tables["tows"].is_empty():
+        raise NothingSoundError(_why_nothing(tables["quarantine"]), tables)
+    return tables
+
+
+def _with_failed(index: pl.DataFrame, listed: pl.DataFrame, failed: pl.DataFrame) -> pl.DataFrame:
+    """The index with the fault of the tows that make Herijk itself fail, as they are listed."""
+    if failed.is_empty():
+        return index
+    keys = [tow_key(row) for row in listed.iter_rows(named=True)]
+    mine = listed.select("tow_id", tow_key=pl.Series(keys, dtype=pl.String))
+    of_today = failed.join(mine, on=["tow_id", "tow_key"], how="semi").drop("tow_key")
+    return pl.concat(
+        [index.join(of_today, on="tow_id", how="anti", maintain_order="left"), of_today],
+        how="diagonal",
+    )
+
+
+def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
+    """Adds in which steps the readings are written, and whether there is a wind among them."""
+    read = index.select("tow_id", "wind_read", "gps_step_m_s", "force_step_n")
+    has_wind = pl.col("wind_measured") & pl.col("wind_read").fill_null(True)
+    return (
+        tows.join(read, on="tow_id", how="left", maintain_order="left")
+        .with_columns(wind_measured=has_wind)
+        .drop("wind_read")
+    )
+
+
+def _with_lost_runs(tows: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """Adds how many of the runs to be used are set aside."""
+    lost = (
+        losses.filter(lost="run")
+        .group_by("tow_id", maintain_order=True)
+        .agg(pl.len().alias("runs_set_aside"))
+    )
+    return tows.join(lost, on="tow_id", how="left", maintain_order="left").with_columns(
+        pl.col("runs_set_aside").fill_null(0)
+    )
+
+
+def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """Adds the longest time that was left out of a channel of each run."""
+    lost = (
+        losses.filter(lost="seconds")
+        .group_by("tow_id", "run", maintain_order=True)
+        .agg(pl.col("lost_s").max())
+    )
+    return runs.join(lost, on=["tow_id", "run"], how="left", maintain_order="left").with_columns(
+        pl.col("lost_s").fill_null(0.0)
+    )
+
+
+def judged_tows(
+    tows: pl.DataFrame, blocks: RunBlocks, contents: pl.DataFrame
+) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """The tows with their doubts, and the faults of those that the other tows contradict.
+
+    Args:
+        tows: rows of `tows` with `boat_type`.
+        blocks: their runs.
+        contents: what `same_samples` takes of the same blocks.
+    """
+    twice = same_samples(tows, contents)
+    once = tows.join(twice, on="tow_id", how="anti")
+    judged = judge(once, blocks)
+    gross = gross_faults(judged, once)
+    kept = with_doubts(once.join(gross, on="tow_id", how="anti"), judged)
+    return kept, pl.concat([twice, gross])
+
+
+def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """How many tows each season lists, how many can be used, and what is lost of those."""
+    lost = losses.group_by("tow_id", maintain_order=True).agg(
+        (pl.col("lost") == "run").sum().alias("runs_set_aside"),
+        pl.col("lost_s").filter(pl.col("lost") == "seconds").sum(),
+    )
+    is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
+    return (
+        listed.join(lost, on="tow_id", how="left", maintain_order="left")
+        .group_by("season", maintain_order=True)
+        .agg(
+            pl.len().alias("listed"),
+            is_sound.sum().alias("tows"),
+            pl.col("runs_set_aside", "lost_s").sum(),
+        )
+    )
+
+
+def _why_nothing(set_aside: pl.DataFrame) -> str:
+    """Why no tow can be used, by cause, and what to do."""
+    if set_aside.is_empty():
+        return say(
+            "no tow can be used: the tow lists hold none in the seasons that were read; "
+            "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
+        )
+    causes = set_aside["reason_code"].value_counts(sort=True).sort("count", descending=True).rows()
+    counted = ", ".join(f"{number} x {reason}" for reason, number in causes)
+    first = set_aside.row(0, named=True)
+    return say(
+        "no tow can be used: {} rows or files are set aside ({}). All are in the table "
+        "quarantine. See them by cause with: herijk check ARCHIVE. The first: {}: {}",
+        set_aside.height,
+        counted,
+        first["path"],
+        first["message"],
+    )
+
+
+def _dated(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.DataFrame:
+    """Faults with what each costs and the day on which it was first seen, today for new ones.
+
+    A fault that does not say what it costs has cost a tow, a row of a list or a file.
+    """
+    key = ["path", "tow_id", "line", "reason_code"]
+    whole = pl.col("line").is_null() | pl.col("reason_code").is_in(OF_A_HEADER)
+    of_list = pl.when(whole).then(pl.lit("file")).otherwise(pl.lit("row"))
+    lost = pl.when(pl.col("tow_id").is_not_null()).then(pl.lit("tow")).otherwise(of_list)
+    first = earlier.group_by(key, maintain_order=True).agg(pl.col("first_seen").min())
+    return faults.join(
+        first, on=key, how="left", nulls_equal=True, maintain_order="left"
+    ).with_columns(pl.col("lost").fill_null(lost), pl.col("first_seen").fill_null(today))

@@ -1,0 +1,89 @@
+"""The steps of a build, each declared once, in the order in which they are made."""
+
+from typing import Final
+
+from warehouse.derive import consistency, database, registers, summaries
+from warehouse.derive.archive_tables import archive_tables
+from warehouse.derive.inputs import (
+    ARCHIVE_TABLES,
+    LINE_TABLES,
+    METHOD_TABLES,
+    STUDY_TABLES,
+    TYPE_TABLES,
+)
+from warehouse.derive.method_tables import method_tables
+from warehouse.derive.recordings import recording_tables
+from warehouse.derive.step import Step
+from warehouse.derive.studies import study_tables
+from warehouse.store.code import COMPUTING
+
+ARCHIVE: Final = Step(
+    "archive", "collecting boats, tows and what was set aside", archive_tables, ARCHIVE_TABLES
+)
+METHOD: Final = Step("method", "applying methods to all tows", method_tables, METHOD_TABLES)
+STUDIES: Final = Step(
+    "studies",
+    "finding what each step changes, and how much choices matter",
+    study_tables,
+    STUDY_TABLES,
+)
+LINES: Final = Step(
+    "lines", "drawing lines through boats of the same type", consistency.line_tables, LINE_TABLES
+)
+TYPES: Final = Step(
+    "consistency", "comparing boats of the same type", consistency.type_tables, TYPE_TABLES
+)
+REGISTERS: Final = Step(
+    "register",
+    "making registers",
+    registers.register_tables,
+    ("register", "register_history", "editions", "register_changes", "lineage", "methods"),
+)
+DATABASE: Final = Step(
+    "database",
+    "making the database",
+    database.warehouse_database,
+    (database.DATABASE_TABLE,),
+    code=(*COMPUTING, "warehouse.store.database", "warehouse.store.package"),
+    also=database.MEANINGS,
+    is_whole=database.is_whole,
+)
+
+STEPS: Final = (
+    ARCHIVE,
+    Step(
+        "recordings",
+        "averaging what the instruments said",
+        recording_tables,
+        ("trace_seconds", "run_statistics"),
+    ),
+    *(METHOD, STUDIES, LINES, TYPES),
+    *(
+        Step("consistency", "comparing boats of the same type", compute, (compute.__name__,))
+        for compute in (
+            consistency.slow_tows,
+            consistency.repeat_pairs,
+            consistency.era_shifts,
+            consistency.reproducibility,
+        )
+    ),
+    REGISTERS,
+    Step("register", "finding who is due", registers.due_list, ("due_list",)),
+    *(
+        Step("summaries", "summing up", compute, (compute.__name__,))
+        for compute in (
+            summaries.race_changes,
+            summaries.season_changes,
+            summaries.season_ladder,
+            summaries.option_summary,
+            summaries.quality_counts,
+            summaries.check_counts,
+            summaries.promise,
+        )
+    ),
+    Step(
+        "summaries", "summing up", summaries.print_tables, ("print_reproduction", "print_summary")
+    ),
+    DATABASE,
+)
+"""Every step comes after those whose tables it reads."""

@@ -1,0 +1,116 @@
+"""Registers: a draft per method, what changes between them, and the published editions."""
+
+import datetime as dt
+from collections.abc import Mapping, Sequence
+
+import polars as pl
+
+from pipeline.method.definition import Method
+from pipeline.register import due
+from pipeline.register.changes import register_changes
+from pipeline.register.register import (
+    draft_name,
+    draft_register,
+    lines_of_all_days,
+    reference_day,
+)
+from pipeline.tables.editions import Editions
+from pipeline.tables.keys import SIZES
+from pipeline.tables.register import RegisterChanges
+from pipeline.tables.schemas import conform
+from warehouse.derive.published import history_rows, lineage_rows
+from warehouse.derive.version import code_version
+
+
+def register_tables(
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    listed_boats: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    decisions: pl.DataFrame,
+    published: Mapping[str, pl.DataFrame],
+    methods: Sequence[Method],
+) -> dict[str, pl.DataFrame]:
+    """Draft registers, what changes between registers, and lineage.
+
+    Drafts are compared with the first method's. The published editions stand beside the drafts.
+    """
+    as_of, known = reference_day(tows, listed_races), (curves, tows, listed_boats, decisions)
+    drafts = [_draft(method, lines_on(method, *known, as_of), tows) for method in methods]
+    histories = [_history(method, curves, tows, decisions) for method in methods]
+    register = pl.concat(drafts)
+    changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
+    hashes = {method.name: method.content_hash for method in methods}
+    made = {
+        "register": register,
+        "register_history": pl.concat(histories),
+        "register_changes": pl.concat(changes) if changes else RegisterChanges.create_empty(),
+        "lineage": lineage_rows(register, tows, hashes, code_version()),
+        "editions": Editions.create_empty(),
+    }
+    with_editions = {
+        name: pl.concat([conform(name, frame), published[name]]) for name, frame in made.items()
+    }
+    return with_editions | {"methods": _methods(methods)}
+
+
+def due_list(
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    boats: pl.DataFrame,
+    listed_boats: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    decisions: pl.DataFrame,
+    methods: Sequence[Method],
+) -> dict[str, pl.DataFrame]:
+    """Who is due to be towed, under every method."""
+    as_of = reference_day(tows, listed_races)
+    parts = []
+    for method in methods:
+        lines = lines_on(method, curves, tows, listed_boats, decisions, as_of)
+        rows = due.due_list(lines, boats, listed_races, as_of)
+        parts.append(rows.select(pl.lit(method.name).alias("method"), pl.all()))
+    return {"due_list": pl.concat(parts)}
+
+
+def lines_on(
+    method: Method,
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    crews: pl.DataFrame,
+    decisions: pl.DataFrame,
+    on_date: dt.date,
+) -> pl.DataFrame:
+    """The lines of a method on a day, after the decisions of people."""
+    own = curves.filter(pl.col("method") == method.name)
+    return draft_register(own, tows, crews, on_date, method.validity, decisions)
+
+
+def _draft(method: Method, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
+    code = pl.lit(None, pl.String).alias("verification_code")
+    measured = lines.join(
+        tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left"
+    )
+    return measured.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
+
+
+def _history(
+    method: Method, curves: pl.DataFrame, tows: pl.DataFrame, decisions: pl.DataFrame
+) -> pl.DataFrame:
+    own = curves.filter(pl.col("method") == method.name)
+    lines = lines_of_all_days(own, tows, method.validity, decisions)
+    return history_rows(lines, draft_name(method.name), method.name)
+
+
+def _methods(methods: Sequence[Method]) -> pl.DataFrame:
+    return pl.DataFrame(
+        {
+            "method": [m.name for m in methods],
+            "title": [m.title for m in methods],
+            "title_en": [m.title_en for m in methods],
+            "interval": [m.interval for m in methods],
+            "content_hash": [m.content_hash for m in methods],
+            "definition": [m.definition for m in methods],
+        }
+    )

@@ -1,0 +1,118 @@
+"""Samples that were measured once and are in the archive twice.
+
+A file that was packed again, or saved with other line ends or in another format, has another hash
+and the same content: runs whose sums are equal to the last bit are one measurement. A file written
+with fewer decimals or in another unit has nearly the same sums. One such run may be chance; two
+runs of a tow that are both like runs of one other tow are not. Nobody can know whose samples they
+are, so tows of different boats or crews all lose them; of one boat and crew the first tow keeps
+them. Files equal byte by byte are told earlier, in `warehouse.archive.index`.
+"""
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from pipeline.arrays import FloatArray, IntArray
+from pipeline.channels import SECOND_FILE_OFFSET
+from pipeline.tables.frames import frame_of
+from pipeline.tables.keys import LINE
+from pipeline.tables.lake import Faults
+from pipeline.words import say
+from warehouse.archive.faults import Fault
+
+CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")
+"""Sums of a run that tell it from others."""
+
+ROUNDING: Final = 2e-4
+"""Relative: what rounding to two decimals leaves of a mean over a thousand samples, and more."""
+
+
+def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
+    """A fault of every tow with a run that is another tow's.
+
+    Args:
+        tows: rows of `tows`.
+        blocks: their blocks: `tow_id`, `run` and `CONTENT`.
+    """
+    if tows.is_empty():
+        return Faults.create_empty()
+    facts = tows.select("tow_id", "tow_date", *LINE, "samples_path")
+    runs = (
+        blocks.join(facts, on="tow_id", how="semi")
+        .group_by("tow_id", "run", maintain_order=True)
+        .agg(pl.col(CONTENT).sum())
+        .pipe(_with_content)
+        .filter(pl.col("content").is_duplicated())
+        .join(facts, on="tow_id", maintain_order="left")
+        .sort("tow_date", "tow_id", "run")
+    )
+    faults = [
+        fault
+        for _, same in runs.group_by("content", maintain_order=True)
+        for fault in _faults(same)
+    ]
+    rows = frame_of(Faults, map(dataclasses.asdict, faults))
+    return rows.unique("tow_id", keep="first", maintain_order=True)
+
+
+def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
+    """The runs with `content`, a number that runs of one measurement have in common."""
+    sums = runs.select(CONTENT).to_numpy()
+    means = sums[:, 1:] / np.maximum(sums[:, :1], 1.0)
+    one, other = _near(means)
+    tow = runs["tow_id"].rank("dense").to_numpy().astype(np.int64)
+    between = np.sort(np.column_stack([tow[one], tow[other]]), axis=1)
+    _, pair, often = np.unique(between, axis=0, return_inverse=True, return_counts=True)
+    same = (sums[one] == sums[other]).all(axis=1) | (often[pair.reshape(-1)] > 1)
+    links = scipy.sparse.coo_array(
+        (np.ones(same.sum()), (one[same], other[same])), shape=(runs.height, runs.height)
+    )
+    _, content = scipy.sparse.csgraph.connected_components(links, directed=False)
+    return runs.with_columns(pl.Series("content", content))
+
+
+def _near(means: FloatArray) -> tuple[IntArray, IntArray]:
+    """Pairs of rows that differ by rounding at most, found in the order of the first column."""
+    order = np.argsort(means[:, 0], kind="stable")
+    ordered, pairs = means[order], []
+    for step in range(1, len(order)):
+        close = np.abs(ordered[step:] - ordered[:-step]) <= ROUNDING * np.abs(ordered[step:])
+        if not close[:, 0].any():
+            break
+        first = np.flatnonzero(close.all(axis=1))
+        pairs.append((order[first], order[first + step]))
+    one, other = zip(*pairs, strict=True) if pairs else ([np.zeros(0, int)], [np.zeros(0, int)])
+    return np.concatenate(one), np.concatenate(other)
+
+
+def _faults(same: pl.DataFrame) -> Iterator[Fault]:
+    """Faults for one content: of all its tows, or of all but the first."""
+    first = same.row(0, named=True)
+    of_one = same.select(LINE).n_unique() == 1
+    for row in same.iter_rows(named=True):
+        other = next((r for r in same.iter_rows(named=True) if r["tow_id"] != row["tow_id"]), None)
+        if other is None or (of_one and row["tow_id"] == first["tow_id"]):
+            continue
+        if of_one and row["run"] > SECOND_FILE_OFFSET:
+            continue
+        yield Fault(
+            row["samples_path"],
+            row["tow_id"],
+            None,
+            "duplicate_tow" if of_one else "samples_listed_twice",
+            say(
+                "Run {} holds exactly the samples of tow {} ({}) of {} {}{}, packed or "
+                "written otherwise.",
+                row["run"] % SECOND_FILE_OFFSET,
+                other["tow_id"],
+                other["samples_path"],
+                other["fsn_no"],
+                other["rowers"],
+                other["crew_class"],
+            ),
+            lost="tow",
+        )

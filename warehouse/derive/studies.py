@@ -1,0 +1,107 @@
+"""What the steps of a method change, one after the other, and how much its options matter."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import polars as pl
+
+from pipeline.method.definition import Method
+from pipeline.recompute.run_cache import RunCache
+from pipeline.studies.ladder import ladder
+from pipeline.studies.options import beside_uncertainty, option_effects
+from pipeline.studies.tool_options import option_curves, tick_effects
+from pipeline.tables.declare import dy
+from pipeline.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
+from warehouse.derive.inputs import Blocks
+from warehouse.derive.method_tables import runs_with_blocks
+
+FIRST_PUBLISHED: Final = "as-published-2014"
+"""Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
+
+STUDIED_METHOD: Final = "rebased"
+"""The method of today, which is shown first."""
+
+JUDGED: Final = ("corrected-2013", "rebased-2015", STUDIED_METHOD)
+"""Methods whose options of judgement are studied; the historical ones multiply or divide."""
+
+TICKED: Final = ("corrected-2013", "rebased-2015")
+"""Methods under which the ticks of the tool of 2015 are crossed: before its proposals, and after.
+Without a speed correction the first is `as-published`."""
+
+JUDGEMENT, TOOL = "judgement", "tool"
+
+MOST_APART: Final = 1e-10
+"""Rounding may make the factors of a ladder and its total so different."""
+
+
+def study_tables(
+    method: Method,
+    first_method: Method,
+    tows: pl.DataFrame,
+    tow_runs: pl.DataFrame,
+    hand_windows: pl.DataFrame,
+    blocks: Blocks,
+    tow_instruments: pl.DataFrame,
+    curves: pl.DataFrame,
+    run_cache: RunCache,
+) -> dict[str, pl.DataFrame]:
+    """The ladder from the first method to this one, and the studies of its options."""
+    runs = runs_with_blocks(tow_runs, hand_windows, blocks)
+    links, known = _of(method, tow_instruments), (tows, runs)
+    effects, ticked = [], []
+    if method.name in TICKED:
+        ticked = [option_curves(method, *known, links, run_cache)]
+        effects = [(TOOL, tick_effects(ticked[0]))]
+    if method.name in JUDGED:
+        effects.append((JUDGEMENT, option_effects(method, *known, links, run_cache)))
+    ladders = []
+    if method != first_method:
+        old, new = _in_order(first_method, method)
+        both = _of(old, tow_instruments), _of(new, tow_instruments)
+        ladders = [
+            ladder(old, new, *known, both, run_cache).with_columns(
+                pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
+            )
+        ]
+    return {
+        "correction_steps": _together(CorrectionSteps, ladders),
+        "option_effects": _together(
+            OptionEffects,
+            [
+                beside_uncertainty(frame, _of(method, curves)).with_columns(
+                    pl.lit(method.name).alias("method"), pl.lit(study).alias("study")
+                )
+                for study, frame in effects
+            ],
+        ),
+        "option_curves": _together(
+            OptionCurves, [c.with_columns(pl.lit(method.name).alias("method")) for c in ticked]
+        ),
+    }
+
+
+def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
+    return pl.concat(frames, how="diagonal") if frames else schema.create_empty()
+
+
+def _in_order(first: Method, other: Method) -> tuple[Method, Method]:
+    """The two ends of a ladder: what came first in history is its beginning."""
+    return (other, first) if other.name == FIRST_PUBLISHED else (first, other)
+
+
+def _of(method: Method, frame: pl.DataFrame) -> pl.DataFrame:
+    return frame.filter(pl.col("method") == method.name)
+
+
+def ladders_that_do_not_multiply(correction_steps: pl.DataFrame) -> list[str]:
+    """Tows of which the factors of a ladder do not multiply to its total, within 1e-10."""
+    ends = (
+        correction_steps.sort("position")
+        .group_by("from_method", "to_method", "tow_id", maintain_order=True)
+        .agg(
+            pl.col("factor").product(),
+            (pl.col("cw_kg_m").last() / pl.col("cw_kg_m").first()).alias("total"),
+        )
+    )
+    apart = (pl.col("factor") / pl.col("total") - 1.0).abs() > MOST_APART
+    return list(ends.filter(apart)["tow_id"].unique().sort())

@@ -1,0 +1,407 @@
+"""Two editions side by side: every line with its causes, and what it does to races.
+
+The numbers come from `pipeline.register.changes`, `pipeline.studies.ladder` and
+`pipeline.register.replay`. Here is decided what two editions do not share: tow, files, method,
+code. The steps of the method are computed with the code and blocks of today; what they leave
+unexplained is one factor, named after what else differs. An edition holds its comparison with the
+one before.
+"""
+
+import json
+from dataclasses import dataclass, replace
+from typing import Final
+
+import polars as pl
+
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.method.definition import RUNS_ALONE
+from pipeline.register.changes import (
+    NO_FACTOR,
+    NO_PARTS,
+    PART_SCHEMA,
+    register_changes,
+    side_by_side,
+    steps_of_lines,
+)
+from pipeline.register.register import LINE, NO_EMPTY_THWART
+from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from pipeline.tables.frames import dtypes
+from pipeline.tables.row import Row
+from pipeline.tables.studies import CorrectionSteps
+from warehouse.derive.published import lines_in_time
+from warehouse.derive.version import code_version
+from warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
+from warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
+from warehouse.store.store import Store, archive_root
+
+STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
+NO_STEPS: Final = pl.DataFrame(schema={n: dtypes(CorrectionSteps)[n] for n in STEP_COLUMNS})
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two editions side by side.
+
+    Attributes:
+        old, new: the editions.
+        lines: rows of `register_changes`, with the columns of
+            `pipeline.register.changes.side_by_side`, the boat's `name`, and the status in both,
+            which says why a line has no curve any more.
+    """
+
+    old: Edition
+    new: Edition
+    lines: pl.DataFrame
+
+
+def diff(store: Store, old: str, new: str) -> Comparison:
+    """Compares two published editions.
+
+    With the edition before it an edition was compared when it was published; that is part of it.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition.
+        BrokenPromiseError: a file of it is missing or damaged.
+    """
+    before, after = read_edition(store, old), read_edition(store, new)
+    if after.about.previous == old:
+        return Comparison(before, after, after.tables[CHANGES])
+    return compare(store, before, after)
+
+
+def compare(store: Store, old: Edition, new: Edition) -> Comparison:
+    """Compares two editions line by line, with causes whose factors multiply to the change."""
+    code = _code_parts(store, old, new)
+    steps = _steps(store, old, new)
+    printed = _printed_parts(old, new)
+    known = [code, printed, steps_of_lines(new.register, steps)]
+    parts = pl.concat(known, how="diagonal_relaxed")
+    separated = {*steps["tow_id"], *printed.select(LINE).rows()}
+    grounds = _grounds(old, new, separated, code_known=not code.is_empty())
+    changes = register_changes(old.register, new.register, parts, grounds)
+    names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
+    lines = (
+        changes.join(side_by_side(old.register, new.register), on=LINE, maintain_order="left")
+        .join(names.unique(LINE, keep="first"), on=LINE, how="left", maintain_order="left")
+        .join(
+            old.register.select(*LINE, old_status="status"),
+            on=LINE,
+            how="left",
+            maintain_order="left",
+        )
+        .join(
+            new.register.select(*LINE, new_status="status"),
+            on=LINE,
+            how="left",
+            maintain_order="left",
+        )
+        .sort(LINE)
+    )
+    return Comparison(old, new, lines)
+
+
+def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+    """What the code alone changed: the old edition made again by the code of the new one.
+
+    Known where the new edition was made by the code of today and the warehouse still has all
+    inputs of the old one, unchanged.
+    """
+    versions = (old.about.code_version, new.about.code_version)
+    if old.method is None or versions[0] == versions[1] or versions[1] != code_version():
+        return NO_PARTS
+    if len(unchanged_tows(store, old)) < old.tables["tows"].height:
+        return NO_PARTS
+    from warehouse.editions.lines import made_again  # noqa: PLC0415 - much, and seldom needed
+
+    again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
+    changes = register_changes(old.register, again)
+    return _parts("code", changes.with_columns(pl.col("cw_ratio").fill_null(1.0)))
+
+
+def _parts(cause: str, changes: pl.DataFrame) -> pl.DataFrame:
+    """All of what changed as the work of one cause."""
+    return changes.select(
+        *LINE,
+        pl.lit(cause).alias("cause"),
+        pl.lit(None, pl.String).alias("step"),
+        pl.col("cw_ratio").alias("factor"),
+    )
+
+
+def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
+    """Where another tow counts than the printed one: what the new method makes of the printed tow.
+
+    Known where the new edition went by tows and has one of that day and line.
+    """
+    if old.method is not None or "curves" not in new.tables:
+        return NO_PARTS
+    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
+    tows = new.tables["tows"].select("tow_id", "tow_date", thwart)
+    curves = (
+        new.tables["curves"]
+        .join(tows, on="tow_id", maintain_order="left")
+        .with_columns(edition=pl.lit("printed"))
+    )
+    day = [*LINE, "tow_date"]
+    same_tow = curves.join(old.register, on=day, how="semi").unique(day, keep="none")
+    moved = same_tow.join(new.register, on="tow_id", how="anti")
+    if moved.is_empty():
+        return NO_PARTS
+    return _parts("printed", register_changes(old.register, moved).drop_nulls("cw_ratio"))
+
+
+def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+    """The ladder from the old to the new method, on the new edition's tows that are still there."""
+    if old.method is None or new.method is None:
+        return NO_STEPS
+    if old.method.content_hash == new.method.content_hash:
+        return NO_STEPS
+    from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
+
+    there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
+    tows, runs = tows_of_today(store).filter(there), intake.runs_with_windows(store).filter(there)
+    if tows.is_empty():
+        return NO_STEPS
+    from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
+
+    blocks = stack_blocks(intake.all_blocks(store), runs)
+    before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
+    links = None if before is None or after is None else (before, after)
+    return ladder(old.method, new.method, tows, blocks, links)
+
+
+def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:
+    """Per line the name of what its known parts do not explain.
+
+    Args:
+        old, new: the editions.
+        separated: tows with a ladder, and lines whose printed tow was computed.
+        code_known: what the code changed is a known part.
+    """
+    shared = [*LINE, "tow_id", "tow_date", INPUTS_HASH, "basis"]
+    pairs = old.register.select(shared).join(
+        new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
+    )
+    code = not code_known and old.about.code_version != new.about.code_version
+    same = None
+    if "tows" in old.tables and "tows" in new.tables:
+        same = same_tows(old.tables, new.tables)
+    grounds = [_ground(row, old, new, separated, code, same) for row in pairs.iter_rows(named=True)]
+    return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
+
+
+def _ground(
+    line: Row,
+    old: Edition,
+    new: Edition,
+    separated: set[object],
+    code: bool,
+    same: frozenset[str] | None,
+) -> str:
+    if same is None or {line["basis"], line["basis_new"]} != {MEASURED}:
+        return _ground_of_printed(line, separated)
+    if line["tow_id"] != line["tow_id_new"]:
+        return "tow"
+    own = line["tow_id"] not in same
+    others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
+    method = old.about.method_hash != new.about.method_hash
+    return ground_of(own, others, method and line["tow_id_new"] not in separated, code)
+
+
+def ground_of(own: bool, others: bool, method: bool, code: bool) -> str:
+    """The name of what differs: the tow's own input, that of others, the method, the code."""
+    if method:
+        return "unseparated" if own or code else "method"
+    if own:
+        return "input_and_code" if code else "input"
+    if others:
+        return "code_or_other_input" if code else "other_input"
+    return "code" if code else "unexplained"
+
+
+def _ground_of_printed(line: Row, separated: set[object]) -> str:
+    if line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]:
+        return "closed_form"
+    if tuple(line[name] for name in LINE) in separated:
+        return "tow"
+    days = {line["tow_date"], line["tow_date_new"]}
+    return "printed" if len(days) == 1 or None in days else "printed_and_tow"
+
+
+# Summary
+
+
+LARGEST: Final = 10
+
+
+@dataclass(frozen=True)
+class Group:
+    """Lines that gain power for the same race, or lose it.
+
+    Attributes:
+        lines: how many.
+        of_class: how many of each class.
+        median_power_ratio: new / old power for the same race.
+        median_seconds: what the new register gives in a race of two hours [s].
+        most: the lines that it moves most, as in `DiffReport.rows`.
+    """
+
+    lines: int
+    of_class: dict[str, int]
+    median_power_ratio: float | None
+    median_seconds: float | None
+    most: list[Row]
+
+
+@dataclass(frozen=True)
+class CauseSummary:
+    """What one cause, or one step of a method, did.
+
+    Attributes:
+        cause, step: the cause; the step where a method is the cause.
+        lines: the lines it moved.
+        median_factor, lowest_factor, highest_factor: its factor on Cw there.
+    """
+
+    cause: str
+    step: str | None
+    lines: int
+    median_factor: float
+    lowest_factor: float
+    highest_factor: float
+
+
+@dataclass(frozen=True)
+class DiffReport:
+    """A comparison of two editions as plain data.
+
+    Attributes:
+        from_edition, to_edition: the editions.
+        simulated: whether either is of a simulated archive.
+        lines: lines in either.
+        changes: lines by kind of change.
+        gain, loss: lines to which the new register gives more power for the same race, and less.
+        exceeds_interval: lines that moved by more than their intervals.
+        interval_unknown: lines whose interval is not known.
+        runs_alone: editions whose intervals are the spread of the runs alone.
+        causes: per cause and step, the most lines first.
+        largest: the lines that changed most.
+        rows: all lines: rows of `register_changes` with the causes that moved each.
+        race_rules: how races are worked out, where that was asked.
+        races, winners: results of the archive's races under both, and who wins; None where not
+            asked, or where the archive is not there or has no races.
+    """
+
+    from_edition: str
+    to_edition: str
+    simulated: bool
+    lines: int
+    changes: dict[str, int]
+    gain: Group
+    loss: Group
+    exceeds_interval: int
+    interval_unknown: int
+    runs_alone: list[str]
+    causes: list[CauseSummary]
+    largest: list[Row]
+    rows: list[Row]
+    race_rules: RaceRules | None = None
+    races: list[Row] | None = None
+    winners: list[Row] | None = None
+
+
+def report(comparison: Comparison) -> DiffReport:
+    """Counts, who gains and loses, causes, and every line of a comparison."""
+    lines = comparison.lines
+    compared = lines.filter(pl.col("cw_ratio").is_not_null())
+    moved = compared.filter(pl.col("change") == "changed")
+    gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
+    loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
+    size = pl.col("cw_ratio").log().abs()
+    by_size = moved.sort(size, "fsn_no", descending=[True, False])
+    editions = (comparison.old, comparison.new)
+    return DiffReport(
+        from_edition=comparison.old.about.edition,
+        to_edition=comparison.new.about.edition,
+        simulated=any(edition.about.simulated for edition in editions),
+        lines=lines.height,
+        changes=dict(lines["change"].value_counts().sort("change").rows()),
+        gain=_group(gain),
+        loss=_group(loss),
+        exceeds_interval=int(moved["exceeds_interval"].fill_null(False).sum()),
+        interval_unknown=int(moved["exceeds_interval"].null_count()),
+        runs_alone=[
+            edition.about.edition
+            for edition in editions
+            if edition.method is not None and edition.method.interval == RUNS_ALONE
+        ],
+        causes=_causes(compared),
+        largest=_rows(by_size.head(LARGEST)),
+        rows=_rows(lines),
+    )
+
+
+def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) -> DiffReport:
+    """The same with power, rank, podium and winner of every race in the archive under both.
+
+    Raises:
+        MissingKnowledgeError: the rules ask for what is not known.
+    """
+    without_races = replace(report(comparison), race_rules=rules)
+    results = pl.DataFrame() if archive_root(store) is None else store.read("listed_races")
+    if results.is_empty():
+        return without_races
+    editions = (comparison.old, comparison.new)
+    before, after = (replay(lines_in_time(store, one), results, rules) for one in editions)
+    members = comparison.new.tables.get("ensemble", pl.DataFrame())
+    return replace(
+        without_races,
+        races=race_changes(before, after).to_dicts(),
+        winners=winner_changes(before, after, members).to_dicts(),
+    )
+
+
+def _group(lines: pl.DataFrame) -> Group:
+    return Group(
+        lines=lines.height,
+        of_class={c: lines.filter(crew_class=c).height for c in ("H", "D")},
+        median_power_ratio=_median(lines["power_ratio"]),
+        median_seconds=_median(lines["gain_in_two_hours_s"]),
+        most=_rows(lines.head(LARGEST)),
+    )
+
+
+def _median(values: pl.Series) -> float | None:
+    median = values.median()
+    return median if isinstance(median, float) else None
+
+
+def _causes(lines: pl.DataFrame) -> list[CauseSummary]:
+    """Per cause and step: the lines it moved, and its factors there."""
+    moved = [
+        {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
+        for text in lines["causes"]
+        for one in _moved(text)
+    ]
+    schema = {name: PART_SCHEMA[name] for name in ("cause", "step", "factor")}
+    summed = (
+        pl.DataFrame(moved, schema=schema)
+        .group_by("cause", "step", maintain_order=True)
+        .agg(
+            pl.len().alias("lines"),
+            pl.col("factor").median().alias("median_factor"),
+            pl.col("factor").min().alias("lowest_factor"),
+            pl.col("factor").max().alias("highest_factor"),
+        )
+        .sort("lines", "cause", "step", descending=[True, False, False])
+    )
+    return [CauseSummary(**row) for row in summed.iter_rows(named=True)]
+
+
+def _rows(lines: pl.DataFrame) -> list[Row]:
+    return [row | {"causes": _moved(row["causes"])} for row in lines.to_dicts()]
+
+
+def _moved(causes: str) -> list[Row]:
+    """The causes that changed something."""
+    return [one for one in json.loads(causes) if abs(one["factor"] - 1.0) > NO_FACTOR]

@@ -1,0 +1,94 @@
+"""What went into an edition: tows with their files, each tow's own hash, and one for all together.
+
+A number depends on its own tow, and under some methods on all tows at once (a coefficient of the
+whole archive), so both hashes are kept. Which files still are what they were is `verify`'s.
+"""
+
+from collections import defaultdict
+from collections.abc import Mapping
+from typing import Final
+
+import polars as pl
+
+from pipeline.recompute.facts import samples_files
+from warehouse.store.editions import Edition
+from warehouse.store.store import Store, fingerprint, table_digest
+
+JUDGED: Final = ("doubts", "unusual")
+"""What all other tows say of a tow."""
+
+NOT_INPUT: Final = (
+    *("samples_path", "second_path", "remark", "inputs_sha256"),
+    *JUDGED,
+    *("hand_reason", "list_path", "list_line"),
+)
+"""What a tow is called or said to be does not change its numbers; its doubts follow from others."""
+
+INPUTS_HASH: Final = "inputs_sha256"
+SAMPLES, LIST, REGISTER = "meetdata", "lijst", "register"
+
+
+def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
+    """Tows with the hash of all that their numbers are made from: list row, runs and files."""
+    facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
+    of_tow = defaultdict(list)
+    runs = runs.sort("tow_id", "run")
+    for tow_id, run in zip(runs["tow_id"], runs.select(facts).iter_rows(), strict=True):
+        of_tow[tow_id].append(run)
+    measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
+    hashes = [
+        fingerprint(row, of_tow[tow_id])
+        for tow_id, row in zip(tows["tow_id"], tows.select(measured).iter_rows(), strict=True)
+    ]
+    return tows.with_columns(pl.Series(INPUTS_HASH, hashes, pl.String))
+
+
+def tows_of_today(store: Store) -> pl.DataFrame:
+    """The tows of the warehouse as it is now, with their hashes."""
+    return with_input_hashes(*_tables_of_today(store).values())
+
+
+def _tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
+    """Tables `tows` and `tow_runs` of the warehouse as it is now."""
+    from warehouse.intake import seasons as intake  # noqa: PLC0415 - all that reads archives
+
+    return {"tows": intake.typed_tows(store), "tow_runs": intake.runs_with_windows(store)}
+
+
+def inputs_digest(tows: pl.DataFrame) -> str:
+    """One hash for all tows together."""
+    return table_digest(tows.select("tow_id", INPUTS_HASH).sort("tow_id"))
+
+
+def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) -> frozenset[str]:
+    """Tows whose inputs are the same in two sets of tables `tows` and `tow_runs`.
+
+    Compared is what both tables say: a fact that was not recorded earlier is no difference.
+    """
+    shared = {
+        name: [column for column in was[name].columns if column in now[name].columns]
+        for name in ("tows", "tow_runs")
+    }
+    one, other = (
+        with_input_hashes(*(edition[name].select(shared[name]) for name in shared))
+        for edition in (was, now)
+    )
+    return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
+
+
+def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
+    """Tows of an edition that the warehouse has with the same inputs."""
+    return same_tows(edition.tables, _tables_of_today(store))
+
+
+def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:
+    """The files behind an edition: samples of its tows, and the lists of the archive."""
+    files = samples_files(tows).select("path", "sha256").unique()
+    samples = files.with_columns(pl.lit(SAMPLES).alias("kind"))
+    is_list = pl.col("path").str.contains(r"^(sleeplijsten/|sloepregister/sloependata|archief)")
+    lists = (
+        store.read("listed_files")
+        .filter(is_list)
+        .select("path", "sha256", pl.lit(LIST).alias("kind"))
+    )
+    return pl.concat([samples, lists]).sort("path")

@@ -1,0 +1,97 @@
+"""From a printed line of an edition to the files, runs and seconds behind it.
+
+Everything is read from the edition itself, so it holds however archive and warehouse have changed.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import polars as pl
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.register.register import LINE
+from pipeline.tables.row import Row
+from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
+from warehouse.store.boats import boats_named, the_boat
+from warehouse.store.editions import Edition, edition_path, read_edition
+from warehouse.store.store import Store
+
+
+@dataclass(frozen=True)
+class Lineage:
+    """What the lines of a boat in an edition were made from.
+
+    Attributes:
+        about: what the edition says of itself, but for hashes of its tables and files.
+        folder: where it lies.
+        lines: the boat's lines.
+    """
+
+    about: Row
+    folder: str
+    lines: list["LineLineage"]
+
+
+@dataclass(frozen=True)
+class LineLineage:
+    """What a line was made from.
+
+    Attributes:
+        line: the line.
+        printed: the line as printed, by header.
+        code: its verification code.
+        tow: its tow; None, and nothing in what follows, where no tow of the archive is behind it.
+        files: path and SHA-256 of its samples files.
+        runs: its rows of `run_points`.
+        curve: its row of `curves`.
+    """
+
+    line: Row
+    printed: dict[str, str]
+    code: str | None
+    tow: Row | None = None
+    files: list[Row] = field(default_factory=list)
+    runs: list[Row] = field(default_factory=list)
+    curve: Row | None = None
+
+
+def lineage(store: Store, edition: str, boat: str) -> Lineage:
+    """What the lines of a boat, by number or name, were made from.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition, the boat is not in it, or several boats
+            have that name.
+    """
+    published = read_edition(store, edition)
+    boats = published.register.select("fsn_no", "name").unique()
+    if not boats_named(boats, boat):
+        raise MissingKnowledgeError(
+            "boat {} is not in edition {}; its register.csv lists the boats", boat, edition
+        )
+    lines = published.register.filter(pl.col("fsn_no") == the_boat(boats, boat))
+    return Lineage(
+        about=published.about.model_dump(mode="json", exclude={"files", "tables"}),
+        folder=str(edition_path(store, edition)),
+        lines=[_line(published, row) for row in lines.sort(LINE).iter_rows(named=True)],
+    )
+
+
+def _line(edition: Edition, row: Row) -> LineLineage:
+    frame = pl.DataFrame([row], schema=edition.register.schema)
+    cells = printed_cells(frame, REGISTER_FIELDS)[0]
+    printed = {one.header: cell for one, cell in zip(REGISTER_FIELDS, cells, strict=True)}
+    line = LineLineage(row, printed, row[CODE_FIELD.column])
+    if row["tow_id"] is None or "tows" not in edition.tables:
+        return line
+    tows, curves, run_points = (
+        edition.tables[name].filter(tow_id=row["tow_id"])
+        for name in ("tows", "curves", "run_points")
+    )
+    tow = tows.row(0, named=True)
+    files = [(tow[f"{which}_path"], tow[f"{which}_sha256"]) for which in ("samples", "second")]
+    return replace(
+        line,
+        tow=tow,
+        files=[{"path": path, "sha256": sha256} for path, sha256 in files if path],
+        runs=run_points.to_dicts(),
+        curve=curves.row(0, named=True),
+    )

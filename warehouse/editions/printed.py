@@ -1,0 +1,157 @@
+"""Printed registers: their lines as an edition, and re-based in closed form to carry them over.
+
+A printed register says nothing about its method; its A, B and speed are all there is. The formula
+of the closed form is in `pipeline.curve.rebase`.
+"""
+
+import datetime as dt
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.curve import cw, rebase, s_of_b
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import Method
+from pipeline.register.register import LINE, valid_until
+from pipeline.steps.speed import log_factor
+from pipeline.words import say
+from warehouse.archive import Fault, read_published_registers
+from warehouse.editions.inputs import INPUTS_HASH
+from warehouse.store.editions import Edition
+from warehouse.store.store import Store, archive_root, fingerprint
+
+AS_PRINTED, REBASED, NOT_REBASED = "printed", "printed_rebased", "printed_not_rebased"
+PRINTED_METHOD: Final = "as-printed"
+"""What stands for the method of a line that none was applied to."""
+
+NO_VALID_CURVE: Final = "no_valid_curve"
+
+
+def printed_path(store: Store, season: int) -> str:
+    """The file of the register printed in a season, to be published whole.
+
+    Raises:
+        MissingKnowledgeError: the archive holds no such register, or one with a line that cannot be
+            read: an edition is kept for ever and must not lack it.
+    """
+    registers, faults = _registers(store)
+    paths = registers.filter(pl.col("season") == season)["path"].unique().sort()
+    if paths.is_empty():
+        known = ", ".join(str(s) for s in registers["season"].unique().sort()) or say("none")
+        raise MissingKnowledgeError(
+            "the archive holds no readable register printed in {}; it holds: {}", season, known
+        )
+    path = str(paths[0])
+    unread = next((fault for fault in faults if fault.path == path), None)
+    if unread is not None:
+        raise MissingKnowledgeError("{}: {} Mend the line, or take it out", path, unread.message)
+    return path
+
+
+def printed_lines(store: Store, path: str) -> pl.DataFrame:
+    """The lines of a printed register, each with the hash of what it says.
+
+    Raises:
+        MissingKnowledgeError: the archive is not there, or names a line twice.
+    """
+    printed = _registers(store)[0].filter(pl.col("path") == path)
+    double = printed.filter(pl.struct(LINE).is_duplicated())
+    if double.height:
+        row = double.row(0, named=True)
+        raise MissingKnowledgeError(
+            "{}, line {}: {} is listed twice for {}{}; take one of the lines out",
+            row["path"],
+            row["line"],
+            row["fsn_no"],
+            row["rowers"],
+            row["crew_class"],
+        )
+    hashes = [fingerprint(row) for row in printed.drop("path", "line").rows()]
+    return printed.select(
+        *LINE,
+        *("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"),
+        pl.when("has_valid_curve")
+        .then(pl.lit("valid"))
+        .otherwise(pl.lit(NO_VALID_CURVE))
+        .alias("status"),
+        pl.when("has_valid_curve").then(pl.lit(AS_PRINTED)).alias("basis"),
+        pl.Series(INPUTS_HASH, hashes, pl.String),
+    )
+
+
+def with_carried(
+    lines: pl.DataFrame,
+    printed: Edition,
+    log_factors: pl.DataFrame,
+    valid_from: dt.date,
+    method: Method,
+) -> pl.DataFrame:
+    """Lines of the warehouse, with a printed one that still counts in place of each not valid.
+
+    Args:
+        lines: those of the method.
+        printed: an edition as printed.
+        log_factors: what the method found, for seasons with tows in the warehouse.
+        valid_from: day from which the lines are to count.
+        method: prescribes the factor of other seasons, and how long a tow counts.
+
+    Raises:
+        MissingKnowledgeError: the edition is not a printed one.
+    """
+    counts = pl.lit(valid_from).is_between("tow_date", "valid_until")
+    carried = _carried(printed, log_factors, method).filter(counts & pl.col("cw_kg_m").is_finite())
+    taken = carried.join(lines.filter(pl.col("status") == "valid"), on=LINE, how="anti")
+    return pl.concat([lines.join(taken, on=LINE, how="anti"), taken], how="diagonal_relaxed")
+
+
+def _registers(store: Store) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+    root = archive_root(store)
+    if root is None:
+        raise MissingKnowledgeError(
+            "the archive is not where it was at the last rebuild; rebuild with --archive DIR"
+        )
+    return read_published_registers(root)
+
+
+def _carried(printed: Edition, log_factors: pl.DataFrame, method: Method) -> pl.DataFrame:
+    """Printed lines re-based in closed form: A / y^2 and B y with the log factor y of the season.
+
+    Raises:
+        MissingKnowledgeError: the edition is not a printed one.
+    """
+    if printed.about.kind != "as_printed":
+        raise MissingKnowledgeError(
+            "edition {} was recomputed; only lines of an edition as printed can be carried over",
+            printed.about.edition,
+        )
+    usable = ("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s")
+    lines = printed.register.drop_nulls(usable)
+    known = dict(log_factors.select("season", "factor").rows())
+    y = np.array([_season_factor(day.year, known, method) for day in lines["tow_date"]])
+    a, b = rebase(lines["a_kg_m"], lines["b_m_s"], y)
+    return lines.select(
+        *LINE,
+        *("tow_date", "declared_speed_m_s", "status", INPUTS_HASH),
+        valid_until(pl.col("tow_date"), method.validity).alias("valid_until"),
+        pl.Series("a_kg_m", a),
+        pl.Series("b_m_s", b),
+        pl.Series("cw_kg_m", cw(a, s_of_b(b), lines["declared_speed_m_s"])),
+        pl.Series("basis", np.where(y == 1.0, NOT_REBASED, REBASED), pl.String),
+    )
+
+
+def _season_factor(season: int, known: dict[int, float], method: Method) -> float:
+    """True speed / the speed that was printed.
+
+    1 where the method calibrates every tow on GPS: in those seasons the printed number was
+    calibrated too. Else what was found for the season; without tows of it, what is prescribed.
+    """
+    try:
+        steps = method.for_season(season)
+    except MissingKnowledgeError:
+        return 1.0  # the method says nothing about it, so the line stays as printed
+    if steps.calibration.rule != "none":
+        return 1.0
+    unknown = np.array([np.nan])
+    return known.get(season, float(log_factor(steps.speed, unknown, unknown)[0]))

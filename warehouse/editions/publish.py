@@ -1,0 +1,375 @@
+"""Publishing: from the tables of a method, or from a printed register, to a frozen edition.
+
+Which tow counts is decided in `pipeline.register.register`, how sheets look in `sheets`, how a
+folder appears whole or not at all in `warehouse.store.editions`. Only a person publishes, who gives
+the name, the day from which it counts, the decision and the day of publication.
+"""
+
+import datetime as dt
+import hashlib
+import io
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import polars as pl
+
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.method.definition import Method
+from pipeline.method.writing import method_text
+from pipeline.recompute.recompute import recompute
+from pipeline.register.register import DOUBTED, LINE
+from pipeline.tables.archive import Boats
+from pipeline.tables.frames import dtypes
+from pipeline.tables.register import Register
+from pipeline.tables.row import Row
+from pipeline.tables.schemas import conform
+from warehouse.derive.graph import METHOD as METHOD_STEP
+from warehouse.derive.inputs import Scope
+from warehouse.derive.version import code_version
+from warehouse.editions import notes, sheets
+from warehouse.editions.chain import chain_head
+from warehouse.editions.compare import compare
+from warehouse.editions.inputs import (
+    INPUTS_HASH,
+    REGISTER,
+    input_files,
+    inputs_digest,
+    tows_of_today,
+)
+from warehouse.editions.lines import (
+    BOAT_FACTS,
+    MADE,
+    NUMBERS,
+    SAME_NUMBER,
+    method_lines,
+)
+from warehouse.editions.printed import (
+    NOT_REBASED,
+    PRINTED_METHOD,
+    printed_lines,
+    printed_path,
+    with_carried,
+)
+from warehouse.editions.sheets import CODE_FIELD
+from warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
+from warehouse.store import decisions as decided
+from warehouse.store.editions import (
+    ABOUT,
+    CHANGES,
+    CSV,
+    DECISIONS,
+    INPUTS,
+    METHOD,
+    PACKAGE,
+    TABLES,
+    XLSX,
+    About,
+    Edition,
+    TableDigest,
+    check_new_name,
+    edition_names,
+    read_about,
+    read_edition,
+    write_folder,
+)
+from warehouse.store.ensemble import read_ensemble
+from warehouse.store.package import Rights
+from warehouse.store.store import Store, table_digest
+
+LINE_SCHEMA: Final = {
+    **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
+    **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
+    INPUTS_HASH: pl.String(),
+    "basis": pl.String(),
+}
+"""What an edition says of a line, but for its verification code."""
+
+
+@dataclass(frozen=True)
+class Terms:
+    """What a person decides about an edition.
+
+    Attributes:
+        edition: its name.
+        valid_from: the day from which it counts; validity of tows is judged on it.
+        decision: by whom and where it was decided.
+        published_on: the day of publication.
+    """
+
+    edition: str
+    valid_from: dt.date
+    decision: str
+    published_on: dt.date
+
+
+def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Path:
+    """Freezes the register of a method as an edition.
+
+    Args:
+        store: the data folder; its tables must be those of the archive and code of today.
+        method: a method that the last rebuild applied.
+        terms: what a person decided.
+        carry: a printed edition of which lines are taken over, re-based in closed form, for boats
+            and crews without a valid tow in the warehouse.
+
+    Returns:
+        The folder.
+
+    Raises:
+        BrokenPromiseError: the name is taken, or the folder could not be written.
+        MissingKnowledgeError: the tables are not up to date, a name or decision cannot be used.
+    """
+    _check_terms(store, terms)
+    edition = recomputed_edition(store, method, terms, carry)
+    decisions = _decisions(store, terms)
+    texts = {
+        METHOD: method_text(method),
+        DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
+    }
+    return _write(store, edition, input_files(store, edition.tables["tows"]), texts)
+
+
+def publish_printed(store: Store, season: int, terms: Terms) -> Path:
+    """Freezes a register of the archive, as printed that year, as an edition.
+
+    Raises:
+        BrokenPromiseError: the name is taken, or the folder could not be written.
+        MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
+            of it cannot be read.
+    """
+    _check_terms(store, terms)
+    path = printed_path(store, season)
+    files = store.read("listed_files").filter(pl.col("path") == path)
+    files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
+    register = _complete(store, printed_lines(store, path), terms, PRINTED_METHOD, None)
+    about = _about(store, terms, None, inputs_digest="")
+    return _write(store, Edition(about, {"register": register}, None), files, {})
+
+
+def recomputed_edition(
+    store: Store, method: Method, terms: Terms, carry: str | None = None
+) -> Edition:
+    """The edition that would be published, not yet written; see `publish`."""
+    if store.made_from("tows") is None or METHOD_STEP.is_stale(Scope(store, [method], method)):
+        raise MissingKnowledgeError(
+            "the tables of method {} are not those of the archive and code of today; "
+            "run: herijk rebuild --archive DIR --data {} --method {}",
+            method.name,
+            store.root,
+            method.name,
+        )
+    tows = tows_of_today(store)
+    decisions = decided.decision_table(_decisions(store, terms))
+    _check_decided_tows(decisions, tows)
+    tables = {
+        "tows": tows,
+        "tow_runs": runs_with_windows(store),
+        **{name: store.read(name, method.name) for name in MADE},
+    }
+    _check_made(store, method, tables["curves"])
+    crews = store.read("listed_boats")
+    lines = method_lines(tables, crews, terms.valid_from, method.validity, decisions)
+    if carry is not None:
+        printed = read_edition(store, carry)
+        factors = tables["log_factors"]
+        lines = with_carried(lines, printed, factors, terms.valid_from, method)
+    tables["ensemble"] = read_ensemble(store, method.name).join(
+        lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
+    )
+    tables["register"] = _complete(store, lines, terms, method.name, method.content_hash)
+    about = _about(store, terms, method, inputs_digest(tows), carry)
+    return Edition(about, tables, method)
+
+
+def _check_made(store: Store, method: Method, curves: pl.DataFrame) -> None:
+    """Refuses curves that are not those that the method makes of the blocks."""
+    made = recompute(method, typed_tows(store), run_blocks(store), with_bands=False).curves
+    pairs = curves.join(made, on="tow_id", how="full", suffix="_made", maintain_order="left_right")
+    same = [
+        (pl.col(name) / pl.col(f"{name}_made") - 1.0).abs().fill_null(0.0) < SAME_NUMBER
+        for name in NUMBERS
+    ]
+    null = [pl.col(name).is_null() == pl.col(f"{name}_made").is_null() for name in NUMBERS]
+    status = pl.col("status").eq_missing(pl.col("status_made"))
+    unequal = pairs.filter(~pl.all_horizontal(*same, *null, status))
+    if unequal.height:
+        raise BrokenPromiseError(
+            "the curve of tow {}, and {} more, are not what {} makes of its samples: "
+            "a table of the data folder was changed. Remove {} and run herijk "
+            "rebuild",
+            unequal["tow_id"][0],
+            unequal.height - 1,
+            method.name,
+            store.root / "lake",
+        )
+
+
+def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
+    """The edition that counted last before a day; None if there is none."""
+    known = [read_about(store.editions / name) for name in edition_names(store)]
+    earlier = [a for a in known if (a.valid_from, a.published_on) <= (valid_from, published_on)]
+    if not earlier:
+        return None
+    return max(earlier, key=lambda a: (a.valid_from, a.published_on, a.edition)).edition
+
+
+@dataclass(frozen=True)
+class Published:
+    """An edition that was just published.
+
+    Attributes:
+        about: what it is.
+        folder: where it is.
+        statuses: how many lines have each.
+        to_look_at: rows of the register to look at.
+    """
+
+    about: About
+    folder: str
+    statuses: dict[str, int]
+    to_look_at: list[Row]
+
+
+def published(store: Store, folder: Path) -> Published:
+    """What there is to say about an edition that was just published."""
+    edition = read_edition(store, folder.name)
+    counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
+    return Published(edition.about, str(folder), dict(counts.rows()), lines_to_look_at(edition))
+
+
+def lines_to_look_at(edition: Edition) -> list[Row]:
+    """Lines with flags, and those left without numbers because their tows are doubted."""
+    to_look_at = (pl.col("flags").list.len() > 0) | (pl.col("status") == DOUBTED)
+    lines = edition.register.filter(to_look_at)
+    return lines.select(*LINE, "status", "tow_id", "flags").to_dicts()
+
+
+def _check_terms(store: Store, terms: Terms) -> None:
+    check_new_name(store, terms.edition)
+    if not terms.decision.strip():
+        raise MissingKnowledgeError(
+            "an edition needs a decision: say who decided it and where, with --decision"
+        )
+
+
+def _decisions(store: Store, terms: Terms) -> tuple[decided.Decision, ...]:
+    """Decisions about tows taken up to the day of publication."""
+    decisions = decided.read_decisions(store.root / decided.FILE_NAME)
+    return tuple(d for d in decisions if d.datum <= terms.published_on)
+
+
+def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
+    unknown = decisions.join(tows, on="tow_id", how="anti")["tow_id"].to_list()
+    if unknown:
+        raise MissingKnowledgeError(
+            "{} decides about {}, which is not a tow of the warehouse; mend the "
+            "sleep_id, or take the decision out",
+            decided.FILE_NAME,
+            ", ".join(unknown),
+        )
+
+
+def _about(
+    store: Store, terms: Terms, method: Method | None, inputs_digest: str, carry: str | None = None
+) -> About:
+    return About(
+        edition=terms.edition,
+        kind="as_printed" if method is None else "recomputed",
+        method=None if method is None else method.name,
+        method_hash=None if method is None else method.content_hash,
+        code_version=code_version(),
+        valid_from=terms.valid_from,
+        published_on=terms.published_on,
+        decision=terms.decision,
+        simulated=bool(store.read("about_archive")["simulated"][0]),
+        inputs_digest=inputs_digest,
+        carried_from=carry,
+        previous=latest_before(store, terms.valid_from, terms.published_on),
+        texts_version=notes.texts_version(),
+    )
+
+
+def _complete(
+    store: Store, lines: pl.DataFrame, terms: Terms, method: str, method_hash: str | None
+) -> pl.DataFrame:
+    """Lines with the facts of their boats and their verification codes, checked and sorted."""
+    named = lines.join(
+        store.read("boats").select("fsn_no", *BOAT_FACTS),
+        on="fsn_no",
+        how="left",
+        maintain_order="left",
+    ).with_columns(
+        pl.lit(terms.edition).alias("edition"),
+        pl.when(basis=NOT_REBASED)
+        .then(pl.lit(PRINTED_METHOD))
+        .otherwise(pl.lit(method))
+        .alias("method"),
+        pl.lit(terms.valid_from).alias("as_of"),
+    )
+    missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
+    full = (
+        named.with_columns(missing)
+        .select(pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items())
+        .sort(LINE)
+    )
+    codes = sheets.verification_codes(full, method_hash)
+    coded = full.with_columns(pl.Series(CODE_FIELD.column, codes, pl.String))
+    conform("register", coded)
+    return coded
+
+
+def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:
+    """Writes an edition's folder as the next of the chain."""
+    name = edition.about.edition
+    return write_folder(
+        store, name, lambda: _contents(store, _chained(store, edition), files, texts)
+    )
+
+
+def _chained(store: Store, edition: Edition) -> Edition:
+    """The edition with its place in the chain, after the one published last."""
+    head = chain_head(store)
+    number, seal = (0, None) if head is None else (head.number or 0, head.seal)
+    about = edition.about.model_copy(update={"number": number + 1, "after_seal": seal})
+    return replace(edition, about=about)
+
+
+def _contents(
+    store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]
+) -> dict[str, bytes]:
+    """An edition's files: tables, sheets, texts, and last what it says of itself."""
+    about = edition.about
+    tables = dict(edition.tables)
+    previous = None
+    if about.previous is not None:
+        previous = compare(store, read_edition(store, about.previous), edition)
+        tables[CHANGES] = previous.lines
+    written = texts | notes.texts(edition, previous)
+    contents = {
+        CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
+        XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, about),
+        INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
+        **{name: text.encode("utf-8") for name, text in written.items()},
+        **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
+    }
+    summary, rights = notes.summary(edition), Rights.of(store)
+    contents[PACKAGE] = sheets.package_bytes(about, contents, summary, rights)
+    sealed = about.model_copy(
+        update={
+            "tables": {
+                name: TableDigest(rows=frame.height, digest=table_digest(frame))
+                for name, frame in tables.items()
+            },
+            "files": {n: hashlib.sha256(c).hexdigest() for n, c in sorted(contents.items())},
+        }
+    ).sealed()
+    contents[ABOUT] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
+    return contents
+
+
+def _parquet(frame: pl.DataFrame) -> bytes:
+    target = io.BytesIO()
+    frame.write_parquet(target, compression="zstd")
+    return target.getvalue()

@@ -1,0 +1,338 @@
+"""The register as people read it: CSV and XLSX with Dutch headers, and the data package.
+
+The cells of the CSV are the printed register: they are what the verification code of a line covers,
+together with the line's inputs and method. Nothing is computed here but text and hashes.
+"""
+
+import base64
+import csv
+import datetime as dt
+import hashlib
+import io
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import polars as pl
+import python_calamine
+import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
+from xlsxwriter.utility import xl_rowcol_to_cell  # type: ignore[import-untyped,unused-ignore]
+
+from pipeline.register.register import NO_EMPTY_THWART
+from warehouse.editions.words import STATUSES
+from warehouse.store.editions import CSV, INPUTS, About
+from warehouse.store.package import Rights
+
+A4: Final = 9
+"""The paper's number in a spreadsheet."""
+BOM: Final = "\ufeff"
+CODE_LENGTH: Final = 10
+CODE_HEADER: Final = "controlecode"
+FORMULA: Final = re.compile(r"(^|[;,\t\r\n])(\s*)([=+\-@])")
+"""What a spreadsheet takes for a formula, also behind a separator that it splits a cell at."""
+
+FieldType = Literal["string", "number", "integer", "date"]
+
+BASIS_WORDS: Final = {
+    "measured": "herrekend",
+    "printed": "gedrukt",
+    "printed_rebased": "gedrukt, omgerekend",
+    "printed_not_rebased": "gedrukt, niet herijkt",
+}
+
+
+@dataclass(frozen=True)
+class Field:
+    """A column of a sheet: its Dutch header, where its values come from, and how they look."""
+
+    header: str
+    column: str
+    type: FieldType
+    description: str
+    decimals: int = 3
+    scale: float = 1.0
+    """What a number is multiplied by before it is printed."""
+
+
+LOWER_END: Final = (
+    "ondergrens van het 95 %-interval; bij een methode die de fout van de log niet schat: van de "
+    "spreiding van de runs alleen, de fout van de log zit er niet in"
+)
+REGISTER_FIELDS: Final = (
+    Field("fsn_nr", "fsn_no", "string", "nummer van de sloep bij de federatie"),
+    Field("ht_nr", "ht_no", "string", "nummer in het HT-register"),
+    Field("sloep", "name", "string", "naam"),
+    Field("type", "boat_type", "string", "type sloep"),
+    Field("roeiers", "rowers", "integer", "aantal roeiers waarvoor de regel geldt"),
+    Field("klasse", "crew_class", "string", "H heren, D dames"),
+    Field(
+        "lege doft",
+        "empty_thwart",
+        "string",
+        "doft waarop geen roeiers zitten: de kromme is alleen geldig als die leeg is",
+    ),
+    Field("status", "status", "string", "geldig, of waarom er geen geldige kromme is"),
+    Field("nakijken", "flags", "string", "ja: de commissie moet nog naar deze sleep kijken"),
+    Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", "opgegeven snelheid", 2),
+    Field("A [kg/m]", "a_kg_m", "number", "de weerstand bij snelheid 0"),
+    Field(
+        "B [m/s]",
+        "b_m_s",
+        "number",
+        "leeg waar hij niet bepaald is: Cw stijgt daar niet met de snelheid, en A en Cw "
+        "bij de roeisnelheid bepalen samen de kromme",
+    ),
+    Field("Cw [kg/m]", "cw_kg_m", "number", "Cw bij de roeisnelheid"),
+    Field("Cw laagst [kg/m]", "cw_lo_kg_m", "number", LOWER_END),
+    Field("Cw hoogst [kg/m]", "cw_hi_kg_m", "number", "bovengrens"),
+    Field("sleep_id", "tow_id", "string", "sleep die telt"),
+    Field("sleepdatum", "tow_date", "date", "dag van die sleep"),
+    Field("geldig tot en met", "valid_until", "date", "laatste dag waarop de regel telt"),
+    Field("beoordeeld op", "as_of", "date", "dag waarop de geldigheid is bekeken"),
+    Field("lengte [m]", "waterline_length_m", "number", "lengte op de waterlijn die dag", 2),
+    Field("breedte [m]", "beam_m", "number", "breedte die dag", 2),
+    Field("hoogte [m]", "bow_height_m", "number", "boeghoogte die dag", 2),
+    Field("gewicht [kg]", "weight_kg", "number", "lege sloep met riemen die dag", 0),
+    Field("basis", "basis", "string", "waar de getallen vandaan komen"),
+    Field("editie", "edition", "string", "uitgave van het register"),
+    Field("methode", "method", "string", "rekenmethode"),
+)
+LINE_KEY: Final = ["fsn_nr", "roeiers", "klasse", "lege doft"]
+CODE_FIELD: Final = Field(
+    CODE_HEADER, "verification_code", "string", "hash van invoer, methode en getallen van de regel"
+)
+WITHDRAWN_FIELD: Final = Field(
+    "fout te zien vanaf [%]",
+    "unseen_error_ratio",
+    "number",
+    "kleinste fout in Cw die zou opvallen; ingetrokken",
+    0,
+    100.0,
+)
+"""What sheets of editions up to version 1.0.0 have; its promise did not hold."""
+
+SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
+"""The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
+
+INPUT_FIELDS: Final = (
+    Field("bestand", "path", "string", "bestand, vanaf de map van het archief"),
+    Field("soort", "kind", "string", "meetdata, lijst of register"),
+    Field("sha256", "sha256", "string", "hash van de inhoud"),
+)
+
+Cells = list[list[str]]
+
+
+def printed_cells(frame: pl.DataFrame, fields: Sequence[Field]) -> Cells:
+    """The cells of a sheet as they are printed, without the header."""
+    words = _in_words(frame)
+    columns = [
+        [_printed(value, field) for value in words[field.column].to_list()] for field in fields
+    ]
+    return [list(row) for row in zip(*columns, strict=True)]
+
+
+def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str]:
+    """The code of every line: ten letters and digits that follow from all that made it.
+
+    Args:
+        frame: lines with the columns of `REGISTER_FIELDS` and `inputs_sha256`.
+        method_hash: content hash of the method; None for a register as printed.
+    """
+    cells = printed_cells(frame, REGISTER_FIELDS)
+    return [
+        _code([inputs, method_hash, *row])
+        for inputs, row in zip(frame["inputs_sha256"].to_list(), cells, strict=True)
+    ]
+
+
+def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
+    """A sheet as CSV for a Dutch spreadsheet: BOM, semicolons, decimal commas, no formulas."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, delimiter=";", lineterminator="\r\n")
+    writer.writerow([field.header for field in fields])
+    writer.writerows(printed_cells(frame, fields))
+    return (BOM + text.getvalue()).encode("utf-8")
+
+
+def read_csv_cells(content: bytes) -> Cells:
+    """The cells of such a CSV, with the header as first row."""
+    text = content.decode("utf-8-sig", errors="replace")
+    return list(csv.reader(io.StringIO(text, newline=""), delimiter=";"))
+
+
+def read_inputs(edition: Path) -> list[tuple[str, str, str]]:
+    """File, kind and SHA-256 of what an edition was made from.
+
+    A row of another width was changed, which is found where the files themselves are looked at.
+    """
+    rows = read_csv_cells((edition / INPUTS).read_bytes())[1:]
+    return [(row[0], row[1], row[2]) for row in rows if len(row) == len(INPUT_FIELDS)]
+
+
+def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], about: About) -> bytes:
+    """A sheet as XLSX, numbers as numbers and days as days, with what the edition is beside it."""
+    target = io.BytesIO()
+    options = {
+        "in_memory": True,
+        "strings_to_formulas": False,
+        "strings_to_urls": False,
+        "strings_to_numbers": False,
+    }
+    with xlsxwriter.Workbook(target, options) as book:
+        created = dt.datetime.combine(about.published_on, dt.time())
+        book.set_properties({"title": f"Sloepenregister {about.edition}", "created": created})
+        _write_register(book, _in_words(frame), fields)
+        _write_about(book, about)
+    return target.getvalue()
+
+
+def package_bytes(about: About, contents: dict[str, bytes], notes: str, rights: Rights) -> bytes:
+    """The Frictionless descriptor of the CSV files of an edition."""
+    package = {
+        "profile": "tabular-data-package",
+        "name": about.edition.lower(),
+        "title": f"Sloepenregister {about.edition}",
+        "description": notes,
+        "version": about.edition,
+        "created": f"{about.published_on}T00:00:00Z",
+        **rights.described,
+        "resources": [
+            _resource("register", CSV, contents[CSV], SHEET_FIELDS, LINE_KEY),
+            _resource("inputs", INPUTS, contents[INPUTS], INPUT_FIELDS, ["bestand"]),
+        ],
+    }
+    return (json.dumps(package, indent=1, ensure_ascii=False) + "\n").encode("utf-8")
+
+
+def _resource(
+    name: str, path: str, content: bytes, fields: Sequence[Field], key: list[str]
+) -> dict[str, object]:
+    return {
+        "profile": "tabular-data-resource",
+        "name": name,
+        "path": path,
+        "format": "csv",
+        "mediatype": "text/csv",
+        "encoding": "utf-8-sig",
+        "bytes": len(content),
+        "hash": f"sha256:{hashlib.sha256(content).hexdigest()}",
+        "dialect": {"delimiter": ";", "lineTerminator": "\r\n", "quoteChar": '"', "header": True},
+        "schema": {
+            "fields": [_field(field) for field in fields],
+            "primaryKey": key,
+            "missingValues": [""],
+        },
+    }
+
+
+def _field(field: Field) -> dict[str, Any]:
+    described = {"name": field.header, "type": field.type, "description": field.description}
+    if field.type == "number":
+        described |= {"decimalChar": ","}
+    return described
+
+
+def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
+    """Codes in the words that people read."""
+    words = {
+        "status": {code: dutch for code, (dutch, _) in STATUSES.items()},
+        "basis": BASIS_WORDS,
+        "empty_thwart": {NO_EMPTY_THWART: "geen"},
+    }
+    if "flags" in frame.columns:
+        to_look_at = pl.col("flags").list.len() > 0
+        frame = frame.with_columns(pl.when(to_look_at).then(pl.lit("ja")).alias("flags"))
+    return frame.with_columns(
+        pl.col(column).replace(words[column]) for column in words if column in frame.columns
+    )
+
+
+def _printed(value: Any, field: Field) -> str:
+    if value is None:
+        return ""
+    if field.type == "number":
+        return f"{value * field.scale:.{field.decimals}f}".replace(".", ",")
+    text = str(value)
+    return FORMULA.sub(r"\1\2'\3", text) if field.type == "string" else text
+
+
+def _code(parts: Sequence[str | None]) -> str:
+    text = json.dumps(list(parts), ensure_ascii=False, separators=(",", ":"))
+    digest = hashlib.sha256(text.encode("utf-8")).digest()
+    return base64.b32encode(digest).decode("ascii")[:CODE_LENGTH]
+
+
+def _write_register(
+    book: xlsxwriter.Workbook, frame: pl.DataFrame, fields: Sequence[Field]
+) -> None:
+    sheet = book.add_worksheet("register")
+    head = book.add_format({"bold": True, "bottom": 1})
+    for place, field in enumerate(fields):
+        style = book.add_format({"num_format": _number_format(field)})
+        sheet.write_string(0, place, field.header, head)
+        sheet.set_column(place, place, max(10, len(field.header) + 2))
+        for row, value in enumerate(frame[field.column].to_list(), 1):
+            _write_cell(sheet, (row, place), value, field, style)
+    sheet.freeze_panes(1, 1)
+    sheet.repeat_rows(0)
+    sheet.set_landscape()
+    sheet.set_paper(A4)
+    sheet.fit_to_pages(1, 0)
+    sheet.autofilter(0, 0, frame.height, len(fields) - 1)
+
+
+def _number_format(field: Field) -> str:
+    if field.type == "number":
+        return "0." + "0" * field.decimals if field.decimals else "0"
+    return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
+
+
+def _write_cell(sheet: Any, place: tuple[int, int], value: Any, field: Field, style: Any) -> None:
+    if value is None:
+        return
+    if field.type == "date":
+        sheet.write_datetime(*place, dt.datetime.combine(value, dt.time()), style)
+    elif field.type == "string":
+        sheet.write_string(*place, str(value), style)
+    else:
+        sheet.write_number(*place, round(value * field.scale, field.decimals), style)
+
+
+def _write_about(book: xlsxwriter.Workbook, about: About) -> None:
+    sheet = book.add_worksheet("editie")
+    sheet.set_column(0, 0, 20)
+    rows = {
+        "editie": about.edition,
+        "geldt vanaf": about.valid_from.isoformat(),
+        "vastgesteld op": about.published_on.isoformat(),
+        "besluit": about.decision,
+        "methode": about.method or "zoals gedrukt",
+        "methode-hash": about.method_hash or "",
+        "programmaversie": about.code_version,
+        "gesimuleerd": "ja: geen metingen van de federatie" if about.simulated else "nee",
+    }
+    for row, (name, value) in enumerate(rows.items()):
+        sheet.write_string(row, 0, name)
+        sheet.write_string(row, 1, value)
+
+
+def read_xlsx_cells(content: bytes) -> dict[str, object]:
+    """The filled cells of the first sheet, by place ("B3").
+
+    Raises:
+        ValueError: this is no XLSX.
+    """
+    try:
+        grid = python_calamine.load_workbook(io.BytesIO(content)).get_sheet_by_index(0).to_python()
+    except python_calamine.CalamineError as error:
+        raise ValueError(f"no XLSX: {error}") from error
+    return {
+        xl_rowcol_to_cell(row, place): cell
+        for row, cells in enumerate(grid)
+        for place, cell in enumerate(cells)
+        if cell != ""
+    }

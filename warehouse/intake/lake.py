@@ -1,0 +1,233 @@
+"""The lake: samples and blocks of every tow, written once and named by content.
+
+An archive file that did not change is not read again. A tow's samples are named by the hashes of
+its files, the way to read them and the code that reads; its blocks by the samples and the code that
+adds them up. A fault in the samples is remembered the same way. What the files look like is known
+to `warehouse.archive`, and which sums there are to `pipeline.blocks.run_blocks`.
+"""
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.errors import DefectiveInputError, UnavailableError
+from pipeline.tables.frames import dtypes, frame_of
+from pipeline.tables.lake import SeasonIndex
+from pipeline.tables.row import Row
+from warehouse.archive import (
+    Fault,
+    FileHashes,
+    SeasonProfile,
+    fault_from,
+    judge_in_files,
+    read_tow_samples,
+)
+from warehouse.archive.samples.resolution import steps_of
+from warehouse.store.code import ADDING, READING, code_hash
+from warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
+from warehouse.store.unforeseen import (
+    UNFORESEEN,
+    in_short,
+    is_unforeseen,
+    note,
+    sentence,
+    traced,
+)
+
+LAKE_FORM: Final = {
+    "compression": "lz4",
+    "data_page_size": 1 << 22,
+    "use_dictionary": False,
+    "write_statistics": False,
+}
+"""How samples and blocks are packed: measured in docs/decisions/0004."""
+
+SAMPLE_FACTS: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
+"""What the index says of the samples of a tow that can be used."""
+
+Tow = Row
+Report = Callable[[str, bool], None]
+"""Called after each tow with its id and whether it was set aside."""
+
+
+def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonProfile) -> str:
+    """What the samples and blocks of a season are made from."""
+    season_runs = runs.filter(pl.col("tow_id").is_in(tows["tow_id"].implode()))
+    rows = [tows.write_json(), season_runs.sort("tow_id", "run").write_json()]
+    return fingerprint(rows, dataclasses.asdict(profile), code_hash(*READING, *ADDING))
+
+
+def read_season(
+    store: Store,
+    root: Path,
+    tows: pl.DataFrame,
+    runs: pl.DataFrame,
+    profile: SeasonProfile,
+    report: Report,
+) -> pl.DataFrame:
+    """Brings the samples and blocks of a season's tows into the lake.
+
+    Args:
+        store: the data folder.
+        root: the archive.
+        tows: listed tows of one season.
+        runs: their runs.
+        profile: how that season's files are written.
+        report: called after each tow.
+
+    Returns:
+        The season's index, `SeasonIndex`, sorted by tow.
+    """
+    before = _known_tows(store, profile.season)
+    hashes = FileHashes.load(store.file_hashes)
+    runs_of = dict(runs.partition_by("tow_id", as_dict=True))
+
+    def read(tow: Tow) -> Row:
+        listed_runs = runs_of[tow["tow_id"],]
+        key = _samples_key(tow, listed_runs, profile)
+        known = before.get(key)
+        if known is not None and known["reason_code"] is not None:
+            row = known
+        else:
+            row = _bring_in(store, root, tow, listed_runs, profile, key, hashes, known)
+        report(tow["tow_id"], row["reason_code"] is not None)
+        return row | {"tow_id": tow["tow_id"]}
+
+    workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
+    with ThreadPoolExecutor(workers) as pool:
+        rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
+    index = frame_of(SeasonIndex, rows)
+    keep_only(store, profile.season, index)
+    return index
+
+
+def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFrame:
+    """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
+    sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
+    frames = [read_parquet(store.blocks_path(season, key)) for key in sound["blocks_key"]]
+    return blocks_of_tows(sound["tow_id"], frames)
+
+
+def blocks_of_tows(tow_id: pl.Series, frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
+    """Blocks of tows one below the other, with the `tow_id` of each."""
+    if not frames:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
+    return pl.concat(frames).insert_column(0, tow_id.gather(tow))
+
+
+def _bring_in(
+    store: Store,
+    root: Path,
+    tow: Tow,
+    runs: pl.DataFrame,
+    profile: SeasonProfile,
+    key: str,
+    hashes: FileHashes,
+    known: Row | None,
+) -> Row:
+    """Index row of a tow after its samples and blocks are in the lake, or with its fault.
+
+    Its samples are read again also where only the facts about them (in `known`) are lost.
+    """
+    facts = None if known is None else {name: known[name] for name in SAMPLE_FACTS}
+    row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
+    path = store.samples_path(profile.season, key)
+    blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDING))
+    blocks_path = store.blocks_path(profile.season, blocks_key)
+    try:
+        samples = None
+        if facts is None or not path.exists():
+            whole = read_tow_samples(root, tow, profile)
+            judged = judge_in_files(whole, tow, runs, root, profile)
+            samples = judged.samples
+            facts = {
+                "losses": [dataclasses.asdict(fault) for fault in judged.faults],
+                "wind_read": samples["wind_speed_m_s"].null_count() == 0,
+                **steps_of(samples),
+            }
+            _check_unchanged(root, tow, hashes)
+            write_parquet(samples, path, form=LAKE_FORM)
+        if not blocks_path.exists():
+            from pipeline.blocks.sums import block_sums  # noqa: PLC0415 - compiles on import
+
+            if samples is None:
+                samples = read_parquet(path, use_threads=False)
+            sums = block_sums(samples, tow["sample_rate_hz"])
+            write_parquet(sums, blocks_path, form=LAKE_FORM)
+    except DefectiveInputError as error:
+        _check_unchanged(root, tow, hashes)
+        return row | _as_fault(row, fault_from(error, tow["samples_path"], tow["tow_id"]))
+    except BaseException as error:
+        if not is_unforeseen(error):
+            raise
+        note(store.root, tow["tow_id"], traced(error))
+        message = sentence(tow["tow_id"], in_short(error))
+        return row | _as_fault(
+            row, Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
+        )
+    return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}
+
+
+def _as_fault(row: Row, fault: Fault) -> Row:
+    facts = dataclasses.asdict(fault)
+    return {name: facts[name] for name in row.keys() & facts.keys()}
+
+
+class ArchiveChangedError(UnavailableError):
+    """A file of the archive changed between looking through the archive and reading it."""
+
+
+def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
+    """Samples are named by the hash of their file, so they must be that file's.
+
+    A file with the size and time it had when it was hashed is not read once more.
+    """
+    for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
+        if tow[path] is not None and _sha256(root, tow[path], hashes) != tow[sha256]:
+            raise ArchiveChangedError(
+                "{} changed while it was read. Try again when nobody is copying files into {}",
+                tow[path],
+                root,
+            )
+
+
+def _sha256(root: Path, path: str, hashes: FileHashes) -> str | None:
+    """Hash of samples; None when a file of theirs went away."""
+    try:
+        return hashes.hash_samples(root, path)
+    except FileNotFoundError:
+        return None
+
+
+def _known_tows(store: Store, season: int) -> dict[str, Row]:
+    """What was found of the season's tows at its last reading, by samples key."""
+    if str(season) not in store.partitions("season_index"):
+        return {}
+    index = store.read("season_index", str(season))
+    if index.schema != dtypes(SeasonIndex):
+        return {}
+    return {row["samples_key"]: row for row in index.iter_rows(named=True)}
+
+
+def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
+    names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
+    facts = [tow[n] for n in names], runs.sort("run").rows()
+    return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READING))
+
+
+def keep_only(store: Store, season: int, index: pl.DataFrame) -> None:
+    """Removes samples and blocks of a season that its index does not name (any more)."""
+    kept = {
+        *(store.samples_path(season, k) for k in index["samples_key"].drop_nulls()),
+        *(store.blocks_path(season, k) for k in index["blocks_key"].drop_nulls()),
+    }
+    for folder in (store.samples_path(season, "").parent, store.blocks_path(season, "").parent):
+        for file in folder.glob("[!.]*.parquet"):
+            if file not in kept:
+                file.unlink()

@@ -1,0 +1,239 @@
+"""Intake: what the archive holds today, and which of it the lake still has to read.
+
+The lists of the archive are indexed when any file of it, or the code that reads them, changed;
+samples only where a season's fingerprint says that something changed. Reading one season's files
+is `warehouse.intake.lake`.
+"""
+
+import os
+import time
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from stat import S_ISDIR, S_ISLNK
+from typing import Final
+
+import polars as pl
+
+from pipeline.blocks.run_blocks import BLOCK_SCHEMA, RunBlocks, stack_blocks
+from pipeline.errors import MissingKnowledgeError
+from pipeline.recompute.facts import with_boat_types, with_hand_windows
+from pipeline.tables.frames import frame_of
+from pipeline.tables.lake import AboutArchive, Faults, SeasonIndex
+from warehouse.archive import (
+    Failure,
+    FileHashes,
+    index_archive,
+    read_published_registers,
+    read_races,
+)
+from warehouse.archive.files.hashes import RACY_SECONDS
+from warehouse.archive.profile.reading import read_profiles
+from warehouse.intake import lake
+from warehouse.store.code import READING, code_hash
+from warehouse.store.store import Store, fingerprint
+from warehouse.store.unforeseen import note
+
+LISTED: Final = ("boats", "tows", "runs", "windows")
+INDEXED: Final = (
+    *(f"listed_{name}" for name in (*LISTED, "files", "races")),
+    *("printed_registers", "list_faults", "about_archive"),
+)
+"""What is kept of the archive's lists."""
+UNREADABLE: Final = "unreadable_file"
+"""A file that could not be read may be readable the next time, though nothing changed."""
+READ: Final = ("season_tows", "season_runs", "season_index")
+"""What is kept of a season, as the archive was when it was read."""
+SEASON_TABLES: Final = (*READ, "blocks")
+
+
+def index(store: Store, root: Path) -> None:
+    """Reads the lists of the archive and keeps them as the tables of `INDEXED`.
+
+    Nothing is read where all of the archive lies there as it did when they were made.
+
+    Raises:
+        HerijkError: the folder is missing or holds nothing that looks like an archive.
+    """
+    seen = _seen(root)
+    if seen and all(store.made_from(table) == seen for table in INDEXED):
+        return
+    hashes = FileHashes.load(store.file_hashes)
+    listed = index_archive(root, hashes.hash_file)
+    hashes.save(store.file_hashes)
+    races, race_faults = read_races(root)
+    printed, register_faults = read_published_registers(root)
+    all_faults = (*listed.faults, *race_faults, *register_faults)
+    for fault in all_faults:
+        if isinstance(fault, Failure):
+            note(store.root, fault.path.replace(" ", "-"), fault.trace)
+    faults = [{key: getattr(f, key) for key in Faults.column_names()} for f in all_faults]
+    about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
+    about |= listed.profiles.publication.model_dump()
+    tables = {
+        **{f"listed_{name}": getattr(listed, name) for name in LISTED},
+        "listed_files": listed.files,
+        "listed_races": races,
+        "printed_registers": printed,
+        "list_faults": frame_of(Faults, faults),
+        "about_archive": frame_of(AboutArchive, [about]),
+    }
+    may_heal = any(fault["reason_code"] == UNREADABLE for fault in faults)
+    for name in INDEXED:
+        store.write(name, tables[name], made_from="" if may_heal else seen)
+
+
+def _seen(root: Path) -> str:
+    """Fingerprint of the archive as it lies there, and of the code that reads its lists.
+
+    Empty, so that the lists are read, where a file can have changed unseen: one behind a link, or
+    one changed just now (`hashes.RACY_SECONDS`).
+    """
+    stats = dict(_stats(root))
+    newest_ns = max((max(s.st_mtime_ns, s.st_ctime_ns) for s in stats.values()), default=0)
+    is_racy = time.time_ns() - newest_ns < RACY_SECONDS * 1e9
+    if is_racy or any(S_ISLNK(stat.st_mode) for stat in stats.values()):
+        return ""
+    files = {
+        path: (stat.st_mode, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns)
+        for path, stat in stats.items()
+    }
+    return fingerprint(str(root.resolve()), files, code_hash(*READING))
+
+
+def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:
+    """What the system knows of each file and folder of an archive, by path within it."""
+    for folder, folders, files in os.walk(root):
+        for path in (Path(folder, name) for name in (*folders, *files)):
+            with suppress(FileNotFoundError):
+                yield path.relative_to(root).as_posix(), path.lstat()
+
+
+Listing = dict[str, list[int]]
+"""Size in bytes and time of the last change in ns of every file, by path within the archive."""
+
+
+def listing(root: Path) -> Listing:
+    """The files of an archive as they lie there now; none is opened, and no link is followed.
+
+    Raises:
+        MissingKnowledgeError: there is no such folder, or nothing in it: a disk not mounted.
+    """
+    files = {
+        path: [stat.st_size, stat.st_mtime_ns]
+        for path, stat in _stats(root)
+        if not S_ISDIR(stat.st_mode) and not path.startswith(".") and "/." not in path
+    }
+    if not files:
+        raise MissingKnowledgeError("there is no file at {}: is its disk there?", root)
+    return files
+
+
+def listed_seasons(store: Store) -> list[int]:
+    """Seasons of which the archive lists tows, sorted."""
+    seasons: list[int] = store.read("listed_tows")["season"].unique().sort().to_list()
+    return seasons
+
+
+def season_fingerprints(store: Store, root: Path) -> dict[int, str]:
+    """What the samples of each listed season are made from, as the archive is today."""
+    profiles = read_profiles(root)
+    return {
+        season: lake.season_fingerprint(*_listed(store, season), profiles.for_season(season))
+        for season in listed_seasons(store)
+    }
+
+
+def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = None) -> list[int]:
+    """Listed seasons whose samples or blocks are not those of the archive of today."""
+    return [
+        season
+        for season, made_from in season_fingerprints(store, root).items()
+        if wanted is None or season in wanted
+        if any(store.made_from(table, str(season)) != made_from for table in READ)
+        or blocks_are_stale(store, season)
+    ]
+
+
+def blocks_are_stale(store: Store, season: int) -> bool:
+    """Whether the table of a season's blocks is not that of its index."""
+    index = store.contents("season_index", str(season))
+    return index is None or store.made_from("blocks", str(season)) != index
+
+
+def damaged_seasons(store: Store) -> list[int]:
+    """Seasons that were read, and of which a table is not there any more."""
+    return [
+        season
+        for season in listed_seasons(store)
+        if 0
+        < sum(store.made_from(t, str(season)) is None for t in SEASON_TABLES)
+        < len(SEASON_TABLES)
+    ]
+
+
+def forget_unlisted_seasons(store: Store) -> None:
+    """Removes the tables of seasons that the archive no longer lists."""
+    listed = set(listed_seasons(store))
+    for season in [int(s) for s in store.partitions("blocks") if int(s) not in listed]:
+        lake.keep_only(store, season, SeasonIndex.create_empty())
+        for table in SEASON_TABLES:
+            store.remove(table, str(season))
+
+
+def read_season(
+    store: Store, root: Path, season: int, report: lake.Report = lambda *_: None
+) -> pl.DataFrame:
+    """Brings one season's samples into the lake; keeps its index and the list it was read by.
+
+    Returns:
+        The index: where each listed tow's samples and blocks lie, or its fault.
+    """
+    tows, runs = _listed(store, season)
+    profile = read_profiles(root).for_season(season)
+    season_index = lake.read_season(store, root, tows, runs, profile, report)
+    made_from = lake.season_fingerprint(tows, runs, profile)
+    kept = {"season_tows": tows, "season_runs": runs, "season_index": season_index}
+    for name, frame in kept.items():
+        store.write(name, frame, made_from, str(season))
+    return season_index
+
+
+def collect_blocks(store: Store, season: int) -> pl.DataFrame:
+    """Puts the blocks of a season's sound tows together in one table."""
+    made_from = store.contents("season_index", str(season))
+    season_blocks = lake.season_blocks(store, season, store.read("season_index", str(season)))
+    store.write("blocks", season_blocks, made_from or "", str(season))
+    return season_blocks
+
+
+def all_blocks(store: Store, columns: Sequence[str] | None = None) -> pl.DataFrame:
+    """Blocks of all seasons, or some of their columns; those without a sound tow have none."""
+    frames = [store.read("blocks", season, columns) for season in store.partitions("blocks")]
+    return pl.concat([f for f in frames if f.height] or [pl.DataFrame(schema=BLOCK_SCHEMA)])
+
+
+def typed_tows(store: Store) -> pl.DataFrame:
+    """All sound tows with the type of their boat."""
+    return with_boat_types(store.read("tows"), store.read("boats"))
+
+
+def runs_with_windows(store: Store) -> pl.DataFrame:
+    """The runs of all sound tows, with the windows that were given by hand."""
+    return with_hand_windows(store.read("tow_runs"), store.read("hand_windows"))
+
+
+def run_blocks(store: Store) -> RunBlocks:
+    """The runs of all sound tows as arrays, with the windows that were given by hand."""
+    return stack_blocks(all_blocks(store), runs_with_windows(store))
+
+
+def _listed(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
+    tows = store.read("listed_tows").filter(pl.col("season") == season).sort("tow_id")
+    runs = store.read("listed_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
+    return tows, runs.sort("tow_id", "run")
+
+
+def count_listed(store: Store, seasons: Collection[int]) -> int:
+    """Tows listed in the given seasons."""
+    return store.read("listed_tows").filter(pl.col("season").is_in(list(seasons))).height

@@ -1,0 +1,284 @@
+"""What an owner asks of a line: old and new number, why, how certain, and the boat's new place.
+
+Joins the tables and `pipeline.register.changes`; computes nothing else. Words are in `dashboards`.
+"""
+
+from collections import defaultdict
+from collections.abc import Callable
+from typing import Final
+
+import polars as pl
+
+from pipeline.method.definition import COMPLETE
+from pipeline.register.changes import register_changes, side_by_side, steps_of_lines
+from pipeline.register.register import LINE, draft_name
+from pipeline.register.replay import (
+    RaceRules,
+    race_changes,
+    replay,
+    winner_changes,
+)
+from pipeline.tables.row import Row
+from pipeline.tables.schemas import TABLES
+from warehouse.derive.studies import STUDIED_METHOD
+from warehouse.queries.views import DRAFT, Views
+from warehouse.store.database import no_such_edition
+from warehouse.store.editions import read_edition
+from warehouse.store.ensemble import read_ensemble
+
+PAIR: Final = ("from_edition", "to_edition")
+
+
+def newest_edition(editions: list[str], default: str) -> str:
+    """The last published edition; this draft where none is published, or else the last of all."""
+    draft = default if default in editions or not editions else editions[-1]
+    return next((e for e in reversed(editions) if not e.startswith(DRAFT)), draft)
+
+
+def current_edition(views: Views) -> str:
+    """The edition that people ask about: the newest that is published, or the best draft."""
+    published = views.table("editions").sort("valid_from", "published_on", "edition")["edition"]
+    drafts = set(views.table("register")["edition"]) - set(published)
+    return newest_edition([*sorted(drafts), *published], draft_name(STUDIED_METHOD))
+
+
+def line_changes(views: Views) -> pl.DataFrame:
+    """Every pair of lines that is compared: `register_changes`, with both numbers beside it.
+
+    Returns:
+        Columns of `register_changes` and `side_by_side`, the boat's `name` and `boat_type`, and of
+        both editions whether an interval holds the error of the log (`old_log_known`,
+        `new_log_known`); causes of a draft's change by step.
+    """
+    register = views.table("register")
+    changes = views.table("register_changes")
+    parts = [
+        _pair(views, register, changes.filter(from_edition=old, to_edition=new))
+        for old, new in changes.select(PAIR).unique().sort(PAIR).rows()
+    ]
+    if not parts:
+        parts = [_side_by_side(register.clear(), register.clear(), changes)]
+    return _named(views, pl.concat(parts))
+
+
+def compared(views: Views, old: str, new: str) -> pl.DataFrame:
+    """Any two editions or drafts side by side, as `line_changes` has those that are kept.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition or draft.
+    """
+    register = views.table("register")
+    before, after = (register.filter(edition=edition) for edition in (old, new))
+    for edition, side in ((old, before), (new, after)):
+        if side.is_empty():
+            raise no_such_edition(edition, register["edition"].unique())
+    steps = steps_of_lines(after, _steps(views, before, after))
+    return _named(views, _side_by_side(before, after, register_changes(before, after, steps)))
+
+
+def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
+    """With the boat, as the new edition or else the old one names it, and `log_known` of both."""
+    names = views.register().select("edition", *LINE, "name", "boat_type")
+    key = [*PAIR, *LINE]
+    of_each = [
+        changes.select(key).join(
+            names.rename({"edition": side}), on=[side, *LINE], maintain_order="left"
+        )
+        for side in reversed(PAIR)
+    ]
+    once = pl.concat(of_each).unique(key, keep="first", maintain_order=True)
+    named = changes.join(once, on=key, how="left", maintain_order="left")
+    known = log_known(views)
+    for side, edition in (("old", "from_edition"), ("new", "to_edition")):
+        mine = known.rename({"edition": edition, "log_known": f"{side}_log_known"})
+        named = named.join(mine, on=edition, how="left", maintain_order="left")
+    return named
+
+
+def log_known(views: Views) -> pl.DataFrame:
+    """Per edition and draft whether its intervals hold the error of the log.
+
+    An edition has it from its own method, also where the warehouse makes that no longer.
+    """
+    drafts = views.table("methods").select(
+        "interval", edition=pl.concat_str(pl.lit(DRAFT), pl.col("method"))
+    )
+    of_each = pl.concat([views.table("editions").select("interval", "edition"), drafts])
+    return of_each.select("edition", log_known=pl.col("interval") == COMPLETE)
+
+
+def _pair(views: Views, register: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
+    """The changes between two editions with both sides."""
+    old, new = (register.filter(pl.col("edition") == changes[side][0]) for side in PAIR)
+    if changes["to_edition"][0].startswith(DRAFT):
+        changes = register_changes(old, new, steps_of_lines(new, _steps(views, old, new)))
+    return _side_by_side(old, new, changes)
+
+
+def _side_by_side(old: pl.DataFrame, new: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
+    sides = side_by_side(old, new).rename({f"{s}_rank": f"{s}_speed_rank" for s in ("old", "new")})
+    return changes.join(sides, on=LINE, how="left", maintain_order="left")
+
+
+def _steps(views: Views, old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
+    """What each step does to a tow, from the method of one register to that of the other."""
+    first, last = (side.sort("tow_id", nulls_last=True)["method"][0] for side in (old, new))
+    methods = {"from_method": first, "to_method": last}
+    same = old.join(new, on=[*LINE, "tow_id"], how="semi").select("tow_id")
+    steps = views.table("correction_steps").filter(**methods).join(same, on="tow_id", how="semi")
+    return steps.filter(pl.col("position") > 0)
+
+
+def answers(views: Views, edition: str) -> pl.DataFrame:
+    """Every line of an edition with what there is to say of it.
+
+    What stands behind the lines comes from the edition's own folder, which holds no weights and no
+    pairs: those are said of drafts alone. The next tow and races are those of today.
+
+    Returns:
+        Rows of `register` of that edition, with the columns of `line_changes` where it is compared
+        with another. Added are:
+
+        - `old_type_place`, `new_type_place` and `type_size` among boats of its type and class;
+        - `old_log_known` and `new_log_known`: whether the interval holds the error of the log;
+        - what `due_list` says of the next tow;
+        - its best estimate `cw_best_*`, and `own_weight`, the share that rests on the tow itself;
+        - by what factor the tow (`moved_ratio`) and its best estimate (`best_moved_ratio`) differ
+          from those of `season_before`, the tow before of the same, unaltered boat and crew;
+        - `log_factor` of its season with `log_lo`, `log_hi` and `log_source`.
+    """
+    changes = line_changes(views).filter(to_edition=edition)
+    lines = views.register().filter(edition=edition)
+    compared = changes.drop("name", "boat_type", "to_edition", "new_log_known")
+    known = log_known(views).rename({"log_known": "new_log_known"})
+    due = views.table("due_list").select("method", *LINE, "tow_speed_m_s", "speed_reason")
+    behind = _behind(views, edition)
+    logs = behind("log_factors").select(
+        "method", "season", log_factor="factor", log_lo="lo", log_hi="hi", log_source="source"
+    )
+    seasons = behind("tows").select("tow_id", "season")
+    joined = (
+        lines.join(compared, on=LINE, how="left", maintain_order="left")
+        .join(known, on="edition", how="left", maintain_order="left")
+        .join(seasons, on="tow_id", how="left", maintain_order="left")
+        .join(due, on=["method", *LINE], how="left", maintain_order="left")
+        .join(_best_estimates(behind), on=["method", "tow_id"], how="left", maintain_order="left")
+        .join(logs, on=["method", "season"], how="left", maintain_order="left")
+    )
+    return _with_places(joined)
+
+
+_Tables = Callable[[str], pl.DataFrame]
+
+
+def _behind(views: Views, edition: str) -> _Tables:
+    """The tables behind a register by name: its own of an edition, today's of a draft."""
+    if edition.startswith(DRAFT):
+        return views.table
+    own = read_edition(views.store, edition).tables
+    return lambda name: own[name] if name in own else TABLES[name].create_empty()
+
+
+def _best_estimates(behind: _Tables) -> pl.DataFrame:
+    """What the whole archive says of each tow, and how far both numbers moved since the last."""
+    key = ("method", "tow_id")
+    best = behind("curves").select(*key, "^cw_best_.*$", kept=_BEST_TO_MEASURED)
+    mine = pl.col("tow_id") == pl.col("rests_on")  # shares of next to nothing are left out
+    own = (
+        behind("best_estimate_weights")
+        .group_by(key, maintain_order=True)
+        .agg(own_weight=pl.col("weight").filter(mine).sum())
+    )
+    pairs = behind("repeat_pairs").select(*key, "tow_id_before", "season_before", "ln_ratio")
+    before = best.select("method", tow_id_before="tow_id", kept_before="kept")
+    moved = pl.col("ln_ratio").exp()
+    return (
+        best.join(own, on=key, how="left", maintain_order="left")
+        .join(pairs, on=key, how="left", maintain_order="left")
+        .join(before, on=["method", "tow_id_before"], how="left", maintain_order="left")
+        .with_columns(
+            moved_ratio=moved,
+            best_moved_ratio=moved * pl.col("kept") / pl.col("kept_before"),
+        )
+        .drop("tow_id_before", "ln_ratio", "kept", "kept_before")
+    )
+
+
+_BEST_TO_MEASURED: Final = pl.col("cw_best_kg_m") / pl.col("cw_kg_m")
+"""The best estimate over the number as measured, at the tow's declared speed. With the ratio of two
+tows at one speed it gives that of their best estimates."""
+
+
+def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
+    """What is wrong, or may be, with the instruments of a season, by method and season.
+
+    Returns:
+        Rows of `season_diagnosis` that a person should look at.
+    """
+    faults: dict[tuple[str, int], list[Row]] = defaultdict(list)
+    for row in views.table("season_diagnosis").filter("alarm").to_dicts():
+        faults[row["method"], row["season"]].append(row)
+    return faults
+
+
+def _with_places(lines: pl.DataFrame) -> pl.DataFrame:
+    """With the place of each line among the boats of its type and class."""
+    like = ("boat_type", "crew_class")
+    places = (
+        pl.col(f"{side}_speed_rank")
+        .rank("min")
+        .over(like)
+        .cast(pl.Int32)
+        .alias(f"{side}_type_place")
+        for side in ("old", "new")
+    )
+    return lines.with_columns(
+        *places, pl.col("new_speed_rank").count().over(like).cast(pl.Int32).alias("type_size")
+    )
+
+
+def own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
+    """Results of races under two editions, with how many in race and class have a place in both."""
+    races = views.races().filter(from_edition=old or "", to_edition=edition)
+    size = pl.col("new_rank").count().over("race", "race_date", "crew_class").alias("race_size")
+    return races.with_columns(size)
+
+
+def race_chances(views: Views, old: str, new: str) -> dict[tuple[str, str], float | None]:
+    """How likely it is that another crew wins under the new edition, by race and class.
+
+    Returns:
+        By race with its day, and class; None where the new register has no ensemble.
+    """
+    winners, _ = replayed(views, old, new)
+    return {
+        (f"{race} {day}", crew_class): chance
+        for race, day, crew_class, chance in winners.select(
+            "race", "race_date", "crew_class", "change_probability"
+        ).rows()
+    }
+
+
+def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int, int]]:
+    """Who wins the archive's races under two editions, and how many results change place.
+
+    Returns:
+        Rows of `pipeline.register.replay.winner_changes`; results that change place among those
+        with one under both, and how many those are.
+    """
+    history, results = views.table("register_history"), views.store.read("listed_races")
+    before, after = (
+        replay(history.filter(edition=edition), results, RaceRules()) for edition in (old, new)
+    )
+    ranked = race_changes(before, after).drop_nulls("new_rank")
+    moved = ranked.filter(pl.col("old_rank") != pl.col("new_rank")).height
+    method = history.filter(edition=new)["method"].first()
+    members = _members(views, new, str(method))
+    return winner_changes(before, after, members), (moved, ranked.height)
+
+
+def _members(views: Views, edition: str, method: str) -> pl.DataFrame:
+    """The ensemble of a draft from the lake, of an edition from its folder."""
+    if edition.startswith(DRAFT):
+        return read_ensemble(views.store, method)
+    return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())

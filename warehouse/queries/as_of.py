@@ -1,0 +1,117 @@
+"""The tables as of a day: registers, who is due and races as they stood then, by the same rules.
+
+The database judges on the day of the archive's last tow or race. Here the tables that depend on the
+day are made again for another one, and laid over those of the open database; so are those of
+editions that were published since it was made.
+"""
+
+import datetime as dt
+from typing import Final
+
+import duckdb
+import polars as pl
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.register.due import due_list
+from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name
+from pipeline.tables.keys import SIZES
+from pipeline.tables.schemas import TABLES, conform
+from warehouse.derive.published import published_tables
+from warehouse.store.editions import CHANGES, edition_names
+from warehouse.store.store import Store
+
+NOT_YET: Final = "never_towed"
+
+
+def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
+    """Makes a connection answer as of a day: tables `register`, `due_list` and `race_changes`.
+
+    Args:
+        db: the open database, read-only.
+        store: the data folder, for the results of races.
+        day: tows and races of later days do not exist yet.
+
+    Raises:
+        MissingKnowledgeError: there was no tow by then.
+    """
+    read = {
+        name: pl.DataFrame(db.table(name).pl())
+        for name in ("register", "register_history", "boats", "tows", "methods", "race_changes")
+    }
+    if not (read["tows"]["tow_date"] <= day).any():
+        raise MissingKnowledgeError("the archive has no tow of {} or before", day)
+    register = register_on(read["register"], read["register_history"], read["tows"], day)
+    made = {
+        "register": register,
+        "due_list": _due(register, read["methods"], read["boats"], store, day),
+        "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
+    }
+    for name, frame in made.items():
+        _lay(db, name, frame)
+
+
+def lay_published(db: duckdb.DuckDBPyConnection, store: Store) -> None:
+    """Makes a connection answer with the editions of now, where they are others than it knows."""
+    editions = pl.DataFrame(db.table("editions").pl())["edition"].to_list()
+    if set(editions) == set(edition_names(store)):
+        return
+    for name, published in published_tables(store).items():
+        edition = "to_edition" if name == CHANGES else "edition"
+        drafts = pl.DataFrame(db.table(name).pl()).filter(~pl.col(edition).is_in(editions))
+        _lay(db, name, pl.concat([conform(name, drafts), published]))
+
+
+def _lay(db: duckdb.DuckDBPyConnection, name: str, frame: pl.DataFrame) -> None:
+    db.register("frame", frame.select(TABLES[name].column_names()).to_arrow())
+    db.execute(f'CREATE OR REPLACE TEMP TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
+    db.unregister("frame")
+
+
+def register_on(
+    register: pl.DataFrame, history: pl.DataFrame, tows: pl.DataFrame, day: dt.date
+) -> pl.DataFrame:
+    """Rows of `register` as they stood on a day, of every edition.
+
+    A line whose tow was made later is listed as never towed. The verification code is of the
+    published line, and stands only where that line is the one that counted.
+    """
+    key = ["edition", *LINE]
+    begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= day)
+    over = pl.col("valid_until") < day
+    codes = register.select(*key, "tow_id", "verification_code")
+    counted = (
+        history.filter(begun)
+        .sort(*key, "position")
+        .group_by(key, maintain_order=True)
+        .last()
+        .with_columns(
+            pl.when(over).then(pl.lit("expired")).otherwise(pl.lit("valid")).alias("status")
+        )
+        .join(tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left")
+        .join(codes, on=[*key, "tow_id"], how="left", nulls_equal=True, maintain_order="left")
+    )
+    later = pl.col("tow_date").is_not_null()
+    rest = register.join(counted, on=key, how="anti").with_columns(
+        pl.when(later).then(pl.lit(NOT_YET)).otherwise("status").alias("status"),
+        *(pl.lit(None, register.schema[name]).alias(name) for name in (*CURVE_COLUMNS, *SIZES)),
+        pl.lit(None, pl.String).alias("verification_code"),
+    )
+    both = pl.concat([counted, rest], how="diagonal_relaxed")
+    return both.with_columns(pl.lit(day).alias("as_of")).select(register.columns).sort(key)
+
+
+def _due(
+    register: pl.DataFrame,
+    methods: pl.DataFrame,
+    boats: pl.DataFrame,
+    store: Store,
+    day: dt.date,
+) -> pl.DataFrame:
+    """Rows of `due_list` of every method, as of a day."""
+    results = store.read("listed_races")
+    lists = []
+    for name in methods["method"]:
+        lines = register.filter(pl.col("edition") == draft_name(name))
+        due = due_list(lines, boats, results, day)
+        lists.append(due.select(pl.lit(name).alias("method"), pl.all()))
+    return pl.concat(lists)

@@ -1,0 +1,78 @@
+"""What printed documents say: the lines of certificates, and a proposal against what counts now."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.curve import cw
+from pipeline.errors import MissingKnowledgeError
+from pipeline.races.power import curve_of_lines
+from pipeline.races.race import power_per_rower_w
+from pipeline.tables.row import Row
+from pipeline.words import say
+from warehouse.queries.answers import log_known
+from warehouse.queries.views import DRAFT, Views
+from warehouse.store.database import no_such_edition
+from warehouse.store.editions import edition_names, read_edition
+
+CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64())
+OF_EDITION: Final = ("decision", "valid_from", "published_on", "code_version")
+Curve = Sequence[tuple[float, float, float]]
+SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
+"""Speeds of the power table, as parts of the declared speed: where the curve holds."""
+
+
+def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Row]:
+    """The valid lines of an edition, of one boat or all, with what their certificates say.
+
+    All of it comes from the edition's own folder; that of a draft from the database.
+
+    Returns:
+        Rows of `register` with the boat's `name` and `boat_type`, `basis` (None in a draft), the
+        columns `OF_EDITION` and `log_known` (whether the interval holds the error of the log).
+
+    Raises:
+        MissingKnowledgeError: there is no such edition, or no valid line of that boat in it.
+    """
+    lines = _lines(views, edition)
+    wanted = lines.filter(pl.col("cw_kg_m").is_not_null())
+    if fsn_no is not None:
+        wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())
+    if wanted.is_empty():
+        raise MissingKnowledgeError(
+            "edition {} has no valid line of {}", edition, fsn_no or say("any boat")
+        )
+    known = log_known(views).filter(edition=edition)["log_known"].first()
+    about = views.table("editions").filter(edition=edition)
+    terms = about.select(OF_EDITION).to_dicts() or [dict.fromkeys(OF_EDITION)]
+    return [
+        line | terms[0] | {"log_known": known}
+        for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts()
+    ]
+
+
+def _lines(views: Views, edition: str) -> pl.DataFrame:
+    """The lines of an edition or draft, with name and type of their boats."""
+    if not edition.startswith(DRAFT) and edition in edition_names(views.store):
+        return read_edition(views.store, edition).register
+    drafts = views.register().with_columns(basis=pl.lit(None, pl.String))
+    lines = drafts.filter(edition=edition)
+    if lines.is_empty():
+        raise no_such_edition(edition, drafts["edition"].unique())
+    return lines
+
+
+def curve_of(line: Row) -> Curve:
+    """The curve that the A and B of a line give: speed [m/s], Cw [kg/m], power per rower [W].
+
+    Nothing where the line has no curve.
+    """
+    if line["cw_kg_m"] is None:
+        return []
+    speed = np.array(SPEEDS) * line["declared_speed_m_s"]
+    a, s = curve_of_lines(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))
+    resistance = cw(a, s, speed)
+    power = power_per_rower_w(resistance, speed, np.full(speed.shape, line["rowers"]))
+    return list(zip(speed.tolist(), resistance.tolist(), power.tolist(), strict=True))

@@ -1,0 +1,132 @@
+"""History at hand: all sound tows with their blocks, to try methods on without storing anything.
+
+Used by everything that asks "what if": a re-base, the workbench. What a method makes of the tows
+is `pipeline.recompute.recompute`'s.
+"""
+
+import datetime as dt
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Final, Self
+
+import polars as pl
+
+from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.consistency.homogeneity import type_homogeneity
+from pipeline.consistency.observed import Observed, observe, of_trusted
+from pipeline.consistency.repeats import repeat_pairs, reproducibility
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import Method
+from pipeline.recompute.recompute import recompute
+from pipeline.recompute.results import Recomputed
+from pipeline.recompute.run_cache import RunCache
+from pipeline.register.register import draft_name, draft_register, reference_day
+from warehouse.intake.seasons import run_blocks, typed_tows
+from warehouse.queries.chosen_tows import chosen
+from warehouse.store.store import Store
+
+MOST_CACHED: Final = 200
+"""Entries of the cache, of 0.4 MB each for a thousand tows."""
+
+
+@dataclass(frozen=True)
+class History:
+    """What is known of all sound tows.
+
+    Attributes:
+        tows: rows of the table `tows`, with `boat_type`.
+        boats: the table `boats`.
+        crews: listed boats with their crews, also those never towed.
+        blocks: the runs of `tows`.
+        last_day: the day of the last tow or race, on which drafts judge what is valid.
+        simulated: the archive says that it is simulated.
+        cache: what was found of the runs so far.
+    """
+
+    tows: pl.DataFrame
+    boats: pl.DataFrame
+    crews: pl.DataFrame
+    blocks: RunBlocks
+    last_day: dt.date
+    simulated: bool
+    cache: RunCache = field(default_factory=RunCache)
+
+    @classmethod
+    def of(cls, store: Store) -> Self:
+        """Reads the lake.
+
+        Raises:
+            MissingKnowledgeError: nothing was rebuilt in this data folder.
+        """
+        if store.made_from("tows") is None:
+            raise MissingKnowledgeError(
+                "{} holds no tows; make it with: herijk rebuild --archive DIR --data {}",
+                store.root,
+                store.root,
+            )
+        tows = typed_tows(store)
+        return cls(
+            tows=tows,
+            last_day=reference_day(tows, store.read("listed_races")),
+            boats=store.read("boats"),
+            crews=store.read("listed_boats"),
+            blocks=run_blocks(store),
+            simulated=bool(store.read("about_archive")["simulated"][0]),
+        )
+
+    def under(self, method: Method) -> "Draft":
+        """All tows recomputed, without the bands of their curves, and the register that follows.
+
+        Raises:
+            MissingKnowledgeError: the method says nothing about a season.
+        """
+        if len(self.cache) > MOST_CACHED:
+            self.cache.clear()
+        made = recompute(method, self.tows, self.blocks, self.cache, with_bands=False)
+        self.cache.let_go()
+        lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
+        edition = pl.lit(draft_name(method.name)).alias("edition")
+        return Draft(self, method, made, lines.with_columns(edition))
+
+
+@dataclass(frozen=True)
+class Draft:
+    """All of history under one method; statistics are made when they are asked for.
+
+    Attributes:
+        history: what it was made from.
+        method: the method.
+        made: run points, curves, log factors.
+        register: rows of the table `register`, of the draft edition.
+    """
+
+    history: History
+    method: Method
+    made: Recomputed
+    register: pl.DataFrame
+    _tested: dict[str, pl.DataFrame] = field(default_factory=dict)
+
+    @cached_property
+    def observed(self) -> Observed:
+        """Tows with their curves, boats and measuring errors."""
+        tows = self.history.tows
+        curves, run_points = (
+            of_trusted(frame, tows) for frame in (self.made.curves, self.made.run_points)
+        )
+        return observe(curves, tows, self.history.boats, run_points)
+
+    @cached_property
+    def repeat_pairs(self) -> pl.DataFrame:
+        """Rows of the table `repeat_pairs`."""
+        return repeat_pairs(of_trusted(self.made.curves, self.history.tows), self.history.tows)
+
+    @cached_property
+    def reproducibility(self) -> pl.DataFrame:
+        """Rows of the table `reproducibility`."""
+        return reproducibility(self.repeat_pairs, self.observed)
+
+    def type_homogeneity(self, tows: str) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity`, of the newest of these tows."""
+        if tows not in self._tested:
+            self._tested[tows] = type_homogeneity(chosen(self.observed, tows))
+        return self._tested[tows]

@@ -1,0 +1,99 @@
+"""Re-base: all of history under a method that may not have been used before, against another.
+
+Reads the lake, writes nothing: a committee looks at the result before anyone publishes. What the
+steps compute is in `pipeline`.
+"""
+
+from dataclasses import dataclass
+
+import polars as pl
+
+from pipeline.method.definition import Method
+from pipeline.register.changes import register_changes
+from pipeline.register.register import LINE
+from pipeline.studies.ladder import START, ladder
+from pipeline.tables.row import Row
+from warehouse.queries.history import History
+from warehouse.store.store import Store
+
+MOST_AFFECTED = 15
+
+
+@dataclass(frozen=True)
+class RebaseReport:
+    """What a method changes against another.
+
+    Attributes:
+        method, method_hash, against: the methods.
+        simulated: whether the archive is.
+        by_season: median factor on Cw of each step, per season, with `total`.
+        changes: number of lines by kind of change.
+        boats: the register lines most affected, with their factors.
+    """
+
+    method: str
+    method_hash: str
+    against: str
+    simulated: bool
+    by_season: list[Row]
+    changes: list[Row]
+    boats: list[Row]
+
+
+def rebase(store: Store, method: Method, against: Method) -> RebaseReport:
+    """Recomputes everything under a method and says what changes against another, and why.
+
+    Raises:
+        MissingKnowledgeError: there is no sound tow, or a method does not cover a season.
+    """
+    history = History.of(store)
+    old, new = (history.under(m) for m in (against, method))
+    links = old.made.tow_instruments, new.made.tow_instruments
+    rungs = ladder(against, method, history.tows, history.blocks, links, history.cache)
+    rungs = rungs.filter(pl.col("step") != START)
+    changes = register_changes(old.register, new.register)
+    return RebaseReport(
+        method=method.name,
+        method_hash=method.content_hash,
+        against=against.name,
+        simulated=history.simulated,
+        by_season=_by_season(rungs, history.tows).to_dicts(),
+        changes=changes["change"].value_counts(sort=True).to_dicts(),
+        boats=_most_affected(changes, new.register, rungs, history.boats).to_dicts(),
+    )
+
+
+def _by_season(rungs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Median factor of each step, and of all together, per season."""
+    seasoned = rungs.join(tows.select("tow_id", "season"), on="tow_id", maintain_order="left")
+    steps = rungs.sort("position")["step"].unique(maintain_order=True).to_list()
+    totals = seasoned.group_by("season", "tow_id", maintain_order=True).agg(
+        pl.col("factor").product()
+    )
+    total = totals.group_by("season", maintain_order=True).agg(
+        pl.len().alias("tows"), pl.col("factor").median().alias("total")
+    )
+    medians = seasoned.group_by("season", "step", maintain_order=True).agg(
+        pl.col("factor").median()
+    )
+    wide = medians.pivot("step", index="season", values="factor").select("season", *steps)
+    return wide.join(total, on="season", maintain_order="left").sort("season")
+
+
+def _most_affected(
+    changes: pl.DataFrame, register: pl.DataFrame, rungs: pl.DataFrame, boats: pl.DataFrame
+) -> pl.DataFrame:
+    """The register lines that change most, with the factor of each step on their tow."""
+    largest = (
+        changes.drop_nulls("cw_ratio")
+        .with_columns(pl.col("cw_ratio").log().abs().alias("size"))
+        .sort("size", *LINE, descending=[True, *(False for _ in LINE)])
+        .head(MOST_AFFECTED)
+    )
+    factors = rungs.pivot("step", index="tow_id", values="factor")
+    return (
+        largest.join(register.select(*LINE, "tow_id"), on=LINE, maintain_order="left")
+        .join(boats.select("fsn_no", "name"), on="fsn_no", how="left", maintain_order="left")
+        .join(factors, on="tow_id", how="left", maintain_order="left")
+        .drop("size", "causes", "from_edition", "to_edition")
+    )

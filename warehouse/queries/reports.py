@@ -1,0 +1,161 @@
+"""Questions to the finished database, answered as plain data that a command prints or a page shows.
+
+Reads only `warehouse.duckdb`; computes no new number about a boat. What is behind one boat
+or one type is in `warehouse.queries.audit`.
+"""
+
+from dataclasses import dataclass
+
+from pipeline.tables.row import Row
+from warehouse.store.database import is_simulated, open_database, open_results, rows
+from warehouse.store.store import Store
+
+BIGGEST = 10
+FIRST_FAULTS = 10
+_FAULTS_BY_REASON = """
+SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY lost, reason_code
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'cell', 'seconds'], lost), number DESC,
+         reason_code
+"""
+_FIRST_FAULTS = """
+WITH causes AS (
+    SELECT lost, reason_code, count(*) AS number,
+           first(quarantine ORDER BY path, line, tow_id) AS one
+    FROM quarantine GROUP BY lost, reason_code, cause
+)
+SELECT one.path, one.tow_id, one.line, reason_code, one.message, one.message_nl, number FROM causes
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'cell', 'seconds'], lost), number DESC,
+         one.path, one.line
+LIMIT ?
+"""
+
+
+@dataclass(frozen=True)
+class RebuildReport:
+    """What the warehouse has after a rebuild.
+
+    Attributes:
+        database, site, report: where they are.
+        simulated: whether the archive is.
+        seasons: `season` and `tows`.
+        set_aside: `lost`, `reason_code` and their `number`.
+        first_faults: one line per cause: its first place and sentence, and how many there are.
+        curves: `method`, `status` and their `number`.
+        by_season, biggest_changes: what the newest method changes.
+    """
+
+    database: str
+    site: str
+    report: str
+    simulated: bool
+    seasons: list[Row]
+    set_aside: list[Row]
+    first_faults: list[Row]
+    curves: list[Row]
+    by_season: list[Row]
+    biggest_changes: list[Row]
+
+
+@dataclass(frozen=True)
+class LogErrorReport:
+    """The log error of every season under a method.
+
+    Attributes:
+        simulated: whether the archive is.
+        method: whose factors.
+        factors: rows of `log_factors` with what each rests on.
+        parts: the same per part of a season and log.
+        diagnosis: rows of `season_diagnosis` that are not sound.
+    """
+
+    simulated: bool
+    method: str
+    factors: list[Row]
+    parts: list[Row]
+    diagnosis: list[Row]
+
+
+def rebuild_report(store: Store) -> RebuildReport:
+    """What the warehouse holds: seasons, set-aside rows, curves by status, biggest changes."""
+    with open_database(store.database) as db:
+        return RebuildReport(
+            database=str(store.database),
+            site=str(store.root / "site" / "index.html"),
+            report=str(store.root / "report" / "latest.html"),
+            simulated=is_simulated(db),
+            seasons=rows(
+                db, "SELECT season, count(*) AS tows FROM tows GROUP BY season ORDER BY season"
+            ),
+            set_aside=rows(db, _FAULTS_BY_REASON),
+            first_faults=rows(db, _FIRST_FAULTS, FIRST_FAULTS),
+            curves=rows(
+                db,
+                "SELECT method, status, count(*) AS number FROM curves "
+                "GROUP BY method, status ORDER BY method, status",
+            ),
+            by_season=rows(db, _BY_SEASON),
+            biggest_changes=rows(db, _BIGGEST_CHANGES, BIGGEST),
+        )
+
+
+def log_error_report(store: Store, method: str) -> LogErrorReport:
+    """The log factor of every season under a method, and what the estimated ones rest on."""
+    with open_results(store.database) as db:
+        return LogErrorReport(
+            simulated=is_simulated(db),
+            method=method,
+            factors=rows(db, _LOG_FACTORS, method),
+            parts=rows(db, _LOG_PARTS, method),
+            diagnosis=rows(db, _DIAGNOSIS, method),
+        )
+
+
+# A season in which a log was replaced has a factor per part: its line here has the mean, and those
+# of the parts stand below.
+_LOG_FACTORS = """
+WITH own AS (
+    SELECT method, season, sum(n_tows) AS n_tows, sum(n_links) AS n_links,
+           max(component) AS component, CASE WHEN count(*) = 1 THEN max(influence) END AS influence,
+           CASE WHEN count(*) = 1 THEN max(influence_boat) END AS influence_boat,
+           CASE WHEN count(*) = 1 THEN max(factor_no_boats) END AS factor_no_boats,
+           CASE WHEN count(*) = 1 THEN max(agreement) END AS agreement
+    FROM season_links WHERE source != 'other log' GROUP BY method, season
+), step AS (
+    SELECT method, season, string_agg(DISTINCT cause, ', ' ORDER BY cause) AS cause
+    FROM season_steps GROUP BY method, season
+)
+SELECT f.season, f.factor, f.lo, f.hi, f.source, l.n_tows, l.n_links, l.component, l.influence,
+       l.influence_boat, l.factor_no_boats, l.agreement, s.cause
+FROM log_factors AS f LEFT JOIN own AS l USING (method, season)
+LEFT JOIN step AS s USING (method, season)
+WHERE f.method = ? ORDER BY f.season
+"""
+
+_LOG_PARTS = """
+SELECT season, part, log, source, n_tows, n_links, factor, lo, hi FROM season_links
+WHERE method = ? AND (source = 'other log' OR season IN (
+    SELECT season FROM season_links WHERE part > 0 AND source != 'other log'))
+ORDER BY season, log, part
+"""
+
+_DIAGNOSIS = """
+SELECT season, part, instrument, unit, estimate, lo, hi, p_fault, distance_sd, verdict, first_tow,
+       rests_on, confused_with
+FROM season_diagnosis
+WHERE method = ? AND verdict NOT IN ('sound', 'estimated')
+ORDER BY season, part, instrument
+"""
+
+_BY_SEASON = """
+SELECT method, season, tows, median_ratio, lowest_ratio, highest_ratio,
+       'concept-' || from_method AS compared_with
+FROM season_changes ORDER BY method, season
+"""
+
+_BIGGEST_CHANGES = """
+SELECT c.from_edition, c.to_edition, c.fsn_no, b.name, c.rowers, c.crew_class,
+       c.cw_ratio, c.time_ratio, c.change
+FROM register_changes AS c LEFT JOIN boats AS b USING (fsn_no)
+WHERE c.cw_ratio IS NOT NULL
+ORDER BY abs(ln(c.cw_ratio)) DESC, c.to_edition, c.fsn_no LIMIT ?
+"""

@@ -1,0 +1,180 @@
+"""A scenario: what it does to register, types, agreement of repeats and a boat.
+
+Two drafts side by side as frames, for a page that shows them. Every number comes from `pipeline`;
+here rows are joined with names, put in order and counted. Nothing is stored.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline import curve
+from pipeline.consistency.compared import beside_their_type
+from pipeline.consistency.observed import UNKNOWN_TYPE, bend_of_curve
+from pipeline.curve import VALID_RATIO
+from pipeline.register.changes import register_changes, side_by_side
+from pipeline.register.register import LINE
+from warehouse.queries.chosen_tows import ALL, chosen
+from warehouse.queries.history import Draft
+
+LINE_RATIOS: Final = np.linspace(*VALID_RATIO, 13)
+"""Speeds at which a curve is drawn / declared speed."""
+
+TYPE_COLUMNS: Final = (
+    *("method", "fsn_no", "name", "boat_type", "rowers", "crew_class", "tow_id", "season"),
+    *("weight_kg", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_standard_kg_m"),
+)
+CURVE_COLUMNS: Final = (
+    *("method", "tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m"),
+    *("cw_hi_kg_m", "runs_used", "status", "flags"),
+)
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Two drafts of one history, compared."""
+
+    before: Draft
+    after: Draft
+
+    @cached_property
+    def register_lines(self) -> pl.DataFrame:
+        """Every line of either register, with name and type; the largest change first.
+
+        Returns:
+            Columns of `register_changes` and `side_by_side`, with `name` and `boat_type`. A line
+            that appears or disappears comes before all that change.
+        """
+        drafts = self.before.register, self.after.register
+        return (
+            register_changes(*drafts)
+            .drop("causes")
+            .join(side_by_side(*drafts), on=LINE, maintain_order="left")
+            .join(self._names, on="fsn_no", how="left", maintain_order="left")
+            .sort(
+                pl.col("cw_ratio").log().abs().fill_null(float("inf")),
+                *LINE,
+                descending=[True, *(False for _ in LINE)],
+            )
+        )
+
+    def summary(self) -> dict[str, object]:
+        """How many lines change, who gains and loses, and by how much."""
+        lines = self.register_lines
+        changed = lines.filter(pl.col("change") == "changed")
+        gain = changed["gain_in_two_hours_s"]
+        counts = dict(lines["change"].value_counts().iter_rows())
+        return {
+            "lines": lines.height,
+            "same": counts.get("same", 0),
+            "changed": changed.height,
+            "added": counts.get("added", 0),
+            "removed": counts.get("removed", 0),
+            "gains": int((gain > 0).sum()),
+            "loses": int((gain < 0).sum()),
+            "median_ratio": lines["cw_ratio"].median(),
+            "lowest_ratio": lines["cw_ratio"].min(),
+            "highest_ratio": lines["cw_ratio"].max(),
+        }
+
+    def season_change(self) -> pl.DataFrame:
+        """Cw after / Cw before of all tows: median and range per season."""
+        old = self.before.made.curves.select("tow_id", old="cw_kg_m")
+        ratio = pl.col("cw_kg_m") / pl.col("old")
+        return (
+            self.after.made.curves.join(old, on="tow_id", maintain_order="left")
+            .drop_nulls(["cw_kg_m", "old"])
+            .group_by("method", "season", maintain_order=True)
+            .agg(
+                pl.len().alias("tows"),
+                ratio.median().alias("median_ratio"),
+                ratio.min().alias("lowest_ratio"),
+                ratio.max().alias("highest_ratio"),
+            )
+            .sort("season")
+        )
+
+    def type_tows(self, tows: str = ALL) -> pl.DataFrame:
+        """Tows of boats of a known type under both methods, as `compared_tows` has them.
+
+        Args:
+            tows: which; see `chosen_tows`.
+        """
+        return pl.concat(
+            beside_their_type(chosen(draft.observed, tows))
+            .filter(pl.col("boat_type") != UNKNOWN_TYPE)
+            .join(self._names.drop("boat_type"), on="fsn_no", how="left", maintain_order="left")
+            .select(TYPE_COLUMNS)
+            for draft in (self.before, self.after)
+        )
+
+    def type_homogeneity(self, tows: str = ALL) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity` under both methods, of the newest of these tows."""
+        return pl.concat(draft.type_homogeneity(tows) for draft in (self.before, self.after))
+
+    def reproducibility(self) -> pl.DataFrame:
+        """Rows of the table `reproducibility` under both methods."""
+        return pl.concat(draft.reproducibility for draft in (self.before, self.after))
+
+    def log_factors(self) -> pl.DataFrame:
+        """Rows of the table `log_factors` under both methods."""
+        return pl.concat(draft.made.log_factors for draft in (self.before, self.after))
+
+    def boat_curves(self, fsn_no: str) -> pl.DataFrame:
+        """Every tow's curve of a boat under both methods."""
+        return self._curves_of(fsn_no).select(CURVE_COLUMNS)
+
+    def boat_figure(self, fsn_no: str) -> pl.DataFrame:
+        """What the figure of a boat's curves draws.
+
+        Returns:
+            Rows of `kind` line (13 speeds over the valid range), point (a run) and declared (Cw
+            with its interval), with `method, tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m,
+            run, direction, used, interval`.
+        """
+        curves = self._curves_of(fsn_no).drop_nulls("cw_kg_m")
+        own = curves.select("method", "tow_id")
+        points = pl.concat(
+            draft.made.run_points.join(own, on=["method", "tow_id"], maintain_order="left")
+            for draft in (self.before, self.after)
+        )
+        shared = ("method", "tow_id", "speed_m_s", "cw_kg_m")
+        intervals = {d.method.name: d.method.interval for d in (self.before, self.after)}
+        declared = curves.with_columns(speed_m_s="declared_speed_m_s").select(
+            *shared,
+            "cw_lo_kg_m",
+            "cw_hi_kg_m",
+            kind=pl.lit("declared"),
+            interval=pl.col("method").replace_strict(intervals, return_dtype=pl.String),
+        )
+        drawn = points.drop_nulls("cw_kg_m").select(
+            *shared, "run", "direction", "used", kind=pl.lit("point")
+        )
+        return pl.concat([_lines(curves), drawn, declared], how="diagonal")
+
+    @property
+    def _names(self) -> pl.DataFrame:
+        return self.after.history.boats.select("fsn_no", "name", "boat_type")
+
+    def _curves_of(self, fsn_no: str) -> pl.DataFrame:
+        both = pl.concat(draft.made.curves for draft in (self.before, self.after))
+        return both.filter(pl.col("fsn_no") == fsn_no).sort("season", "tow_id", maintain_order=True)
+
+
+def _lines(curves: pl.DataFrame) -> pl.DataFrame:
+    """Each curve at `LINE_RATIOS` of its declared speed."""
+    declared = curves["declared_speed_m_s"].to_numpy()
+    a, cw = (curves[name].to_numpy() for name in ("a_kg_m", "cw_kg_m"))
+    bend = bend_of_curve(a, cw, declared)
+    lines = [
+        curves.select("method", "tow_id").with_columns(
+            pl.Series("speed_m_s", ratio * declared, pl.Float64),
+            pl.Series("cw_kg_m", curve.cw(a, bend, ratio * declared), pl.Float64),
+            kind=pl.lit("line"),
+        )
+        for ratio in LINE_RATIOS
+    ]
+    return pl.concat(lines).filter(pl.col("cw_kg_m").is_finite())

@@ -1,0 +1,47 @@
+"""Which code made a table: a hash of the packages that compute it, byte by byte.
+
+Coarse on purpose: a comment in one of them makes a table again, and equal contents stop there.
+Words, pages and commands are in none of them; what a method or a list says is in fingerprints.
+"""
+
+import hashlib
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final
+
+HASH_LENGTH: Final = 12
+
+READING: Final = ("warehouse.archive", "warehouse.intake")
+"""The archive's lists and files are read with these."""
+
+ADDING: Final = ("pipeline.blocks",)
+"""Samples are added up with these."""
+
+COMPUTING: Final = ("pipeline", "warehouse.archive", "warehouse.derive")
+"""All that follows from lists, samples and blocks is computed with these."""
+
+
+@cache
+def code_hash(*packages: str) -> str:
+    """Hash of the modules in some packages, with their paths."""
+    hashed = hashlib.sha256()
+    for file in sorted(file for package in packages for file in _modules(package)):
+        hashed.update(file.relative_to(_ROOT).as_posix().encode() + b"\0" + file.read_bytes())
+    return hashed.hexdigest()[:HASH_LENGTH]
+
+
+_ROOT: Final = Path(__file__).parents[2]
+_DECLARED: Final = ("tables", "words")
+"""Rooms of `pipeline` that compute nothing: declared types are in fingerprints, texts in pages."""
+
+
+def _modules(package: str) -> list[Path]:
+    """The files of a package, or that of a single module."""
+    spec = find_spec(package)
+    if spec is None or spec.origin is None:
+        raise ModuleNotFoundError(package)
+    file = Path(spec.origin)
+    if not spec.submodule_search_locations:
+        return [file]
+    return [f for f in file.parent.rglob("*.py") if f.parent.name not in _DECLARED]

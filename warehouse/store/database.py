@@ -1,0 +1,204 @@
+"""The database that readers use: all tables in one DuckDB file, built beside and swapped in.
+
+A reader that has the old file open keeps reading the old tables; one that opens the file later
+sees the new ones. Nobody sees half of either. What is asked of it is in `warehouse.queries.reports`
+and `warehouse.queries.audit`.
+"""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import duckdb
+import polars as pl
+import polars.selectors as cs
+
+from pipeline.errors import MissingKnowledgeError, UnavailableError
+from pipeline.tables.row import Row
+from pipeline.tables.views import VIEWS
+from pipeline.words import say
+from warehouse.store.files import written_beside
+
+if TYPE_CHECKING:
+    from pipeline.tables.declare import dy
+
+STORAGE: Final = "v1.0.0"
+"""Any DuckDB since 1.0 opens the file; the newest form would shut out programs of last year."""
+
+_HELD: Final = say(
+    "another program has it open for writing. Close that program, or let it open the file to "
+    "read only, and try again"
+)
+_SPOILT: Final = say(
+    "it is damaged, or another program wrote in it. Make it again with herijk rebuild, which knows "
+    "the archive"
+)
+
+
+def left_wal(path: Path) -> Path:
+    """What another program left beside the database; DuckDB would replay it into a new one."""
+    return path.with_name(f"{path.name}.wal")
+
+
+def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
+    """Writes the tables and the views, with key and meaning of each as a comment.
+
+    Args:
+        path: the database file; replaced at once when the new one is complete.
+        tables: frames by table name; those of `pipeline.tables.schemas.TABLES` get comments.
+    """
+    with written_beside(path) as beside:
+        beside.unlink()
+        with duckdb.connect() as connection:
+            connection.execute("SET threads = 1")
+            connection.execute(f"ATTACH {_quoted(str(beside))} AS w (STORAGE_VERSION '{STORAGE}')")
+            connection.execute("USE w")
+            for name, frame in sorted(tables.items()):
+                # Each comment by itself would sync the disk; all tables at once would fill memory.
+                connection.execute("BEGIN")
+                connection.register("frame", frame.to_arrow())
+                connection.execute(f'CREATE TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
+                connection.unregister("frame")
+                _describe(connection, name)
+                connection.execute("COMMIT")
+            connection.execute("BEGIN")
+            _add_views(connection, tables)
+            bare = _bare_lists(tables)
+            for name, column in bare:
+                connection.execute(f'INSERT INTO "{name}" ("{column}") VALUES ([NULL])')  # noqa: S608
+            connection.execute("COMMIT")
+            for name, column in bare:
+                connection.execute(f'DELETE FROM "{name}" WHERE len("{column}") > 0')  # noqa: S608
+        left_wal(path).unlink(missing_ok=True)
+
+
+def _bare_lists(tables: Mapping[str, pl.DataFrame]) -> list[tuple[str, str]]:
+    """Columns of lists without any element: DuckDB 1.0 fails on one, unless it once had one."""
+    return [
+        (name, column.name)
+        for name, frame in sorted(tables.items())
+        for column in frame.select(cs.list())
+        if len(column) and not column.list.len().sum()
+    ]
+
+
+def _describe(connection: duckdb.DuckDBPyConnection, name: str) -> None:
+    """What a table and its columns mean."""
+    from pipeline.tables.schemas import ABOUT, TABLES  # noqa: PLC0415 - half a second that readers need not wait
+
+    schema = (TABLES | ABOUT).get(name)
+    if schema is None:
+        return
+    comments = [f'COMMENT ON TABLE "{name}" IS {_quoted(_meaning(schema))}']
+    comments += (
+        f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(text)}'
+        for column, text in _column_meanings(schema).items()
+    )
+    connection.execute(";".join(comments))  # one by one they take half as long again
+
+
+def _column_meanings(schema: "type[dy.Schema]") -> dict[str, str]:
+    """What the columns of a table mean, each with its unit."""
+    return {
+        name: f"{column.description} [{unit}]"
+        if (unit := (column.metadata or {}).get("unit"))
+        else str(column.description)
+        for name, column in schema.columns().items()
+    }
+
+
+def _meaning(schema: "type[dy.Schema]") -> str:
+    """What a table is, with its key: a declared one would keep DuckDB 1.0 from opening the file."""
+    key = ", ".join(schema.primary_key())
+    return f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
+
+
+def _add_views(connection: duckdb.DuckDBPyConnection, tables: Mapping[str, pl.DataFrame]) -> None:
+    """The views, where the tables are those of a rebuild."""
+    from pipeline.tables.schemas import TABLES  # noqa: PLC0415 - as above
+
+    if "register" not in tables:
+        return
+    for name, view in VIEWS.items():
+        connection.execute(f'CREATE VIEW "{name}" AS {view.query}')
+        connection.execute(f'COMMENT ON VIEW "{name}" IS {_quoted(view.meaning)}')
+        known: dict[str, str] = {}
+        for table in reversed(view.tables):
+            known |= _column_meanings(TABLES[table])
+        known |= view.own
+        for column in connection.table(name).columns:
+            connection.execute(f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(known[column])}')
+
+
+def _quoted(text: str | None) -> str:
+    return "'" + (text or "").replace("'", "''") + "'"
+
+
+NO_TOW: Final = say(
+    "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "
+    "quarantine say why"
+)
+
+
+def open_database(path: Path) -> duckdb.DuckDBPyConnection:
+    """The database, to read only.
+
+    Raises:
+        MissingKnowledgeError: it was not made yet.
+        UnavailableError: another program has it open to write, or it cannot be read.
+    """
+    if not path.exists():
+        raise MissingKnowledgeError(
+            "{} is not there; make it with: herijk rebuild --archive DIR --data {}",
+            path,
+            path.parent,
+        )
+    try:
+        return duckdb.connect(path, read_only=True)
+    except duckdb.Error as error:
+        locked = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
+        raise UnavailableError(
+            "{} cannot be opened: {}", path, _HELD if locked else _SPOILT
+        ) from error
+
+
+def open_results(path: Path) -> duckdb.DuckDBPyConnection:
+    """The database of a rebuild that accepted a tow.
+
+    Raises:
+        MissingKnowledgeError: it was not made yet, or no tow was accepted.
+        UnavailableError: as `open_database`.
+    """
+    connection = open_database(path)
+    if not connection.execute("SELECT 1 FROM tows LIMIT 1").fetchall():
+        connection.close()
+        raise MissingKnowledgeError("{} has no tow: {}", path, NO_TOW)
+    return connection
+
+
+def choice_of(names: Iterable[str]) -> str:
+    """What can be chosen, for a sentence: names, or why there is none."""
+    known = ", ".join(sorted(names))
+    return say("there are {}", known) if known else say("there is none: {}", NO_TOW)
+
+
+def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError:
+    """What to say of an edition or draft that the database does not hold."""
+    return MissingKnowledgeError(
+        "the last rebuild has no edition {}; {}. One published since is there after herijk rebuild",
+        edition,
+        choice_of(known),
+    )
+
+
+def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> list[Row]:
+    """What a query gives, a dictionary per row; `values` fill its question marks."""
+    cursor = connection.execute(query, list(values))
+    names = [column[0] for column in cursor.description or []]
+    return [dict(zip(names, row, strict=True)) for row in cursor.fetchall()]
+
+
+def is_simulated(connection: duckdb.DuckDBPyConnection) -> bool:
+    """Whether the archive behind it was made by the simulator."""
+    row = connection.execute("SELECT value FROM about WHERE key = 'simulated'").fetchone()
+    return row is not None and row[0] == "true"

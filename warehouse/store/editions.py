@@ -1,0 +1,315 @@
+"""The folder of an edition: what it consists of, made whole or not at all, and read again.
+
+Everything is written beside, synced and renamed. A second edition of the same name is refused. What
+goes into the files, and whether they are still what they were, belongs to `warehouse.editions`.
+"""
+
+import datetime as dt
+import hashlib
+import json
+import re
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+import polars as pl
+from filelock import FileLock
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.method.definition import Method, parse_method
+from pipeline.register.register import with_empty_thwart
+from pipeline.tables.curves import Curves
+from pipeline.tables.declare import dy
+from pipeline.tables.register import Register
+from pipeline.words import say
+from warehouse.store.files import TEMPORARY_PREFIX, sync
+from warehouse.store.store import Store
+
+Kind = Literal["recomputed", "as_printed"]
+
+ABOUT: Final = "edition.json"
+METHOD: Final = "method.toml"
+DECISIONS: Final = "decisions.json"
+CSV: Final = "register.csv"
+XLSX: Final = "register.xlsx"
+INPUTS: Final = "inputs.csv"
+PACKAGE: Final = "datapackage.json"
+NOTES: Final = "toelichting.md"
+NOTES_EN: Final = "release_notes.md"
+NOTICE: Final = "bericht.md"
+NOTICE_EN: Final = "notice.md"
+CHANGES: Final = "register_changes"
+MEASURED: Final = "measured"
+"""The basis of a line that was computed from a tow."""
+TABLES: Final = (
+    "register",
+    "tows",
+    "tow_runs",
+    "curves",
+    "run_points",
+    "log_factors",
+    "season_links",
+    "tow_instruments",
+    "ensemble",
+    CHANGES,
+)
+
+_NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,59}")
+_LOCK: Final = f"{TEMPORARY_PREFIX}lock"
+
+
+class TableDigest(BaseModel):
+    """Rows and digest of a table's values."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    rows: int
+    digest: str
+
+
+class About(BaseModel):
+    """`edition.json`: what an edition is, by whose decision, and the hashes of all its files.
+
+    Attributes:
+        kind: `recomputed` from the archive, or `as_printed`: a register as the federation had it.
+        method, method_hash: None for a register as printed.
+        inputs_digest: of all tows that went in with their files, not only those of the lines.
+        carried_from: the printed edition of which lines were taken over, if any.
+        previous: the edition that the release notes compare with.
+        texts_version: of the code and templates that wrote its texts; None in editions of before
+            that was noted.
+        number, after_seal: place in the chain of editions, from 1, and seal of the one published
+            before; None in editions of before there was a chain.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    edition: str
+    kind: Kind
+    method: str | None
+    method_hash: str | None
+    code_version: str
+    valid_from: dt.date
+    published_on: dt.date
+    decision: str
+    simulated: bool
+    inputs_digest: str
+    carried_from: str | None
+    previous: str | None
+    texts_version: str | None = None
+    number: int | None = None
+    after_seal: str | None = None
+    tables: dict[str, TableDigest] = {}
+    files: dict[str, str] = {}
+    seal: str = ""
+
+    def sealed(self) -> "About":
+        """The same with its seal: a hash of all the rest."""
+        return self.model_copy(update={"seal": self.expected_seal})
+
+    @property
+    def expected_seal(self) -> str:
+        """SHA-256 of everything but the seal."""
+        unknown = {"number", "after_seal"} if self.number is None else set()
+        unknown |= {"texts_version"} if self.texts_version is None else set()
+        content = self.model_dump(mode="json", exclude={"seal", *unknown})
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Edition:
+    """An edition with its tables, read or about to be written.
+
+    Attributes:
+        about: what it is.
+        tables: by name, those of `TABLES` it has: `register` always, `register_changes` when there
+            was an edition before it, the others when it was recomputed.
+        method: the method, with every option of every season; None when as printed.
+    """
+
+    about: About
+    tables: dict[str, pl.DataFrame]
+    method: Method | None
+
+    @property
+    def register(self) -> pl.DataFrame:
+        """The lines: the columns of the table `register`, and what else an edition says of them."""
+        return self.tables["register"]
+
+
+def edition_names(store: Store) -> list[str]:
+    """The published editions, sorted, without any that is still being written."""
+    return sorted(f.name for f in store.editions.glob("[!.]*") if f.is_dir())
+
+
+def edition_path(store: Store, edition: str) -> Path:
+    """The folder of a published edition.
+
+    Raises:
+        MissingKnowledgeError: there is none of that name.
+    """
+    if edition not in edition_names(store):
+        known = ", ".join(edition_names(store)) or say("none yet")
+        raise MissingKnowledgeError("there is no edition {}; published: {}", edition, known)
+    return store.editions / edition
+
+
+def check_new_name(store: Store, edition: str) -> None:
+    """Refuses a name that no new edition can have.
+
+    Raises:
+        BrokenPromiseError: the name is taken.
+        MissingKnowledgeError: it cannot be the name of a folder everywhere, or is a draft's.
+    """
+    if not _NAME.fullmatch(edition) or edition.startswith("concept-"):
+        raise MissingKnowledgeError(
+            "{!r} cannot name an edition: use letters, digits, '.', '_' and '-', "
+            "begin with a letter or digit, and not with 'concept-', which marks "
+            "drafts",
+            edition,
+        )
+    if (store.editions / edition).is_dir():
+        raise BrokenPromiseError(
+            "edition {} was already published and is never changed; publish under "
+            "another name, for example with a higher number",
+            edition,
+        )
+
+
+def read_about(path: Path) -> About:
+    """What an edition says about itself.
+
+    Raises:
+        BrokenPromiseError: its `edition.json` is missing or cannot be read.
+    """
+    try:
+        return About.model_validate_json((path / ABOUT).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, ValidationError) as error:
+        reason = str(error).splitlines()[0]
+        raise BrokenPromiseError(
+            "edition {}: {} is missing or damaged ({}); put the folder back from a copy",
+            path.name,
+            ABOUT,
+            reason,
+        ) from error
+
+
+def read_edition(store: Store, edition: str) -> Edition:
+    """An edition with its tables.
+
+    Raises:
+        MissingKnowledgeError: there is none of that name, or its method is not understood by the
+            code of today.
+        BrokenPromiseError: a file is missing or damaged.
+    """
+    path = edition_path(store, edition)
+    about = read_about(path)
+    tables = {name: read_table(path, name) for name in about.tables}
+    tables |= {
+        name: with_empty_thwart(tables[name]) for name in ("register", CHANGES) if name in tables
+    }
+    tables |= {
+        name: _with_later_columns(schema, tables[name])
+        for name, schema in {"register": Register, "curves": Curves}.items()
+        if name in tables
+    }
+    method = None
+    if about.kind == "recomputed":
+        method = parse_method((path / METHOD).read_text(encoding="utf-8"), f"{edition}/{METHOD}")
+    return Edition(about, tables, method)
+
+
+def _with_later_columns(schema: type[dy.Schema], frame: pl.DataFrame) -> pl.DataFrame:
+    """A table of an edition, with what was not yet said when it was published, empty."""
+    columns = schema.columns()
+    missing = [n for n, column in columns.items() if column.nullable and n not in frame.columns]
+    return frame.with_columns(pl.lit(None, columns[n].dtype).alias(n) for n in missing)
+
+
+def method_of_edition(store: Store, edition: str) -> Method:
+    """The method that an edition was made with, as it was then.
+
+    Raises:
+        MissingKnowledgeError: the edition was taken over from print and has no method.
+    """
+    method = read_edition(store, edition).method
+    if method is None:
+        raise MissingKnowledgeError(
+            "edition {} was taken over from print and has no method; compare it with "
+            "another edition: herijk diff {} EDITION",
+            edition,
+            edition,
+        )
+    return method
+
+
+def read_table(path: Path, name: str) -> pl.DataFrame:
+    """A table of an edition.
+
+    Raises:
+        BrokenPromiseError: the file is missing or damaged.
+    """
+    try:
+        return pl.read_parquet((path / f"{name}.parquet").read_bytes())
+    except (OSError, pl.exceptions.PolarsError) as error:
+        raise BrokenPromiseError(
+            "edition {}: {}.parquet is missing or damaged; put the folder back from a copy",
+            path.name,
+            name,
+        ) from error
+
+
+def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str, bytes]]) -> Path:
+    """Makes an edition of files, by name.
+
+    They are asked for where no other publication is at work, since they say which came before.
+
+    After an error, a full disk or a kill there is no edition of that name. What a killed
+    publication left is cleared away by the next one.
+
+    Raises:
+        BrokenPromiseError: the name is taken, or the folder could not be written.
+    """
+    target = store.editions / edition
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with _one_at_a_time(target.parent):
+            check_new_name(store, edition)
+            _write_beside(target, contents())
+    except OSError as error:
+        raise BrokenPromiseError(
+            "edition {} could not be written: {}. Nothing was published; make room "
+            "or mend the folder, and publish again",
+            edition,
+            error.strerror or error,
+        ) from error
+    return target
+
+
+def _write_beside(path: Path, contents: Mapping[str, bytes]) -> None:
+    beside = Path(tempfile.mkdtemp(prefix=f"{TEMPORARY_PREFIX}{path.name}-", dir=path.parent))
+    try:
+        for name, content in contents.items():
+            (beside / name).write_bytes(content)
+            sync(beside / name)
+        beside.chmod(0o755)
+        sync(beside)
+        beside.rename(path)
+        sync(path.parent)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+@contextmanager
+def _one_at_a_time(root: Path) -> Iterator[None]:
+    """Keeps other publications out, so that anything half-written was left by a dead one."""
+    with FileLock(root / _LOCK):
+        for left in root.glob(f"{TEMPORARY_PREFIX}*"):
+            if left.is_dir():
+                shutil.rmtree(left)
+        yield

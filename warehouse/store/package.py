@@ -1,0 +1,222 @@
+"""The tables of the lake described for any program: as a data package, and for DCAT.
+
+`lake/tables/` can be copied and passed on as it is. Of its Parquet files, one per table or per
+method, `datapackage.json` (Frictionless Data Package, version 2) gives columns, keys, licence,
+sources and hashes; `dcat.jsonld` (DCAT 3) says the same to catalogues. Both are written last.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Self
+
+import polars as pl
+
+from warehouse.store.files import file_sha256, written_beside
+from warehouse.store.store import Store, count_rows
+
+if TYPE_CHECKING:
+    from pipeline.tables.declare import dy
+
+DESCRIPTOR: Final = "datapackage.json"
+CATALOGUE: Final = "dcat.jsonld"
+_PARQUET: Final = "application/vnd.apache.parquet"
+_NO_LICENCE: Final = "The archive declares no licence. Ask its owner before passing this on."
+_SIMULATED: Final = "Simulated: these are not the federation's measurements."
+
+
+@dataclass(frozen=True)
+class Rights:
+    """Who publishes what is made from an archive, and what others may do with it.
+
+    Attributes:
+        publisher: its name, if the archive says so.
+        licence: SPDX name or web address of the licence, if the archive says so.
+    """
+
+    publisher: str | None = None
+    licence: str | None = None
+
+    @classmethod
+    def of(cls, store: Store) -> Self:
+        """What the archive of a data folder declares."""
+        about = store.read("about_archive").row(0, named=True)
+        return cls(about.get("publisher"), about.get("licence"))
+
+    @property
+    def described(self) -> dict[str, object]:
+        """The same as the fields of a data package."""
+        fields: dict[str, object] = {}
+        if self.publisher:
+            fields["contributors"] = [{"title": self.publisher, "roles": ["publisher"]}]
+        if self.licence:
+            key = "path" if "://" in self.licence else "name"
+            fields["licenses"] = [{key: self.licence}]
+        return fields
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where the tables come from.
+
+    Attributes:
+        version: of the code that made them.
+        simulated: the archive was made by a simulator.
+        rights: of the archive.
+        sources: title and hash of all that they were made from.
+    """
+
+    version: str
+    simulated: bool
+    rights: Rights
+    sources: tuple[tuple[str, str], ...]
+
+
+def write_package(folder: Path, files: "Mapping[Path, type[dy.Schema]]", origin: Origin) -> None:
+    """Describes tables that lie there.
+
+    Args:
+        folder: holds the files, and their description.
+        files: the declared table of each file.
+        origin: where they come from.
+    """
+    resources = [_resource(folder, path, schema) for path, schema in sorted(files.items())]
+    package = _package(resources, origin)
+    for name, said in ((DESCRIPTOR, package), (CATALOGUE, _catalogue(package, origin, folder))):
+        with written_beside(folder / name) as beside:
+            text = json.dumps(said, indent=1, ensure_ascii=False)
+            beside.write_text(text, encoding="utf-8")
+
+
+def package_is_whole(folder: Path) -> bool:
+    """Whether every file is there as it was described."""
+    try:
+        package = json.loads((folder / DESCRIPTOR).read_text(encoding="utf-8"))
+        described = {resource["path"]: resource["hash"] for resource in package["resources"]}
+        return (folder / CATALOGUE).exists() and all(
+            f"sha256:{file_sha256(folder / path)}" == hashed for path, hashed in described.items()
+        )
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def _resource(folder: Path, path: Path, schema: "type[dy.Schema]") -> dict[str, object]:
+    """Describes one file; that of a method is named `table.method`."""
+    within = path.relative_to(folder)
+    return {
+        "name": ".".join(within.with_suffix("").parts),
+        "type": "table",
+        "path": within.as_posix(),
+        "format": "parquet",
+        "mediatype": _PARQUET,
+        "description": schema.__doc__,
+        "hash": f"sha256:{file_sha256(path)}",
+        "rowcount": count_rows(path),
+        "schema": {
+            "fields": [_field(*column) for column in schema.columns().items()],
+            "primaryKey": schema.primary_key(),
+            "missingValues": [],
+        },
+    }
+
+
+def _field(name: str, column: "dy.Column") -> dict[str, object]:
+    unit = (column.metadata or {}).get("unit")
+    limits = {
+        key: getattr(column, limit, None)
+        for key, limit in (("minimum", "min"), ("maximum", "max"), ("pattern", "regex"))
+    }
+    constraints = {"required": not column.nullable, **limits}
+    return {
+        "name": name,
+        "type": _field_type(column.dtype),
+        "description": column.description,
+        **({"unit": unit} if unit else {}),
+        "constraints": {key: value for key, value in constraints.items() if value is not None},
+    }
+
+
+def _field_type(dtype: pl.DataType) -> str:
+    """The name of a type in a data package.
+
+    Raises:
+        KeyError: a table has a column of a type that has no name here yet.
+    """
+    if dtype.is_integer():
+        return "integer"
+    names = {pl.Float64: "number", pl.String: "string", pl.Boolean: "boolean", pl.Date: "date"}
+    return "array" if isinstance(dtype, pl.List) else names[dtype.base_type()]
+
+
+def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
+    """The descriptor; its `id` is a hash of those of all files."""
+    hashes = "".join(resource["hash"] for resource in resources)
+    said = [_SIMULATED] if origin.simulated else []
+    said += [] if origin.rights.licence else [_NO_LICENCE]
+    return {
+        "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
+        "name": "herijk",
+        "id": f"urn:sha256:{hashlib.sha256(hashes.encode()).hexdigest()}",
+        "title": "Tow tests, curves and registers of Dutch rowing sloops, recomputed by Herijk",
+        "description": " ".join(
+            [*said, "A file per table or method; SI units, named in each field."]
+        ),
+        "version": origin.version,
+        "sources": [{"title": title, "sha256": sha256} for title, sha256 in origin.sources],
+        **origin.rights.described,
+        "resources": resources,
+    }
+
+
+def _catalogue(package: Mapping[str, Any], origin: Origin, folder: Path) -> dict[str, Any]:
+    """The same for catalogues of open data."""
+    described: dict[str, object] = {
+        "@context": {
+            "dcat": "http://www.w3.org/ns/dcat#",
+            "dct": "http://purl.org/dc/terms/",
+            "foaf": "http://xmlns.com/foaf/0.1/",
+            "prov": "http://www.w3.org/ns/prov#",
+            "spdx": "http://spdx.org/rdf/terms#",
+        },
+        "@id": package["id"],
+        "@type": "dcat:Dataset",
+        "dct:title": package["title"],
+        "dct:description": package["description"],
+        "dct:identifier": package["id"],
+        "dcat:version": package["version"],
+        "dct:conformsTo": {"@id": package["$schema"]},
+        "prov:wasDerivedFrom": [
+            {"dct:title": title, "dct:identifier": f"urn:sha256:{sha256}"}
+            for title, sha256 in origin.sources
+        ],
+        "dcat:distribution": [_distribution(resource, folder) for resource in package["resources"]],
+    }
+    rights = origin.rights
+    if rights.publisher:
+        described["dct:publisher"] = {"@type": "foaf:Agent", "foaf:name": rights.publisher}
+    if rights.licence:
+        described["dct:license"] = {"@id": _address(rights.licence)}
+    else:
+        described["dct:accessRights"] = _NO_LICENCE
+    return described
+
+
+def _address(licence: str) -> str:
+    return licence if "://" in licence else f"https://spdx.org/licenses/{licence}"
+
+
+def _distribution(resource: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    return {
+        "@type": "dcat:Distribution",
+        "dct:title": resource["name"],
+        "dct:description": resource["description"],
+        "dcat:downloadURL": {"@id": resource["path"]},
+        "dcat:mediaType": f"https://www.iana.org/assignments/media-types/{_PARQUET}",
+        "dcat:byteSize": (folder / resource["path"]).stat().st_size,
+        "spdx:checksum": {
+            "spdx:algorithm": {"@id": "spdx:checksumAlgorithm_sha256"},
+            "spdx:checksumValue": resource["hash"].removeprefix("sha256:"),
+        },
+    }

@@ -1,0 +1,265 @@
+"""Where everything of a data folder lies, and how tables are written there.
+
+The lake holds Parquet: the samples and the blocks of each tow, written once and named by content,
+and the tables, one file per table or per partition of it (a season, a method). Each table file
+carries the fingerprint of what it was made from, so that a rebuild does only what changed. What a
+table means is in `tables.schemas`; the database that readers use is `warehouse.store.database`.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Self
+
+import polars as pl
+import pyarrow as pa  # type: ignore[import-untyped]
+import pyarrow.parquet as pq  # type: ignore[import-untyped]
+
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from warehouse.store.files import file_sha256, written_beside
+from warehouse.store.machine_faults import is_machine_fault
+
+FINGERPRINT_KEY: Final = "herijk.fingerprint"
+CONTENTS_KEY: Final = "herijk.contents"
+
+
+def fingerprint(*parts: object) -> str:
+    """A hash of anything that JSON can hold, equal wherever the parts are equal."""
+    text = json.dumps(parts, sort_keys=True, default=str, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def table_digest(frame: pl.DataFrame) -> str:
+    """A hash of a table's values as they are read: 13 significant digits, in row order."""
+    lists = [c for c, dtype in frame.schema.items() if isinstance(dtype, pl.List)]
+    flat = frame.with_columns(pl.col(lists).list.join("\x1f")) if lists else frame
+    text = flat.write_csv(float_scientific=True, float_precision=12)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Store:
+    """The data folder."""
+
+    root: Path
+
+    @property
+    def lake(self) -> Path:
+        """Samples, blocks and tables."""
+        return self.root / "lake"
+
+    @property
+    def editions(self) -> Path:
+        """The published editions, each under its name."""
+        return self.root / "editions"
+
+    @property
+    def database(self) -> Path:
+        """The DuckDB file with all tables."""
+        return self.root / "warehouse.duckdb"
+
+    @property
+    def dagster_home(self) -> Path:
+        """Dagster's runs and asset history."""
+        return self.root / "dagster"
+
+    @property
+    def file_hashes(self) -> Path:
+        """Content hashes of archive files already seen: a cache, of this machine only."""
+        return self.lake / "file_hashes.json"
+
+    def samples_path(self, season: int, key: str) -> Path:
+        """The samples of one tow."""
+        return self.lake / "samples" / f"season={season}" / f"{key}.parquet"
+
+    def blocks_path(self, season: int, key: str) -> Path:
+        """The blocks of one tow."""
+        return self.lake / "blocks" / f"season={season}" / f"{key}.parquet"
+
+    @property
+    def table_folder(self) -> Path:
+        """The tables."""
+        return self.lake / "tables"
+
+    def table_path(self, table: str, partition: str | None = None) -> Path:
+        """A table, or one partition of it."""
+        if partition is None:
+            return self.table_folder / f"{table}.parquet"
+        return self.table_folder / table / f"{partition}.parquet"
+
+    def partitions(self, table: str) -> list[str]:
+        """The partitions of a table that have been written, sorted."""
+        folder = self.table_folder / table
+        return sorted(f.stem for f in folder.glob("[!.]*.parquet"))
+
+    def write(
+        self, table: str, frame: pl.DataFrame, made_from: str, partition: str | None = None
+    ) -> None:
+        """Writes a table or partition with the fingerprint of what it was made from."""
+        write_parquet(frame, self.table_path(table, partition), {FINGERPRINT_KEY: made_from})
+
+    def read(
+        self, table: str, partition: str | None = None, columns: Sequence[str] | None = None
+    ) -> pl.DataFrame:
+        """A table or partition as written, or some of its columns."""
+        return read_parquet(self.table_path(table, partition), columns)
+
+    def read_all(self, table: str, partitions: Iterable[str] | None = None) -> pl.DataFrame:
+        """Partitions of a table, one below the other: the given ones, or all."""
+        chosen = self.partitions(table) if partitions is None else partitions
+        return pl.concat([self.read(table, p) for p in chosen])
+
+    def made_from(self, table: str, partition: str | None = None) -> str | None:
+        """Fingerprint of what a table was made from; None if it is not there or is damaged."""
+        return metadata_of(self.table_path(table, partition), FINGERPRINT_KEY)
+
+    def contents(self, table: str, partition: str | None = None) -> str | None:
+        """Hash of what is in a table: equal for equal tables, whatever they were made from."""
+        return metadata_of(self.table_path(table, partition), CONTENTS_KEY)
+
+    def count_rows(self, table: str, partition: str | None = None) -> int:
+        """Rows of a table or partition; raises as `read_parquet`."""
+        return count_rows(self.table_path(table, partition))
+
+    def remove(self, table: str, partition: str) -> None:
+        """Removes a partition whose season or method is no more."""
+        self.table_path(table, partition).unlink(missing_ok=True)
+
+
+def archive_root(store: Store) -> Path | None:
+    """Where the archive was when the warehouse was last rebuilt; None if it is not there now.
+
+    Raises:
+        MissingKnowledgeError: nothing was ever rebuilt in this data folder.
+    """
+    if store.made_from("about_archive") is None:
+        raise MissingKnowledgeError(
+            "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
+            store.root,
+            store.root,
+        )
+    root = Path(store.read("about_archive")["root"][0])
+    return root if root.is_dir() else None
+
+
+class DamagedFileError(BrokenPromiseError):
+    """A file that Herijk wrote cannot be read any more; it can be made again."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(
+            "{} is damaged. It can be made again: run herijk rebuild; when that comes back, look "
+            "at the disk",
+            path,
+        )
+        self.path = path
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Path]]:
+        return type(self), (self.path,)  # a helping process hands it over by its path
+
+
+_UNREADABLE: Final = (
+    pa.ArrowException,
+    pl.exceptions.PolarsError,
+    pl.exceptions.PanicException,
+    OSError,
+    ValueError,
+)
+
+
+def read_parquet(
+    path: Path, columns: Sequence[str] | None = None, use_threads: bool = True
+) -> pl.DataFrame:
+    """A frame that was written with `write_parquet`, its checksums verified.
+
+    Args:
+        path: the file.
+        columns: those to read; None for all.
+        use_threads: decode columns side by side; not where files already are.
+
+    Raises:
+        FileNotFoundError: it is not there.
+        DamagedFileError: it was changed since, by a failing disk or by hand.
+    """
+    # Not read_table: it imports Arrow's data sets, and with them pandas if that is there.
+    with _damage_named(path), pq.ParquetFile(path, page_checksum_verification=True) as file:
+        return pl.DataFrame(pl.from_arrow(file.read(columns, use_threads=use_threads)))
+
+
+def metadata_of(path: Path, key: str) -> str | None:
+    """What a file says of itself under a key; None if it is not there or damaged, or silent."""
+    if not path.exists():
+        return None
+    try:
+        stored = (pq.read_metadata(path).metadata or {}).get(key.encode())
+        return None if stored is None else bytes(stored).decode()
+    except _UNREADABLE as error:
+        if is_machine_fault(error):
+            raise
+        return None
+
+
+def count_rows(path: Path) -> int:
+    """Rows of a frame that was written with `write_parquet`; raises as `read_parquet`."""
+    with _damage_named(path):
+        return int(pq.read_metadata(path).num_rows)
+
+
+@contextmanager
+def _damage_named(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except FileNotFoundError:
+        raise
+    except _UNREADABLE as error:
+        if is_machine_fault(error):
+            raise
+        raise DamagedFileError(path) from error
+
+
+def write_parquet(
+    frame: pl.DataFrame,
+    path: Path,
+    metadata: dict[str, str] | None = None,
+    form: Mapping[str, object] | None = None,
+) -> None:
+    """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
+
+    Without checksums a changed byte can be read as another number.
+
+    Args:
+        frame: what to write.
+        path: where.
+        metadata: what else the file says.
+        form: how it is packed, in the words of Arrow; None for the form of tables.
+    """
+    table = frame.to_arrow()
+    tight = pa.Table.from_arrays(table.columns, schema=_tight_schema(table))
+    packed = _table_form(table.schema) if form is None else form
+    with (
+        written_beside(path) as target,
+        pq.ParquetWriter(target, tight.schema, write_page_checksum=True, **packed) as writer,
+    ):
+        writer.write_table(tight)
+        if metadata is not None:
+            hashed = fingerprint(str(frame.schema), file_sha256(target))  # all but the footer
+            writer.add_key_value_metadata(metadata | {CONTENTS_KEY: hashed})
+
+
+def _table_form(schema: pa.Schema) -> dict[str, object]:
+    """How a table is packed: most measured numbers occur once, so a dictionary of them is waste."""
+    numbers = [column.name for column in schema if pa.types.is_floating(column.type)]
+    others = [column.name for column in schema if column.name not in numbers]
+    return {
+        "compression": "zstd",
+        "use_byte_stream_split": numbers,
+        "use_dictionary": others,
+    }
+
+
+def _tight_schema(table: pa.Table) -> pa.Schema:
+    """Columns without gaps as columns that cannot have any: these are read in half the time."""
+    columns = zip(table.schema, table.columns, strict=True)
+    return pa.schema([f.with_nullable(c.null_count > 0) for f, c in columns])

@@ -1,0 +1,181 @@
+"""What Herijk itself failed on: a tow, a method, a page, a document.
+
+It is set aside, and the rest goes on.
+
+Each failure is a text file in the data folder, with its traceback, for whoever maintains Herijk.
+Tows are remembered besides, as long as neither their row of the list, their samples nor our code
+change: then they are tried again.
+"""
+
+import traceback
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Final
+
+import polars as pl
+
+from pipeline.errors import BrokenPromiseError, HerijkError
+from pipeline.tables.frames import frame_of
+from pipeline.tables.lake import FailedTows
+from pipeline.tables.row import Row
+from pipeline.words import Sentence, cause_of, say, spoken
+from warehouse.store.code import COMPUTING, code_hash
+from warehouse.store.files import written_beside
+from warehouse.store.machine_faults import is_machine_fault
+from warehouse.store.store import Store, fingerprint
+
+UNFORESEEN: Final = "unforeseen"
+"""The reason code of a tow on which Herijk itself failed, and the folder of tracebacks."""
+FAILED_TOWS: Final = "failed_tows"
+Border = Callable[[str], AbstractContextManager[object]]
+"""What stands round the work of one thing, given what that is."""
+_NOT_OURS: Final = (HerijkError, MemoryError, OSError, KeyboardInterrupt, SystemExit, GeneratorExit)
+
+
+class FailedTowsError(Exception):
+    """Tows that make Herijk fail, each by itself; the rest can be computed without them."""
+
+    def __init__(self, tows: tuple[str, ...], told: str, trace: str) -> None:
+        super().__init__(tows, told, trace)
+        self.tows, self.told, self.trace = tows, told, trace
+
+
+def is_unforeseen(error: BaseException) -> bool:
+    """Whether an error is a fault of ours: not of the input, and not of the machine.
+
+    A panic of a library in Rust is no `Exception`, and one of ours all the same.
+    """
+    return not isinstance(error, _NOT_OURS) and not is_machine_fault(error)
+
+
+def in_short(error: BaseException) -> str:
+    """Kind and first words of an error."""
+    return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+
+
+def traced(error: BaseException) -> str:
+    """The traceback as text."""
+    return "".join(traceback.format_exception(error))
+
+
+def sentence(tow_id: str, told: str) -> Sentence:
+    """What a volunteer reads about a tow that Herijk failed on."""
+    return say(
+        "Herijk itself failed on this tow ({}). Its files may be sound. Please report this to "
+        "whoever maintains Herijk, with unforeseen/{}.txt of the data folder.",
+        told,
+        _file_name(tow_id),
+    )
+
+
+def note(root: Path, what: str, trace: str) -> None:
+    """Keeps the traceback of a failure in the data folder."""
+    with written_beside(_file(root, what)) as beside:
+        beside.write_text(trace, encoding="utf-8")
+
+
+@contextmanager
+def border(root: Path, what: str, failed: list[str] | None = None) -> Iterator[None]:
+    """Round the work of one thing: an error of ours costs that thing, and is kept.
+
+    Args:
+        root: the data folder.
+        what: what the work is about, with its kind before it: `page types.html`.
+        failed: is given what failed.
+    """
+    try:
+        yield
+    except BaseException as error:
+        if not is_unforeseen(error):
+            raise
+        note(root, what, traced(error))
+        if failed is not None:
+            failed.append(what)
+    else:
+        forget(root, what)
+
+
+@contextmanager
+def documents(root: Path, command: str) -> Iterator[Border]:
+    """Round a command that makes documents, with the border for each: what failed is told last.
+
+    What is kept of them has no blank in its name, so that no rebuild answers for it (`failures`).
+
+    Raises:
+        BrokenPromiseError: Herijk itself failed on some of them.
+    """
+    failed: list[str] = []
+
+    def round_one(what: str) -> AbstractContextManager[None]:
+        return border(root, what.replace(" ", "-"), failed)
+
+    with round_one(command):
+        yield round_one
+    if failed:
+        raise BrokenPromiseError(
+            "Herijk itself failed on {}; all else was made. Please report this to whoever "
+            "maintains Herijk, with what the folder unforeseen of the data folder has of it",
+            ", ".join(failed),
+        )
+
+
+def forget(root: Path, what: str) -> None:
+    """Removes what was kept of an earlier failure."""
+    _file(root, what).unlink(missing_ok=True)
+
+
+def failures(root: Path) -> list[str]:
+    """What a rebuild could not make, beside tows, as `border` was told; sorted."""
+    return sorted(file.stem for file in (root / UNFORESEEN).glob("[!.]* *.txt"))
+
+
+def failed_tows(store: Store) -> pl.DataFrame:
+    """The tows that make this code fail: rows of `FailedTows`."""
+    if store.made_from(FAILED_TOWS) == code_hash(*COMPUTING):
+        return store.read(FAILED_TOWS)
+    return pl.DataFrame(FailedTows.create_empty())
+
+
+def set_aside(store: Store, failed: FailedTowsError) -> None:
+    """Remembers tows that make Herijk fail.
+
+    Raises:
+        FailedTowsError: they were set aside already.
+    """
+    listed = store.read_all("season_tows").filter(pl.col("tow_id").is_in(failed.tows))
+    known = failed_tows(store)
+    keys = set(known["tow_key"])
+    new = [row for row in listed.iter_rows(named=True) if tow_key(row) not in keys]
+    if not new:
+        raise failed
+    rows = []
+    for row in new:
+        message = sentence(row["tow_id"], failed.told)
+        note(store.root, row["tow_id"], failed.trace)
+        rows.append(
+            {
+                "tow_id": row["tow_id"],
+                "tow_key": tow_key(row),
+                "path": row["samples_path"],
+                "reason_code": UNFORESEEN,
+                "message": str(message),
+                "message_nl": spoken(message, "nl"),
+                "cause": cause_of(message),
+            }
+        )
+    frame = pl.concat([known, frame_of(FailedTows, rows)])
+    store.write(FAILED_TOWS, frame.sort("tow_id"), code_hash(*COMPUTING))
+
+
+def tow_key(row: Mapping[str, object] | Row) -> str:
+    """What a tow's failure belongs to: its row of the list with the hashes of its samples."""
+    return fingerprint(dict(row))
+
+
+def _file(root: Path, what: str) -> Path:
+    return root / UNFORESEEN / f"{_file_name(what)}.txt"
+
+
+def _file_name(what: str) -> str:
+    return "".join(letter if letter.isalnum() or letter in " -_." else "-" for letter in what)
