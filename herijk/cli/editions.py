@@ -112,7 +112,14 @@ def diff(
     show(report, text.diff, as_json)
 
 
-def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
+def verify(
+    data: DataFolder = Path("data"),
+    head: Annotated[
+        str | None,
+        typer.Option(metavar="HASH", help="The seal of the last edition, from the minutes."),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
     from herijk.cli import editions_text as text
     from pipeline.errors import MissingKnowledgeError
@@ -126,7 +133,7 @@ def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
             "{} holds no editions and no tables; is it the right data folder?",
             data,
         )
-    report = verify_editions(store)
+    report = verify_editions(store, head=head)
     show(report, text.verify, as_json)
     if report.wrong:
         raise typer.Exit(1)

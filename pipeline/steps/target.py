@@ -19,9 +19,9 @@ def above_target(
     """Runs faster than `highest_ratio` of the declared speed, on the scale of the tow's own runs.
 
     The scale is the median of speed / intended speed over the tow's runs (of two in the middle the
-    lower, as the runs towed too fast are the high ones): a factor on all speeds drops out. Runs of
-    one intended speed, out and back, are judged by their mean: of a pair that stays or goes apart,
-    current and wind would not cancel.
+    lower, as the runs towed too fast are the high ones): a factor on all speeds drops out. Of
+    runs of one intended speed, out and back, the slowest decides: of a pair that stays or goes
+    apart, current and wind would not cancel.
 
     Args:
         log_m_s: mean speed of each run as read, shape (runs,).
@@ -33,6 +33,6 @@ def above_target(
         {"tow": batch.tow, "intended": batch.target_speed_ratio, "speed": speed}, nan_to_null=True
     )
     level = (pl.col("speed") / pl.col("intended")).quantile(0.5, "lower").over("tow")
-    of_pair = pl.col("speed").mean().over("tow", "intended")
+    of_pair = pl.col("speed").min().over("tow", "intended")
     too_fast = pl.col("speed").is_not_null() & (of_pair > highest_ratio * level)
     return ratios.select(too_fast.fill_null(False)).to_series().to_numpy()

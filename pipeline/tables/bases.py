@@ -88,7 +88,6 @@ class TowFacts(dy.Schema):
         nullable=True,
         min=0,
     )
-    remark = column.text("remark in the tow list", nullable=True)
     wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
     log2_measured = dy.Bool(description="there was a second log that can be used")
     log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)

@@ -72,7 +72,6 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.bow_height_m": ("Boeg\u00adhoogte [m]", "Bow height [m]"),
     "column.weight_kg": ("Gewicht [kg]", "Weight [kg]"),
     "column.altered": ("Ver\u00adbouwd", "Altered"),
-    "column.remark": ("Opmerking", "Remark"),
     "column.run": ("Run", "Run"),
     "column.direction": ("Richting", "Direction"),
     "column.speed_m_s": ("v [m/s]", "v [m/s]"),

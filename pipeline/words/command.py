@@ -211,6 +211,9 @@ COMMAND: Final[dict[str, str]] = {
     "By number or name.": "Op nummer of naam.",
     "Edition; the newest when left out.": "Editie; de nieuwste als u niets geeft.",
     "Name of an edition.": "Naam van een editie.",
+    "The seal of the last edition, from the minutes.": (
+        "Het zegel van de laatste editie, uit de notulen."
+    ),
     "The old edition.": "De oude editie.",
     "The new edition.": "De nieuwe editie.",
     "File to write: a PDF, or .html for a page.": (
@@ -586,19 +589,20 @@ COMMAND: Final[dict[str, str]] = {
     "No edition has been published yet; nothing to verify.": (
         "Er is nog geen editie uitgegeven; er is niets te controleren."
     ),
-    "{}\nMade again: measured lines from the blocks of the archive, carried lines from the "
-    "printed edition, printed lines\nfrom the register in the archive. Lines of boats that "
-    "were never towed hold nothing to make. From blocks means\nthat samples files are "
-    "compared by their hash, not read again.": (
-        "{}\nOpnieuw gemaakt: gemeten regels uit de blokken van het archief, overgenomen "
-        "regels uit de gedrukte editie, gedrukte\nregels uit het register in het archief. "
-        "Bij sloepen die nooit gesleept zijn valt niets te maken. Uit de blokken "
-        "wil\nzeggen dat meetbestanden aan hun hash herkend worden, niet opnieuw gelezen."
+    "{}\nMade again: measured lines from the samples files of the archive, carried lines from "
+    "the printed edition,\nprinted lines from the register in the archive.": (
+        "{}\nOpnieuw gemaakt: gemeten regels uit de meetbestanden van het archief, overgenomen "
+        "regels uit de gedrukte editie,\ngedrukte regels uit het register in het archief."
     ),
     "Head: {}\nThe seal of the last edition. Keep it, for example in the minutes: whoever "
     "has it can tell later whether\nany edition was made anew.": (
         "Laatste zegel: {}\nHet zegel van de laatste editie. Bewaar het, bijvoorbeeld in "
         "de notulen: wie het heeft kan later zien of\neen editie opnieuw gemaakt is."
+    ),
+    "{} of these come out otherwise: either the code changed since, or the edition did. The "
+    "head decides: compare\nit with the minutes, or give it with --head.": (
+        "{} hiervan komen anders uit: of het programma is sindsdien veranderd, of de editie. Het "
+        "laatste zegel beslist:\nvergelijk het met de notulen, of geef het op met --head."
     ),
     "{} {} wrong.": "{} {} mis.",
     "thing is": "ding is",

@@ -472,14 +472,13 @@ ERRORS: Final[dict[str, str]] = {
     "{} was added after publication": "{} is na de uitgave toegevoegd",
     "{} is gone; put it back from a copy": "{} is weg; zet het terug uit een kopie",
     "{} was changed after publication": "{} is na de uitgave gewijzigd",
-    "verification code {} does not fit the line: inputs or numbers were changed": (
-        "controlecode {} past niet bij de regel: invoer of getallen zijn gewijzigd"
-    ),
     "{} does not say what the tables of the edition say": (
         "{} zegt iets anders dan de tabellen van de editie"
     ),
-    "{} says something else of {} than the tows do": "{} zegt iets anders over {} dan de slepen",
-    "made again, it comes out otherwise in {}: {}": "opnieuw gemaakt komt het anders uit in {}: {}",
+    "made again, it comes out otherwise in {}": "opnieuw gemaakt komt het anders uit in {}",
+    "it was made by other code: {}": "het is door een ander programma gemaakt: {}",
+    "it has no number in the chain of editions": "het heeft geen nummer in de rij van edities",
+    "the head is {}, and should be {}": "het laatste zegel is {}, en zou {} moeten zijn",
     "it was written anew; its values are the same": (
         "het is opnieuw geschreven; de waarden zijn gelijk"
     ),
@@ -504,8 +503,6 @@ ERRORS: Final[dict[str, str]] = {
     ),
     "made again, {}: {}": "opnieuw gemaakt, {}: {}",
     "the boat list changed": "de lijst van sloepen is gewijzigd",
-    "the code changed": "de code is gewijzigd",
-    "this should not happen": "dit zou niet mogen gebeuren",
     "the printed register in the archive says so now": (
         "het gedrukte register in het archief zegt het nu zo"
     ),
@@ -514,8 +511,7 @@ ERRORS: Final[dict[str, str]] = {
         "de bestanden of de rij in de lijst van proef {} zijn gewijzigd"
     ),
     "other tows that went into it changed": "andere proeven die meetellen, zijn gewijzigd",
-    "the code changed, from {} to {}": "de code is gewijzigd, van {} naar {}",
-    "inputs, method and code are the same; this should not happen": (
-        "invoer, methode en code zijn gelijk; dit zou niet mogen gebeuren"
+    "either the code changed since, or the edition did": (
+        "of de code is sindsdien gewijzigd, of de editie"
     ),
 }

@@ -154,6 +154,16 @@ def test_a_removed_season_leaves(bench, files_read):
     assert files_read == []
 
 
+def test_a_remark_in_a_list_makes_nothing_again(bench, files_read):
+    path = bench.archive / TOWS_2009
+    header, row, *rest = path.read_text("cp1252").split("\n")
+    fields = row.split(";")
+    fields[header.split(";").index("opmerking")] = "roer los"
+    path.write_text("\n".join([header, ";".join(fields), *rest]), "cp1252")
+    assert bench.rebuild().done == Done()
+    assert files_read == []
+
+
 def test_a_changed_list_row_changes_its_tow_without_reading_samples(bench, built, files_read):
     path = bench.archive / TOWS_2009
     weight = built.table("tows").filter(season=2009)["weight_kg"][0]

@@ -4,6 +4,8 @@ So an edition cannot be taken out or made anew without all later ones giving it 
 seal of the last one, the head, can tell whether the chain as a whole was made anew.
 """
 
+from contextlib import suppress
+
 import duckdb
 
 from pipeline.errors import BrokenPromiseError, HerijkError
@@ -25,6 +27,11 @@ def chain_findings(store: Store) -> tuple[list[Finding], str | None]:
     findings = [
         Finding(name, "missing", name, say("edition {} was published and is gone", name))
         for name in sorted(_known(store) - set(edition_names(store)))
+    ]
+    findings += [
+        Finding(about.edition, "altered", "chain", say("it has no number in the chain of editions"))
+        for about in _readable(store)
+        if about.number is None
     ]
     seal: str | None = None
     for number, about in enumerate(chained, 1):
@@ -57,14 +64,14 @@ def chain_findings(store: Store) -> tuple[list[Finding], str | None]:
 
 
 def _chained(store: Store) -> list[About]:
+    return [about for about in _readable(store) if about.number is not None]
+
+
+def _readable(store: Store) -> list[About]:
     editions = []
     for name in edition_names(store):
-        try:
-            about = read_about(store.editions / name)
-        except BrokenPromiseError:
-            continue  # told where its own files are looked at
-        if about.number is not None:
-            editions.append(about)
+        with suppress(BrokenPromiseError):  # told where its own files are looked at
+            editions.append(read_about(store.editions / name))
     return editions
 
 

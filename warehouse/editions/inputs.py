@@ -18,7 +18,7 @@ JUDGED: Final = ("doubts", "unusual")
 """What all other tows say of a tow."""
 
 NOT_INPUT: Final = (
-    *("samples_path", "second_path", "remark", "inputs_sha256"),
+    *("samples_path", "second_path", "inputs_sha256"),
     *JUDGED,
     *("hand_reason", "list_path", "list_line"),
 )
@@ -81,14 +81,14 @@ def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
     return same_tows(edition.tables, _tables_of_today(store))
 
 
-def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:
-    """The files behind an edition: samples of its tows, and the lists of the archive."""
-    files = samples_files(tows).select("path", "sha256").unique()
-    samples = files.with_columns(pl.lit(SAMPLES).alias("kind"))
+def listed_inputs(store: Store) -> pl.DataFrame:
+    """The lists of the archive, as rows of `input_files`."""
     is_list = pl.col("path").str.contains(r"^(sleeplijsten/|sloepregister/sloependata|archief)")
-    lists = (
-        store.read("listed_files")
-        .filter(is_list)
-        .select("path", "sha256", pl.lit(LIST).alias("kind"))
-    )
-    return pl.concat([samples, lists]).sort("path")
+    listed = store.read("listed_files").filter(is_list)
+    return listed.select("path", "sha256", pl.lit(LIST).alias("kind"))
+
+
+def input_files(tows: pl.DataFrame, lists: pl.DataFrame) -> pl.DataFrame:
+    """The files behind an edition, `path, sha256, kind`: samples of its tows, and these lists."""
+    files = samples_files(tows).select("path", "sha256").unique()
+    return pl.concat([files.with_columns(pl.lit(SAMPLES).alias("kind")), lists]).sort("path")

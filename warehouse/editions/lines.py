@@ -13,19 +13,29 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from pipeline.method.definition import RegisterRule
+from pipeline.method.definition import Method, RegisterRule
 from pipeline.recompute.recompute import recompute
 from pipeline.register.register import LINE, as_ruled, draft_register
+from pipeline.tables.archive import Boats
+from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import SIZES
+from pipeline.tables.register import Register
+from pipeline.tables.schemas import conform
 from pipeline.uncertainty.ensemble import tow_ensemble
 from warehouse.derive.published import decisions_of
 from warehouse.editions import sheets
 from warehouse.editions.inputs import INPUTS_HASH, JUDGED, tows_of_today
-from warehouse.editions.printed import printed_lines, with_carried
+from warehouse.editions.printed import (
+    NOT_REBASED,
+    PRINTED_METHOD,
+    printed_lines,
+    with_carried,
+)
 from warehouse.intake import seasons as intake
 from warehouse.store.editions import (
     INPUTS,
     MEASURED,
+    About,
     Edition,
     edition_path,
     read_edition,
@@ -38,6 +48,13 @@ SAME_NUMBER: Final = 1e-9
 Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
+LINE_SCHEMA: Final = {
+    **{n: c.dtype for n, c in Register.columns().items() if n != sheets.CODE_FIELD.column},
+    **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
+    INPUTS_HASH: pl.String(),
+    "basis": pl.String(),
+}
+"""What an edition says of a line, but for its verification code."""
 NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 
 MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
@@ -72,13 +89,39 @@ class Again:
     """A published edition as archive and code of today give it.
 
     Attributes:
-        lines: its lines, but for boats never towed, in which nothing is computed.
-        tables: what the method made of its tows, with the members of its lines; none for a
-            register as printed.
+        lines: its lines, for boats never towed those that it has.
+        tables: its tows and runs, what the method made of them, and the members of its lines; none
+            for a register as printed.
     """
 
     lines: pl.DataFrame
     tables: Mapping[str, pl.DataFrame]
+
+
+def completed(
+    store: Store, lines: pl.DataFrame, about: About, method: Method | None
+) -> pl.DataFrame:
+    """Lines with the facts of their boats and their verification codes, checked and sorted."""
+    own = PRINTED_METHOD if method is None else method.name
+    boats = store.read("boats").select("fsn_no", *BOAT_FACTS)
+    named = lines.join(boats, on="fsn_no", how="left", maintain_order="left").with_columns(
+        pl.lit(about.edition).alias("edition"),
+        pl.when(basis=NOT_REBASED)
+        .then(pl.lit(PRINTED_METHOD))
+        .otherwise(pl.lit(own))
+        .alias("method"),
+        pl.lit(about.valid_from).alias("as_of"),
+    )
+    missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
+    full = (
+        named.with_columns(missing)
+        .select(pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items())
+        .sort(LINE)
+    )
+    codes = sheets.verification_codes(full, None if method is None else method.content_hash)
+    coded = full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
+    conform("register", coded)
+    return coded
 
 
 def made_again(store: Store, edition: Edition) -> Again:
@@ -99,7 +142,8 @@ def made_again(store: Store, edition: Edition) -> Again:
         files = sheets.read_inputs(path)
         if not files:
             raise BrokenPromiseError("{}/{} names no file", path.name, INPUTS)
-        return Again(printed_lines(store, files[0][0]), {})
+        as_printed = printed_lines(store, files[0][0])
+        return Again(completed(store, as_printed, edition.about, None), {})
     known = [name for name in JUDGED if name in edition.tables["tows"].columns]
     judged = edition.tables["tows"].select("tow_id", *known)
     today = tows_of_today(store)
@@ -107,11 +151,10 @@ def made_again(store: Store, edition: Edition) -> Again:
     runs = intake.runs_with_windows(store).join(judged, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     recomputed = recompute(edition.method, tows, blocks)
-    nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})
     about = edition.about
     lines = method_lines(
         {"curves": recomputed.curves, "tows": tows},
-        nobody,
+        edition.register.filter(status="never_towed"),
         about.valid_from,
         edition.method.validity,
         decisions_of(store, edition),
@@ -120,7 +163,7 @@ def made_again(store: Store, edition: Edition) -> Again:
         printed = read_edition(store, about.carried_from)
         lines = with_carried(
             lines, printed, recomputed.log_factors, about.valid_from, edition.method
-        ).with_columns(as_of=pl.lit(about.valid_from))
+        )
     members = tow_ensemble(
         edition.method.name,
         recomputed.curves,
@@ -128,8 +171,10 @@ def made_again(store: Store, edition: Edition) -> Again:
         recomputed.uncertainty_budget,
         recomputed.factors,
     )
+    own = {"tows": today, "tow_runs": intake.runs_with_windows(store)}
     tables: dict[str, pl.DataFrame] = {
-        name: getattr(recomputed, name) for name in MADE if name in edition.tables
+        **{name: frame.join(judged, on="tow_id", how="semi") for name, frame in own.items()},
+        **{name: getattr(recomputed, name) for name in MADE},
+        "ensemble": members.join(lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"),
     }
-    tables["ensemble"] = members.join(edition.tables["ensemble"], on="tow_id", how="semi")
-    return Again(lines, tables)
+    return Again(completed(store, lines, about, edition.method), tables)

@@ -29,10 +29,7 @@ from warehouse.editions.words import (
     Language,
     table,
 )
-from warehouse.store.code import code_hash
 from warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
-from warehouse.store.files import file_sha256
-from warehouse.store.store import fingerprint
 
 TEMPLATES: Final = Path(__file__).parent / "templates"
 TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}
@@ -71,15 +68,6 @@ def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
         name: _template(name).render(_facts(edition, language) | _changes(changes, language)) + "\n"
         for name, language in TEXTS.items()
     }
-
-
-@cache
-def texts_version() -> str:
-    """Version of the code and the templates that write the texts."""
-    return fingerprint(
-        code_hash("warehouse.editions", "pipeline.words"),
-        [file_sha256(TEMPLATES / name) for name in TEXTS],
-    )
 
 
 @cache

@@ -11,7 +11,6 @@ import io
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
 
 import polars as pl
 
@@ -20,11 +19,7 @@ from pipeline.method.definition import Method
 from pipeline.method.writing import method_text
 from pipeline.recompute.recompute import recompute
 from pipeline.register.register import DOUBTED, LINE
-from pipeline.tables.archive import Boats
-from pipeline.tables.frames import dtypes
-from pipeline.tables.register import Register
 from pipeline.tables.row import Row
-from pipeline.tables.schemas import conform
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
 from warehouse.derive.version import code_version
@@ -32,27 +27,24 @@ from warehouse.editions import notes, sheets
 from warehouse.editions.chain import chain_head
 from warehouse.editions.compare import compare
 from warehouse.editions.inputs import (
-    INPUTS_HASH,
     REGISTER,
     input_files,
     inputs_digest,
+    listed_inputs,
     tows_of_today,
 )
 from warehouse.editions.lines import (
-    BOAT_FACTS,
     MADE,
     NUMBERS,
     SAME_NUMBER,
+    completed,
     method_lines,
 )
 from warehouse.editions.printed import (
-    NOT_REBASED,
-    PRINTED_METHOD,
     printed_lines,
     printed_path,
     with_carried,
 )
-from warehouse.editions.sheets import CODE_FIELD
 from warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
 from warehouse.store import decisions as decided
 from warehouse.store.editions import (
@@ -77,14 +69,6 @@ from warehouse.store.editions import (
 from warehouse.store.ensemble import read_ensemble
 from warehouse.store.package import Rights
 from warehouse.store.store import Store, table_digest
-
-LINE_SCHEMA: Final = {
-    **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
-    **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
-    INPUTS_HASH: pl.String(),
-    "basis": pl.String(),
-}
-"""What an edition says of a line, but for its verification code."""
 
 
 @dataclass(frozen=True)
@@ -123,12 +107,8 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
     """
     _check_terms(store, terms)
     edition = recomputed_edition(store, method, terms, carry)
-    decisions = _decisions(store, terms)
-    texts = {
-        METHOD: method_text(method),
-        DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
-    }
-    return _write(store, edition, input_files(store, edition.tables["tows"]), texts)
+    files = input_files(edition.tables["tows"], listed_inputs(store))
+    return _write(store, edition, files)
 
 
 def publish_printed(store: Store, season: int, terms: Terms) -> Path:
@@ -143,9 +123,9 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Path:
     path = printed_path(store, season)
     files = store.read("listed_files").filter(pl.col("path") == path)
     files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
-    register = _complete(store, printed_lines(store, path), terms, PRINTED_METHOD, None)
     about = _about(store, terms, None, inputs_digest="")
-    return _write(store, Edition(about, {"register": register}, None), files, {})
+    register = completed(store, printed_lines(store, path), about, None)
+    return _write(store, Edition(about, {"register": register}, None), files)
 
 
 def recomputed_edition(
@@ -161,7 +141,7 @@ def recomputed_edition(
             method.name,
         )
     tows = tows_of_today(store)
-    decisions = decided.decision_table(_decisions(store, terms))
+    decisions = decided.decision_table(_decisions(store, terms.published_on))
     _check_decided_tows(decisions, tows)
     tables = {
         "tows": tows,
@@ -178,8 +158,8 @@ def recomputed_edition(
     tables["ensemble"] = read_ensemble(store, method.name).join(
         lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
     )
-    tables["register"] = _complete(store, lines, terms, method.name, method.content_hash)
     about = _about(store, terms, method, inputs_digest(tows), carry)
+    tables["register"] = completed(store, lines, about, method)
     return Edition(about, tables, method)
 
 
@@ -254,10 +234,10 @@ def _check_terms(store: Store, terms: Terms) -> None:
         )
 
 
-def _decisions(store: Store, terms: Terms) -> tuple[decided.Decision, ...]:
+def _decisions(store: Store, published_on: dt.date) -> tuple[decided.Decision, ...]:
     """Decisions about tows taken up to the day of publication."""
     decisions = decided.read_decisions(store.root / decided.FILE_NAME)
-    return tuple(d for d in decisions if d.datum <= terms.published_on)
+    return tuple(d for d in decisions if d.datum <= published_on)
 
 
 def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
@@ -287,45 +267,13 @@ def _about(
         inputs_digest=inputs_digest,
         carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
-        texts_version=notes.texts_version(),
     )
 
 
-def _complete(
-    store: Store, lines: pl.DataFrame, terms: Terms, method: str, method_hash: str | None
-) -> pl.DataFrame:
-    """Lines with the facts of their boats and their verification codes, checked and sorted."""
-    named = lines.join(
-        store.read("boats").select("fsn_no", *BOAT_FACTS),
-        on="fsn_no",
-        how="left",
-        maintain_order="left",
-    ).with_columns(
-        pl.lit(terms.edition).alias("edition"),
-        pl.when(basis=NOT_REBASED)
-        .then(pl.lit(PRINTED_METHOD))
-        .otherwise(pl.lit(method))
-        .alias("method"),
-        pl.lit(terms.valid_from).alias("as_of"),
-    )
-    missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
-    full = (
-        named.with_columns(missing)
-        .select(pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items())
-        .sort(LINE)
-    )
-    codes = sheets.verification_codes(full, method_hash)
-    coded = full.with_columns(pl.Series(CODE_FIELD.column, codes, pl.String))
-    conform("register", coded)
-    return coded
-
-
-def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:
+def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
     """Writes an edition's folder as the next of the chain."""
     name = edition.about.edition
-    return write_folder(
-        store, name, lambda: _contents(store, _chained(store, edition), files, texts)
-    )
+    return write_folder(store, name, lambda: contents_of(store, _chained(store, edition), files))
 
 
 def _chained(store: Store, edition: Edition) -> Edition:
@@ -336,17 +284,27 @@ def _chained(store: Store, edition: Edition) -> Edition:
     return replace(edition, about=about)
 
 
-def _contents(
-    store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]
-) -> dict[str, bytes]:
-    """An edition's files: tables, sheets, texts, and last what it says of itself."""
+def contents_of(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
+    """An edition's files: tables, sheets, texts, and last what it says of itself.
+
+    Args:
+        store: the data folder.
+        edition: the edition, without its comparison with the one before.
+        files: what it was made from, as `input_files` gives it.
+    """
     about = edition.about
     tables = dict(edition.tables)
     previous = None
     if about.previous is not None:
         previous = compare(store, read_edition(store, about.previous), edition)
         tables[CHANGES] = previous.lines
-    written = texts | notes.texts(edition, previous)
+    written = notes.texts(edition, previous)
+    if edition.method is not None:
+        decisions = _decisions(store, about.published_on)
+        written |= {
+            METHOD: method_text(edition.method),
+            DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
+        }
     contents = {
         CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
         XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, about),

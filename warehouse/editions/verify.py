@@ -1,41 +1,45 @@
 """Whether everything still is what it was: editions, the archive behind them, and the numbers.
 
-Three questions, in this order: was a file of an edition changed by hand, and where in it; are the
-archive's files those it was made from; and do archive and code of today give the same register?
-Nothing is ever mended here.
+Integrity: is every file what its seal says, and every seal what the next edition says, up to the
+head, which people keep? Reproduction: are the archive's files those an edition was made from, and
+do they give it again, read anew by the code of today? Where they do not, the code changed or the
+edition did; the head decides. Nothing is ever mended here.
 """
 
+import datetime as dt
+import shutil
+import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Final
 
 import polars as pl
-from pydantic import ValidationError
 
 from pipeline.errors import BrokenPromiseError, HerijkError
-from pipeline.recompute.facts import samples_files, with_hand_windows
+from pipeline.recompute.facts import with_hand_windows
 from pipeline.words import say
 from warehouse.archive import ArchiveIndex, FileHashes, index_archive
 from warehouse.archive.files.names import PARTS
+from warehouse.derive.graph import ARCHIVE
+from warehouse.derive.inputs import Scope
 from warehouse.editions import sheets
 from warehouse.editions.chain import chain_findings
-from warehouse.editions.compare import Comparison
-from warehouse.editions.finding import Finding, line_name
-from warehouse.editions.inputs import LIST, NOT_INPUT, SAMPLES
-from warehouse.editions.notes import texts, texts_version
-from warehouse.editions.remade import remade
+from warehouse.editions.finding import Finding
+from warehouse.editions.inputs import LIST, NOT_INPUT
+from warehouse.editions.remade import Counts, remade
+from warehouse.intake import seasons as intake
+from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.editions import (
     ABOUT,
-    CHANGES,
     CSV,
     INPUTS,
     XLSX,
     About,
     edition_names,
     read_about,
-    read_edition,
     read_table,
 )
 from warehouse.store.files import file_sha256
@@ -81,35 +85,74 @@ class Verification:
     wrong: bool
 
 
-def verify(store: Store, afresh: bool = True) -> Verification:
+def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verification:
     """Checks every published edition.
 
     Args:
         store: the data folder.
-        afresh: read every file of the archive again, instead of trusting its size and time.
+        afresh: read every file of the archive again, instead of trusting its size and time, and
+            the lake.
+        head: the seal of the last edition as it was written down. Where it is still that, no
+            edition was altered, and what comes out otherwise is the work of other code.
     """
     hashes = FileHashes() if afresh else FileHashes.load(store.file_hashes)
     archive = _Archive.of(store, hashes)
-    findings, head = chain_findings(store)
-    checked = []
+    findings, found = chain_findings(store)
+    if head is not None and head != found:
+        message = say("the head is {}, and should be {}", found, head)
+        findings.append(Finding("", "altered", "chain", message))
+    abouts = {}
     for name in edition_names(store):
-        path = store.editions / name
         try:
-            about = read_about(path)
+            abouts[name] = read_about(store.editions / name)
         except BrokenPromiseError as error:
             findings.append(Finding(name, "altered", ABOUT, str(error)))
-            continue
-        findings += [*_altered(store, path, about), *_archive(archive, path, about)]
-        counts, differing = remade(store, name)
-        findings += differing
-        checked.append(CheckedEdition(name, about.kind, *counts))
-    return Verification(checked, head, findings, any(f.wrong for f in findings))
+    for name, about in abouts.items():
+        path = store.editions / name
+        findings += [*_altered(path, about), *_archive(archive, path, about)]
+    made = _made_again(store, archive, afresh, list(abouts))
+    for _, differing in made.values():
+        findings += [replace(f, wrong=f.kind != "differs" or head != found) for f in differing]
+    checked = [CheckedEdition(name, about.kind, *made[name][0]) for name, about in abouts.items()]
+    return Verification(checked, found, findings, any(f.wrong for f in findings))
+
+
+Made = tuple[Counts, list[Finding]]
+
+
+def _made_again(
+    store: Store, archive: "_Archive | None", afresh: bool, names: list[str]
+) -> dict[str, Made]:
+    """The editions made again: from the files of the archive, or else from the lake as it lies."""
+    if archive is None or not afresh:
+        return {name: remade(store, name) for name in names}
+    try:
+        with _read_again(store, archive.root) as again:
+            return {name: remade(again, name) for name in names}
+    except HerijkError as error:
+        finding = Finding("", "unchecked", "archive", str(error))
+        return dict.fromkeys(names, (Counts(), [finding]))
+
+
+@contextmanager
+def _read_again(store: Store, archive: Path) -> Iterator[Store]:
+    """A data folder with the same editions and decisions, made of the archive's files alone."""
+    with tempfile.TemporaryDirectory() as folder:
+        again = Store(Path(folder), store.editions)
+        if (store.root / DECISIONS).exists():
+            shutil.copy(store.root / DECISIONS, again.root)
+        intake.index(again, archive)
+        for season in intake.listed_seasons(again):
+            intake.read_season(again, archive, season)
+            intake.collect_blocks(again, season)
+        ARCHIVE.make(Scope(again, (), today=dt.date.today()))
+        yield again
 
 
 # Was a file of the edition changed by hand?
 
 
-def _altered(store: Store, path: Path, about: About) -> Iterator[Finding]:
+def _altered(path: Path, about: About) -> Iterator[Finding]:
     yield from _folder(path, about)
     known = about.files.keys() & {f.name for f in path.iterdir()}
     intact = {file for file in known if file_sha256(path / file) == about.files[file]}
@@ -117,11 +160,6 @@ def _altered(store: Store, path: Path, about: About) -> Iterator[Finding]:
         yield Finding(path.name, "altered", file, say("{} was changed after publication", file))
         for where, said in _where(path, about, file, intact):
             yield Finding(path.name, "altered", where, said)
-    if "register.parquet" in known:
-        yield from _codes(path, about)
-    if about.seal == about.expected_seal:
-        yield from _sheets(path, about, intact)
-        yield from _texts(store, path, about, intact)
 
 
 def _folder(path: Path, about: About) -> Iterator[Finding]:
@@ -140,75 +178,6 @@ def _folder(path: Path, about: About) -> Iterator[Finding]:
         yield Finding(name, "notice", file, message, wrong=False)
     for file in sorted(about.files.keys() - present):
         yield Finding(name, "missing", file, say("{} is gone; put it back from a copy", file))
-
-
-def _codes(path: Path, about: About) -> Iterator[Finding]:
-    """Lines whose verification code does not fit their inputs, method and numbers."""
-    try:
-        register = read_table(path, "register")
-        expected = sheets.verification_codes(register, about.method_hash)
-    except (HerijkError, pl.exceptions.PolarsError):
-        return
-    stated = register[sheets.CODE_FIELD.column].to_list()
-    for row, code, right in zip(register.iter_rows(named=True), stated, expected, strict=True):
-        if code != right:
-            yield Finding(
-                path.name,
-                "altered",
-                f"register.parquet, {line_name(row)}",
-                say(
-                    "verification code {} does not fit the line: inputs or numbers were changed",
-                    code,
-                ),
-            )
-
-
-def _sheets(path: Path, about: About, intact: set[str]) -> Iterator[Finding]:
-    """Sheets that do not say what the register says, though their hashes were made to fit.
-
-    Those of an earlier form, with other columns, cannot be compared cell by cell.
-    """
-    if "register.parquet" not in intact:
-        return
-    for file in sorted(intact & {CSV, XLSX}):
-        try:
-            stated = sheets.read_csv_cells((path / CSV).read_bytes()) if CSV in intact else [[]]
-            if stated[0] != _expected_csv(path)[0]:
-                continue
-        except (HerijkError, OSError, ValueError, pl.exceptions.PolarsError):
-            continue  # told by `_codes` or when the edition is made again
-        for where, message in _where(path, about, file, intact):
-            yield Finding(path.name, "altered", where, message)
-
-
-def _texts(store: Store, path: Path, about: About, intact: set[str]) -> Iterator[Finding]:
-    """Notices and lists that do not say what the tables say, though their hashes were made to fit.
-
-    Texts that another version wrote may say the same in other words, and are not looked at.
-    """
-    try:
-        edition = read_edition(store, path.name)
-        previous = None
-        if about.previous is not None:
-            old = read_edition(store, about.previous)
-            previous = Comparison(old, edition, edition.tables[CHANGES])
-        expected = texts(edition, previous) if about.texts_version == texts_version() else {}
-    except (HerijkError, ValidationError, KeyError, OSError):
-        return  # told when the edition is made again
-    for file in sorted(intact & expected.keys()):
-        if (path / file).read_bytes() != expected[file].encode("utf-8"):
-            message = say("{} does not say what the tables of the edition say", file)
-            yield Finding(path.name, "altered", file, message)
-    if INPUTS in intact and "tows" in edition.tables:
-        yield from _inputs(path, edition.tables["tows"])
-
-
-def _inputs(path: Path, tows: pl.DataFrame) -> Iterator[Finding]:
-    stated = {(file, sha256) for file, kind, sha256 in sheets.read_inputs(path) if kind == SAMPLES}
-    known = set(samples_files(tows).select("path", "sha256").rows())
-    for file in sorted({name for name, _ in stated ^ known}):
-        message = say("{} says something else of {} than the tows do", INPUTS, file)
-        yield Finding(path.name, "altered", INPUTS, message)
 
 
 def _where(path: Path, about: About, file: str, intact: set[str]) -> list[tuple[str, str]]:

@@ -42,9 +42,10 @@ def table_digest(frame: pl.DataFrame) -> str:
 
 @dataclass(frozen=True)
 class Store:
-    """The data folder."""
+    """The data folder; its editions may lie elsewhere."""
 
     root: Path
+    editions_elsewhere: Path | None = None
 
     @property
     def lake(self) -> Path:
@@ -54,7 +55,7 @@ class Store:
     @property
     def editions(self) -> Path:
         """The published editions, each under its name."""
-        return self.root / "editions"
+        return self.editions_elsewhere or self.root / "editions"
 
     @property
     def database(self) -> Path:
