@@ -27,7 +27,7 @@ def test_a_fault_is_in_the_seasons_of_its_world():
 def test_a_miss_is_silent_where_neither_the_tow_nor_its_season_is_flagged():
     truth = pl.DataFrame(
         {"tow_id": ["a", "b", "c"], "season": [2015, 2015, 2016]}
-        | {"cw_at_15c_kg_m": 40.0, "log_factor_of_day": 1.0}
+        | {"cw_at_15c_kg_m": 40.0, "log_factor": 1.0}
     )
     curves = pl.DataFrame(
         {"tow_id": ["a", "b", "c"], "status": ["accepted", "flagged", "accepted"]}

@@ -6,9 +6,6 @@ the name, the day from which it counts, the decision and the day of publication.
 """
 
 import datetime as dt
-import hashlib
-import io
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,16 +13,14 @@ import polars as pl
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
-from pipeline.method.writing import method_text
 from pipeline.recompute.recompute import recompute
 from pipeline.register.register import DOUBTED, LINE
 from pipeline.tables.row import Row
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
 from warehouse.derive.version import code_version
-from warehouse.editions import notes, sheets
 from warehouse.editions.chain import chain_head
-from warehouse.editions.compare import compare
+from warehouse.editions.contents import contents_of, decisions_of
 from warehouse.editions.inputs import (
     REGISTER,
     input_files,
@@ -48,18 +43,8 @@ from warehouse.editions.printed import (
 from warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
 from warehouse.store import decisions as decided
 from warehouse.store.editions import (
-    ABOUT,
-    CHANGES,
-    CSV,
-    DECISIONS,
-    INPUTS,
-    METHOD,
-    PACKAGE,
-    TABLES,
-    XLSX,
     About,
     Edition,
-    TableDigest,
     check_new_name,
     edition_names,
     read_about,
@@ -67,8 +52,7 @@ from warehouse.store.editions import (
     write_folder,
 )
 from warehouse.store.ensemble import read_ensemble
-from warehouse.store.package import Rights
-from warehouse.store.store import Store, table_digest
+from warehouse.store.store import Store
 
 
 @dataclass(frozen=True)
@@ -141,7 +125,7 @@ def recomputed_edition(
             method.name,
         )
     tows = tows_of_today(store)
-    decisions = decided.decision_table(_decisions(store, terms.published_on))
+    decisions = decided.decision_table(decisions_of(store, terms.published_on))
     _check_decided_tows(decisions, tows)
     tables = {
         "tows": tows,
@@ -234,12 +218,6 @@ def _check_terms(store: Store, terms: Terms) -> None:
         )
 
 
-def _decisions(store: Store, published_on: dt.date) -> tuple[decided.Decision, ...]:
-    """Decisions about tows taken up to the day of publication."""
-    decisions = decided.read_decisions(store.root / decided.FILE_NAME)
-    return tuple(d for d in decisions if d.datum <= published_on)
-
-
 def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
     unknown = decisions.join(tows, on="tow_id", how="anti")["tow_id"].to_list()
     if unknown:
@@ -282,52 +260,3 @@ def _chained(store: Store, edition: Edition) -> Edition:
     number, seal = (0, None) if head is None else (head.number or 0, head.seal)
     about = edition.about.model_copy(update={"number": number + 1, "after_seal": seal})
     return replace(edition, about=about)
-
-
-def contents_of(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
-    """An edition's files: tables, sheets, texts, and last what it says of itself.
-
-    Args:
-        store: the data folder.
-        edition: the edition, without its comparison with the one before.
-        files: what it was made from, as `input_files` gives it.
-    """
-    about = edition.about
-    tables = dict(edition.tables)
-    previous = None
-    if about.previous is not None:
-        previous = compare(store, read_edition(store, about.previous), edition)
-        tables[CHANGES] = previous.lines
-    written = notes.texts(edition, previous)
-    if edition.method is not None:
-        decisions = _decisions(store, about.published_on)
-        written |= {
-            METHOD: method_text(edition.method),
-            DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
-        }
-    contents = {
-        CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
-        XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, about),
-        INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
-        **{name: text.encode("utf-8") for name, text in written.items()},
-        **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
-    }
-    summary, rights = notes.summary(edition), Rights.of(store)
-    contents[PACKAGE] = sheets.package_bytes(about, contents, summary, rights)
-    sealed = about.model_copy(
-        update={
-            "tables": {
-                name: TableDigest(rows=frame.height, digest=table_digest(frame))
-                for name, frame in tables.items()
-            },
-            "files": {n: hashlib.sha256(c).hexdigest() for n, c in sorted(contents.items())},
-        }
-    ).sealed()
-    contents[ABOUT] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
-    return contents
-
-
-def _parquet(frame: pl.DataFrame) -> bytes:
-    target = io.BytesIO()
-    frame.write_parquet(target, compression="zstd")
-    return target.getvalue()

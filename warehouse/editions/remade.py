@@ -19,11 +19,11 @@ from pipeline.tables.schemas import TABLES
 from pipeline.words import say
 from warehouse.archive.files.names import BOATS_FILE
 from warehouse.editions import sheets
+from warehouse.editions.contents import contents_of
 from warehouse.editions.finding import Finding, line_name
 from warehouse.editions.inputs import SAMPLES, input_files, inputs_digest, unchanged_tows
 from warehouse.editions.lines import BOAT_FACTS, SAME_NUMBER, Again, made_again
 from warehouse.editions.printed import AS_PRINTED
-from warehouse.editions.publish import contents_of
 from warehouse.store.editions import (
     ABOUT,
     CHANGES,
