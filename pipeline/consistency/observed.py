@@ -79,21 +79,23 @@ def observe(
 
     A boat ends at an alteration: `hull` is the boat as it was between two of them.
     """
-    of_tow = ("tow_date", "altered", "weight_kg", "crew_weight_kg", "waterline_length_m", "beam_m")
+    of_tow = (
+        *("hull", "boat_type", "tow_date", "altered"),
+        *("weight_kg", "crew_weight_kg", "waterline_length_m", "beam_m"),
+    )
     alterations = pl.col("altered").fill_null(False).cum_sum().over("fsn_no").cast(pl.String)
-    tows = tows.sort("tow_date", "tow_id").with_columns(
-        hull=pl.concat_str("fsn_no", alterations, separator="/")
+    tows = (
+        tows.sort("tow_date", "tow_id")
+        .with_columns(hull=pl.concat_str("fsn_no", alterations, separator="/"))
+        .join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left")
+        .with_columns(pl.col("boat_type").fill_null(UNKNOWN_TYPE))
     )
     table = (
         curves.filter((pl.col("status") != "rejected") & pl.col("cw_kg_m").is_not_null())
-        .join(tows.select("tow_id", "hull", *of_tow), on="tow_id", maintain_order="left")
-        .join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left")
-        .with_columns(
-            pl.col("boat_type").fill_null(UNKNOWN_TYPE),
-            (pl.col("weight_kg") + pl.col("crew_weight_kg")).alias("displacement_kg"),
-        )
+        .join(tows.select("tow_id", *of_tow), on="tow_id", maintain_order="left")
+        .with_columns(displacement_kg=pl.col("weight_kg") + pl.col("crew_weight_kg"))
         .sort("method", "tow_date", "tow_id")
-        .pipe(_with_standard_speed)
+        .pipe(_with_standard_speed, tows)
     )
     points = _points(table, run_points)
     fitted = curve.fit(points)
@@ -120,13 +122,10 @@ def observe(
     return Observed(fits.table.with_columns(_pooled_scatter()), fits.points)
 
 
-def _with_standard_speed(table: pl.DataFrame) -> pl.DataFrame:
-    """Adds the common speed at which boats of a type are compared."""
-    speeds = (
-        table.unique("tow_id")
-        .group_by("boat_type", maintain_order=True)
-        .agg(pl.col("declared_speed_m_s").median().alias("standard_speed_m_s"))
-    )
+def _with_standard_speed(table: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Adds the speed at which boats of a type are compared, the same under every method."""
+    median = pl.col("declared_speed_m_s").median().alias("standard_speed_m_s")
+    speeds = tows.group_by("boat_type", maintain_order=True).agg(median)
     return table.join(speeds, on="boat_type", how="left", maintain_order="left")
 
 

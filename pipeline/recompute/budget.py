@@ -23,7 +23,6 @@ from pipeline.uncertainty.misfit import Departure, departure_of_boats
 from pipeline.uncertainty.propagation import (
     Assumed,
     budget,
-    level_scatter,
     residual_scatter,
     run_point_uncertainty,
 )
@@ -57,30 +56,6 @@ def pooled_scatter(o: Outcome) -> curve.Scatter:
     return _of_height(*residual_scatter(ratio, used, _season(o)), used, on_curve)
 
 
-def scatter_of_level(o: Outcome) -> curve.Scatter:
-    """The same as it makes the level of a curve uncertain.
-
-    Of tows that are calibrated by themselves, as far as the current was steady: what is beyond is
-    in `stream_scatter`. Of others that of the points.
-    """
-    ratio, used, on_curve = _residuals(o)
-    batch, by_log = o.batch, pooled_scatter(o)
-    of_runs, told = _run_calibrations(o)
-    alone = ~batch.any(o.prepared.used & (~told | batch.in_second_file))
-    steady = alone & (_unsteady_stream(o)[0] == 0.0)
-    by_gps = ratio - (2.0 + 2.0 * _median_bend(o)) * batch.by_tow(np.log(of_runs))
-    way = batch.by_tow(batch.direction.astype(np.float64))
-    of_level = level_scatter(
-        ratio, by_gps, o.points.speed_m_s, way, used & steady[:, None], _season(o)
-    )
-    by_calibration = _of_height(*of_level, used, on_curve)
-    known = alone & (by_calibration.dof > 0)
-    return curve.Scatter(
-        np.where(known, by_calibration.variance_kg2_m2, by_log.variance_kg2_m2),
-        np.where(known, by_calibration.dof, by_log.dof),
-    )
-
-
 def _season(o: Outcome) -> IntArray:
     return o.batch.of_tow("season").astype(np.int64)
 
@@ -95,31 +70,6 @@ def _of_height(
     known = np.isfinite(ratio) & used.any(axis=1)
     height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
     return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
-
-
-def covariance_of_curves(
-    points: curve.Points,
-    curves: curve.Curves,
-    scatter: curve.Scatter,
-    level: curve.Scatter,
-    speed_m_s: FloatArray,
-) -> curve.Covariance:
-    """Covariance of C0 and q at a speed, where the mean of points has a scatter of its own.
-
-    Args:
-        points, curves: of each tow.
-        scatter, level: of single points, about their curve and as it counts in their mean.
-        speed_m_s: shape (tows,).
-    """
-    errors = curve.covariance(points, curves, scatter, speed_m_s)
-    speeds = np.where(points.used, points.speed_m_s, 0.0)
-    on_curve = curve.cw(curves.a_kg_m[:, None], curves.s_s2_m2[:, None], speeds)
-    square = (np.where(points.used & np.isfinite(on_curve), on_curve, 0.0) ** 2).sum(axis=1)
-    cw = curves.cw_at(speed_m_s)
-    known = np.isfinite(cw) & (square > 0)
-    share = np.where(known, cw, 0.0) ** 2 / np.where(known, square, 1.0)
-    change = share * (level.variance_kg2_m2 - scatter.variance_kg2_m2)
-    return replace(errors, c0_variance_kg2_m2=errors.c0_variance_kg2_m2 + change)
 
 
 def _residuals(o: Outcome) -> tuple[FloatArray, BoolArray, FloatArray]:
@@ -294,11 +244,10 @@ def _budget_of_batch(
     misfit: pl.DataFrame,
 ) -> pl.DataFrame:
     scatter = scatter_of(o, estimated is not None)
-    level = scatter if estimated is None else scatter_of_level(o)
-    terms = _terms_of_tows(o, estimated, level)
+    terms = _terms_of_tows(o, estimated, scatter)
     cw, bend = pl.col("cw_kg_m"), pl.col("bend")
     r = (bend / (1.0 + bend) * pl.col("speed_ratio") ** 2).clip(-1.0, MOST_BENT)
-    random = np.concatenate([_random_ratio(o, scatter, level, ratio) for ratio in speed_ratios])
+    random = np.concatenate([_random_ratio(o, scatter, ratio) for ratio in speed_ratios])
     rows = (
         _at_speeds(o, speed_ratios)
         .with_columns(pl.Series("random_ratio", random))
@@ -331,12 +280,10 @@ def _at_speeds(o: Outcome, speed_ratios: Sequence[float]) -> pl.DataFrame:
     )
 
 
-def _random_ratio(
-    o: Outcome, scatter: curve.Scatter, level: curve.Scatter, speed_ratio: float
-) -> FloatArray:
+def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
     """Relative random uncertainty of Cw at a speed / declared speed, shape (tows,)."""
     speed = speed_ratio * o.batch.of_tow("declared_speed_m_s")
-    errors = covariance_of_curves(o.points, o.free, scatter, level, speed)
+    errors = curve.covariance(o.points, o.free, scatter, speed)
     cw = o.free.cw_at(speed)
     known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
     variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)

@@ -18,11 +18,9 @@ from pipeline.arrays import FloatArray
 from pipeline.blocks.batch import Batch
 from pipeline.method.definition import Calibration, Steps, Wind
 from pipeline.recompute.budget import (
-    covariance_of_curves,
     files_log_sd,
     force_uncertainty,
     pooled_scatter,
-    scatter_of_level,
     stream_scatter,
 )
 from pipeline.recompute.outcome import Outcome, TowFactor
@@ -201,7 +199,7 @@ def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -
     water = _water_points(o)
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
-    errors = covariance_of_curves(water, curves, pooled_scatter(o), scatter_of_level(o), speed)
+    errors = curve.covariance(water, curves, pooled_scatter(o), speed)
     sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
     sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)

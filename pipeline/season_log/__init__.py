@@ -10,7 +10,7 @@ Belongs here:
 - what is assumed (`assumed`), and the unknowns with their effects (`effects`);
 - the density of a boat's tows (`likelihood`), and the posterior of everything (`posterior`);
 - what it says of tows (`tows`), seasons (`diagnosis`) and factors (`estimate`);
-- what it all rests on (`network`), and what tows of one day share (`days`);
+- what it all rests on (`network`);
 - which boats to tow again (`retow_design`);
 - the second estimate, without boat identity (`without_boats`);
 - the factor of the log that is not in use (`other_log`).
@@ -27,8 +27,8 @@ The model, for tow k of boat i in season j, with lambda = ln(true speed / log sp
 h and g are what a scale error of the log does to a hyperbola exactly (`effects`). theta and q of a
 boat are random, q about its type, and step where it was altered; theta drifts besides, a random
 walk over the seasons. lambda_k = lambda_j + trend + change + between-tow scatter. phi is the scale
-of the load cell, with what its days share; z is its zero. Faults are rare and large: each is there
-or not. h and g are taken about the factor at which ln Cw and q hold (`reference_ln`).
+of the load cell, z its zero. Faults are rare and large: each is there or not. h and g are taken
+about the factor at which ln Cw and q hold (`reference_ln`).
 """
 
 from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors

@@ -28,9 +28,7 @@ class Settings:
             uncertainty, the ln factor of the log, and that of a log calibrated on dGPS: by the
             calibration itself and by a current that changes meanwhile. `spread` is of the logarithm
             of a variance: what is said here counts as one repeat tow.
-        season_spread: of the logarithm of a season's variances, against those of the archive.
-        bend_sd, type_bend_sd: bend of boats about that of their type, of a type about its pooled
-            value.
+        bend_sd: bend of boats about what is usual for their type.
         season_bend_sd: bend of all boats in a season that no dGPS calibrates. A real hull is no
             hyperbola: towed at speeds that are a log's error off, all bends move together, by as
             much as the error itself moves them. So a bend alone tells no log from a load cell.
@@ -41,8 +39,6 @@ class Settings:
         askew_excess: of ln Cw of a tow that was pulled askew: 5 to 10 % (presentation 2015).
         askew_share: of tows before `straight_from`, as `askew_tows` tows would show it.
         straight_from: first season in which steering straight was aided (presentation 2015).
-        aided_share: of tows since then, as many tows would show it. A boat that is loaded too
-            heavily looks the same.
         gps_season_sd: a season's mean ln(GPS / log) that does not average out.
         gps_noise_m_s: sideways noise of a fix; the length of a noisy velocity is too long by up to
             noise^2 / (2 v^2). How much of that a receiver smooths away is unknown: half is taken.
@@ -50,8 +46,8 @@ class Settings:
         water_sd: ln Cw of a season's tows whose water temperature nobody wrote down: 0.3 % per
             degree, and 4 C either way.
         fault_chance: probability of each kind of fault in a season.
-        force_fault_sd, fleet_fault_sd, gps_fault_sd: size of a fault: of ln force, of ln Cw of all
-            boats from a season on, of the ln speed by GPS.
+        force_fault_sd, fleet_fault_sd: size of a fault: of ln force, of ln Cw of all boats from a
+            season on.
         zero_fault_n: zero of the load cell [N]; also its drift from the middle of a season.
         trend_fault_sd, change_fault_sd: ln factor of a log at the end of a season against its
             middle, and after it was replaced without a report.
@@ -70,9 +66,7 @@ class Settings:
     tow_log_sd: float = 0.004
     calibration_sd: float = 0.0036
     spread: float = 1.5
-    season_spread: float = 0.3
     bend_sd: float = 0.08
-    type_bend_sd: float = 0.15
     season_bend_sd: float = 0.06
     changed_sd: float = 0.05
     changed_bend_sd: float = 0.02
@@ -82,7 +76,6 @@ class Settings:
     askew_share: float = 0.05
     askew_tows: float = 20.0
     straight_from: int = 2014
-    aided_share: float = 0.02
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
     force_sd: float = 0.002
@@ -90,7 +83,6 @@ class Settings:
     fault_chance: float = 0.01
     force_fault_sd: float = 0.05
     fleet_fault_sd: float = 0.03
-    gps_fault_sd: float = 0.02
     zero_fault_n: float = 10.0
     trend_fault_sd: float = 0.02
     change_fault_sd: float = 0.04
@@ -98,13 +90,13 @@ class Settings:
 
     @property
     def change_shares(self) -> tuple[float, ...]:
-        """Shares of gaps with an alteration, and of tows pulled askew, before and since."""
-        return self.changed_share, self.askew_share, self.aided_share
+        """Shares of gaps with an alteration, and of tows pulled askew."""
+        return self.changed_share, self.askew_share
 
     @property
     def change_counts(self) -> tuple[float, ...]:
         """How many gaps and tows each of these shares counts for."""
-        return self.changed_gaps, self.askew_tows, self.askew_tows
+        return self.changed_gaps, self.askew_tows
 
 
 USUAL: Final = Settings()

@@ -13,7 +13,6 @@ from pipeline.arrays import FloatArray
 from pipeline.quantiles import NORMAL
 from pipeline.season_log.effects import (
     CHANGE,
-    FLEET,
     FORCE,
     GPS_SCALE,
     LOG,
@@ -217,9 +216,9 @@ def _of_log(network: Network, season: int, part: int) -> str:
 
 
 def _first_tow(posterior: Posterior, faults: list[int], chance: float | None) -> str | None:
-    """First tow after the likeliest change of a log or of all boats, if there seems to be one."""
+    """First tow after the likeliest change of a log, if there seems to be one."""
     problem = posterior.problem
-    changes = [f for f in faults if problem.unknowns[problem.faults[f]].name in (CHANGE, FLEET)]
+    changes = [f for f in faults if problem.unknowns[problem.faults[f]].name == CHANGE]
     if not changes or chance is None or chance < POSSIBLE:
         return None
     likeliest = max(changes, key=lambda f: float(posterior.chance[f]))

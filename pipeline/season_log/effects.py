@@ -38,7 +38,6 @@ FLEET: Final = "fleet_step"
 AGEING: Final = "ageing"
 WEIGHT: Final = "weight"
 LENGTH: Final = "length"
-TYPE_BEND: Final = "type_bend"
 SEASON_BEND: Final = "season_bend"
 
 WAYS: Final = {
@@ -54,13 +53,12 @@ WAYS: Final = {
     LENGTH: "level",
     ZERO: "zero",
     ZERO_DRIFT: "zero",
-    TYPE_BEND: "bend",
     SEASON_BEND: "bend",
 }
 """By which way an unknown reaches the numbers of a tow."""
 
 
-OF_BOATS: Final = frozenset({FLEET, AGEING, WEIGHT, LENGTH, TYPE_BEND, SEASON_BEND})
+OF_BOATS: Final = frozenset({FLEET, AGEING, WEIGHT, LENGTH, SEASON_BEND})
 """Unknowns of boats; all others are of instruments."""
 
 FEWEST_AFTER_CHANGE: Final = 3
@@ -117,10 +115,6 @@ def _always(network: Network, settings: Settings) -> Iterator[Unknown]:
         (LENGTH, ln_size(network, "waterline_length_m"), settings.length_elasticity),
     ):
         yield Unknown(name, None, None, values, prior.sd, mean=prior.mean)
-    kinds = network.tows["boat_type"].fill_null("")
-    for kind in kinds.unique().sort():
-        mine = (kinds == kind).to_numpy()
-        yield Unknown(TYPE_BEND, None, None, mine * 1.0, settings.type_bend_sd)
 
 
 def _log_prior(network: Network, group: int, settings: Settings) -> tuple[float, float]:
@@ -152,17 +146,8 @@ def _faults(network: Network, settings: Settings) -> Iterator[Unknown]:
     for year in years[1:]:
         later = (season >= year) * 1.0
         yield Unknown(FLEET, year, None, later, settings.fleet_fault_sd, chance)
-    for year in years:
-        mine = season == year
-        starts = _starts(day[mine])
-        for first in starts:
-            later = ((season > year) | (mine & (day >= first))) * 1.0
-            sd, each = settings.fleet_fault_sd, chance / len(starts)
-            yield Unknown(FLEET, year, None, later, sd, each)
     for number, year in enumerate(network.groups["season"]):
         mine = network.group == number
-        if network.has_gps[number]:
-            yield Unknown(GPS_SCALE, year, number, mine * 1.0, settings.gps_fault_sd, chance)
         drift = _within(day, mine)
         if not drift.any():
             continue

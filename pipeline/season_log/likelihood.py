@@ -4,15 +4,15 @@ Each tow gives three numbers: ln Cw and the bend q of its own curve, and ln(GPS 
 level and bend are random and integrated out. The level drifts in a way of the boat's own, as paint,
 wear and fouling differ: a random walk over the seasons. A boat may have been altered between two
 tows without a report, and any tow of the years before steering was aided may have been pulled
-askew. Every pattern of at most `MOST_CHANGES` of these is a component of a normal mixture.
+askew. At most one of these per boat: each, and that there is none, is a component of a normal
+mixture.
 
 Belongs here: that density with its slopes, per boat, as arrays. Does not: what moves the numbers of
 a tow (`effects`) and the search for the unknowns (`posterior`).
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
-from itertools import combinations
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -22,10 +22,6 @@ from pipeline.season_log.assumed import Settings
 
 LEVEL, BEND, GPS = range(3)
 """The numbers of a tow."""
-
-MOST_CHANGES: Final = 2
-
-FEW_BOATS: Final = 128
 
 LEVEL_SD: Final = 1.0
 """Spread of ln Cw between boats: so wide that no boat's level is drawn to that of others."""
@@ -39,7 +35,6 @@ class Patterns:
         tow: (boats, tows) index of each tow.
         altered: (patterns, gaps) whether the boat was altered between two tows.
         askew: (patterns, tows) whether a tow was pulled askew.
-        early: number of tows, the first ones, before steering straight was aided.
         level, bend: (patterns, tows, tows) prior covariance of the boat's level and bend.
         drift: (boats, tows, tows) years that the drift of two tows has in common.
         excess: (patterns, tows) mean of what being pulled askew adds to ln Cw.
@@ -49,7 +44,6 @@ class Patterns:
     tow: IntArray
     altered: BoolArray
     askew: BoolArray
-    early: int
     level: FloatArray
     bend: FloatArray
     drift: FloatArray
@@ -58,15 +52,13 @@ class Patterns:
 
     @property
     def changes(self) -> IntArray:
-        """Number of alterations, and of tows pulled askew, early and later, (patterns, 3)."""
-        early, later = self.askew[:, : self.early], self.askew[:, self.early :]
-        return np.stack([x.sum(axis=1) for x in (self.altered, early, later)], axis=1)
+        """Number of alterations, and of tows pulled askew, (patterns, 2)."""
+        return np.stack([self.altered.sum(axis=1), self.askew.sum(axis=1)], axis=1)
 
     @property
     def possible(self) -> IntArray:
-        """How many of each a boat can have, (3,)."""
-        gaps, tows = self.altered.shape[1], self.askew.shape[1]
-        return np.array([gaps, self.early, len(_between(self.early, tows))])
+        """Where a boat may have each, (2,)."""
+        return np.array([self.altered.any(axis=0).sum(), self.askew.any(axis=0).sum()])
 
     def prior(self, shares: FloatArray) -> FloatArray:
         """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
@@ -78,7 +70,7 @@ class Patterns:
 def patterns_of(
     boat: IntArray, season: FloatArray, early: BoolArray, settings: Settings
 ) -> list[Patterns]:
-    """Boats by their number of tows and of early ones, with every pattern of changes.
+    """Boats by their number of tows and of early ones, with every pattern of at most one change.
 
     Args:
         boat: index of the boat as it was until a reported alteration, (tows,), sorted by time.
@@ -95,23 +87,11 @@ def patterns_of(
     ]
 
 
-def _between(early: int, tows: int) -> range:
-    """Later tows with another tow of the boat before and after.
-
-    Of a last or first one that is high nothing tells whether it was pulled askew or the boat was
-    altered; before steering was aided, that it was pulled askew is as likely.
-    """
-    return range(max(early, 1), tows - 1)
-
-
 def _patterns(tow: IntArray, season: FloatArray, early: int, settings: Settings) -> Patterns:
     tows = tow.shape[1]
     since_first = season[tow] - season[tow[:, :1]]
     gaps = tows - 1
-    askew_ones = (gaps + place for place in (*range(early), *_between(early, tows)))
-    places = (*range(gaps), *askew_ones)
-    chosen = [c for n in range(MOST_CHANGES + 1) for c in combinations(places, n)]
-    there = np.array([np.isin(np.arange(gaps + tows), places) for places in chosen])
+    there = np.eye(1 + gaps + early, 1 + gaps + tows, dtype=bool)[:, 1:]
     altered, askew = there[:, :gaps], there[:, gaps:]
     after = np.tri(tows, gaps, -1)
     step = np.einsum("pg,kg,lg->pkl", altered, after, after)
@@ -119,7 +99,6 @@ def _patterns(tow: IntArray, season: FloatArray, early: int, settings: Settings)
         tow,
         altered,
         askew,
-        early,
         LEVEL_SD**2 + settings.changed_sd**2 * step,
         settings.bend_sd**2 + settings.changed_bend_sd**2 * step,
         np.minimum(since_first[:, :, None], since_first[:, None, :]),
@@ -149,15 +128,6 @@ class Told:
     mean_pull: FloatArray
     drift: FloatArray
     slope: FloatArray
-
-    def few(self) -> Iterator["Told"]:
-        """The same for a few boats at a time, where all at once would be too large."""
-        arrays = [getattr(self, one.name) for one in fields(self)[1:]]
-        for first in range(0, len(self.weight), FEW_BOATS):
-            some = slice(first, first + FEW_BOATS)
-            patterns = self.patterns
-            of_some = replace(patterns, tow=patterns.tow[some], drift=patterns.drift[some])
-            yield Told(of_some, *(array[some] for array in arrays))
 
     @property
     def observed_precision(self) -> FloatArray:
@@ -199,8 +169,8 @@ def tell(
         state: (tows, 3, 2) slope of the numbers by the boat's level and bend.
         slope: (tows, 3, unknowns).
         drift_variance: of the drift of a boat's level, per year.
-        shares: of gaps between tows in which a boat was altered without a report, and of early and
-            later tows that were pulled askew.
+        shares: of gaps between tows in which a boat was altered without a report, and of early
+            tows that were pulled askew.
     """
     for group in groups:
         boats, tows = group.tow.shape

@@ -91,14 +91,6 @@ class Network:
         )
 
     @property
-    def day(self) -> IntArray:
-        """Index of each tow's day, (tows,); one of its own where it is not known."""
-        known = pl.col("day").cast(pl.String)
-        return index_of(
-            self.tows.with_columns(known.fill_null(pl.col("tow_id"))), ("season", "day")
-        )
-
-    @property
     def determined(self) -> BoolArray:
         """Groups that are tied to the anchor and not refused, shape (groups,)."""
         return np.asarray((self.component == 0) & ~self.refused)

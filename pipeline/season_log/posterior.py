@@ -16,9 +16,7 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
 from pipeline.choice import first_largest
 from pipeline.season_log.assumed import Settings
-from pipeline.season_log.days import day_variance, share_of_season
 from pipeline.season_log.effects import (
-    FORCE,
     OF_BOATS,
     WAYS,
     Slopes,
@@ -47,7 +45,7 @@ and a step by it can leap to where the search finds no way back.
 """
 LEAST_SD: Final = 0.001
 """No number of a tow is ever better known: keeps the search finite where all tows agree."""
-NO_CHANGE: Final = np.full(3, 1e-300)
+NO_CHANGE: Final = np.full(2, 1e-300)
 """Shares of alterations and of tows pulled askew, where there are none."""
 ACCELERATED: Final = 8
 MODEST: Final = 0.1
@@ -75,7 +73,7 @@ class Problem:
         reference_ln: (n,) ln factor of the log at whose true speed the numbers hold.
         unknowns: what there always is, then possible faults.
         share: (n, unknowns) how much of each a tow has.
-        season, day, era: (n,) index; the last era is that of calibrated tows, whenever.
+        era: (n,) index; the last is that of calibrated tows, whenever.
         groups: boats by their number of tows, with what may have changed between these.
     """
 
@@ -89,8 +87,6 @@ class Problem:
     reference_ln: FloatArray
     unknowns: list[Unknown]
     share: FloatArray
-    season: IntArray
-    day: IntArray
     era: IntArray
     groups: list[Patterns]
     settings: Settings
@@ -132,8 +128,6 @@ class Problem:
             reference_ln,
             unknowns,
             np.stack([u.share for u in unknowns], axis=1),
-            np.unique(season, return_inverse=True)[1],
-            network.day,
             np.where(network.group >= 0, np.maximum(era, 0), len(settings.era_starts)),
             patterns_of(network.boat, season, season < settings.straight_from, settings),
             settings,
@@ -179,7 +173,7 @@ class _State:
     """What is searched: the active unknowns, ln variances, and the shares of what changes.
 
     `shares` are those of gaps between tows with an alteration that was not reported, and of tows
-    that were pulled askew, before steering straight was aided and since.
+    that were pulled askew before steering straight was aided.
     """
 
     value: FloatArray
@@ -208,8 +202,8 @@ class Fit:
     Attributes:
         active: (k,) unknowns in the model.
         state: their values, the ln variances and the shares of what changes. The variances are
-            between tows, of bend, of GPS, of the log per era and where calibrated; then the factor
-            of each season; last the drift of boats per year.
+            between tows, of bend, of GPS, of the log per era and where calibrated; last the drift
+            of boats per year.
         covariance: (k, k) of the values.
         ln_variance_covariance: of the ln variances.
         told: what the boats say there.
@@ -373,34 +367,23 @@ def _variance_prior(problem: Problem) -> tuple[FloatArray, FloatArray]:
     """Mean and precision of every ln variance."""
     s = problem.settings
     eras = [s.tow_log_sd] * len(s.era_starts)
-    between = [s.tow_sd, s.bend_sd_tow, s.gps_sd, *eras, s.calibration_sd]
-    seasons = int(problem.season.max()) + 1
-    drift = 2.0 * np.log([s.drift_sd])
-    mean = np.concatenate([2.0 * np.log(between), np.zeros(seasons), drift])
-    sd = np.repeat([s.spread, s.season_spread, s.spread], [len(between), seasons, 1])
-    return mean, sd**-2.0
+    sd = np.array([s.tow_sd, s.bend_sd_tow, s.gps_sd, *eras, s.calibration_sd, s.drift_sd])
+    return 2.0 * np.log(sd), np.full(len(sd), s.spread**-2.0)
 
 
 def _own(
     problem: Problem, tangent: Slopes, ln_variance: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Covariance of what is a tow's own, (n, 3, 3), and its slopes by each of its ln variances."""
-    n, eras = len(problem.q), len(problem.settings.era_starts) + 1
-    ln_variance = ln_variance[:-1]
-    variance = np.exp(ln_variance)
-    own_factor = variance[3 + eras :][problem.season]
-    parts = np.zeros((len(ln_variance), n, 3, 3))
+    variance = np.exp(ln_variance[:-1])
+    parts = np.zeros((len(variance), len(problem.q), 3, 3))
     for place in range(3):
         parts[place, :, place, place] = variance[place]
     by_speed = tangent.ways["speed"]
-    for era in range(eras):
+    for era in range(len(problem.settings.era_starts) + 1):
         of_log = (problem.era == era)[:, None] * by_speed
         parts[3 + era] = variance[3 + era] * of_log[:, :, None] * of_log[:, None, :]
-    parts[: 3 + eras] *= own_factor[:, None, None]
-    own = problem.given * own_factor[:, None, None] + parts[: 3 + eras].sum(axis=0)
-    for season in range(len(ln_variance) - 3 - eras):
-        parts[3 + eras + season] = own * (problem.season == season)[:, None, None]
-    return own + problem.absent, parts
+    return problem.given + problem.absent + parts.sum(axis=0), parts
 
 
 def _variance_slopes(
@@ -443,7 +426,7 @@ class Posterior:
     """What is known of all unknowns of the model, and of the faults that were left out of it.
 
     Attributes:
-        problem: the archive, with load cells as uncertain as the days of their seasons show.
+        problem: the archive.
         fit: with the faults that are likelier than not.
         chance: (faults,) probability of each fault, in the order of `Problem.faults`; 0 where its
             own fit did not bear out what one step promised.
@@ -502,9 +485,8 @@ class Posterior:
         By it the mean over the very tows that a log is estimated from is better known than the log
         in general. 0 for a log that is known by other tows, calibrated on dGPS.
         """
-        problem, ln_variance = self.problem, self.fit.state.ln_variance
-        of_season = ln_variance[4 + len(problem.settings.era_starts) : -1]
-        scatter = np.exp(ln_variance[3 + problem.era] + of_season[problem.season])
+        problem = self.problem
+        scatter = np.exp(self.fit.state.ln_variance[3 + problem.era])
         group = problem.network.group + 1  # 0, anchored, is left out
         of_mean = np.bincount(group, scatter)[1:] / np.bincount(group)[1:] ** 2
         return np.where(problem.network.calibrated, 0.0, of_mean)
@@ -514,23 +496,7 @@ def solve(problem: Problem) -> Posterior:
     """The posterior of everything, with the faults that the archive shows."""
     rough = _with_needed_faults(problem, _with_needed_faults(problem, None, changes=False))
     sharp = fit(problem, rough.active, rough)
-    wider = _with_days(problem, sharp)
-    last = fit(wider, sharp.active, sharp)
-    settled = rough.settled and sharp.settled and last.settled
-    return _posterior(wider, replace(last, settled=settled))
-
-
-def _with_days(problem: Problem, fitted: Fit) -> Problem:
-    """The problem with load cells of seasons as uncertain as their days show."""
-    variance = day_variance(fitted.told, fitted.covariance, problem.day)
-    share = share_of_season(problem.season, problem.day)
-    unknowns = list(problem.unknowns)
-    cells = [i for i in problem.always.tolist() if unknowns[i].name == FORCE]
-    for i, part in zip(cells, share.tolist(), strict=True):
-        unknowns[i] = unknowns[i]._replace(
-            sd=float(np.hypot(unknowns[i].sd, np.sqrt(variance * part)))
-        )
-    return replace(problem, unknowns=unknowns)
+    return _posterior(problem, replace(sharp, settled=rough.settled and sharp.settled))
 
 
 def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = True) -> Fit:

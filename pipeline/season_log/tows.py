@@ -107,7 +107,7 @@ def best_estimates(
     true_level = np.where(posterior.of_boats, posterior.design[:, LEVEL], 0.0)
     numbers = np.zeros((len(problem.q), 4))
     shares = []
-    for told in (few for every in posterior.fit.told for few in every.few()):
+    for told in posterior.fit.told:
         numbers[told.patterns.tow], weight = _of_boats(told, posterior, true_level)
         tows = told.patterns.tow.shape[1]
         shares.append(

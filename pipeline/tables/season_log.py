@@ -94,7 +94,7 @@ class SeasonDiagnosis(PerPart):
     alarm = dy.Bool(
         description="a person should look: fault, cannot be told, alarm, or not settled"
     )
-    first_tow = column.text("likeliest first tow after a log or all boats changed", nullable=True)
+    first_tow = column.text("likeliest first tow after a log changed", nullable=True)
     rests_on = column.text("what tells")
     confused_with = column.text("what else would explain it, likeliest first", nullable=True)
 

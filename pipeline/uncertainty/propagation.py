@@ -28,10 +28,6 @@ ten times as sure as white noise would make it."""
 
 CURVE_PARAMETERS: Final = 2
 
-SHARED_PARAMETERS: Final = 3
-"""What all runs of a tow share of GPS over log: its mean, the current in it, and a log that is not
-linear in speed."""
-
 SINGLE: Final = "single"
 SEASON: Final = "season"
 ARCHIVE: Final = "archive"
@@ -116,10 +112,7 @@ def _taper(lag: IntArray, length: FloatArray) -> FloatArray:
 
 
 def residual_scatter(
-    residual_ratio: FloatArray,
-    used: BoolArray,
-    season: IntArray,
-    parameters: int = CURVE_PARAMETERS,
+    residual_ratio: FloatArray, used: BoolArray, season: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
@@ -130,63 +123,18 @@ def residual_scatter(
         residual_ratio: (point - curve) / curve, shape (tows, points).
         used: points that count, same shape.
         season: season of each tow, shape (tows,).
-        parameters: numbers that were fitted to the points of each tow.
 
     Returns:
         Standard deviation and degrees of freedom for each tow's season, shape (tows,); infinite
         and 0 where no tow of the season has a point to spare.
     """
     _, group = np.unique(season, return_inverse=True)
-    spare = np.maximum(used.sum(axis=1) - parameters, 0)
+    spare = np.maximum(used.sum(axis=1) - CURVE_PARAMETERS, 0)
     squares = np.where(used & (spare > 0)[:, None], residual_ratio, 0.0) ** 2
     dof = np.bincount(group, spare)[group].astype(np.float64)
     total = np.bincount(group, squares.sum(axis=1))[group]
     known = dof > 0
     return np.where(known, np.sqrt(total / np.where(known, dof, 1.0)), np.inf), dof
-
-
-def level_scatter(
-    residual_ratio: FloatArray,
-    by_gps_ratio: FloatArray,
-    speed_m_s: FloatArray,
-    way: FloatArray,
-    used: BoolArray,
-    season: IntArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Relative scatter of run points as it makes the level of calibrated tows uncertain.
-
-    A tow that is calibrated on its GPS has the mean speed of that GPS. So the mean of its points is
-    that of the points that each run's own GPS would give, whatever the log made of single runs, and
-    it is as uncertain as those scatter (docs/method.md, 9). That is seen beside what all runs of a
-    tow share. What out and back differ beyond the scatter by log counts in full.
-
-    Args:
-        residual_ratio: (point - curve) / curve, shape (tows, points), as all but the last.
-        by_gps_ratio: the same of points by each run's own GPS.
-        speed_m_s: of the points.
-        way: 1 out, -1 back.
-        used: points that count, of tows that are calibrated.
-        season: season of each tow, shape (tows,).
-
-    Returns:
-        Standard deviation and degrees of freedom for each tow's season, shape (tows,); infinite
-        and 0 where no tow of the season has a point to spare.
-    """
-    shared = np.stack([used, np.where(used, speed_m_s, 0.0), used * way], axis=2)
-    beside = np.eye(used.shape[1]) - shared @ np.linalg.pinv(shared)
-    (by_gps, dof), (by_log, _) = (
-        residual_scatter(
-            np.einsum("tij,tj->ti", beside, np.where(used, ratio, 0.0)),
-            used,
-            season,
-            SHARED_PARAMETERS,
-        )
-        for ratio in (by_gps_ratio, residual_ratio)
-    )
-    whole, _ = residual_scatter(residual_ratio, used, season)
-    known = dof > 0
-    between = np.where(known, whole, 0.0) ** 2 - np.where(known, by_log, 0.0) ** 2
-    return np.sqrt(by_gps**2 + np.maximum(between, 0.0)), dof
 
 
 # The budget of a tow

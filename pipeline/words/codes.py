@@ -25,7 +25,6 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.season_bend": ("bocht van alle krommen", "bend of all curves"),
     "code.water_temperature": ("watertemperatuur niet genoteerd", "water temperature not recorded"),
     "code.ageing": ("veroudering", "ageing"),
-    "code.type_bend": ("bocht van een type", "bend of a type"),
     "code.fleet_step": ("alle sloepen tegelijk veranderd", "all boats changed at once"),
     "code.fault": ("fout", "fault"),
     "code.alarm": ("alarm", "alarm"),

@@ -63,6 +63,7 @@ def fleet(
             "fsn_no": [fsn[b] for b in boat],
             "tow_date": [dt.date(int(y), 2, 1) for y in season],
             "altered": [False] * n,
+            "declared_speed_m_s": v0,
             "weight_kg": weights[boat],
             "crew_weight_kg": np.full(n, CREW_KG),
             "waterline_length_m": np.full(n, 8.2),

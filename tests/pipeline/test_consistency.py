@@ -326,6 +326,14 @@ def test_a_line_of_a_type_is_that_of_weighted_least_squares():
     assert [row["slope_lo"], row["slope_hi"]] == pytest.approx(other.conf_int()[1], rel=1e-6)
 
 
+def test_boats_of_a_type_are_compared_at_one_speed_whatever_methods_lose_a_curve():
+    curves, *rest = fleet(31, 2, boats=8, speeds_m_s=np.linspace(2.2, 3.2, 8))
+    fewer = curves.filter((pl.col("method") == "m0000") | (pl.col("fsn_no") > "FSN003"))
+    alone = [observe(fewer.filter(method=name), *rest) for name in ("m0000", "m0001")]
+    speeds = {seen.table["standard_speed_m_s"][0] for seen in (*alone, observe(curves, *rest))}
+    assert len(speeds) == 1
+
+
 def of_two_classes(tables):
     """The fleet with its lightest half of the boats rowed by women."""
     curves, tows, boats, points = tables

@@ -12,7 +12,6 @@ from pipeline.uncertainty.propagation import (
     Assumed,
     budget,
     combine,
-    level_scatter,
     residual_scatter,
     run_point_uncertainty,
 )
@@ -109,64 +108,6 @@ def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():
     sd, dof = residual_scatter(residual, used, season)
     assert np.isinf(sd[0])
     assert dof[0] == 0
-
-
-def calibrated_tows(log_sd, gps_sd, runs, between_ways=0.0, tows=1000):
-    """Points of tows of a flat hull, calibrated on GPS: their errors, beside those of their levels.
-
-    Returns:
-        Residuals by the log and by each run's own GPS, speeds, ways, and the errors of the levels.
-    """
-    rng = np.random.default_rng(7)
-    way = np.repeat([1.0, -1.0], [(runs + 1) // 2, runs // 2])
-    speed = np.concatenate([np.linspace(2.25, 2.75, (way == d).sum()) for d in (1.0, -1.0)])
-    force, log, gps = rng.standard_normal((3, tows, runs)) * np.array(
-        [0.01, log_sd, gps_sd]
-    ).reshape(3, 1, 1)
-    force += between_ways * way * rng.choice([-1.0, 1.0], (tows, 1))
-    stream, log_scale = 0.02 * rng.standard_normal((2, tows, 1))
-    ln_gps_log = log_scale + stream * way + gps - log
-    ln_y = sum(0.5 * ln_gps_log[:, way == d].mean(axis=1) for d in (1.0, -1.0))
-    points = force - 2.0 * (log + ln_y[:, None] - log_scale)
-    line = np.column_stack([np.ones(runs), speed - speed.mean()])
-    fitted = points @ np.linalg.pinv(line).T
-    residual = points - fitted @ line.T
-    by_gps = residual - 2.0 * ln_gps_log
-    of_all = np.ones((tows, 1))
-    return residual, by_gps, speed * of_all, way * of_all, fitted[:, 0]
-
-
-@pytest.mark.parametrize("runs", [6, 10])
-@pytest.mark.parametrize("gps_sd", [0.0, 0.002, 0.008])
-@pytest.mark.parametrize("log_sd", [0.0, 0.003, 0.01])
-def test_the_level_of_a_calibrated_tow_is_as_uncertain_as_its_errors_are(log_sd, gps_sd, runs):
-    """Whatever the log wanders from run to run: calibration takes its mean off."""
-    residual, by_gps, speed, way, error = calibrated_tows(log_sd, gps_sd, runs)
-    every, season = np.ones_like(residual, bool), np.full(len(residual), 2014)
-    sd, dof = level_scatter(residual, by_gps, speed, way, every, season)
-    assert dof.tolist() == [len(residual) * (runs - 3.0)] * len(residual)
-    # Four standard errors of a standard deviation from so many.
-    assert error.std() * np.sqrt(runs) / sd[0] == pytest.approx(
-        1.0, abs=4 / np.sqrt(2 * len(error))
-    )
-
-
-def test_what_out_and_back_differ_stays_in_the_level():
-    """A load cell that reads otherwise on the way back may be wrong in both."""
-    given = calibrated_tows(0.003, 0.002, 6, between_ways=0.015)
-    residual, by_gps, speed, way, _ = given
-    every, season = np.ones_like(residual, bool), np.full(len(residual), 2014)
-    sd, _ = level_scatter(residual, by_gps, speed, way, every, season)
-    assert sd[0] > 0.015
-
-
-def test_a_season_without_a_point_to_spare_tells_nothing_of_levels():
-    residual, by_gps, speed, way, _ = calibrated_tows(0.003, 0.002, 6, tows=20)
-    used = np.arange(6) < np.where(np.arange(20) < 10, 6, 3)[:, None]
-    sd, dof = level_scatter(residual, by_gps, speed, way, used, np.repeat([2014, 2015], 10))
-    assert np.isfinite(sd[0])
-    assert np.isinf(sd[-1])
-    assert dof[[0, -1]].tolist() == [30.0, 0.0]
 
 
 def test_the_budget_of_a_usual_tow():
