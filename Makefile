@@ -13,11 +13,12 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test slow lint wheel docs bench growth accuracy survive fuzz clean
+.PHONY: help env demo test test-more slow lint wheel docs bench growth accuracy survive fuzz clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
-	@echo "make test   run all tests but the slow ones"
+	@echo "make test   run all tests but those below"
+	@echo "make test-more  run the tests in a browser and those that kill processes"
 	@echo "make slow   run the tests that take half a minute and more each"
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make wheel  build the wheel and try it in a clean environment"
@@ -74,11 +75,14 @@ $(DEMO)/archief: | $(READY)
 
 # A worker more than two cores, since some wait for a browser or another process; threads of their
 # own would fight over the cores.
-test slow: export POLARS_MAX_THREADS = 1
-test slow: export OPENBLAS_NUM_THREADS = 1
+test test-more slow: export POLARS_MAX_THREADS = 1
+test test-more slow: export OPENBLAS_NUM_THREADS = 1
 
 test: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 3 --dist worksteal
+
+test-more: $(DEVELOP)
+	@$(BIN)/python -m pytest -n 3 --dist worksteal -m more
 
 slow: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -m slow

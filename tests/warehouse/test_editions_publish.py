@@ -393,6 +393,7 @@ EditionBench(Path(sys.argv[1]), Path(sys.argv[2])).publish("2014-1")
 """
 
 
+@pytest.mark.more
 def test_a_publication_killed_in_the_middle_leaves_nothing_to_see(bench_of_editions):
     bench = bench_of_editions
     done = subprocess.run(
