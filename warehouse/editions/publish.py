@@ -18,7 +18,6 @@ from pipeline.register.register import DOUBTED, LINE
 from pipeline.tables.row import Row
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
-from warehouse.derive.version import code_version
 from warehouse.editions.chain import chain_head
 from warehouse.editions.contents import contents_of, decisions_of
 from warehouse.editions.inputs import (
@@ -42,6 +41,7 @@ from warehouse.editions.printed import (
 )
 from warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
 from warehouse.store import decisions as decided
+from warehouse.store.code import code_version
 from warehouse.store.editions import (
     About,
     Edition,
