@@ -221,7 +221,6 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
             large_scatter_in_run=(pl.col("cw_sd") / cw.abs()).max(),
             off_target_speed=(on_target / on_target.median() - 1).abs().max(),
             ends_differ=pl.col("ends_ratio").max(),
-            gps_late=pl.col("gps_delay_s").max(),
             range_not_covered=shortfall,
             declared_speed_not_covered=beyond,
         )

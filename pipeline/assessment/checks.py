@@ -68,7 +68,6 @@ CHECKS: Final = (
     Check("wind_unusual", highest=0.0),
     Check("speed_unusual", highest=0.0),
     Check("season_in_doubt", highest=0.0),
-    Check("gps_late", highest=1.0, unit="s", severity="note"),
     Check("coarse_readings", highest=0.01),
     Check("ways_differ", lowest=-0.01, highest=0.01),
     Check("rises_with_wind", lowest=-0.01, highest=0.01),

@@ -490,6 +490,9 @@ ERRORS: Final[dict[str, str]] = {
         "opnieuw gemaakt is er een regel die de editie niet heeft: {}"
     ),
     "made again, {}: {}": "opnieuw gemaakt, {}: {}",
+    "its method has options that there are no longer": (
+        "de methode heeft keuzes die er niet meer zijn"
+    ),
     "{} is no longer in the warehouse": "{} is niet meer in de tabellen",
     "tows that went into it changed": "proeven die meetellen, zijn gewijzigd",
     "either the code changed since, or the edition did": (

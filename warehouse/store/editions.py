@@ -210,7 +210,8 @@ def read_edition(store: Store, edition: str) -> Edition:
             tables[name] = _with_later_columns(schema, tables[name])
     method = None
     if manifest.kind == "recomputed":
-        method = parse_method((path / METHOD).read_text(encoding="utf-8"), f"{edition}/{METHOD}")
+        text = (path / METHOD).read_text(encoding="utf-8")
+        method = parse_method(text, f"{edition}/{METHOD}", published=True)
     return Edition(manifest, tables, method)
 
 
