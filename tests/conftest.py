@@ -11,7 +11,6 @@ from typing import Final
 from unittest import mock
 
 import dagster as dg
-import duckdb
 import polars as pl
 import pytest
 from filelock import FileLock
@@ -31,6 +30,7 @@ from pipeline.tables.schemas import TABLES
 from tests.quiet import Quiet
 from warehouse.derive.graph import DATABASE, METHOD, STEPS
 from warehouse.intake import seasons as intake
+from warehouse.store.database import open_database
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
@@ -140,13 +140,13 @@ class Workbench:
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""
-        with duckdb.connect(self.store.database, read_only=True) as db:
+        with open_database(self.store.database) as db:
             return db.sql(f'SELECT * FROM "{name}"').pl()  # noqa: S608
 
     def tables(self) -> dict[str, pl.DataFrame]:
         """All tables of the database."""
-        with duckdb.connect(self.store.database, read_only=True) as db:
-            names = [row[0] for row in db.execute("SHOW TABLES").fetchall()]
+        with open_database(self.store.database) as db:
+            names = [row[2] for row in db.execute("SHOW ALL TABLES").fetchall()]
             return {name: db.sql(f'SELECT * FROM "{name}"').pl() for name in names}  # noqa: S608
 
     def lake_files(self) -> dict[str, int]:

@@ -12,13 +12,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-import duckdb
 import pypdf
 import pytest
 import tomlkit
 
 from tests.architecture.repository import ROOT, read
 from tests.conftest import shared
+from warehouse.store.database import open_database
 
 KEPT = tomlkit.parse(read("tests/kept.toml")).unwrap()
 SAMPLE = ROOT / "tests" / "data" / "sample-archive"
@@ -60,7 +60,7 @@ MAKE = {"sample": make_sample, "demo": make_demo}
 
 def lines_of(number, folder):
     """Rows of a query on the database, a line each, at printed digits."""
-    with duckdb.connect(folder / "data" / "warehouse.duckdb", read_only=True) as db:
+    with open_database(folder / "data" / "warehouse.duckdb") as db:
         rows = db.execute(number["sql"]).fetchall()
     return "\n" + "".join(
         " ".join("-" if cell is None else str(cell) for cell in row) + "\n" for row in rows
@@ -113,7 +113,7 @@ def test_a_page_shows(entry, world):
 
 @entries("table")
 def test_a_table_has_its_columns(entry, world):
-    with duckdb.connect(world("sample") / "data" / "warehouse.duckdb", read_only=True) as db:
+    with open_database(world("sample") / "data" / "warehouse.duckdb") as db:
         there = db.table(entry["name"]).columns
     assert set(entry["columns"].split()) - set(there) == set()
 

@@ -27,7 +27,6 @@ from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 
-import duckdb
 import numpy as np
 import polars as pl
 
@@ -43,6 +42,7 @@ from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, truth_rows
 from warehouse.derive.plausible import with_doubts
 from warehouse.store.code import code_hash, code_version
+from warehouse.store.database import open_database
 
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data")) / "accuracy"
 SIZE = {"seasons": tuple(range(2009, 2019)), "tows_per_season": 24}
@@ -168,8 +168,8 @@ def _by_files(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataFr
             check=True,
             capture_output=True,
         )
-        with duckdb.connect(data / "warehouse.duckdb", read_only=True) as db:
-            there = {row[0] for row in db.execute("SHOW TABLES").fetchall()}
+        with open_database(data / "warehouse.duckdb") as db:
+            there = {row[2] for row in db.execute("SHOW ALL TABLES").fetchall()}
             tables = {
                 name: db.table(name).filter(f"method = '{METHOD}'").pl()
                 for name in TABLES

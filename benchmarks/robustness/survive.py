@@ -23,13 +23,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import duckdb
-
 import dashboards.site.render  # noqa: F401 - takes a second, and victims are killed by the clock
 from assets.rebuild import rebuild
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from tests.quiet import Quiet
+from warehouse.store.database import open_database
 from warehouse.store.files import TEMPORARY_PREFIX
 from warehouse.store.store import Store, fingerprint, table_digest
 
@@ -71,9 +70,9 @@ class Outcome:
 
 def digests(data: Path) -> str:
     """One hash of all tables as a reader of the database gets them."""
-    with duckdb.connect(Store(data).database, read_only=True) as db:
+    with open_database(Store(data).database) as db:
         db.execute("SET threads = 1")
-        names = [row[0] for row in db.execute("SHOW TABLES").fetchall()]
+        names = [row[2] for row in db.execute("SHOW ALL TABLES").fetchall()]
         frames = {name: db.sql(f'SELECT * FROM "{name}"').pl() for name in names}
     return fingerprint({name: table_digest(frame) for name, frame in sorted(frames.items())})
 

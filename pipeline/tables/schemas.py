@@ -42,6 +42,14 @@ TABLES: Final = _declared_in(
 )
 """Every class of these modules but those that begin with an underscore, which tables inherit."""
 
+STUDY: Final = frozenset(
+    {
+        *("hand_windows", "season_links", "season_steps", "best_estimate_weights"),
+        *("option_curves", "type_line_points", "promise", "print_reproduction", "print_summary"),
+    }
+)
+"""Tables that studies and pages work with: in the database they are in the schema `study`."""
+
 ABOUT: Final = _declared_in(about)
 """Tables of the database about itself."""
 

@@ -1,6 +1,6 @@
 """Views of the database: the questions that people ask most, each under the name they look for.
 
-SQL that any DuckDB since 1.0 understands. A view computes nothing that a table does not already
+SQL that any DuckDB since 1.1 understands. A view computes nothing that a table does not already
 hold, but for Cw of a curve at another speed.
 """
 

@@ -51,12 +51,12 @@ def _attack(built, root):
             )
         for log, part, source in LINKS:
             db.execute(
-                "INSERT INTO season_links BY NAME SELECT ? AS method, 2009 AS season, ? AS log, "
-                "? AS part, ? AS source, 4 AS n_tows, 3 AS n_links, 1.0 AS factor",
+                "INSERT INTO study.season_links BY NAME SELECT ? AS method, 2009 AS season, "
+                "? AS log, ? AS part, ? AS source, 4 AS n_tows, 3 AS n_links, 1.0 AS factor",
                 [METHODS[-1], log, part, source],
             )
         db.execute(
-            "INSERT INTO season_steps BY NAME SELECT ? AS method, 2009 AS season, 0 AS part, "
+            "INSERT INTO study.season_steps BY NAME SELECT ? AS method, 2009 AS season, 0 AS part, "
             "'log1' AS log, 3 AS n_boats, 'not told' AS cause",
             [METHODS[-1]],
         )

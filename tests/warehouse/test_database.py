@@ -7,7 +7,7 @@ import duckdb
 import polars as pl
 import pytest
 
-from pipeline.tables.schemas import ABOUT, TABLES
+from pipeline.tables.schemas import ABOUT, STUDY, TABLES
 from pipeline.tables.views import VIEWS
 from tests.conftest import Workbench
 from warehouse.derive.inputs import LAKE_ONLY
@@ -76,6 +76,15 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
     assert comments["curves", "cw_kg_m"] == "Cw at the declared speed [kg/m]"
 
 
+def test_working_tables_of_studies_are_in_a_schema_of_their_own(built: Workbench):
+    with duckdb.connect(built.store.database, read_only=True) as db:
+        placed = db.sql("SELECT table_name FROM duckdb_tables() WHERE schema_name = 'study'")
+        assert {name for (name,) in placed.fetchall()} == STUDY
+        with pytest.raises(duckdb.CatalogException):
+            db.table("promise")
+    assert built.table("promise").columns == TABLES["promise"].column_names()
+
+
 ENOUGH_VERSIONS = 4
 
 
@@ -118,20 +127,6 @@ def test_readers_never_see_an_error_or_half_of_a_database(tmp_path):
     assert errors == []
     assert {count for _, count in seen} == {1000}
     assert len({version for version, _ in seen}) > ENOUGH_VERSIONS
-
-
-def test_lists_without_an_element_keep_their_rows(tmp_path):
-    """They are written in a way of their own, for DuckDB 1.0; `.ci/wheel` reads them with it."""
-    path = tmp_path / "warehouse.duckdb"
-    nothing = pl.List(pl.String)
-    frame = pl.DataFrame(
-        {"x": [1, 2], "empty": [[], []], "unknown": [None, []]},
-        schema_overrides={"empty": nothing, "unknown": nothing},
-    )
-    build_database(path, {"t": frame, "u": frame.clear()})
-    with duckdb.connect(path, read_only=True) as db:
-        assert db.table("t").pl().equals(frame)
-        assert db.table("u").pl().equals(frame.clear())
 
 
 def test_a_reader_that_has_the_old_database_open_keeps_it(tmp_path):

@@ -10,7 +10,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import duckdb
 import numpy as np
 import pytest
 
@@ -18,6 +17,7 @@ from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from tests.numbers import unequal
 from tests.warehouse.edition_bench import EditionBench
+from warehouse.store.database import open_database
 
 ROOT = Path(__file__).parents[2]
 WORLD = WorldSettings(seasons=(2009, 2014, 2017), tows_per_season=10, rate_hz=10, seed=3)
@@ -67,8 +67,8 @@ def run(program: str, bench: EditionBench, environment: dict[str, str], *argumen
 
 
 def all_tables(bench):
-    with duckdb.connect(bench.store.database, read_only=True) as db:
-        names = [row[0] for row in db.execute("SHOW TABLES").fetchall()]
+    with open_database(bench.store.database) as db:
+        names = [row[2] for row in db.execute("SHOW ALL TABLES").fetchall()]
         return {name: db.sql(f'SELECT * FROM "{name}"').pl() for name in names}  # noqa: S608
 
 

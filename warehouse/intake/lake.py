@@ -1,9 +1,10 @@
 """The lake: samples and blocks of every tow, written once and named by content.
 
-An archive file that did not change is not read again. A tow's samples are named by the hashes of
-its files, the way to read them and the code that reads; its blocks by the samples and the code that
-adds them up. A fault in the samples is remembered the same way. What the files look like is known
-to `warehouse.archive`, and which sums there are to `pipeline.blocks.run_blocks`.
+An archive file that did not change is not read again. A tow's samples are named by its rows of the
+list, the hashes of its files, the way to read them and the code that reads; its blocks by the
+samples and the code that adds them up. A fault in the samples is remembered the same way. What the
+files look like is known to `warehouse.archive`, and which sums there are to
+`pipeline.blocks.run_blocks`.
 """
 
 import dataclasses
@@ -15,6 +16,7 @@ from typing import Final
 import numpy as np
 import polars as pl
 
+from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import DefectiveInputError, UnavailableError
 from pipeline.tables.frames import dtypes, frame_of
 from pipeline.tables.lake import SeasonIndex
@@ -42,7 +44,7 @@ from warehouse.store.unforeseen import (
 LAKE_FORM: Final = {
     "compression": "lz4",
     "data_page_size": 1 << 22,
-    "use_dictionary": False,
+    "use_dictionary": ["tow_id"],
     "write_statistics": False,
 }
 """How samples and blocks are packed: measured in docs/decisions/0004."""
@@ -152,12 +154,13 @@ def _bring_in(
                 **steps_of(samples),
             }
             _check_unchanged(root, tow, hashes)
-            write_parquet(samples, path, form=LAKE_FORM)
+            named = samples.select(pl.lit(tow["tow_id"]).alias("tow_id"), pl.all())
+            write_parquet(named, path, form=LAKE_FORM)
         if not blocks_path.exists():
             from pipeline.blocks.sums import block_sums  # noqa: PLC0415 - compiles on import
 
             if samples is None:
-                samples = read_parquet(path, use_threads=False)
+                samples = read_parquet(path, list(SAMPLE_SCHEMA), use_threads=False)
             sums = block_sums(samples, tow["sample_rate_hz"])
             write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:

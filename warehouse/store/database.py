@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 import polars as pl
-import polars.selectors as cs
 
 from pipeline.errors import MissingKnowledgeError, UnavailableError
 from pipeline.tables.row import Row
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from pipeline.tables.declare import dy
 
 STORAGE: Final = "v1.0.0"
-"""Any DuckDB since 1.0 opens the file; the newest form would shut out programs of last year."""
+"""Any DuckDB since 1.1 reads the file; the newest form would shut out programs of last year."""
 
 _HELD: Final = say(
     "another program has it open for writing. Close that program, or let it open the file to "
@@ -52,46 +51,39 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
         with duckdb.connect() as connection:
             connection.execute("SET threads = 1")
             connection.execute(f"ATTACH {_quoted(str(beside))} AS w (STORAGE_VERSION '{STORAGE}')")
-            connection.execute("USE w")
+            connection.execute("USE w; CREATE SCHEMA study")
             for name, frame in sorted(tables.items()):
                 # Each comment by itself would sync the disk; all tables at once would fill memory.
                 connection.execute("BEGIN")
                 connection.register("frame", frame.to_arrow())
-                connection.execute(f'CREATE TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
+                connection.execute(f"CREATE TABLE {_place(name)} AS SELECT * FROM frame")  # noqa: S608
                 connection.unregister("frame")
                 _describe(connection, name)
                 connection.execute("COMMIT")
             connection.execute("BEGIN")
             _add_views(connection, tables)
-            bare = _bare_lists(tables)
-            for name, column in bare:
-                connection.execute(f'INSERT INTO "{name}" ("{column}") VALUES ([NULL])')  # noqa: S608
             connection.execute("COMMIT")
-            for name, column in bare:
-                connection.execute(f'DELETE FROM "{name}" WHERE len("{column}") > 0')  # noqa: S608
         left_wal(path).unlink(missing_ok=True)
 
 
-def _bare_lists(tables: Mapping[str, pl.DataFrame]) -> list[tuple[str, str]]:
-    """Columns of lists without any element: DuckDB 1.0 fails on one, unless it once had one."""
-    return [
-        (name, column.name)
-        for name, frame in sorted(tables.items())
-        for column in frame.select(cs.list())
-        if len(column) and not column.list.len().sum()
-    ]
+def _place(name: str) -> str:
+    """A table with its schema."""
+    from pipeline.tables.schemas import STUDY  # noqa: PLC0415 - half a second that readers need not wait
+
+    return f'study."{name}"' if name in STUDY else f'main."{name}"'
 
 
 def _describe(connection: duckdb.DuckDBPyConnection, name: str) -> None:
     """What a table and its columns mean."""
-    from pipeline.tables.schemas import ABOUT, TABLES  # noqa: PLC0415 - half a second that readers need not wait
+    from pipeline.tables.schemas import ABOUT, TABLES  # noqa: PLC0415 - as above
 
     schema = (TABLES | ABOUT).get(name)
     if schema is None:
         return
-    comments = [f'COMMENT ON TABLE "{name}" IS {_quoted(_meaning(schema))}']
+    place = _place(name)
+    comments = [f"COMMENT ON TABLE {place} IS {_quoted(_meaning(schema))}"]
     comments += (
-        f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(text)}'
+        f'COMMENT ON COLUMN {place}."{column}" IS {_quoted(text)}'
         for column, text in _column_meanings(schema).items()
     )
     connection.execute(";".join(comments))  # one by one they take half as long again
@@ -108,7 +100,7 @@ def _column_meanings(schema: "type[dy.Schema]") -> dict[str, str]:
 
 
 def _meaning(schema: "type[dy.Schema]") -> str:
-    """What a table is, with its key: a declared one would keep DuckDB 1.0 from opening the file."""
+    """What a table is, with its key."""
     key = ", ".join(schema.primary_key())
     return f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
 
@@ -141,7 +133,7 @@ NO_TOW: Final = say(
 
 
 def open_database(path: Path) -> duckdb.DuckDBPyConnection:
-    """The database, to read only.
+    """The database, to read only; tables of the schema `study` are found by their name alone.
 
     Raises:
         MissingKnowledgeError: it was not made yet.
@@ -154,12 +146,14 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
             path.parent,
         )
     try:
-        return duckdb.connect(path, read_only=True)
+        connection = duckdb.connect(path, read_only=True)
     except duckdb.Error as error:
         locked = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
         raise UnavailableError(
             "{} cannot be opened: {}", path, _HELD if locked else _SPOILT
         ) from error
+    connection.execute("SET search_path = 'main,study'")
+    return connection
 
 
 def open_results(path: Path) -> duckdb.DuckDBPyConnection:
