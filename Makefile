@@ -13,7 +13,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test test-more slow lint wheel docs bench growth accuracy survive fuzz clean
+.PHONY: help env demo test test-more slow lint wheel docs pictures bench growth accuracy survive fuzz clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
@@ -23,6 +23,7 @@ help:
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make wheel  build the wheel and try it in a clean environment"
 	@echo "make docs   make the documents and the reference as pages, in docs/_build"
+	@echo "make pictures  take the pictures of README.md from the demo's site"
 	@echo "make bench  measure speed and memory"
 	@echo "make growth measure them from one to three thousand tows"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
@@ -100,6 +101,9 @@ wheel: $(DEVELOP)
 # Warnings are errors: a link or a reference that leads nowhere.
 docs: $(DEVELOP)
 	@$(BIN)/python -m sphinx -q -W -b html docs docs/_build
+
+pictures: demo $(DEVELOP)
+	@$(BIN)/python docs/pictures/draw.py
 
 # A thousand tows: ten minutes to simulate, once. A minute: make bench TOWS=1 REPEATS=1
 TOWS ?= 60

@@ -237,6 +237,18 @@ def test_what_other_code_makes_otherwise_stands_where_the_head_is_known(
     assert verify(published_copy.store, head="0" * 64).wrong
 
 
+def test_an_edition_of_a_method_with_options_that_are_gone_was_made_by_other_code(published_copy):
+    path = folder(published_copy, "2014-2")
+    text = (path / "method.toml").read_text(encoding="utf-8")
+    then = text.replace("calibration = { ", 'calibration = { stream = "drifting", ')
+    assert then != text
+    (path / "method.toml").write_text(then, encoding="utf-8")
+    sealed_anew(path, method_hash="0" * 64)
+    assert read_edition(published_copy.store, "2014-2").method is not None
+    own = [f for f in verify(published_copy.store).findings if f.edition == "2014-2"]
+    assert any("made by other code" in finding.message for finding in own)
+
+
 def test_a_fact_that_was_not_recorded_then_is_no_change_of_input(published):
     edition = read_edition(published.store, "2014-1")
     assert len(unchanged_tows(published.store, edition)) == edition.tables["tows"].height
