@@ -201,6 +201,4 @@ def test_sums_are_the_same_on_any_processor_but_for_rounding(tmp_path):
     )
     subprocess.run([sys.executable, "-c", code, file], env=os.environ | plain, check=True)
     elsewhere, here = np.load(file), sums_of_a_tow()
-    size = np.abs(here).mean(axis=0)
-    assert (np.abs(elsewhere - here) <= EXACT * size).all()
-    assert (elsewhere != here).any()
+    assert (np.abs(elsewhere - here) <= EXACT * np.abs(here).mean(axis=0)).all()

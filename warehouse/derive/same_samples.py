@@ -1,11 +1,11 @@
 """Samples that were measured once and are in the archive twice.
 
 A file that was packed again, or saved with other line ends or in another format, has another hash
-and the same content: runs whose sums are equal are one measurement. A file written with fewer
-decimals or in another unit has nearly the same sums. One such run may be chance; two runs of a tow
-that are both like runs of one other tow are not. Nobody can know whose samples they are, so tows of
-different boats or crews all lose them; of one boat and crew the first tow keeps them. Files equal
-byte by byte are told earlier, in `warehouse.archive.index`.
+and the same content: runs whose sums are equal but for rounding are one measurement. A file written
+with fewer decimals or in another unit has nearly the same sums. One such run may be chance; two
+runs of a tow that are both like runs of one other tow are not. Nobody can know whose samples they
+are, so tows of different boats or crews all lose them; of one boat and crew the first tow keeps
+them. Files equal byte by byte are told earlier, in `warehouse.archive.index`.
 """
 
 import dataclasses
@@ -26,9 +26,6 @@ from warehouse.archive.faults import Fault
 
 CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")
 """Sums of a run that tell it from others."""
-
-LAST_BITS: Final = 1e-12
-"""Relative: in these the sums of one content may differ where two processors made them."""
 
 ROUNDING: Final = 2e-4
 """Relative: what rounding to two decimals leaves of a mean over a thousand samples, and more."""
@@ -70,8 +67,7 @@ def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
     tow = runs["tow_id"].rank("dense").to_numpy().astype(np.int64)
     between = np.sort(np.column_stack([tow[one], tow[other]]), axis=1)
     _, pair, often = np.unique(between, axis=0, return_inverse=True, return_counts=True)
-    equal = np.isclose(sums[one], sums[other], rtol=LAST_BITS, atol=0.0).all(axis=1)
-    same = equal | (often[pair.reshape(-1)] > 1)
+    same = np.isclose(sums[one], sums[other], 1e-12, 0.0).all(1) | (often[pair.reshape(-1)] > 1)
     links = scipy.sparse.coo_array(
         (np.ones(same.sum()), (one[same], other[same])), shape=(runs.height, runs.height)
     )
