@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Final
 
 from dashboards.guides import GUIDES, guide_file
-from pipeline.words import LANGUAGES
+from pipeline.messages import LANGUAGES
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.files import file_sha256
