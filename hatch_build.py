@@ -1,5 +1,6 @@
 """What building the package adds: the catalogues of Dutch texts, compiled as gettext reads them."""
 
+from os import getpid
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ def compile_catalogues(root: Path) -> None:
             continue
         with source.open("rb") as file:
             catalogue = read_po(file)
-        beside = target.with_suffix(".new")
+        beside = target.with_suffix(f".{getpid()}")
         with beside.open("wb") as file:
             write_mo(file, catalogue)
         beside.replace(target)
