@@ -212,7 +212,7 @@ PART = pl.col("part") + 1
 
 LINK_COLUMNS = (
     *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
-    *("influence", "influence_boat", "factor_no_boats", "agreement"),
+    *("influence", "influence_boat"),
 )
 STEP_COLUMNS = (
     *("method", "season", "part", "log", "n_boats", "level_step_percent"),
@@ -265,8 +265,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
                         "Where a log was replaced within a season each part has its own factor; "
                         "the chart above shows their mean. The other log has a line too: the "
                         "method does not use it. Largest influence: how far the factor moves at "
-                        "most when one boat is left out. Difference: with the factor that does not "
-                        "know which boat is which (Without boats)."
+                        "most when one boat is left out."
                     ),
                 ),
                 "season_links",

@@ -196,7 +196,6 @@ def _log_error() -> Schema:
     links = columns(
         "season_links",
         *("n_tows", "n_links", "component", "influence", "influence_boat"),
-        *("factor_no_boats", "agreement"),
     )
     factor = columns("log_factors", "season", "factor", "lo", "hi", "source")
     return of(

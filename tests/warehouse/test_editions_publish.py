@@ -1,16 +1,11 @@
 """Publishing: what an edition holds, and that nothing half-written ever shows."""
 
-import csv
 import dataclasses
 import datetime as dt
 import errno
-import io
 import json
 import os
-import signal
 import string
-import subprocess
-import sys
 from pathlib import Path
 
 import polars as pl
@@ -134,28 +129,6 @@ def test_a_later_tow_does_not_count_in_an_earlier_edition(bench_of_editions):
 
 
 # Sheets
-
-
-def csv_rows(path: Path) -> list[dict[str, str]]:
-    content = path.read_bytes()
-    assert content.startswith(b"\xef\xbb\xbf")
-    return list(csv.DictReader(io.StringIO(content.decode("utf-8-sig")), delimiter=";"))
-
-
-def test_the_csv_reads_back_in_a_dutch_spreadsheet(published):
-    rows = csv_rows(folder(published) / "register.csv")
-    register = edition_of(published).register
-    assert [r["fsn_nr"] for r in rows] == register["fsn_no"].to_list()
-    for header, column, decimals in (
-        ("A [kg/m]", "a_kg_m", 3),
-        ("roeisnelheid [m/s]", "declared_speed_m_s", 2),
-    ):
-        cells = [r[header] for r in rows]
-        assert not any("." in cell for cell in cells)
-        read = [float(cell.replace(",", ".")) if cell else None for cell in cells]
-        written = [None if v is None else round(v, decimals) for v in register[column]]
-        assert read == written
-    assert [r["controlecode"] for r in rows] == register["verification_code"].to_list()
 
 
 def test_a_reader_with_dutch_settings_takes_numbers_for_numbers_and_days_for_days(published):
@@ -382,28 +355,6 @@ def test_a_full_disk_leaves_nothing(bench_of_editions, monkeypatch):
         bench_of_editions.publish("2014-1")
     assert edition_names(bench_of_editions.store) == []
     assert [f for f in bench_of_editions.store.editions.iterdir() if f.is_dir()] == []
-
-
-KILLED = """
-import os, signal, sys
-from pathlib import Path
-from tests.warehouse.edition_bench import EditionBench
-Path.rename = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
-EditionBench(Path(sys.argv[1]), Path(sys.argv[2])).publish("2014-1")
-"""
-
-
-def test_a_publication_killed_in_the_middle_leaves_nothing_to_see(bench_of_editions):
-    bench = bench_of_editions
-    done = subprocess.run(
-        [sys.executable, "-c", KILLED, bench.archive, bench.data], check=False, timeout=60
-    )
-    assert done.returncode == -signal.SIGKILL
-    assert edition_names(bench.store) == []
-    root = bench.store.editions
-    assert len([f for f in root.iterdir() if f.is_dir()]) == 1
-    bench.publish("2014-1")
-    assert [f.name for f in root.iterdir() if f.is_dir()] == ["2014-1"]
 
 
 @pytest.mark.parametrize("name", ["", "../x", ".x", "concept-x", "a/b", "x" * 61])

@@ -61,6 +61,10 @@ def remade(store: Store, name: str) -> tuple[Counts, list[Finding]]:
         return Counts(), [Finding(name, "differs", METHOD, message)]
     except CANNOT as error:
         return Counts(), [_not_made(name, error)]
+    if edition.method is not None and edition.method.content_hash != edition.about.method_hash:
+        gone = say("its method has options that there are no longer")
+        message = say("it was made by other code: {}", gone)
+        return Counts(), [Finding(name, "differs", METHOD, message)]
     lines = edition.register.height
     try:
         again = made_again(store, edition)

@@ -220,7 +220,8 @@ def read_edition(store: Store, edition: str) -> Edition:
     }
     method = None
     if about.kind == "recomputed":
-        method = parse_method((path / METHOD).read_text(encoding="utf-8"), f"{edition}/{METHOD}")
+        text = (path / METHOD).read_text(encoding="utf-8")
+        method = parse_method(text, f"{edition}/{METHOD}", published=True)
     return Edition(about, tables, method)
 
 
