@@ -324,7 +324,7 @@ CODES: Final[dict[str, Sentence]] = {
     "few_tows_set_aside": say("few tows set aside"),
     "log_factors_stayed": say("log factors stayed"),
     "boats_stayed_within_their_intervals": say("boats stayed within their intervals"),
-    "editions_can_be_made_again": say("editions can be made again"),
+    "editions_can_be_made_again": say("editions are what they were and can be made again"),
     "every_listed_tow_accounted_for": say("every listed tow accounted for"),
     "every_tow_has_a_curve_row": say(
         "every tow has a row among the curves, even one without a curve"
