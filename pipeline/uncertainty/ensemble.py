@@ -3,7 +3,7 @@
 Is boat X really heavier than Y, does the winner change: whoever asks counts the members in which
 it holds. What tows share is drawn once per member and used for all of them, which intervals of
 single lines cannot show. Belongs here: the draws, and the counting. Does not: the components
-(`propagation`) and where members are kept (`warehouse.store.ensemble`).
+(`propagation`) and where members are kept (the lake).
 """
 
 from collections.abc import Sequence

@@ -2,18 +2,15 @@
 
 import numpy as np
 import polars as pl
-import pytest
 
-from pipeline.errors import MissingKnowledgeError
 from pipeline.uncertainty.ensemble import MEMBERS
 from tests.conftest import Workbench
-from warehouse.store.ensemble import read_ensemble
 
 METHOD = "rebased-2015"
 
 
 def test_every_curve_has_its_members_about_its_cw(built: Workbench):
-    members = read_ensemble(built.store, METHOD)
+    members = built.store.read("ensemble", METHOD)
     curves = built.table("curves").filter(pl.col("method") == METHOD).drop_nulls("cw_kg_m")
     found = members.group_by("tow_id").agg(pl.len(), pl.col("cw_kg_m").log().alias("ln").mean())
     both = curves.join(found, on="tow_id")
@@ -29,12 +26,7 @@ def test_members_stay_out_of_the_database(built: Workbench):
 
 
 def test_a_rebuild_after_a_loss_draws_the_same_members(bench: Workbench):
-    before = read_ensemble(bench.store, METHOD)
+    before = bench.store.read("ensemble", METHOD)
     bench.store.table_path("ensemble", METHOD).unlink()
     assert bench.rebuild().done.methods == [METHOD]
-    assert read_ensemble(bench.store, METHOD).equals(before)
-
-
-def test_a_method_that_was_not_applied_is_named(built: Workbench):
-    with pytest.raises(MissingKnowledgeError, match="--method rebased"):
-        read_ensemble(built.store, "rebased")
+    assert bench.store.read("ensemble", METHOD).equals(before)

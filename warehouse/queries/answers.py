@@ -24,7 +24,6 @@ from warehouse.derive.studies import STUDIED_METHOD
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import no_such_edition
 from warehouse.store.editions import read_edition
-from warehouse.store.ensemble import read_ensemble
 
 PAIR: Final = ("from_edition", "to_edition")
 
@@ -280,5 +279,5 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
 def _members(views: Views, edition: str, method: str) -> pl.DataFrame:
     """The ensemble of a draft from the lake, of an edition from its folder."""
     if edition.startswith(DRAFT):
-        return read_ensemble(views.store, method)
+        return views.store.read("ensemble", method)
     return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())

@@ -12,7 +12,6 @@ import hashlib
 import json
 import re
 import shutil
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -30,7 +29,7 @@ from pipeline.tables.curves import Curves
 from pipeline.tables.declare import dy
 from pipeline.tables.register import Register
 from pipeline.words import say
-from warehouse.store.files import TEMPORARY_PREFIX, sync
+from warehouse.store.files import TEMPORARY_PREFIX, folder_written_beside
 from warehouse.store.store import Store
 
 Kind = Literal["recomputed", "as_printed"]
@@ -271,7 +270,9 @@ def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str,
         target.parent.mkdir(parents=True, exist_ok=True)
         with _one_at_a_time(target.parent):
             check_new_name(store, edition)
-            _write_beside(target, contents())
+            with folder_written_beside(target) as beside:
+                for name, content in contents().items():
+                    (beside / name).write_bytes(content)
     except OSError as error:
         raise BrokenPromiseError(
             "edition {} could not be written: {}. Nothing was published; make room "
@@ -280,20 +281,6 @@ def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str,
             error.strerror or error,
         ) from error
     return target
-
-
-def _write_beside(path: Path, contents: Mapping[str, bytes]) -> None:
-    beside = Path(tempfile.mkdtemp(prefix=f"{TEMPORARY_PREFIX}{path.name}-", dir=path.parent))
-    try:
-        for name, content in contents.items():
-            (beside / name).write_bytes(content)
-            sync(beside / name)
-        beside.chmod(0o755)
-        sync(beside)
-        beside.rename(path)
-        sync(path.parent)
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
 
 
 @contextmanager
