@@ -61,11 +61,11 @@ def test_a_full_disk_leaves_the_old_tables_and_the_next_run_goes_on(bench, built
     [
         (errno.ENOSPC, "no room left"),
         (errno.EDQUOT, "no room left"),
-        (errno.EROFS, "cannot be written"),
-        (errno.EACCES, "cannot be written"),
+        (errno.EROFS, "cannot be read or written"),
+        (errno.EACCES, "cannot be read or written"),
         (errno.EMFILE, "may not open more files"),
         (errno.EIO, "the disk under"),
-        (errno.EFBIG, "ulimit -f"),
+        (errno.EFBIG, "none as large"),
         (errno.ENOMEM, "not enough memory"),
     ],
 )
@@ -124,7 +124,7 @@ def test_a_panic_in_a_library_is_explained_too(tmp_path):
     panic = type("PanicException", (BaseException,), {})
     with pytest.raises(UnavailableError, match="more files"), machine_faults_explained(tmp_path):
         raise panic('Os { code: 24, message: "Too many open files" }')
-    with pytest.raises(UnavailableError, match="figure"), machine_faults_explained(tmp_path):
+    with pytest.raises(UnavailableError, match="more files"), machine_faults_explained(tmp_path):
         raise ValueError("Failed to send SVG conversion request: receiver is gone")
 
 
@@ -153,7 +153,7 @@ def test_in_a_folder_of_somebody_else_it_stops_with_the_way_out(bench, built):
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert run.returncode == 1
-    assert "cannot be written" in run.stderr
+    assert "cannot be read or written" in run.stderr
     assert "Traceback" not in run.stderr
     assert_same_tables(bench.tables(), built.tables())
 
@@ -274,24 +274,6 @@ def test_a_full_disk_that_sqlite_calls_an_error_of_the_disk_is_called_full(tmp_p
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
     with pytest.raises(UnavailableError, match="no room left"), machine_faults_explained(tmp_path):
         raise OSError("disk I/O error")
-
-
-LIMITED_FILES = """
-import resource, sys
-from pathlib import Path
-from warehouse.store.machine_faults import machine_faults_explained
-resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
-with machine_faults_explained(Path(sys.argv[1])):
-    raise RuntimeError("disk I/O error")  # what SQLite calls it
-"""
-
-
-def test_a_limit_to_files_is_no_broken_disk(tmp_path):
-    run = subprocess.run(
-        [sys.executable, "-c", LIMITED_FILES, tmp_path],
-        cwd=ROOT, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert "ulimit -f unlimited" in run.stderr.splitlines()[-1]
 
 
 @pytest.mark.parametrize(

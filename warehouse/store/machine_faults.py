@@ -4,94 +4,74 @@ Libraries wrap the system's errors in their own. What tells them is the system's
 anywhere in the chain of causes, or the few words by which SQLite, DuckDB and Polars pass one on.
 """
 
-import errno
-import importlib
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from errno import EACCES, EDQUOT, EFBIG, EIO, EMFILE, ENFILE, ENOMEM, ENOSPC, EPERM, EROFS
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from pipeline.errors import HerijkError, UnavailableError
-from pipeline.words import say
-from warehouse.store.files import WINDOWS
+from pipeline.messages import Sentence, say
 
-_FULL: Final = say(
-    "there is no room left to write in {root}. Free some, or move the data folder; "
-    "lake/samples in it is the largest part and is made again when needed"
-)
-_FORBIDDEN: Final = say(
-    "{root} cannot be written. Give the user who runs this the right to write in all of it, or "
-    "name another folder with --data"
-)
-_ELSEWHERE: Final = say(
-    "{path} cannot be read or written. Give the user who runs this the right to it, or name another"
-)
-_HANDLES: Final = say(
-    "this process may not open more files. Allow more (ulimit -n 1024; in systemd "
-    "LimitNOFILE=1024) and run it again"
-)
-_BROKEN_DISK: Final = say(
-    "the disk under {root} gives errors. Look in the system's log, and replace it"
-)
-_LIMITED: Final = say(
-    "this process may not write files as large as it needs. Allow larger ones (ulimit -f "
-    "unlimited; in systemd LimitFSIZE=infinity) and run it again"
-)
-_NO_MEMORY: Final = say(
-    "there is not enough memory. Allow more (ulimit -v unlimited; in systemd MemoryMax=), close "
-    "other programs, or read fewer seasons at a time with --seasons"
-)
 
-_DAMAGED_RECORDS: Final = say(
-    "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no table, only "
-    "the history of runs"
+class _Fault(NamedTuple):
+    """A fault of the machine: what to say of it, and how it is told by number or in words."""
+
+    sentence: Sentence
+    numbers: tuple[int, ...]
+    words: tuple[str, ...]
+
+
+_FULL: Final = _Fault(
+    say(
+        "there is no room left to write in {root}. Free some, or move the data folder; "
+        "lake/samples in it is the largest part and is made again when needed"
+    ),
+    (ENOSPC, EDQUOT),
+    ("no space left", "disk is full", "quota exceeded"),
 )
-
-_CLOSED_RECORDS: Final = say(
-    "Dagster's records in {root}/dagster cannot be opened: this process may not open more files "
-    "(allow more: ulimit -n 1024; in systemd LimitNOFILE=1024), or has no right to that folder"
+_FORBIDDEN: Final = _Fault(
+    say(
+        "{path} cannot be read or written. Give the user who runs this the right to it, or name "
+        "another"
+    ),
+    (EROFS, EACCES, EPERM),
+    ("read-only file system", "readonly database", "permission denied"),
 )
-
-_NO_DRAWING: Final = say(
-    "a figure could not be drawn: the drawing library stopped, usually because this process may "
-    "not open more files (allow more: ulimit -n 1024; in systemd LimitNOFILE=1024)"
+_LIMITED: Final = _Fault(
+    say(
+        "this process may not open more files, or none as large as it needs. Allow more (ulimit -n "
+        "1024 -f unlimited; in systemd LimitNOFILE=1024, LimitFSIZE=infinity) and run it again"
+    ),
+    (EMFILE, ENFILE, EFBIG),
+    (
+        *("too many open files", "unable to open database file", "file too large"),
+        "receiver is gone",  # the library that draws, when it gets no file
+    ),
 )
-
-_BY_NUMBER: Final = {
-    errno.ENOSPC: _FULL,
-    errno.EDQUOT: _FULL,
-    errno.EFBIG: _LIMITED,
-    errno.EROFS: _FORBIDDEN,
-    errno.EACCES: _FORBIDDEN,
-    errno.EPERM: _FORBIDDEN,
-    errno.EMFILE: _HANDLES,
-    errno.ENFILE: _HANDLES,
-    errno.EIO: _BROKEN_DISK,
-    errno.ENOMEM: _NO_MEMORY,
-}
-
-_BY_WORDS: Final = {
-    "no space left": _FULL,
-    "disk is full": _FULL,
-    "file too large": _LIMITED,
-    "quota exceeded": _FULL,
-    "read-only file system": _FORBIDDEN,
-    "readonly database": _FORBIDDEN,
-    "permission denied": _FORBIDDEN,
-    "too many open files": _HANDLES,
-    "unable to open database file": _CLOSED_RECORDS,
-    "receiver is gone": _NO_DRAWING,
-    "input/output error": _BROKEN_DISK,
-    "disk i/o error": _BROKEN_DISK,
-    "file is not a database": _DAMAGED_RECORDS,
-    "disk image is malformed": _DAMAGED_RECORDS,
-    "no such table": _DAMAGED_RECORDS,
-    "out of memory": _NO_MEMORY,
-    "cannot allocate memory": _NO_MEMORY,
-    "failed to map segment": _NO_MEMORY,
-    "can't start new thread": _NO_MEMORY,
-}
+_BROKEN_DISK: Final = _Fault(
+    say("the disk under {root} gives errors. Look in the system's log, and replace it"),
+    (EIO,),
+    ("input/output error", "disk i/o error"),
+)
+_NO_MEMORY: Final = _Fault(
+    say(
+        "there is not enough memory. Allow more (ulimit -v unlimited; in systemd MemoryMax=), "
+        "close other programs, or read fewer seasons at a time with --seasons"
+    ),
+    (ENOMEM,),
+    ("out of memory", "cannot allocate memory", "failed to map segment", "can't start new thread"),
+)
+_DAMAGED_RECORDS: Final = _Fault(
+    say(
+        "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no table, "
+        "only the history of runs"
+    ),
+    (),
+    ("file is not a database", "disk image is malformed", "no such table"),
+)
+_FAULTS: Final = (_FULL, _FORBIDDEN, _LIMITED, _BROKEN_DISK, _NO_MEMORY, _DAMAGED_RECORDS)
 
 _LITTLE: Final = 1 << 20
 """Bytes: with less a disk is full."""
@@ -111,39 +91,14 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
     except (HerijkError, KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # a panic of a library in Rust is no Exception
-        explanation = _machine_fault(error)
-        if explanation is None:
+        fault = _machine_fault(error)
+        if fault is None:
             raise
-        said = _said(explanation, error, root)
+        if fault is _BROKEN_DISK and _is_full(root):  # SQLite calls both an error of the disk
+            fault = _FULL
+        named = (e.filename for e in _causes(error) if isinstance(e, OSError) and e.filename)
+        said = say(fault.sentence, root=root, path=next(named, root))
         raise UnavailableError("{}. {}", said, REASSURANCE) from error
-
-
-def _said(fault: str, error: BaseException, root: Path) -> str:
-    """The sentence about a fault of the machine, with the path that it is about."""
-    if fault == _FORBIDDEN:
-        names = (str(e.filename) for e in _causes(error) if isinstance(e, OSError) and e.filename)
-        path = next(names, None)
-        if path is not None and not Path(path).absolute().is_relative_to(root.absolute()):
-            return say(_ELSEWHERE, path=path)
-    if fault == _BROKEN_DISK and _is_full(root):  # SQLite calls both an error of the disk
-        fault = _FULL
-    elif fault == _BROKEN_DISK and _is_limited():
-        fault = _LIMITED
-    return say(fault, root=root)
-
-
-def _is_full(root: Path) -> bool:
-    """Whether no room is left."""
-    folder = next((p for p in (root, *root.absolute().parents) if p.is_dir()), None)
-    return folder is not None and shutil.disk_usage(folder).free < _LITTLE
-
-
-def _is_limited() -> bool:
-    """Whether the system lets this process write files of some size only."""
-    if WINDOWS:
-        return False
-    resource = importlib.import_module("resource")  # not every system has it
-    return bool(resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY)
 
 
 def is_machine_fault(error: BaseException) -> bool:
@@ -151,17 +106,22 @@ def is_machine_fault(error: BaseException) -> bool:
     return _machine_fault(error) is not None
 
 
-def _machine_fault(error: BaseException) -> str | None:
+def _machine_fault(error: BaseException) -> _Fault | None:
     for one in _causes(error):
-        if isinstance(one, OSError) and one.errno in _BY_NUMBER:
-            return _BY_NUMBER[one.errno]
         if isinstance(one, MemoryError):
             return _NO_MEMORY
+        number = one.errno if isinstance(one, OSError) else None
         text = str(one).casefold()
-        for words, fault in _BY_WORDS.items():
-            if words in text:
+        for fault in _FAULTS:
+            if number in fault.numbers or any(words in text for words in fault.words):
                 return fault
     return None
+
+
+def _is_full(root: Path) -> bool:
+    """Whether no room is left."""
+    folder = next((p for p in (root, *root.absolute().parents) if p.is_dir()), None)
+    return folder is not None and shutil.disk_usage(folder).free < _LITTLE
 
 
 def _causes(error: BaseException | None) -> Iterator[BaseException]:
