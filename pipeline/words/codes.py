@@ -33,7 +33,6 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.not told": ("niet te zeggen", "not told"),
     "code.not determined": ("niet bepaald", "not determined"),
     "code.not settled": ("niet tot een eind gekomen", "not settled"),
-    "code.other log": ("andere log", "other log"),
     "code.gps": ("GPS", "GPS"),
     "code.accepted": ("goed", "accepted"),
     "code.flagged": ("nakijken", "flagged"),
