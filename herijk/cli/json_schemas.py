@@ -39,7 +39,7 @@ from warehouse.queries.due import DueReport
 from warehouse.queries.rebase import RebaseReport
 from warehouse.queries.register import RegisterReport
 from warehouse.queries.reports import LogErrorReport, RebuildReport
-from warehouse.store.editions import About
+from warehouse.store.editions import Manifest
 
 Schema = dict[str, Any]
 Fields = Mapping[str, Any]
@@ -250,7 +250,7 @@ ABOUT: Final = columns(
 def _publish() -> Schema:
     to_look_at = LINE | columns("register", "status", "tow_id") | {"flags": texts("its flags")}
     report = of(Published, to_look_at=to_look_at)
-    about = report["properties"].pop("about")["properties"]
+    about = report["properties"].pop("manifest")["properties"]
     report["properties"] |= about | ABOUT
     return report
 
@@ -311,7 +311,7 @@ def _lineage() -> Schema:
     }
     return of(
         Lineage,
-        about=of(About)["properties"] | ABOUT,
+        about=of(Manifest)["properties"] | ABOUT,
         lines={
             "line": columns("register") | TYPED | columns("boats", "ht_no") | inputs | origin,
             "tow": columns("tows") | columns("boats", "boat_type") | inputs,
