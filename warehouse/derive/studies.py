@@ -6,6 +6,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.method.definition import Method
+from pipeline.recompute.facts import with_hand_windows
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies.ladder import ladder
 from pipeline.studies.options import option_effects
@@ -13,7 +14,6 @@ from pipeline.studies.tool_options import option_curves, tick_effects
 from pipeline.tables.declare import dy
 from pipeline.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
 from warehouse.derive.inputs import Blocks
-from warehouse.derive.method_tables import runs_with_blocks
 
 FIRST_PUBLISHED: Final = "as-published-2014"
 """Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
@@ -45,7 +45,7 @@ def study_tables(
     run_cache: RunCache,
 ) -> dict[str, pl.DataFrame]:
     """The ladder from the first method to this one, and the studies of its options."""
-    runs = runs_with_blocks(tow_runs, hand_windows, blocks)
+    runs = blocks.of_runs(with_hand_windows(tow_runs, hand_windows))
     links, known = _of(method, tow_instruments), (tows, runs)
     effects, ticked = [], []
     if method.name in TICKED:
