@@ -24,7 +24,7 @@ def promise(curves: pl.DataFrame, repeat_pairs: pl.DataFrame) -> pl.DataFrame:
         curves, repeat_pairs: the tables of that name, of several methods.
 
     Returns:
-        Rows of the table `promise`; `outside_2pct` names the tows of which either is beyond 2 %.
+        Rows of the table `promise`.
     """
     key = ["method", "season"]
     stated = curves.drop_nulls("cw_kg_m").select(
@@ -34,16 +34,13 @@ def promise(curves: pl.DataFrame, repeat_pairs: pl.DataFrame) -> pl.DataFrame:
     both = stated.join(
         seen.drop("season"), on=["method", "tow_id"], how="left", maintain_order="left"
     )
-    beyond = (pl.col("half") > PROMISED["2pct"]) | (pl.col("off") > PROMISED["2pct"])
     return (
         both.group_by(key, maintain_order=True)
         .agg(
             pl.len().cast(pl.Int32).alias("tows"),
-            pl.col("half").median().alias("half_interval_ratio"),
             *((pl.col("half") < m).mean().alias(f"share_stated_{n}") for n, m in PROMISED.items()),
             pl.col("off").count().cast(pl.Int32).alias("n_pairs"),
             *((pl.col("off") < m).mean().alias(f"share_seen_{n}") for n, m in PROMISED.items()),
-            pl.col("tow_id").filter(beyond).sort().alias("outside_2pct"),
         )
         .sort(key)
     )

@@ -9,7 +9,7 @@ from pipeline.method.definition import Method
 from pipeline.recompute.facts import with_hand_windows
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies.ladder import ladder
-from pipeline.studies.options import beside_uncertainty, option_effects
+from pipeline.studies.options import option_effects
 from pipeline.studies.tool_options import option_curves, tick_effects
 from pipeline.tables.declare import dy
 from pipeline.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
@@ -42,7 +42,6 @@ def study_tables(
     hand_windows: pl.DataFrame,
     blocks: Blocks,
     tow_instruments: pl.DataFrame,
-    curves: pl.DataFrame,
     run_cache: RunCache,
 ) -> dict[str, pl.DataFrame]:
     """The ladder from the first method to this one, and the studies of its options."""
@@ -68,7 +67,7 @@ def study_tables(
         "option_effects": _together(
             OptionEffects,
             [
-                beside_uncertainty(frame, _of(method, curves)).with_columns(
+                frame.with_columns(
                     pl.lit(method.name).alias("method"), pl.lit(study).alias("study")
                 )
                 for study, frame in effects
