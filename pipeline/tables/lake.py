@@ -160,11 +160,7 @@ class FailedTows(dy.Schema):
 
     tow_id = column.tow_id()
     tow_key = column.text("hash of its row of the list, with those of its samples")
-    path = column.text("its samples, relative to the archive")
-    reason_code = column.text("short stable code")
-    message = column.text("what went wrong, in a sentence")
-    message_nl = column.text("the same in Dutch")
-    cause = column.text("what such failures share")
+    told = column.text("kind and first words of the error")
 
 
 SEASON_TABLES: dict[str, type[dy.Schema]] = {

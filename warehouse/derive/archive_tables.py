@@ -12,12 +12,12 @@ from pipeline.recompute.facts import with_boat_types
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
 from pipeline.words import say
-from warehouse.archive.faults import OF_A_HEADER
+from warehouse.archive.faults import OF_A_HEADER, Fault
 from warehouse.archive.lists.windows import outside_run
 from warehouse.derive.inputs import Blocks
 from warehouse.derive.plausible import gross_faults, judge, with_doubts
 from warehouse.derive.same_samples import CONTENT, same_samples
-from warehouse.store.unforeseen import tow_key
+from warehouse.store.unforeseen import UNFORESEEN, sentence, with_keys
 
 
 class NothingSoundError(MissingKnowledgeError):
@@ -85,9 +85,10 @@ def _with_failed(index: pl.DataFrame, listed: pl.DataFrame, failed: pl.DataFrame
     """The index with the fault of the tows that make Herijk itself fail, as they are listed."""
     if failed.is_empty():
         return index
-    keys = [tow_key(row) for row in listed.iter_rows(named=True)]
-    mine = listed.select("tow_id", tow_key=pl.Series(keys, dtype=pl.String))
-    of_today = failed.join(mine, on=["tow_id", "tow_key"], how="semi").drop("tow_key")
+    mine = failed.join(with_keys(listed), on=["tow_id", "tow_key"], maintain_order="left")
+    told = mine.select("samples_path", "tow_id", "told").iter_rows()
+    faults = [Fault(path, tow, None, UNFORESEEN, sentence(tow, why)) for path, tow, why in told]
+    of_today = frame_of(Faults, map(dataclasses.asdict, faults))
     return pl.concat(
         [index.join(of_today, on="tow_id", how="anti", maintain_order="left"), of_today],
         how="diagonal",

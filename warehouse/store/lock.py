@@ -6,7 +6,6 @@ they read is replaced whole. Publishing an edition has a lock of its own, in `ed
 """
 
 import datetime as dt
-import json
 import os
 import shutil
 import socket
@@ -23,7 +22,7 @@ from warehouse.store.files import TEMPORARY_PREFIX
 
 LOCK_FILE: Final = "rebuild.lock"
 SERVER_LOCK_FILE: Final = "serve.lock"
-OWNER_SUFFIX: Final = ".owner.json"
+OWNER_SUFFIX: Final = ".owner"
 WAIT: Final = say("Wait until that is done, or stop that process; its lock goes with it")
 _NOT_OURS: Final = {"audit", "dagster", "editions", "outbox"}
 """Folders of the data folder in which others write, without the lock."""
@@ -98,8 +97,7 @@ def _locked(file: Path, wait: bool, taken: str, way_out: str) -> Iterator[None]:
         raise UnavailableError("{}, by {}. {}", taken, _owner(signature), way_out) from error
     try:
         since = dt.datetime.now().astimezone().isoformat(timespec="seconds")
-        owner = {"pid": os.getpid(), "host": socket.gethostname(), "since": since}
-        signature.write_text(json.dumps(owner), encoding="utf-8")
+        signature.write_text(f"{os.getpid()} {socket.gethostname()} {since}", encoding="utf-8")
         yield
     finally:
         signature.unlink(missing_ok=True)
@@ -109,10 +107,10 @@ def _locked(file: Path, wait: bool, taken: str, way_out: str) -> Iterator[None]:
 def _owner(signature: Path) -> str:
     """Who holds the lock, in words; it may have just begun and not have signed yet."""
     try:
-        owner: dict[str, object] = json.loads(signature.read_text(encoding="utf-8"))
-        return say("process {} on {} since {}", owner["pid"], owner["host"], owner["since"])
-    except (OSError, ValueError, KeyError, TypeError):
+        pid, host, since = signature.read_text(encoding="utf-8").split()
+    except (OSError, ValueError):
         return say("a process that has just begun")
+    return say("process {} on {} since {}", pid, host, since)
 
 
 def remove_leftovers(root: Path) -> None:

@@ -8,7 +8,7 @@ change: then they are tried again.
 """
 
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Final
@@ -16,10 +16,8 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import BrokenPromiseError, HerijkError
-from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import FailedTows
-from pipeline.tables.row import Row
-from pipeline.words import Sentence, cause_of, say, spoken
+from pipeline.words import Sentence, say
 from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.files import written_beside
 from warehouse.store.machine_faults import is_machine_fault
@@ -143,34 +141,21 @@ def set_aside(store: Store, failed: FailedTowsError) -> None:
     Raises:
         FailedTowsError: they were set aside already.
     """
-    listed = store.read_all("season_tows").filter(pl.col("tow_id").is_in(failed.tows))
     known = failed_tows(store)
-    keys = set(known["tow_key"])
-    new = [row for row in listed.iter_rows(named=True) if tow_key(row) not in keys]
-    if not new:
+    listed = store.read_all("season_tows").filter(pl.col("tow_id").is_in(failed.tows))
+    new = with_keys(listed).join(known, on="tow_key", how="anti", maintain_order="left")
+    if new.is_empty():
         raise failed
-    rows = []
-    for row in new:
-        message = sentence(row["tow_id"], failed.told)
-        note(store.root, row["tow_id"], failed.trace)
-        rows.append(
-            {
-                "tow_id": row["tow_id"],
-                "tow_key": tow_key(row),
-                "path": row["samples_path"],
-                "reason_code": UNFORESEEN,
-                "message": str(message),
-                "message_nl": spoken(message, "nl"),
-                "cause": cause_of(message),
-            }
-        )
-    frame = pl.concat([known, frame_of(FailedTows, rows)])
-    store.write(FAILED_TOWS, frame.sort("tow_id"), code_hash(*COMPUTING))
+    for tow_id in new["tow_id"]:
+        note(store.root, tow_id, failed.trace)
+    rows = new.select("tow_id", "tow_key", told=pl.lit(failed.told))
+    store.write(FAILED_TOWS, pl.concat([known, rows]).sort("tow_id"), code_hash(*COMPUTING))
 
 
-def tow_key(row: Mapping[str, object] | Row) -> str:
-    """What a tow's failure belongs to: its row of the list with the hashes of its samples."""
-    return fingerprint(dict(row))
+def with_keys(listed: pl.DataFrame) -> pl.DataFrame:
+    """Listed tows with what a failure belongs to: the row, with the hashes of its samples."""
+    keys = [fingerprint(row) for row in listed.iter_rows(named=True)]
+    return listed.with_columns(tow_key=pl.Series(keys, dtype=pl.String))
 
 
 def _file(root: Path, what: str) -> Path:
