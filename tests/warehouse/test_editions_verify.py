@@ -35,9 +35,9 @@ def folder(bench, name="2014-1"):
 
 def found(bench, **wanted):
     report = verify(bench.store)
-    return [
-        f for f in report.findings if all(getattr(f, key) == value for key, value in wanted.items())
-    ], report.wrong
+    wanted = wanted.items()
+    findings = [f for f in report.findings if wanted <= vars(f).items()]
+    return findings, report.wrong
 
 
 @pytest.fixture
@@ -103,11 +103,6 @@ def test_a_damaged_description_does_not_stop_the_others(published_copy, content)
     report = verify(published_copy.store)
     assert report.wrong
     assert [e.edition for e in report.editions] == ["2014-2"]
-
-
-def test_a_damaged_table_is_told(published_copy):
-    (folder(published_copy) / "register.parquet").write_bytes(b"PAR1 nothing")
-    assert found(published_copy, edition="2014-1", where="register.parquet")[1]
 
 
 @FILES_ALONE
@@ -408,10 +403,9 @@ def test_the_head_decides_whether_an_edition_was_forged(published_copy):
     path = folder(published_copy, "2014-2")
     FORGERIES["Cw of all lines"](path)
     sealed_anew(path)
-    assert not verify(
-        published_copy.store, afresh=False, head=chain_head(published_copy.store).seal
-    ).wrong
-    assert verify(published_copy.store, afresh=False, head=minutes).wrong
+    forged = chain_head(published_copy.store).seal
+    wrong = [verify(published_copy.store, False, head).wrong for head in (forged, minutes)]
+    assert wrong == [False, True]
 
 
 def test_all_that_was_forged_in_a_line_is_named(published_copy):
