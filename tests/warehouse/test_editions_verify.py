@@ -349,20 +349,12 @@ def doubled(path):
 
 
 TENTH_LESS = pl.col("cw_kg_m") * 0.9
-LINE = {
-    "valid_until": dt.date(2031, 12, 31),
-    "declared_speed_m_s": 9.9,
-    "weight_kg": 1.0,
-    "waterline_length_m": 99.0,
-    "name": "Andere Naam",
-    "boat_type": "ander",
-    "tow_date": dt.date(2014, 1, 1),
-}
 FORGERIES = {
     "Cw of all lines": lambda path: rewritten(path, "register", cw_kg_m=TENTH_LESS),
     "flags of all lines": lambda path: rewritten(path, "register", flags=pl.lit(["doubted"])),
-    "facts of all lines": lambda path: rewritten(
-        path, "register", **{name: pl.lit(value) for name, value in LINE.items()}
+    "weight of all lines": lambda path: rewritten(path, "register", weight_kg=pl.lit(1.0)),
+    "last day of all lines": lambda path: rewritten(
+        path, "register", valid_until=pl.lit(dt.date(2031, 12, 31))
     ),
     "a line twice": doubled,
     "another version of the code": lambda path: (
@@ -406,12 +398,6 @@ def test_the_head_decides_whether_an_edition_was_forged(published_copy):
     forged = chain_head(published_copy.store).seal
     wrong = [verify(published_copy.store, False, head).wrong for head in (forged, minutes)]
     assert wrong == [False, True]
-
-
-def test_all_that_was_forged_in_a_line_is_named(published_copy):
-    FORGERIES["facts of all lines"](folder(published_copy, "2014-2"))
-    findings, _ = found(published_copy, kind="differs", edition="2014-2")
-    assert {name for name in LINE if f"{name} " in findings[0].message} == LINE.keys()
 
 
 def test_forged_inputs_of_an_edition_are_named(published_copy):

@@ -249,13 +249,10 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 def _lines(was: Tables, now: Tables) -> pl.DataFrame:
     inputs = _input_hashes(was), _input_hashes(now)
     drafts = [_draft_lines(was, now, method, inputs) for method in now["methods"]["method"]]
-    known = [draft for draft in drafts if draft is not None]
-    return pl.concat(known or [_no_lines()], how="diagonal_relaxed")
-
-
-def _no_lines() -> pl.DataFrame:
     unknown = pl.lit(None, pl.Boolean).alias("exceeds_interval")
-    return TABLES["register_changes"].create_empty().with_columns(unknown)
+    none = TABLES["register_changes"].create_empty().with_columns(unknown)
+    known = [draft for draft in drafts if draft is not None]
+    return pl.concat(known or [none], how="diagonal_relaxed")
 
 
 def _draft_lines(was: Tables, now: Tables, method: str, inputs: Inputs) -> pl.DataFrame | None:
