@@ -27,8 +27,8 @@ from pydantic import (
 
 from pipeline.assessment.checks import CODES
 from pipeline.errors import HerijkError, MissingKnowledgeError
+from pipeline.messages import Sentence, say
 from pipeline.toml_text import parse_toml, problem_in_words
-from pipeline.words import Sentence, say
 
 LAST_SEASON: Final = 9999
 """End of a range written as `2015:`, which holds until a later method says otherwise."""
