@@ -13,9 +13,9 @@ import duckdb
 import polars as pl
 
 from pipeline.errors import MissingKnowledgeError, UnavailableError
+from pipeline.messages import say
 from pipeline.tables.row import Row
 from pipeline.tables.views import VIEWS
-from pipeline.words import say
 from warehouse.store.files import written_beside
 
 if TYPE_CHECKING:

@@ -17,7 +17,6 @@ import polars as pl
 
 from pipeline.errors import BrokenPromiseError, HerijkError
 from pipeline.tables.lake import FailedTows
-from pipeline.words import Sentence, say
 from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.files import written_beside
 from warehouse.store.machine_faults import is_machine_fault
