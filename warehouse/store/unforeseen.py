@@ -16,6 +16,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import BrokenPromiseError, HerijkError
+from pipeline.messages import Sentence, say
 from pipeline.tables.lake import FailedTows
 from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.files import written_beside
