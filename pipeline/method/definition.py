@@ -51,8 +51,7 @@ class Speed(_Options):
     """What is known to be wrong with the speed through the water, which is that of log 1."""
 
     correction: Literal["none", "prescribed", "estimated"]
-    correction_ratio: float = Field(default=0.0, ge=-0.15, le=0.15)
-    operation: Literal["multiply", "divide"] = "multiply"
+    factor: float = Field(default=1.0, ge=0.85, le=1.2)
 
 
 class Calibration(_Options):
