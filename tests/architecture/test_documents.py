@@ -12,7 +12,7 @@ from dashboards.guides import GUIDES
 from herijk.cli.main import app
 from pipeline.assessment.checks import CHECKS
 from pipeline.method.definition import Steps, shipped_methods
-from pipeline.tables.schemas import TABLES
+from pipeline.tables.schemas import STUDY, TABLES
 from pipeline.tables.views import VIEWS
 from tests.architecture.repository import ROOT, modules, read, tracked_files
 from tests.reason_codes import REASON_CODES
@@ -153,8 +153,8 @@ def test_reason_codes_are_documented_and_no_others():
 
 
 def test_every_table_is_documented():
-    found = set(re.findall(r"^\| `(\w+)` \|", read("docs/tables.md"), re.MULTILINE))
-    assert found == {*TABLES, *VIEWS}
+    found = set(re.findall(r"^\| `([\w.]+)` \|", read("docs/tables.md"), re.MULTILINE))
+    assert found == {f"study.{name}" if name in STUDY else name for name in (*TABLES, *VIEWS)}
 
 
 def test_readme_names_no_command_that_is_not_there():
