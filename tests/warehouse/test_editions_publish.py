@@ -10,6 +10,7 @@ from pathlib import Path
 
 import polars as pl
 import pytest
+from polars.testing import assert_frame_equal
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import parse_method, shipped_method
@@ -20,6 +21,7 @@ from warehouse.derive.published import published_made_from, published_tables
 from warehouse.editions import publish as publish_module
 from warehouse.editions import sheets
 from warehouse.editions.compare import diff
+from warehouse.editions.making import MADE
 from warehouse.editions.publish import publish, publish_printed
 from warehouse.store.decisions import FILE_NAME
 from warehouse.store.editions import (
@@ -67,6 +69,12 @@ def test_an_edition_holds_everything_behind_it(published):
     assert about.seal == about.expected_seal
     assert about.method_hash == shipped_method("as-published").content_hash
     assert edition_of(published).tables.keys() == set(TABLES)
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_an_edition_holds_what_the_rebuild_made(published, name):
+    made = published.store.read(name, "rebased")
+    assert_frame_equal(edition_of(published, "2014-2").tables[name], made, rel_tol=1e-12)
 
 
 def test_an_edition_keeps_what_changed_since_the_one_before(published):

@@ -139,21 +139,16 @@ def _made_again(
     store: Store, archive: Path | None, manifests: Mapping[str, Manifest]
 ) -> tuple[list[CheckedEdition], list[Finding]]:
     """The editions made again: from the files of an archive, or else from the lake as it lies."""
+    unread = [CheckedEdition(name, m.kind, None, None, None) for name, m in manifests.items()]
     checked: list[CheckedEdition] = []
     findings: list[Finding] = []
     try:
         with _read_again(store, archive) as again:
-            for name, manifest in manifests.items():
-                one, differ = differing(
-                    again, CheckedEdition(name, manifest.kind, None, None, None)
-                )
-                checked.append(one)
+            for edition in unread:
+                counted, differ = differing(again, edition)
+                checked.append(counted)
                 findings += differ
     except HerijkError as error:
-        unread = [
-            CheckedEdition(name, manifest.kind, None, None, None)
-            for name, manifest in manifests.items()
-        ]
         return unread, [Finding("", "unchecked", "archive", str(error))]
     return checked, findings
 
