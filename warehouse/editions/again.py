@@ -188,13 +188,14 @@ def _unlike(file: str, was: bytes, now: bytes) -> list[tuple[str, str]]:
     if was == now:
         return []
     read = {".csv": sheets.read_csv_cells, ".xlsx": sheets.read_xlsx_cells}.get(Path(file).suffix)
+    otherwise: list[tuple[str, str]] = [
+        (file, say("{} does not say what the tables of the edition say", file))
+    ]
     if read is None or not was or not now:
-        return [(file, say("{} does not say what the tables of the edition say", file))]
+        return otherwise
     one, other = read(was), read(now)
-    if one == other and file == XLSX:  # packed by another version of its library
-        return []
-    if one == other:
-        return [(file, say("{} does not say what the tables of the edition say", file))]
+    if one == other:  # a workbook packed by another version of its library is none
+        return [] if file == XLSX else otherwise
     places = [place for place in one.keys() | other.keys() if one.get(place) != other.get(place)]
     named: list[tuple[str, str]] = [
         (
