@@ -130,8 +130,7 @@ def _lines(edition: Edition, again: Edition) -> Iterator[Finding]:
     """Lines of the register that come out otherwise."""
     why = say("either the code changed since, or the edition did")
     if "tows" in edition.tables:
-        same = same_tows(edition.tables, again.tables)
-        if len(same) < edition.tables["tows"].height:
+        if len(same_tows(edition.tables, again.tables)) < edition.tables["tows"].height:
             why = say("tows that went into it changed")
     for one, other, unequal in _differences(edition.register, again.register, LINE):
         if one is None:
