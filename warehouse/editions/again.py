@@ -129,15 +129,15 @@ def _inputs(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
 def _lines(edition: Edition, again: Edition) -> Iterator[Finding]:
     """Lines of the register that come out otherwise."""
     why = say("either the code changed since, or the edition did")
-    if "tows" in edition.tables:
-        if len(same_tows(edition.tables, again.tables)) < edition.tables["tows"].height:
-            why = say("tows that went into it changed")
+    was, now = edition.tables, again.tables
+    if "tows" in was and len(same_tows(was, now)) < was["tows"].height:
+        why = say("tows that went into it changed")
     for one, other, unequal in _differences(edition.register, again.register, LINE):
         if one is None:
             message = say("made again, there is a line that the edition has not: {}", why)
         else:
-            now = other or {}
-            what = ", ".join(f"{n} {_text(one.get(n))} > {_text(now.get(n))}" for n in unequal)
+            made = other or {}
+            what = ", ".join(f"{n} {_text(one.get(n))} > {_text(made.get(n))}" for n in unequal)
             message = say("made again, {}: {}", what, why)
         row = one or other or {}
         where = f"{row['fsn_no']} {row['rowers']}{row['crew_class']}"
