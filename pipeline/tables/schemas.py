@@ -1,9 +1,7 @@
 """The tables of the warehouse, each declared once: names, dtypes, units, ranges and meaning.
 
 Other programs rely on these names; a column may be added, none is renamed or dropped without a
-line in the changelog. Units are in the names (SI); ratios are ratios. What a number means
-physically is explained in the module that computes it; how tables are stored is in
-`warehouse.store.store`.
+line in the changelog. Units are in the names (SI); ratios are ratios.
 """
 
 import re
@@ -43,11 +41,9 @@ TABLES: Final = _declared_in(
 )
 """Every class of these modules but those that begin with an underscore, which tables inherit."""
 
-STUDY: Final = frozenset(
-    {
-        *("hand_windows", "season_links", "season_steps", "best_estimate_weights"),
-        *("option_curves", "type_line_points", "promise", "print_reproduction", "print_summary"),
-    }
+STUDY: Final = (
+    *("hand_windows", "season_links", "season_steps", "best_estimate_weights", "option_curves"),
+    *("type_line_points", "promise", "print_reproduction", "print_summary"),
 )
 """Tables that studies and pages work with: in the database they are in the schema `study`."""
 

@@ -79,7 +79,7 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
 def test_working_tables_of_studies_are_in_a_schema_of_their_own(built: Workbench):
     with duckdb.connect(built.store.database, read_only=True) as db:
         placed = db.sql("SELECT table_name FROM duckdb_tables() WHERE schema_name = 'study'")
-        assert {name for (name,) in placed.fetchall()} == STUDY
+        assert {name for (name,) in placed.fetchall()} == {*STUDY}
         with pytest.raises(duckdb.CatalogException):
             db.table("promise")
     assert built.table("promise").columns == TABLES["promise"].column_names()
