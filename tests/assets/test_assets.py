@@ -8,22 +8,27 @@ from pathlib import Path
 
 import dagster as dg
 import pytest
-from dagster._core.definitions.data_version import CachingStaleStatusResolver
-from dagster._core.loader import LoadingContextForTest
+from dagster_graphql.test.utils import define_out_of_process_context, execute_dagster_graphql
 from polars.testing import assert_frame_equal
 
 import assets.instance
 import assets.location
 import assets.tables
 import warehouse.derive.step
-import warehouse.intake.lake
 from assets.archive import OUTSIDE_SPECS
 from assets.location import assets_of
 from assets.resources import QUIET_LOG, Setup
 from assets.settings import Settings
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import shipped_text
-from tests.assets.test_rebuild import TOWS_2009, assert_same_tables, samples_files, spoil
+from pipeline.tables.schemas import TABLES
+from tests.assets.test_rebuild import (
+    TOWS_2009,
+    assert_same_tables,
+    mended_while_read,
+    samples_files,
+    spoil,
+)
 from tests.conftest import METHODS, SMALL, Workbench, in_one_process
 from tests.elsewhere import dask_cluster
 from warehouse.derive.graph import STEPS
@@ -31,13 +36,16 @@ from warehouse.intake import seasons as intake
 from warehouse.store.methods import KnownMethods
 
 ROOT = Path(__file__).parents[2]
+DEFINITIONS = ROOT / "assets" / "definitions.py"
+OTHER_CODE = Path(__file__).with_name("other_code.py")
 OWN = "ours"
 
 
 @pytest.fixture
-def instance(monkeypatch):
-    """Records of Dagster that last as long as the test, in memory."""
-    with dg.DagsterInstance.ephemeral() as instance:
+def instance(monkeypatch, tmp_path):
+    """Records of Dagster that last as long as the test."""
+    (tmp_path / "records").mkdir()
+    with dg.DagsterInstance.local_temp(str(tmp_path / "records")) as instance:
 
         @assets.instance.contextmanager
         def known(_):
@@ -67,20 +75,31 @@ def materialise(bench, instance, *assets, season=None, methods=METHODS):
         )
 
 
-def stale_in_dagster(instance, bench, methods=METHODS):
-    """Assets, or seasons of them, that Dagster calls stale."""
-    setup = Setup.of(bench.archive, bench.data, methods, Settings())
-    graph = assets_of(setup).resolve_asset_graph()
-    resolver = CachingStaleStatusResolver(instance, graph, LoadingContextForTest(instance))
-    found = set()
-    for key in graph.materializable_asset_keys:
-        seasons = map(str, SMALL.seasons) if graph.get(key).is_partitioned else (None,)
-        for season in seasons:
-            status = resolver.get_status(key, season)
-            assert status.value != "MISSING", (key, season)
-            if status.value == "STALE":
-                found.add((key.to_user_string(), season))
-    return found
+STALENESS = """query ($seasons: [String!]!) {
+  whole: assetNodes { assetKey { path } isMaterializable isPartitioned staleStatus }
+  bySeason: assetNodes(assetKeys: [{path: "samples"}, {path: "blocks"}]) {
+    assetKey { path }
+    staleStatusByPartition(partitions: $seasons)
+  }
+}"""
+
+
+def stale_in_dagster(instance, file=DEFINITIONS):
+    """Assets, or seasons of them, that Dagster's page calls stale."""
+    seasons = list(map(str, SMALL.seasons))
+    with define_out_of_process_context(str(file), None, instance) as page:
+        answer = execute_dagster_graphql(page, STALENESS, {"seasons": seasons}).data
+    said = {
+        (*node["assetKey"]["path"], None): node["staleStatus"]
+        for node in answer["whole"]
+        if node["isMaterializable"] and not node["isPartitioned"]
+    }
+    for node in answer["bySeason"]:
+        by_season = zip(seasons, node["staleStatusByPartition"], strict=True)
+        said |= {(*node["assetKey"]["path"], season): status for season, status in by_season}
+    assert len(said) > len(TABLES)
+    assert "MISSING" not in said.values()
+    return {of for of, status in said.items() if status == "STALE"}
 
 
 def stale_to_us(bench, methods=METHODS):
@@ -108,6 +127,8 @@ def other_race(bench):
     path.write_text("\n".join([first, *rest[1:]]), "utf-8")
 
 
+# Dagster leaves the processes that it asks to end by themselves.
+@pytest.mark.filterwarnings("ignore:.*Popen.__del__:pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.slow
 def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_rebuild(
     bench, instance, monkeypatch
@@ -117,7 +138,7 @@ def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_r
     own.write_text(shipped_text("rebased-2015").replace("rebased-2015", OWN), "utf-8")
     methods = (METHODS[0], OWN)
 
-    def new_code(bench):
+    def new_code(_):
         for module in (warehouse.derive.step, assets.tables):
             monkeypatch.setattr(module, "code_hash", lambda *_: "other")
         steps = [assets.tables.step_asset(step) for step in STEPS]
@@ -128,7 +149,8 @@ def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_r
     bench.store.database.unlink()
     shutil.rmtree(bench.data / "lake")
     bench.rebuild(methods, whole=True)
-    assert stale_in_dagster(instance, bench, methods) == set()
+    definitions = DEFINITIONS
+    assert stale_in_dagster(instance, definitions) == set()
     for change in (
         lambda bench: spoil(samples_files(bench, 2009)[3]),
         other_weight,
@@ -137,12 +159,13 @@ def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_r
         new_code,
     ):
         change(bench)
+        definitions = OTHER_CODE if change is new_code else DEFINITIONS
         materialise(bench, instance, *intake.INDEXED, methods=methods)
         ours = stale_to_us(bench, methods)
         assert ours
-        assert stale_in_dagster(instance, bench, methods) == ours
+        assert stale_in_dagster(instance, definitions) == ours
         bench.rebuild(methods, whole=True)
-        assert stale_in_dagster(instance, bench, methods) == set()
+        assert stale_in_dagster(instance, definitions) == set()
         assert stale_to_us(bench, methods) == set()
 
 
@@ -178,19 +201,9 @@ def test_damaged_blocks_of_a_tow_are_made_again(bench, built, instance):
 def test_an_archive_that_changes_while_a_season_is_made_is_read_again(
     bench, built, instance, monkeypatch
 ):
-    file = samples_files(bench, 2009)[3]
-    kept = spoil(file)
-    original, changes = warehouse.intake.lake.read_tow_samples, []
-
-    def changing(root, tow, profile):
-        if not changes:
-            changes.append(tow["tow_id"])
-            file.write_bytes(kept)
-        return original(root, tow, profile)
-
-    monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", changing)
+    read = mended_while_read(bench, monkeypatch)
     assert materialise(bench, instance, "samples", "blocks", season=2009).success
-    assert changes
+    assert read
     assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
 
 
