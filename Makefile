@@ -13,23 +13,22 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test slow lint wheel docs bench growth accuracy accuracy-parts survive fuzz plausible full-scale clean
+.PHONY: help env demo test test-more slow lint wheel docs pictures bench growth accuracy survive fuzz clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
-	@echo "make test   run all tests but the slow ones"
+	@echo "make test   run all tests but those below"
+	@echo "make test-more  run the tests in a browser and those that kill processes"
 	@echo "make slow   run the tests that take half a minute and more each"
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make wheel  build the wheel and try it in a clean environment"
 	@echo "make docs   make the documents and the reference as pages, in docs/_build"
+	@echo "make pictures  take the pictures of README.md from the demo's site"
 	@echo "make bench  measure speed and memory"
-	@echo "make growth measure them from one to ten thousand tows"
+	@echo "make growth measure them from one to three thousand tows"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
-	@echo "make accuracy-parts  the same for season factors, methods and the consistency analysis apart"
-	@echo "make survive  kill $(KILLS) rebuilds, and other commands, at random moments and look what is lost"
-	@echo "make plausible  put wrong units, scales and mix-ups in simulated archives: which are told"
-	@echo "make fuzz   throw $(INPUTS) damaged files at the readers, put 300 faults in an archive, rebuild parts of one"
-	@echo "make full-scale  memory and time of a rebuild of 1,000 tows; needs 20 GB and an hour"
+	@echo "make survive  kill $(KILLS) rebuilds at random moments and look what is lost"
+	@echo "make fuzz   throw $(INPUTS) damaged files at the readers, and put 300 faults in an archive"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
 
@@ -77,11 +76,14 @@ $(DEMO)/archief: | $(READY)
 
 # A worker more than two cores, since some wait for a browser or another process; threads of their
 # own would fight over the cores.
-test slow: export POLARS_MAX_THREADS = 1
-test slow: export OPENBLAS_NUM_THREADS = 1
+test test-more slow: export POLARS_MAX_THREADS = 1
+test test-more slow: export OPENBLAS_NUM_THREADS = 1
 
 test: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 3 --dist worksteal
+
+test-more: $(DEVELOP)
+	@$(BIN)/python -m pytest -n 3 --dist worksteal -m more
 
 slow: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -m slow
@@ -100,55 +102,40 @@ wheel: $(DEVELOP)
 docs: $(DEVELOP)
 	@$(BIN)/python -m sphinx -q -W -b html docs docs/_build
 
+pictures: demo $(DEVELOP)
+	@$(BIN)/python docs/pictures/draw.py
+
 # A thousand tows: ten minutes to simulate, once. A minute: make bench TOWS=1 REPEATS=1
 TOWS ?= 60
 REPEATS ?= 5
 
 bench: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.speed --tows-per-season $(TOWS) --repeats $(REPEATS) \
-	  --write $(if $(filter 60,$(TOWS)),docs,benchmarks/data)
+	  --write $(if $(filter 60,$(TOWS)),docs/performance.md,benchmarks/data/performance.md)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.commands benchmarks/data/$(TOWS)/archive \
 	  --write $(if $(filter 60,$(TOWS)),docs/commands.md,benchmarks/data/commands.md)
-	@for part in fit editions samples_format; do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.$$part || exit 1; done
 
-# From one to ten thousand tows: an hour.
+# An hour.
 growth: $(DEVELOP)
-	@PYTHONPATH=. $(BIN)/python -m benchmarks.growth --write docs/growth.md
+	@PYTHONPATH=. $(BIN)/python -m benchmarks.commands --growth 60 180 --write docs/growth.md
 
 # Every named world: two hours on two cores for 20 archives each. A first look: make accuracy SEEDS=2
 SEEDS ?= 20
 PROCESSES ?= 2
-PARTS = calibration factors foreign methods consistency season finding_2015
 
 accuracy: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.worlds --seeds $(SEEDS) --processes $(PROCESSES)
 
-accuracy-parts: $(DEVELOP)
-	@for part in $(PARTS); do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.$$part || exit 1; done
-
 # These are long. Shorter: make survive KILLS=10, make fuzz INPUTS=2000
 KILLS ?= 1000
 INPUTS ?= 100000
-WORLDS ?= 201 202 203
-TRIED ?= benchmarks/data/plausible
 
 survive: $(DEVELOP)
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py $(KILLS)
-	@PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive_commands.py $$(( ($(KILLS) + 3) / 4 ))
-
-plausible: $(DEVELOP)
-	@mkdir -p $(TRIED)
-	@for seed in $(WORLDS); do for part in 0 1 2 3 4 5 6 7; do PYTHONPATH=. $(BIN)/python \
-	benchmarks/robustness/plausible.py try $$seed $$part $(TRIED)/$$seed-$$part.parquet || exit 1; done; done
-	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/plausible.py table $(TRIED)/*.parquet
 
 fuzz: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py $(INPUTS)
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/mutate.py 300
-	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/parts.py 50
-
-full-scale: $(DEVELOP)
-	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/full_scale.py
 
 clean:
 	rm -rf .venv $(DEMO) dist docs/_build .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

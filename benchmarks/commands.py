@@ -1,8 +1,11 @@
 """How long the commands take, measured as a user would: from the shell, on a whole archive.
 
     PYTHONPATH=. python -m benchmarks.commands ARCHIVE [--repeats 3] [--write FILE]
+    PYTHONPATH=. python -m benchmarks.commands --growth 60 180 600 [--write FILE]
 
 The archive is linked, not copied, and its last tow is held back, to come in later as a new one.
+With `--growth` archives of so many tows in each of 17 seasons are simulated at 10 samples per
+second, so that ten thousand tows fit on a disk.
 `Processor` counts all processes of a command. `Memory` is the largest sum of what they held at a
 time; pages that they share count once.
 """
@@ -10,7 +13,9 @@ time; pages that they share count once.
 import argparse
 import contextlib
 import datetime as dt
+import importlib
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -24,11 +29,14 @@ from typing import Final
 
 import polars as pl
 
-from benchmarks.harness import machine
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from warehouse.store.store import Store
 
+SEASONS: Final = tuple(range(2009, 2026))
+GROWTH_RATE_HZ: Final = 10
+MOST_MIB: Final = {1_000: 1024, 10_000: 2048}
+"""What the project asks: memory of a cold rebuild with so many tows."""
 SMALL: Final = WorldSettings(tuple(range(2009, 2017)), 3, 100)
 READ, COLD = "only text to blocks", "rebuild, cold"
 LONGEST_OF_READING: Final = 1.5
@@ -199,18 +207,43 @@ def asked(found: dict[str, Cost]) -> Iterator[tuple[str, str, str, bool]]:
         yield f"{name}, seconds", f"{seconds:.2f}", f"at most {limit:g}", seconds <= limit
 
 
-def page(found: dict[str, Cost], archive: str) -> str:
-    """The page of the documentation."""
-    about = ", ".join(f"{key} {value}" for key, value in machine("numpy", "polars").items())
-    lines = [
-        "# Commands from the shell",
+def machine(*modules: str) -> str:
+    """What the figures were measured on, with the versions of the given modules."""
+    versions = {name: str(importlib.import_module(name).__version__) for name in modules}
+    facts = {
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "load": f"{os.getloadavg()[0]:.1f}",
+        "python": platform.python_version(),
+    }
+    return ", ".join(f"{key} {value}" for key, value in (facts | versions).items())
+
+
+def _processor() -> str:
+    about = Path("/proc/cpuinfo")
+    lines = about.read_text(encoding="utf-8").splitlines() if about.exists() else []
+    named = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return named[0] if named else platform.machine()
+
+
+def made_by(title: str, archive: str) -> list[str]:
+    """How a page of figures begins."""
+    return [
+        f"# {title}",
         "",
         f"Made by `python -m benchmarks.commands` on {dt.datetime.now(dt.UTC).date()}. Machine: "
-        f"{about}. {archive} Reading commands: medians. Processor is that of all processes of a "
+        f"{machine('numpy', 'polars')}. {archive} Processor is that of all processes of a "
         "command. Memory is the largest sum of what they held at a time; pages that they share "
-        "count once. Load is that of the machine when the command ended: above the number of "
-        "cores, other work was going on, and the column *processor* is the more reliable one.",
+        "count once. Load is that of the machine when a command, or all, ended: above the number "
+        "of cores, other work was going on, and processor time is the more reliable one.",
         "",
+    ]
+
+
+def page(found: dict[str, Cost], archive: str) -> str:
+    """The page of the documentation."""
+    lines = [
+        *made_by("Commands from the shell", f"{archive} Reading commands: medians."),
         "| what | found | asked | holds |",
         "| --- | --- | --- | --- |",
         *(
@@ -229,24 +262,76 @@ def page(found: dict[str, Cost], archive: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def measured(archive: Path, repeats: int) -> str:
+    """The page about one archive."""
+    with tempfile.TemporaryDirectory(dir=archive.parent) as folder:
+        found = rebuilds(archive, Path(folder)) | small_rebuild(Path(folder))
+        data = Path(folder) / "data"
+        tows = Store(data).read("tows")
+        found |= readings(data, repeats)
+    rates = ", ".join(map(str, tows["sample_rate_hz"].unique().sort()))
+    about = (
+        f"Simulated archive of {tows.height} tows of {tows['fsn_no'].n_unique()} boats at {rates} "
+        f"Hz; the small one has {len(SMALL.seasons)} seasons of {SMALL.tows_per_season} tows at "
+        f"{SMALL.rate_hz} Hz."
+    )
+    return page(found, about)
+
+
+def grown(tows_per_season: int) -> tuple[int, int, dict[str, Cost]]:
+    """How many tows and boats a simulated archive has, and what each command took, once."""
+    with tempfile.TemporaryDirectory() as folder:
+        archive, data = Path(folder) / "simulated", Path(folder) / "data"
+        world = simulate_world(WorldSettings(SEASONS, tows_per_season, GROWTH_RATE_HZ))
+        write_simulated_archive(archive, world)
+        found = rebuilds(archive, Path(folder)) | readings(data, repeats=1)
+        tows = Store(data).read("tows")
+    return tows.height, tows["fsn_no"].n_unique(), found
+
+
+def growth_page(sizes: list[tuple[int, int, dict[str, Cost]]]) -> str:
+    """The page about archives of several sizes."""
+    about = (
+        f"Simulated archives of {len(SEASONS)} seasons at {GROWTH_RATE_HZ} Hz: everything after "
+        "the blocks costs what it does at 1000 Hz, reading costs less. Every command once: "
+        "seconds by the clock / seconds of processor / peak MiB. At 1000 Hz: "
+        "[commands.md](commands.md)."
+    )
+    heads = [f"{tows:,} tows, {boats:,} boats" for tows, boats, _ in sizes]
+    rows = {
+        name: [f"{c.seconds:.1f} / {c.processor_s:.1f} / {c.peak_mib:.0f}" for c in costs]
+        for name in sizes[0][2]
+        if (costs := [found[name] for *_, found in sizes])
+    }
+    lines = [
+        *made_by("Growth with the number of tows", about),
+        "| command | " + " | ".join(heads) + " |",
+        "| --- |" + " --- |" * len(sizes),
+        *(f"| {name} | {' | '.join(cells)} |" for name, cells in rows.items()),
+        "",
+        *(
+            f"- Asked of a rebuild with {number:,} tows: at most {most:,} MiB. Found with "
+            f"{tows:,}: {found[COLD].peak_mib:,.0f}."
+            for number, most in MOST_MIB.items()
+            for tows, _, found in sizes
+            if number <= tows < 2 * number
+        ),
+    ]
+    return "\n".join(lines) + "\n"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("archive", type=Path)
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("archive", type=Path, nargs="?")
+    what.add_argument("--growth", type=int, nargs="+", metavar="TOWS", help="tows per season")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--write", type=Path, metavar="FILE", help="write the page here too")
     chosen = parser.parse_args()
-    with tempfile.TemporaryDirectory(dir=chosen.archive.parent) as folder:
-        found = rebuilds(chosen.archive, Path(folder)) | small_rebuild(Path(folder))
-        data = Path(folder) / "data"
-        tows = Store(data).read("tows")
-        rates = tows["sample_rate_hz"].unique().sort().to_list()
-        about = (
-            f"Simulated archive of {tows.height} tows of {tows['fsn_no'].n_unique()} boats at "
-            f"{', '.join(map(str, rates))} Hz; the small one has {len(SMALL.seasons)} seasons of "
-            f"{SMALL.tows_per_season} tows at {SMALL.rate_hz} Hz."
-        )
-        found |= readings(data, chosen.repeats)
-    made = page(found, about)
+    if chosen.growth:
+        made = growth_page([grown(tows) for tows in chosen.growth])
+    else:
+        made = measured(chosen.archive, chosen.repeats)
     print(made)
     if chosen.write:
         chosen.write.write_text(made, encoding="utf-8")

@@ -1,7 +1,13 @@
 """The documents and the reference of the library as pages: `make docs`. No network is needed."""
 
+from collections.abc import Iterator
 from importlib.metadata import version as installed_version
 from typing import Any
+
+import typer.main
+from typer.testing import CliRunner
+
+from herijk.cli.main import app
 
 project = "Herijk"
 author = "The Herijk authors"
@@ -36,6 +42,15 @@ def _add_contents(_app: Any, name: str, text: list[str]) -> None:
     """Lists all pages beside each; in the source it would show as code on a forge."""
     if name == root_doc:
         text[0] += CONTENTS
+    if name == "command-line":
+        text[0] += "".join(_helps())
+
+
+def _helps() -> Iterator[str]:
+    """What each command says of itself."""
+    for command in sorted(typer.main.get_command(app).commands):
+        said = CliRunner().invoke(app, ["--lang", "en", command, "--help"]).output
+        yield f"\n## herijk {command}\n\n```text\n{said}\n```\n"
 
 
 def setup(app: Any) -> None:

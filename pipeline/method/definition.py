@@ -61,8 +61,6 @@ class Calibration(_Options):
 
     rule: Literal["none", "gps_per_tow", "gps_per_season"]
     without_gps: Literal["no_curve", "estimated"] = _later("no_curve")
-    stream: Literal["none", "drifting"] = _later("none")
-    delay: Literal["none", "estimated"] = _later("none")
 
 
 class Window(_Options):
@@ -272,13 +270,20 @@ LONGEST_TEXT: Final = 100_000
 """More than any method has."""
 
 
-def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = shipped_text) -> Method:
+def parse_method(
+    text: str,
+    file_name: str,
+    text_of: Callable[[str], str] = shipped_text,
+    published: bool = False,
+) -> Method:
     """Reads and checks the text of a method file.
 
     Args:
         text: TOML.
         file_name: for error messages.
         text_of: gives the text of a method that this one extends.
+        published: of an edition; options that there are no longer are left out, so that it can be
+            shown. Its hash says that it is another method.
 
     Raises:
         MethodFileError: with file, line, key and what is allowed.
@@ -287,7 +292,7 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
         raise MethodFileError(
             "{}: {} letters; a method has at most {}", file_name, len(text), LONGEST_TEXT
         )
-    lineage = _lineage(_Reader(text, file_name), text_of)
+    lineage = _lineage(_Reader(text, file_name, published), text_of)
     reader = lineage[-1]
     head = reader.head
     return Method(
@@ -336,8 +341,8 @@ _KEYS: Final = re.compile(r"(?<![\w-])([\w-]++)\s*+=")
 class _Reader:
     """A method text with its file name, so that every error can say where it is."""
 
-    def __init__(self, text: str, file_name: str) -> None:
-        self.text, self.file_name = text, file_name
+    def __init__(self, text: str, file_name: str, published: bool = False) -> None:
+        self.text, self.file_name, self.published = text, file_name, published
 
     @cached_property
     def head(self) -> _Head:
@@ -462,7 +467,15 @@ def _step_tables(
         if not isinstance(table, dict):
             wrong = say("a table of options is needed, not {!r}", table)
             raise reader.error(f"{where}.{step}", wrong)
+    if reader.published:
+        return {step: _still_there(step, table) for step, table in options.items()}
     return dict(options)
+
+
+def _still_there(step: str, options: Mapping[str, object]) -> dict[str, object]:
+    """The options of a step that there still are."""
+    known = _keys_at(Steps, [step])
+    return {name: value for name, value in options.items() if name in known}
 
 
 def _refuse_overlap(reader: _Reader, layers: list[_Layer]) -> None:

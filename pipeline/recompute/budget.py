@@ -17,7 +17,6 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.recompute.outcome import Outcome
 from pipeline.season_log import SeasonFactors
-from pipeline.steps.calibration import USUAL_RUN_SCATTER, mean_over_both_ways
 from pipeline.steps.speed import log_part
 from pipeline.uncertainty.misfit import Departure, departure_of_boats
 from pipeline.uncertainty.propagation import (
@@ -36,10 +35,6 @@ CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(85
 
 MOST_BENT: Final = 0.9
 """r beyond which a curve tells nothing."""
-
-UNTOLD_DRIFT: Final = 0.5
-"""Standard uncertainty of a stream's drift, as a share of what was taken off: nobody wrote down how
-long the turn took between the runs out and those back (inferred)."""
 
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
@@ -116,47 +111,6 @@ def files_log_sd(o: Outcome) -> FloatArray:
     season = np.unique(o.batch.of_tow("season"), return_inverse=True)[1]
     square = np.bincount(season, apart**2) / np.maximum(np.bincount(season, combined), 1)
     return np.where(combined, 0.5 * np.sqrt(square[season]), 0.0)
-
-
-def stream_scatter(o: Outcome) -> tuple[FloatArray, IntArray]:
-    """Standard deviation of ln y by a current that is not the same in runs one way, and its dof.
-
-    A drift that was taken off is uncertain too. Both of shape (tows,); 0 where no tow is
-    calibrated by itself.
-    """
-    batch, used = o.batch, _run_calibrations(o)[1]
-    scatter, dof = _unsteady_stream(o)
-    drifts = (np.where(used, x, 0.0) for x in (o.prepared.stream_m_s, o.prepared.means.speed_m_s))
-    drift, speed = (
-        mean_over_both_ways(x, batch.direction, batch.tow, used, batch.size)[0] for x in drifts
-    )
-    drift_sd = UNTOLD_DRIFT * drift / np.where(speed > 0, speed, 1.0)
-    return np.where(dof > 0, np.hypot(scatter, drift_sd), 0.0), dof
-
-
-def _unsteady_stream(o: Outcome) -> tuple[FloatArray, IntArray]:
-    """Standard deviation of ln y by GPS over log that differs between runs one way, and its dof.
-
-    In one file it differs by no more than `USUAL_RUN_SCATTER`. What is beyond moves the mean of n
-    runs by its root-n-th part. Both of shape (tows,).
-    """
-    batch, (ratio, used) = o.batch, _run_calibrations(o)
-    group = 4 * batch.tow + 2 * batch.in_second_file + (batch.direction > 0)
-    count = np.bincount(group, used, 4 * batch.size)
-    mean = np.bincount(group, used * ratio, 4 * batch.size) / np.maximum(count, 1)
-    square = np.bincount(batch.tow, used * (ratio - mean[group]) ** 2, batch.size)
-    dof = np.maximum(count - 1, 0).reshape(-1, 4).sum(axis=1).astype(np.int64)
-    beyond = np.maximum(square / np.maximum(dof, 1) - USUAL_RUN_SCATTER**2, 0.0)
-    return np.sqrt(beyond / np.maximum(batch.count(used), 1)), dof
-
-
-def _run_calibrations(o: Outcome) -> tuple[FloatArray, BoolArray]:
-    """GPS / log of each run, and whether it is a run of a tow calibrated by itself; (runs,)."""
-    p = o.prepared
-    gps, log = p.means.gps_m_s - p.stream_m_s, p.means.speed_m_s
-    used = p.used & np.isfinite(gps) & (gps > 0) & (log > 0) & p.calibrated[o.batch.tow]
-    used &= o.steps.calibration.rule == "gps_per_tow"
-    return np.where(used, gps, 1.0) / np.where(used, log, 1.0), used
 
 
 def run_point_ratio(o: Outcome) -> FloatArray:
@@ -307,7 +261,6 @@ def _terms_of_tows(
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
     felt_unit = p.by_true_speed(p.means.air.ahead + p.means.air.behind)
     per_coefficient = batch.mean(still_unit - felt_unit, p.used)
-    stream_sd, stream_dof = stream_scatter(o)
     return batch.tows.select(
         "tow_id",
         "season",
@@ -320,8 +273,6 @@ def _terms_of_tows(
         pl.Series("log_sd", np.where(estimated, p.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, p.estimated.dof, np.inf)),
         pl.Series("tow_log_sd", _tow_log_sd(o, factors)),
-        pl.Series("stream_sd", stream_sd),
-        pl.Series("stream_dof", stream_dof),
         pl.Series("net_air_kg_m", net_air),
         pl.Series("wind_ln_sd", p.wind_ln_sd).fill_nan(None),
         pl.Series("air_per_coefficient_kg_m", per_coefficient),

@@ -59,7 +59,6 @@ class Prepared:
         known_factor: speed factor of the log's known error, shape (tows,).
         y: calibration factor of each run's file, shape (runs,).
         calibrated: tows that have one, shape (tows,).
-        stream_m_s: part of the GPS speed that is a drift of the current, shape (runs,).
         estimated: what was estimated of the log factor.
         reasons: why a run does not count, empty where it does, shape (runs,).
         still_unit_kg_m: still-air coefficient for a drag coefficient of 1, shape (runs,).
@@ -77,7 +76,6 @@ class Prepared:
     known_factor: FloatArray
     y: FloatArray
     calibrated: BoolArray
-    stream_m_s: FloatArray
     estimated: TowFactor
     reasons: StrArray
     still_unit_kg_m: FloatArray

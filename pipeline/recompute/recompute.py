@@ -40,7 +40,7 @@ from pipeline.recompute.season_factors import (
     without_gps,
 )
 from pipeline.season_log import SeasonFactors
-from pipeline.steps.calibration import gps_factor_of_files, stream_drift_m_s
+from pipeline.steps.calibration import gps_factor_of_files
 from pipeline.steps.resistance import RunMeans, temperature_change_kg_m
 from pipeline.steps.speed import log_factor
 from pipeline.steps.target import above_target
@@ -226,8 +226,7 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
     tow_list = batch.of_tow("speed_correction_ratio")
     known = log_factor(steps.speed, tow_list, estimated.factor)
     reasons = _reasons(batch, steps, windows, means)
-    stream = _stream_drift(batch, steps, means, reasons == "")
-    y, determined = _calibrate(batch, steps, windows, means, stream, known, reasons == "")
+    y, determined = _calibrate(batch, steps, windows, means, known, reasons == "")
     calibrated = batch.any(determined & (reasons == "")) & (steps.calibration.rule != "none")
     reasons = np.where((reasons == "") & ~determined, NOT_CALIBRATED, reasons)
     speed = means.speed_m_s * known[batch.tow] * y
@@ -242,7 +241,6 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
         known,
         y,
         calibrated,
-        stream,
         estimated,
         reasons,
         still_unit_kg_m=still_air_coefficient_kg_m(front, has_wind),
@@ -265,19 +263,11 @@ def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> S
     )
 
 
-def _stream_drift(batch: Batch, steps: Steps, means: RunMeans, used: BoolArray) -> FloatArray:
-    """Part of the GPS speed that is a drift of the current, as far as asked for, shape (runs,)."""
-    if steps.calibration.stream == "none":
-        return np.zeros(len(batch.tow))
-    return stream_drift_m_s(batch, means.gps_m_s, means.speed_m_s, used)
-
-
 def _calibrate(
     batch: Batch,
     steps: Steps,
     windows: Windows,
     means: RunMeans,
-    stream_m_s: FloatArray,
     known_factor: FloatArray,
     used: BoolArray,
 ) -> tuple[FloatArray, BoolArray]:
@@ -285,9 +275,7 @@ def _calibrate(
     if steps.calibration.rule == "none":
         return np.ones(len(batch.tow)), np.ones(len(batch.tow), dtype=bool)
     log = means.speed_m_s * known_factor[batch.tow]
-    y, determined = gps_factor_of_files(
-        batch, means.gps_m_s - stream_m_s, log, used, windows.exists & (log > 0)
-    )
+    y, determined = gps_factor_of_files(batch, means.gps_m_s, log, used, windows.exists & (log > 0))
     if steps.calibration.rule == "gps_per_season":
         y, determined = _mean_of_season(batch, y, determined)
     return y.ravel()[batch.file], determined.ravel()[batch.file]

@@ -165,7 +165,6 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
         *(_column(name, values, has_window) for name, values in numbers.items()),
         _column("ends_ratio", p.windows.ends.in_limits(o.steps.window), has_window & has_limits),
         _column("gps_ratio", means.gps_m_s / log1, has_window),
-        pl.Series("gps_delay_s", means.gps_delay_s, pl.Int8),
         _column("fitted_cw_kg_m", on_curve, has_window & o.curves.converged[tow]),
         pl.Series("cut_reason", p.windows.reasons, pl.String),
         pl.Series("used", p.used),

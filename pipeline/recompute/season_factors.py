@@ -21,7 +21,6 @@ from pipeline.recompute.budget import (
     files_log_sd,
     force_uncertainty,
     pooled_scatter,
-    stream_scatter,
 )
 from pipeline.recompute.outcome import Outcome, TowFactor
 from pipeline.season_log import (
@@ -205,7 +204,7 @@ def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
     calibrated = steps.calibration.rule == GPS
     gps, gps_sd, has_gps = _gps_ratio(o)
-    own_sd, q = np.hypot(files_log_sd(o), stream_scatter(o)[0]), safe_r / (1.0 - safe_r)
+    own_sd, q = files_log_sd(o), safe_r / (1.0 - safe_r)
     by_log = (2.0 + 2.0 * q, 2.0 * q * (1.0 + q))
     y = np.where(p.calibrated, p.calibration_factor, 1.0)
     numbers = {

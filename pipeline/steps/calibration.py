@@ -6,20 +6,11 @@ same, whatever the length of its window: with unequal windows and 5 cm/s of curr
 samples is wrong by 0.5 % (docs/method.md, 4).
 """
 
-from typing import Final
-
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks.batch import Batch
 from pipeline.channels import BACK, OUT
-
-USUAL_RUN_SCATTER: Final = 0.006
-"""Standard deviation of GPS over log between runs one way in a steady current (inferred: half of
-simulated sound tows stay under 0.3 %, one in a hundred exceeds 0.6 %)."""
-
-BY_CHANCE: Final = 2.0
-"""Standard deviations up to which chance may explain a drift of the current (inferred)."""
 
 
 def mean_over_both_ways(
@@ -48,53 +39,6 @@ def mean_over_both_ways(
         counted &= count > 0
         ways.append(np.bincount(tow, weight * values, tows) / np.maximum(count, 1.0))
     return np.where(counted, 0.5 * (ways[0] + ways[1]), 0.0), counted
-
-
-def stream_drift_m_s(
-    batch: Batch, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray
-) -> FloatArray:
-    """What a current that rises or falls evenly from run to run adds to the GPS of each run.
-
-    Runs out come before runs back, so that such a current does not drop out of their mean. It shows
-    within both ways, with opposite signs; a log that is not linear, towed faster and faster, shows
-    with the same sign. What chance makes of it is taken off: the slope counts by 1 - c^2 / its
-    square, or not at all, with c `BY_CHANCE` standard deviations by the scatter about it, or one by
-    `USUAL_RUN_SCATTER` where that is more.
-
-    Args:
-        gps_m_s, log_m_s, used: as in `gps_factor`.
-
-    Returns:
-        Shape (runs,), m/s; 0 where no way of a file has two runs.
-    """
-    direction, file, files = batch.direction, batch.file, 2 * batch.size
-    number = batch.blocks.runs["run"].to_numpy().astype(np.int64)
-    with_fix = used & np.isfinite(gps_m_s) & (log_m_s > 0)
-    counted = with_fix.astype(np.float64)
-    gps, log = (np.where(with_fix, speed, 0.0) for speed in (gps_m_s, log_m_s))
-    of_log = np.bincount(file, log, files)
-    y = np.bincount(file, gps, files) / np.where(of_log > 0, of_log, 1.0)
-    way = 2 * file + (direction == OUT)
-
-    def about_its_way(values: FloatArray) -> FloatArray:
-        count = np.maximum(np.bincount(way, counted, 2 * files), 1.0)
-        mean = np.bincount(way, counted * values, 2 * files) / count
-        return np.asarray(counted * (values - mean[way]), dtype=np.float64)
-
-    order = about_its_way(number.astype(np.float64))
-    excess = about_its_way(gps - y[file] * log)
-    square = np.bincount(file, order**2, files)
-    known = square > 0
-    slope = np.bincount(file, direction * order * excess, files) / np.where(known, square, 1.0)
-    count = np.maximum(np.bincount(file, counted, files), 1.0)
-    rest = excess - counted * direction * slope[file] * order
-    scatter = np.bincount(file, rest**2, files) / np.maximum(count - 3.0, 1.0)
-    usual = (USUAL_RUN_SCATTER * of_log / count) ** 2
-    chance = np.maximum(BY_CHANCE**2 * scatter, usual) / np.where(known, square, 1.0)
-    moves = known & (slope**2 > chance)
-    slope = np.where(moves, slope - chance / np.where(moves, slope, 1.0), 0.0)
-    middle = np.bincount(file, counted * number, files) / count
-    return np.asarray(direction * slope[file] * (number - middle[file]), dtype=np.float64)
 
 
 def gps_factor(

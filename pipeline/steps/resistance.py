@@ -11,12 +11,11 @@ from typing import Final
 
 import numpy as np
 
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks, WindowSums
 from pipeline.hull import front_area_m2, side_area_m2
 from pipeline.method.definition import RunPoint, Steps, Temperature
-from pipeline.steps.fix_delay import fix_delay_s, fixes_in_time
 from pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from pipeline.steps.wind import (
     AirParts,
@@ -46,7 +45,6 @@ class RunMeans:
         inertia_kg_m: part of it that accelerated the boat.
         air: air resistance / v^2 for drag coefficients of 1.
         gps_m_s: mean ground speed, NaN without a fix.
-        gps_delay_s: by how much the GPS was late, which is taken off.
         log1_m_s, log2_m_s, wind_m_s: mean reading of each log and of the anemometer.
         wind_angle_deg: circular mean of the vane.
     """
@@ -57,7 +55,6 @@ class RunMeans:
     inertia_kg_m: FloatArray
     air: AirParts
     gps_m_s: FloatArray
-    gps_delay_s: IntArray
     log1_m_s: FloatArray
     log2_m_s: FloatArray
     wind_m_s: FloatArray
@@ -130,7 +127,6 @@ def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
     def air_term(name: str) -> FloatArray:
         return by_log(windy, name) if of_ratios else windy.mean(name) / square
 
-    delay = _gps_delay_s(batch, steps)
     rise = by_log(sums.last, "v") - by_log(sums.first, "v")
     seconds_apart = np.maximum(whole.window.sum(axis=1) - END_SECONDS, 1)
     return RunMeans(
@@ -144,8 +140,7 @@ def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
             front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m")),
             side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m")),
         ),
-        gps_m_s=_gps_m_s(whole, delay, source),
-        gps_delay_s=delay,
+        gps_m_s=_gps_m_s(whole),
         log1_m_s=whole.mean("log1_v"),
         log2_m_s=whole.mean("log2_v"),
         wind_m_s=whole.mean("wind_v"),
@@ -161,33 +156,10 @@ def _both_logs_good(batch: Batch, sums: WindowSums) -> BoolArray:
     return ((np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO) & batch.measured("log2"))[batch.tow]
 
 
-def _gps_delay_s(batch: Batch, steps: Steps) -> IntArray:
-    """By how much the GPS of each run is late, where the method takes that off, shape (runs,)."""
-    if steps.calibration.delay == "none":
-        return np.zeros(len(batch.tow), dtype=np.int64)
-    return fix_delay_s(batch.blocks, batch.of_run("season").astype(np.int64))
-
-
-def _gps_m_s(whole: WindowSums, delay_s: IntArray, source: str) -> FloatArray:
-    """Mean ground speed of each run over its window, NaN without a fix, shape (runs,).
-
-    Of a late GPS the fixes of the last seconds are missing: the log says how much faster or slower
-    the boat was there.
-    """
+def _gps_m_s(whole: WindowSums) -> FloatArray:
+    """Mean ground speed of each run over its window, NaN without a fix, shape (runs,)."""
     fixes = whole.total("gps_n")
-    gps = np.where(fixes > 0, whole.total("gps") / np.maximum(fixes, 1.0), np.nan)
-    late = np.flatnonzero(delay_s)
-    if not len(late):
-        return gps
-    blocks, window = whole.blocks.take(delay_s != 0), whole.window[late]
-    sums = fixes_in_time(blocks, delay_s[late])
-    count = np.where(window, sums["gps_n"], 0.0)
-    log = (count * blocks.block_means(f"{source}_v")).sum(axis=1)
-    ground = np.where(window, sums["gps"], 0.0).sum(axis=1)
-    there = count.sum(axis=1)
-    with_fixes = (ground - log) / np.where(there > 0, there, np.nan)
-    gps[late] = with_fixes + whole.mean(f"{source}_v")[late]
-    return gps
+    return np.where(fixes > 0, whole.total("gps") / np.maximum(fixes, 1.0), np.nan)
 
 
 def _inertia(

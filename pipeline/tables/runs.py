@@ -42,7 +42,6 @@ class RunPoints(PerTow):
     wind_angle_deg = column.number("deg", "circular mean of the apparent wind", nullable=True)
     log2_ratio = column.number("1", "log 2 / log 1", nullable=True)
     gps_ratio = column.number("1", "GPS / log 1; empty without GPS", nullable=True)
-    gps_delay_s = dy.Int8(description="s; by how much the GPS was late, which is taken off", min=0)
     used = dy.Bool(description="the curve is fitted through it")
     reason = column.text("why it is not used; empty when it is")
     choice = column.text(

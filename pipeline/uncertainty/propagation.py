@@ -9,6 +9,7 @@ Everything is relative: standard deviations of ln Cw. Components that a season o
 shares are kept apart from those of a single tow, because they do not average out.
 """
 
+import math
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -36,7 +37,6 @@ COMPONENTS: Final = (
     "random",
     "misfit",
     "calibration",
-    "stream_drift",
     "between_tows",
     "force",
     "wind",
@@ -150,9 +150,8 @@ class Assumed:
     """Standard uncertainties that the archive itself cannot show (docs/method.md, 9).
 
     Attributes:
-        calibration_speed_ratio: dGPS calibration of the speed of a tow.
-        stream_drift_speed_ratio: current that changes between the runs out and those back, which
-            the calibration then takes for speed.
+        calibration_speed_ratio: dGPS calibration of the speed of a tow: 0.2 % by dGPS, 0.3 % by a
+            current that changes between the runs out and those back.
         force_ratio: calibration of the load cell, as daily with a known weight.
         wind_coefficient: of a prescribed air drag coefficient: 0.2 either way, all equally likely.
         unmeasured_wind: where there was no anemometer, net wind correction / still-air part: wind
@@ -170,8 +169,7 @@ class Assumed:
         between_tows_ratio: what repeat tows show of all that differs from tow to tow.
     """
 
-    calibration_speed_ratio: float = 0.002
-    stream_drift_speed_ratio: float = 0.003
+    calibration_speed_ratio: float = math.hypot(0.002, 0.003)
     force_ratio: float = 0.003
     wind_coefficient: float = 0.115
     unmeasured_wind: float = 1.0
@@ -189,7 +187,7 @@ class Assumed:
     def beside_repeats(self, tow_sd: float, calibration_sd: float) -> "Assumed":
         """What remains assumed where repeat tows show how far tows scatter.
 
-        Calibration with current drift, which move speed, and recorded temperature, straightness and
+        Calibration, which moves speed, and recorded temperature, straightness and
         the weighing of the crew, which do not, differ from tow to tow: repeat tows show both sums.
         What repeat tows share cancels in their difference, so they never shrink it (ISO 5725-1;
         GUM, type B).
@@ -204,7 +202,6 @@ class Assumed:
             between_tows_ratio=tow_sd,
             force_ratio=self.force_standard_ratio,
             calibration_speed_ratio=calibration_sd,
-            stream_drift_speed_ratio=0.0,
             mass_ratio=self.mass_standard_ratio,
             temperature_known_c=0.0,
             temperature_unknown_c=UNRECORDED_WATER_C,
@@ -216,16 +213,15 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     """Every component of the uncertainty of Cw at one speed, per tow.
 
     A speed error acts through the elasticity kappa of the boat. A tow without dGPS has the wander
-    of its log in place of calibration and current drift: a log feels the water, not the current.
+    of its log in place of calibration: a log feels the water, not the current.
 
     Args:
         tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
             points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
             `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
-            where calibrated), `tow_log_sd` of the log (0 where calibrated); `stream_sd` with
-            `stream_dof`, of ln speed by a current that differs between runs one way; `air_ratio`,
-            net wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
+            where calibrated), `tow_log_sd` of the log (0 where calibrated); `air_ratio`, net
+            wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
             coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is
             taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air
             part / Cw;
@@ -248,9 +244,6 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     speed_ratio = (
         pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("tow_log_sd"))
     )
-    drift = pl.when(calibrated).then(assumed.stream_drift_speed_ratio).otherwise(0.0)
-    drift_ratio = (drift**2 + pl.col("stream_sd") ** 2).sqrt()
-    drift_dof = pl.when(pl.col("stream_sd") > drift).then("stream_dof").otherwise(np.inf)
     coefficient = pl.col("air_per_coefficient") * assumed.wind_coefficient
     wind_speed = pl.col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
     no_wind = pl.col("still_air_ratio") * assumed.unmeasured_wind
@@ -258,7 +251,6 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         "random": pl.col("random_ratio"),
         "misfit": pl.col("misfit_ratio"),
         "calibration": kappa * speed_ratio,
-        "stream_drift": kappa * drift_ratio,
         "between_tows": pl.lit(assumed.between_tows_ratio),
         "force": pl.col("force_sd").fill_null(assumed.force_ratio),
         "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
@@ -281,7 +273,6 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     dof = {
         "random": pl.col("random_dof"),
         "season_log": pl.col("log_dof"),
-        "stream_drift": drift_dof,
     }
     parts = [
         tows.select(

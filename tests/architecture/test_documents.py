@@ -157,13 +157,8 @@ def test_every_table_is_documented():
     assert found == {*TABLES, *VIEWS}
 
 
-@pytest.mark.parametrize("command", commands())
-def test_every_command_is_in_the_readme(command):
-    assert f"`herijk {command}" in read("README.md")
-
-
 def test_readme_names_no_command_that_is_not_there():
-    named = set(re.findall(r"herijk ([a-z-]+)", read("README.md")))
+    named = set(re.findall(r"herijk ([a-z][a-z-]+)", read("README.md")))
     assert named - set(commands()) == set()
 
 

@@ -33,10 +33,13 @@ WIDE = {"width": 1920, "height": 1080}
 """Looked at in pictures: nothing that fits 1280 is too wide for it."""
 WIDTHS = {"desktop": {"width": 1280, "height": 900}, "phone": {"width": 390, "height": 844}}
 
-pytestmark = pytest.mark.skipif(
-    CHROMIUM is None and "HERIJK_CI" not in os.environ,
-    reason="no Chromium on this machine: install the package chromium to run the browser tests",
-)
+pytestmark = [
+    pytest.mark.more,
+    pytest.mark.skipif(
+        CHROMIUM is None and "HERIJK_CI" not in os.environ,
+        reason="no Chromium on this machine: install the package chromium to run the browser tests",
+    ),
+]
 
 
 @pytest.fixture(scope="module")

@@ -6,11 +6,9 @@ stand apart until their logs are corrected.
 
 from dataclasses import dataclass
 
-import numpy as np
 import polars as pl
 
 from herijk.simulate import World, WorldSettings, simulate_world
-from pipeline.consistency.compared import compared_tows
 from pipeline.consistency.eras import era_shifts
 from pipeline.consistency.lines import type_lines
 from pipeline.consistency.observed import observe
@@ -34,7 +32,6 @@ class Found:
     log_factors: pl.DataFrame
     lines: pl.DataFrame
     shifts: pl.DataFrame
-    compared: pl.DataFrame
 
     def line(self, boat_type, quantity, explaining, tows="newest", method=AFTER):
         """The straight line of a quantity."""
@@ -51,15 +48,6 @@ class Found:
         """R2 of B, A or Cw, the mean of both types."""
         lines = [self.line(t, LETTERS[letter], AGAINST[against], tows, method) for t in PAIR]
         return sum(line["r2"] for line in lines) / len(lines)
-
-    def drawn(self, letter, against, tows, method=AFTER):
-        """R2 of a chart's dots as they lie there, crews and seasons mixed; mean of both types."""
-        rows = self.compared.filter(tows, method=method)
-        pairs = [
-            rows.filter(boat_type=t).select(LETTERS[letter], AGAINST[against]).drop_nulls()
-            for t in PAIR
-        ]
-        return sum(float(np.corrcoef(*pair)[0, 1] ** 2) for pair in pairs) / len(pairs)
 
     def shift(self, boat_type, method):
         """Next tow of the same boats against 2009-2011."""
@@ -81,4 +69,4 @@ def find(seed):
     observed = observe(curves, measured.tows, boats, run_points)
     lines, _ = type_lines(observed)
     shifts = era_shifts(repeat_pairs(curves, measured.tows), boats)
-    return Found(world, log_factors, lines, shifts, compared_tows(observed))
+    return Found(world, log_factors, lines, shifts)

@@ -204,8 +204,6 @@ def register(world):
         pl.col("log_sd").fill_null(0.0),
         pl.col("log_dof").fill_null(np.inf),
         pl.when(anchored).then(0.0).otherwise(wander).alias("tow_log_sd"),
-        pl.lit(0.0).alias("stream_sd"),
-        pl.lit(4).alias("stream_dof"),
         anchored.alias("calibrated"),
         pl.col("ln_cw_sd").alias("random_ratio"),
         pl.lit(200.0).alias("random_dof"),

@@ -66,18 +66,6 @@ def test_two_files_with_logs_that_differ_widen_the_interval_where_nothing_calibr
     assert by_log.filter(~old)["u_ratio"].max() < u[0]
 
 
-def test_a_stream_that_changes_from_run_to_run_widens_the_interval_of_its_tow():
-    world = measure(WorldSettings((2014, 2015), 6, 10, 4))
-    runs, sums = world.blocks.runs, dict(world.blocks.sums)
-    stream = np.where(runs["run"].to_numpy() % 2 == 0, 0.1, -0.1)
-    mine = runs["tow_id"].eq("2014-003").to_numpy()
-    sums["gps"] = sums["gps"] + np.where(mine, stream, 0.0)[:, None] * sums["gps_n"]
-    blocks = replace(world.blocks, sums=sums)
-    made = recompute(shipped_method("rebased"), world.tows, blocks, with_bands=False)
-    drift = made.uncertainty_budget.filter(component="stream_drift")
-    assert drift.filter(pl.col("u_ratio") > 0.02)["tow_id"].to_list() == ["2014-003"]
-
-
 @pytest.mark.parametrize(("share", "no_curve"), [(0.07, []), (0.02, ["2014-003"])])
 def test_a_tow_of_next_to_no_force_stops_no_other_and_decides_nothing(share, no_curve):
     """So it is with a force in kgf once the wind is taken off: of the water there is no part."""

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.channels import SECOND_FILE_OFFSET
-from pipeline.steps.calibration import gps_factor, gps_factor_of_files, stream_drift_m_s
+from pipeline.steps.calibration import gps_factor, gps_factor_of_files
 
 WAY = np.array([1, 1, 1, -1, -1, -1])
 TOW = np.zeros(6, dtype=np.int64)
@@ -83,38 +83,3 @@ def test_runs_that_were_not_chosen_calibrate_no_tow_of_one_file():
     used = np.array([1, 1, 1, 0, 0, 0], dtype=bool)
     known = gps_factor_of_files(batch_of(), LOG, LOG, used, ALL)[1]
     assert not known.any()
-
-
-def drift_of(gps: np.ndarray, used: np.ndarray = ALL) -> np.ndarray:
-    return stream_drift_m_s(batch_of(), gps, LOG, used)
-
-
-@pytest.mark.parametrize("lost", [None, 0, 4])
-def test_a_stream_that_turns_between_out_and_back_is_taken_off(lost):
-    turning = 0.03 * WAY * (3.5 - NUMBER)
-    used = np.arange(6) != lost
-    gps = np.where(used, 1.01 * LOG + turning, np.nan)
-    before, after = (
-        gps_factor(read, LOG, WAY, TOW, used, 1)[0][0] for read in (gps, gps - drift_of(gps, used))
-    )
-    assert abs(before - 1.01) > 0.01
-    assert after == pytest.approx(1.01, abs=0.25 * abs(before - 1.01))
-
-
-@pytest.mark.parametrize(
-    "gps",
-    [
-        LOG**1.1,
-        1.01 * LOG + 0.1 * WAY,
-        LOG + np.array([0.012, -0.015, 0.01, 0.004, 0.013, -0.012]),
-        LOG * np.nan,
-    ],
-    ids=["log not linear", "steady stream", "chance", "no GPS"],
-)
-def test_what_is_no_drift_of_the_stream_stays(gps):
-    assert drift_of(gps) == pytest.approx(0.0, abs=1e-12)
-
-
-def test_a_file_towed_one_way_once_has_no_drift():
-    batch = batch_of(NUMBER[:1], WAY[:1])
-    assert stream_drift_m_s(batch, LOG[:1], LOG[:1], ALL[:1]) == [0.0]

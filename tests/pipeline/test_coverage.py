@@ -1,5 +1,5 @@
-"""Intervals hold the truth as often as they say, and are not wider than that: a small version of
-`make accuracy-parts`, on seasons with dGPS, where the errors of tows are their own."""
+"""Intervals hold the truth as often as they say, and are not wider than that: a small part of
+`make accuracy`, on seasons with dGPS, where the errors of tows are their own."""
 
 import numpy as np
 import polars as pl

@@ -1,7 +1,7 @@
 """The finding of 2015, from simulated samples to the figures of the tables, on two histories.
 
 R2 rests on the boats that a seed happens to draw. `SPREAD` is its mean and standard deviation over
-20 other seeds (benchmarks/accuracy/finding_2015.py); the mean over the seeds tested may lie three
+20 other seeds (docs/audit.md); the mean over the seeds tested may lie three
 standard deviations of such a mean beside it.
 """
 

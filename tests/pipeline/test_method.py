@@ -293,3 +293,12 @@ def test_a_method_has_an_english_title_or_its_one_title_serves():
 @pytest.mark.parametrize("name", shipped_methods())
 def test_only_a_method_that_estimates_log_factors_has_complete_intervals(name):
     assert shipped_method(name).interval == ("complete" if name == "rebased" else "runs_alone")
+
+
+def test_the_method_of_an_edition_is_read_without_options_that_are_gone() -> None:
+    """An edition of then is shown today; an own method with such an option has an error."""
+    text = changed("calibration", '{ rule = "gps_per_tow", stream = "drifting" }')
+    with pytest.raises(MethodFileError, match=r"calibration\.stream"):
+        parse(text)
+    now = parse(changed("calibration", '{ rule = "gps_per_tow" }'))
+    assert parse_method(text, "edition", published=True) == now

@@ -60,6 +60,7 @@ print(step)
 """
 
 
+@pytest.mark.more
 def test_killed_at_every_step_there_is_nothing_or_all_of_it(tmp_path):
     """Every opening, syncing and renaming of a file is a place to die; a next one clears up."""
     done = subprocess.run(
