@@ -15,14 +15,14 @@ from assets.settings import Settings, read_settings
 def build_defs(archive: str, data: str, settings: Settings, address: str = "") -> dg.Definitions:
     """The same, with the job of a rebuild, and what starts it when nobody asks."""
     notifier = notifier_of(data, settings)
-    setup = Setup.of(Path(archive), Path(data), settings.methods, settings)
+    setup = Setup(archive=archive, data=data, methods=list(settings.methods))
     by_itself = dg.Definitions(
         jobs=[automation.rebuild_job],
         schedules=automation.schedules(settings, bool(address)),
         sensors=[automation.archive_sensor(Path(archive), bool(address))],
         resources={"notifier": dg.ResourceDefinition.hardcoded_resource(notifier)},
     )
-    return dg.Definitions.merge(assets_of(setup, address=address), by_itself)
+    return dg.Definitions.merge(assets_of(setup), by_itself)
 
 
 defs = build_defs(

@@ -26,7 +26,7 @@ def site(setup: Setup, progress: dg.ResourceParam[Progress]) -> dg.MaterializeRe
         progress.step("making the site")
         from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
 
-        build_site(store, workers.workers(setup.dask))
+        build_site(store, workers.workers(setup.settings.dask))
         store.write(SITE_TABLE, pl.DataFrame(), site_made_from(store))
     index = store.root / "site" / "index.html"
     return dg.MaterializeResult(

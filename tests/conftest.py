@@ -23,6 +23,7 @@ import assets.stale
 import assets.workers
 import dashboards.report_page
 from assets.progress import Progress
+from assets.rebuild import Asked
 from assets.report import Done, Report
 from assets.stale import Stale
 from herijk.simulate import WorldSettings, simulate_world
@@ -56,17 +57,10 @@ LEFT_OUT: Final = ("studies", "lines", "consistency")
 """Groups of steps that take two thirds of the time of a small rebuild."""
 
 
-def _make_directly(
-    folders: tuple[Path, Path],
-    methods: Sequence[str],
-    seasons: Collection[int] | None,
-    progress: Progress,
-    stale: Stale,
-    done: Done,
-) -> list[object]:
+def _make_directly(asked: Asked, _: Progress, stale: Stale, done: Done) -> list[object]:
     """What a rebuild makes without Dagster, and with empty tables where they are left out."""
-    archive, store = folders[0], Store(folders[1])
-    known = [KnownMethods.of(store).get(name) for name in methods]
+    archive, store = Path(asked.archive), Store(Path(asked.data))
+    known = [KnownMethods.of(store).get(name) for name in asked.methods]
     for season in stale.seasons:
         intake.read_season(store, archive, season)
         intake.collect_blocks(store, season)
@@ -82,7 +76,7 @@ def _make_directly(
                 step.make(scope)
             if step is METHOD:
                 applied = {*done.methods, scope.at_hand.name}
-                done.methods = [name for name in methods if name in applied]
+                done.methods = [name for name in asked.methods if name in applied]
             done.database |= step is DATABASE
     return []
 

@@ -18,7 +18,6 @@ import warehouse.derive.step
 from assets.archive import OUTSIDE_SPECS
 from assets.location import assets_of
 from assets.resources import QUIET_LOG, Setup
-from assets.settings import Settings
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import shipped_text
 from pipeline.tables.schemas import TABLES
@@ -63,7 +62,7 @@ def _nothing():
 
 def materialise(bench, instance, *assets, season=None, methods=METHODS):
     """What a person does from Dagster's page."""
-    setup = Setup.of(bench.archive, bench.data, methods, Settings())
+    setup = Setup(archive=str(bench.archive), data=str(bench.data), methods=list(methods))
     instance.add_dynamic_partitions("season", list(map(str, SMALL.seasons)))
     job = assets_of(setup).resolve_implicit_global_asset_job_def()
     with in_one_process():

@@ -234,15 +234,6 @@ def test_an_archive_that_never_stops_changing_is_left_alone(bench, built, monkey
     assert_same_tables(bench.tables(), built.tables())
 
 
-@pytest.mark.parametrize("year", [1971, 2199])
-def test_a_clock_that_jumps_changes_no_table(bench, built, year):
-    """File times of another century: only content says what changed."""
-    for file in (f for f in bench.archive.rglob("*") if f.is_file()):
-        os.utime(file, ((year - 1970) * 31_556_952,) * 2)
-    assert bench.rebuild().done.seasons == []
-    assert_same_tables(bench.tables(), built.tables())
-
-
 @pytest.mark.parametrize("words", ["file is not a database", "no such table: event_logs"])
 def test_damaged_records_of_dagster_say_what_to_remove(tmp_path, words):
     with (
