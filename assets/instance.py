@@ -71,8 +71,8 @@ def run_assets(
             tags=OF_A_COMMAND
             | {f"dagster/asset_partition_range_{end}": season for end, season in ends.items()},
         )
-    for event in result.get_asset_materialization_events():
-        _note(done, event.materialization, setup.methods)
+    for made in result.get_asset_materialization_events():
+        _note(done, made.materialization, setup.methods)
     return result.get_asset_check_evaluations()
 
 

@@ -6,7 +6,7 @@ import polars as pl
 from assets import workers
 from assets.progress import Progress
 from assets.resources import Setup
-from assets.site_state import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
+from assets.stale import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.store.code import code_hash
 

@@ -47,12 +47,6 @@ SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=20, rate_hz=20, seed
 """Season 2009 is written as plain CSV, 2014 as .csv.gz."""
 
 
-@contextmanager
-def _dagster_in_memory(store: Store) -> Iterator[dg.DagsterInstance]:
-    with dg.DagsterInstance.ephemeral() as instance:
-        yield instance
-
-
 LEFT_OUT: Final = ("studies", "lines", "consistency")
 """Groups of steps that take two thirds of the time of a small rebuild."""
 
@@ -130,7 +124,8 @@ class Workbench:
     @staticmethod
     def records_in_memory() -> AbstractContextManager[object]:
         """Inside, rebuilds keep no records of Dagster's on disk."""
-        return mock.patch.object(assets.instance, "instance_of", _dagster_in_memory)
+        in_memory = dg.DagsterInstance.ephemeral
+        return mock.patch.object(assets.instance, "instance_of", side_effect=lambda _: in_memory())
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""

@@ -4,11 +4,11 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import dagster as dg
 import pytest
-from dagster_graphql.test.utils import define_out_of_process_context, execute_dagster_graphql
 from polars.testing import assert_frame_equal
 
 import assets.instance
@@ -21,6 +21,7 @@ from assets.resources import QUIET_LOG, Setup
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import shipped_text
 from pipeline.tables.schemas import TABLES
+from tests.assets.page import page
 from tests.assets.test_rebuild import (
     TOWS_2009,
     assert_same_tables,
@@ -35,8 +36,7 @@ from warehouse.intake import seasons as intake
 from warehouse.store.methods import KnownMethods
 
 ROOT = Path(__file__).parents[2]
-DEFINITIONS = ROOT / "assets" / "definitions.py"
-OTHER_CODE = Path(__file__).with_name("other_code.py")
+PAGE = ("dagster_webserver", "--python-file")
 OWN = "ours"
 
 
@@ -45,19 +45,9 @@ def instance(monkeypatch, tmp_path):
     """Records of Dagster that last as long as the test."""
     (tmp_path / "records").mkdir()
     with dg.DagsterInstance.local_temp(str(tmp_path / "records")) as instance:
-
-        @assets.instance.contextmanager
-        def known(_):
-            yield instance
-
-        monkeypatch.setattr(Workbench, "records_in_memory", staticmethod(_nothing))
-        monkeypatch.setattr(assets.instance, "instance_of", known)
+        monkeypatch.setattr(Workbench, "records_in_memory", staticmethod(nullcontext))
+        monkeypatch.setattr(assets.instance, "instance_of", lambda _: nullcontext(instance))
         yield instance
-
-
-@assets.instance.contextmanager
-def _nothing():
-    yield
 
 
 def materialise(bench, instance, *assets, season=None, methods=METHODS):
@@ -83,11 +73,10 @@ STALENESS = """query ($seasons: [String!]!) {
 }"""
 
 
-def stale_in_dagster(instance, file=DEFINITIONS):
+def stale_in_dagster(ask):
     """Assets, or seasons of them, that Dagster's page calls stale."""
     seasons = list(map(str, SMALL.seasons))
-    with define_out_of_process_context(str(file), None, instance) as page:
-        answer = execute_dagster_graphql(page, STALENESS, {"seasons": seasons}).data
+    answer = ask(STALENESS, seasons=seasons)
     said = {
         (*node["assetKey"]["path"], None): node["staleStatus"]
         for node in answer["whole"]
@@ -126,12 +115,11 @@ def other_race(bench):
     path.write_text("\n".join([first, *rest[1:]]), "utf-8")
 
 
-# Dagster leaves the processes that it asks to end by themselves.
-@pytest.mark.filterwarnings("ignore:.*Popen.__del__:pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.slow
 def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_rebuild(
     bench, instance, monkeypatch
 ):
+    home = instance.root_directory
     own = bench.data / "methods" / f"{OWN}.toml"
     own.parent.mkdir(exist_ok=True)
     own.write_text(shipped_text("rebased-2015").replace("rebased-2015", OWN), "utf-8")
@@ -145,27 +133,30 @@ def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_r
         kept = [a for a in others if a not in assets.tables.STEP_ASSETS]
         monkeypatch.setattr(assets.location, "ASSETS", [*OUTSIDE_SPECS, *kept, *steps])
 
-    bench.store.database.unlink()
-    shutil.rmtree(bench.data / "lake")
-    bench.rebuild(methods, whole=True)
-    definitions = DEFINITIONS
-    assert stale_in_dagster(instance, definitions) == set()
-    for change in (
-        lambda bench: spoil(samples_files(bench, 2009)[3]),
-        other_weight,
-        other_race,
-        lambda _: own.write_text(own.read_text("utf-8").replace('"log1"', '"mean"'), "utf-8"),
-        new_code,
-    ):
+    def agrees_after(change, ask):
         change(bench)
-        definitions = OTHER_CODE if change is new_code else DEFINITIONS
         materialise(bench, instance, *intake.INDEXED, methods=methods)
         ours = stale_to_us(bench, methods)
         assert ours
-        assert stale_in_dagster(instance, definitions) == ours
+        assert stale_in_dagster(ask) == ours
         bench.rebuild(methods, whole=True)
-        assert stale_in_dagster(instance, definitions) == set()
+        assert stale_in_dagster(ask) == set()
         assert stale_to_us(bench, methods) == set()
+
+    bench.store.database.unlink()
+    shutil.rmtree(bench.data / "lake")
+    bench.rebuild(methods, whole=True)
+    with page(*PAGE, "assets/definitions.py", home=home) as ask:
+        assert stale_in_dagster(ask) == set()
+        for change in (
+            lambda bench: spoil(samples_files(bench, 2009)[3]),
+            other_weight,
+            other_race,
+            lambda _: own.write_text(own.read_text("utf-8").replace('"log1"', '"mean"'), "utf-8"),
+        ):
+            agrees_after(change, ask)
+    with page(*PAGE, "tests/assets/other_code.py", home=home) as ask:
+        agrees_after(new_code, ask)
 
 
 def test_a_season_is_made_from_dagsters_page_and_what_follows_too(bench, built, instance, tmp_path):
