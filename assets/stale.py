@@ -7,8 +7,8 @@ from typing import Final
 
 from dashboards.guides import GUIDES, guide_file
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import CATALOGUES, LANGUAGES
 from pipeline.method.definition import Method
-from pipeline.words import LANGUAGES
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.derive.graph import DATABASE, STEPS
 from warehouse.derive.inputs import forget_other_methods
@@ -19,8 +19,8 @@ from warehouse.store.files import file_sha256
 from warehouse.store.store import Store, fingerprint
 
 SITE_CODE: Final = (
-    *("dashboards", "pipeline.words", "warehouse.queries"),
-    *("warehouse.editions", *COMPUTING),
+    *("dashboards", "warehouse.queries", "warehouse.editions"),
+    *COMPUTING,
 )
 SITE_TABLE: Final = "site"
 """An empty table that remembers what the site was made from."""
@@ -89,7 +89,8 @@ def _check_listed(wanted: Collection[int] | None, listed: Sequence[int]) -> None
 def site_made_from(store: Store) -> str:
     """The database, and the code and files that make pages of it."""
     folder = Path(__file__).parents[1] / "dashboards"
-    files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates"}]
+    files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates", "guides"}]
+    files += Path(CATALOGUES).rglob("*.mo")
     files += [guide_file(name, language) for name in GUIDES for language in LANGUAGES]
     return fingerprint(
         store.contents(DATABASE_TABLE),
