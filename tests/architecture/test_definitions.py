@@ -138,7 +138,7 @@ def test_an_edge_is_a_table_that_is_read():
 
 
 def test_nothing_begins_by_itself_unless_it_is_served():
-    served = build_defs("archive", "data", Settings(), "http://127.0.0.1:3001/site")
+    served = build_defs("archive", "data", Settings(), is_served=True)
     for location, status in ((defs, "STOPPED"), (served, "RUNNING")):
         begins = [*location.schedules, *location.sensors]
         assert {one.default_status.value for one in begins} == {status}
