@@ -29,8 +29,8 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.published import lines_in_time
-from warehouse.derive.version import code_version
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
+from warehouse.store.code import code_version
 from warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
 from warehouse.store.store import Store, archive_root
 
@@ -83,20 +83,11 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     lines = (
         changes.join(side_by_side(old.register, new.register), on=LINE, maintain_order="left")
         .join(names.unique(LINE, keep="first"), on=LINE, how="left", maintain_order="left")
-        .join(
-            old.register.select(*LINE, old_status="status"),
-            on=LINE,
-            how="left",
-            maintain_order="left",
-        )
-        .join(
-            new.register.select(*LINE, new_status="status"),
-            on=LINE,
-            how="left",
-            maintain_order="left",
-        )
         .sort(LINE)
     )
+    for side, edition in (("old", old), ("new", new)):
+        status = edition.register.select(*LINE, pl.col("status").alias(f"{side}_status"))
+        lines = lines.join(status, on=LINE, how="left", maintain_order="left")
     return Comparison(old, new, lines)
 
 
