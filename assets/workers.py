@@ -1,7 +1,4 @@
-"""Who helps with the heavy work, and with what: a process of this machine, or a Dask cluster.
-
-They do not import Dagster, which takes a second and 60 MB.
-"""
+"""Who helps with the heavy work, without importing Dagster: a process here, or a Dask cluster."""
 
 import atexit
 import multiprocessing

@@ -116,9 +116,7 @@ def other_race(bench):
 
 
 @pytest.mark.slow
-def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_rebuild(
-    bench, instance, monkeypatch
-):
+def test_dagster_and_we_call_the_same_stale_after_a_change(bench, instance, monkeypatch):
     home = instance.root_directory
     own = bench.data / "methods" / f"{OWN}.toml"
     own.parent.mkdir(exist_ok=True)
@@ -161,17 +159,6 @@ def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_r
         agrees_after(new_code, ask)
 
 
-def test_a_season_is_made_from_dagsters_page_and_what_follows_too(bench, built, instance, tmp_path):
-    fresh = Workbench(bench.archive, tmp_path / "fresh")
-    materialise(fresh, instance, *intake.INDEXED)
-    assert materialise(fresh, instance, "samples", "blocks", season=2009).success
-    assert fresh.store.partitions("blocks") == ["2009"]
-    following = [name for step in STEPS[:3] for name in step.outputs]
-    assert materialise(fresh, instance, *following).success
-    of_2009 = built.store.read("tows").filter(season=2009)["tow_id"]
-    assert fresh.store.read("tows")["tow_id"].equals(of_2009)
-
-
 def test_a_damaged_table_that_an_asset_reads_is_made_again(bench, built, instance):
     path = bench.store.table_path("tows")
     content = path.read_bytes()
@@ -190,9 +177,7 @@ def test_damaged_blocks_of_a_tow_are_made_again(bench, built, instance):
     assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
 
 
-def test_an_archive_that_changes_while_a_season_is_made_is_read_again(
-    bench, built, instance, monkeypatch
-):
+def test_a_season_of_an_archive_that_changes_is_read_again(bench, built, instance, monkeypatch):
     read = mended_while_read(bench, monkeypatch)
     assert materialise(bench, instance, "samples", "blocks", season=2009).success
     assert read
