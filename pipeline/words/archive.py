@@ -29,10 +29,10 @@ ARCHIVE: Final[dict[str, str]] = {
     "there is no list of tows: {path} is expected.": (
         "er is geen lijst van sleepproeven: {path} wordt verwacht."
     ),
-    "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; say "
-    "so under [files] in archief.toml.": (
-        "'{path}' wordt niet gelezen: de naam is anders dan die van bestanden van het archief. Het "
-        "kan {kinds} zijn; zet dat onder [files] in archief.toml."
+    "'{path}' is not read: it has another name than the archive's files. Say what it is under "
+    "[files] in archief.toml, or put it under ignore.": (
+        "'{path}' wordt niet gelezen: de naam is anders dan die van bestanden van het archief. Zet "
+        "onder [files] in archief.toml wat het is, of zet het bij ignore."
     ),
     "No run lasts longer than {lasts:.1f} s at {rate} samples a second, and {planned:.0f} s is "
     "planned: is the rate {observed:.0f}?": (
@@ -205,9 +205,6 @@ ARCHIVE: Final[dict[str, str]] = {
     ),
     "'{path}' is not read: samples are read from text. Save the sheet as CSV.": (
         "'{path}' wordt niet gelezen: metingen worden uit tekst gelezen. Bewaar het blad als CSV."
-    ),
-    "'{path}' is not recognised. It may be put under ignore in archief.toml.": (
-        "'{path}' is niet herkend. Het mag onder ignore in archief.toml."
     ),
     "'{path}' leads outside the archive, where nothing is read.": (
         "'{path}' leidt naar buiten het archief; daar wordt niets gelezen."

@@ -338,15 +338,9 @@ COMMAND: Final[dict[str, str]] = {
     "Nothing is wrong in the lists and headers of {} tows.": (
         "Er is niets mis in de lijsten en kopregels van {} sleepproeven."
     ),
-    "Causes: {}; places: {}. With what is proposed {} tows are left for a rebuild to judge.": (
-        "Oorzaken: {}; plaatsen: {}. Met wat is voorgesteld blijven {} sleepproeven over, die bij "
-        "het herbouwen worden beoordeeld."
-    ),
-    "Write what is proposed with: herijk check {} --write-profile": (
-        "Schrijf het voorstel met: herijk check {} --write-profile"
-    ),
-    "What is proposed is in {}; read it, also the lines behind a #.": (
-        "Het voorstel staat in {}; lees het na, ook de regels achter een #."
+    "Causes: {}; places: {}. As it is, {} tows are left for a rebuild to judge.": (
+        "Oorzaken: {}; plaatsen: {}. Zoals het nu is blijven {} sleepproeven over, die bij het "
+        "herbouwen worden beoordeeld."
     ),
     "An empty archive is in {}; begin with LEESMIJ.md.": (
         "Een leeg archief staat in {}; begin met LEESMIJ.md."
@@ -355,8 +349,6 @@ COMMAND: Final[dict[str, str]] = {
     "and {} more": "en nog {}",
     " and {} more": " en nog {}",
     "  and {} more: see the table quarantine": "  en nog {}: zie de tabel quarantine",
-    "Put into archief.toml": "Zet in archief.toml",
-    "Choose, and put into archief.toml": "Kies en zet in archief.toml",
     ", line {}": ", regel {}",
     " (tow {})": " (proef {})",
     "tow {}: {}": "proef {}: {}",

@@ -17,7 +17,6 @@ from warehouse.archive.files.names import (
     SAMPLES,
     SPREADSHEETS,
 )
-from warehouse.archive.index.recognise import recognised
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.spelling.text import fold
 
@@ -48,20 +47,20 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
 
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
-    """What lies in the archive and is not read; what it can be, where that can be told."""
+    """What lies in the archive and is not read."""
     message = "The name of '{name}' has letters that cannot be read; give it another name."
     misnamed = [
         Fault(path, None, None, "unrecognised_file", say(message, name=path))
         for path in list_misnamed(root)
     ]
     return misnamed + [
-        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
+        Fault(path, None, None, "unrecognised_file", _about_stranger(path))
         for path in list_strangers(root, profiles.wording.files)
         if fold(path) not in profiles.wording.ignore
     ]
 
 
-def _about_stranger(root: Path, path: str) -> str:
+def _about_stranger(path: str) -> str:
     """The sentence about what is not read."""
     kind = Path(path)
     if kind.suffix.lower() in PACKED:
@@ -69,14 +68,8 @@ def _about_stranger(root: Path, path: str) -> str:
     if kind.suffix.lower() in SPREADSHEETS and kind.parts[0].casefold().startswith(SAMPLES):
         message = "'{path}' is not read: samples are read from text. Save the sheet as CSV."
         return say(message, path=path)
-    can_be = dict(recognised(root, path))
-    if not can_be:
-        message = "'{path}' is not recognised. It may be put under ignore in archief.toml."
-        return say(message, path=path)
     return say(
-        "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; "
-        "say so under [files] in archief.toml.",
+        "'{path}' is not read: it has another name than the archive's files. Say what it is under "
+        "[files] in archief.toml, or put it under ignore.",
         path=path,
-        kinds=", ".join(sorted(set(can_be.values()))),
-        can_be=tuple(sorted(can_be.items())),
     )

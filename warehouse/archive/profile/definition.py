@@ -5,6 +5,7 @@ the runs, days to set aside.
 """
 
 import datetime as dt
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
@@ -194,6 +195,10 @@ class Profiles(_Strict):
             decimals=self.decimals,
             files=self.files,
         )
+
+    def ignoring(self, headers: Iterable[str]) -> "Profiles":
+        """The same, with more columns that are not used."""
+        return Profiles.model_construct(**dict(self) | {"ignore": [*self.ignore, *headers]})
 
     def for_season(self, season: int) -> SeasonProfile:
         """The profile of a season; the project's default where none is given."""

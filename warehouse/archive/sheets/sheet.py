@@ -54,16 +54,12 @@ class Row:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table: the cells of its header, the header's line, the rows below it, and its name.
-
-    `crews` is the heading of the column that held rowers and class, where that was split.
-    """
+    """A table: the cells of its header, the header's line, the rows below it, and its name."""
 
     header: list[str]
     line: int
     rows: list[Row]
     name: str = ""
-    crews: str = ""
 
 
 def read_sheets(

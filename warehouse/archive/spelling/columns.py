@@ -3,6 +3,7 @@
 Which line the header is, is told by the names in it.
 """
 
+import difflib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -123,6 +124,13 @@ def unknown_headers(header: Sequence[str], places: Mapping[str, FoundColumn]) ->
     """The headers of no column that was found; empty ones do not count."""
     taken = {column.index for column in places.values()}
     return [cell.strip() for i, cell in enumerate(header) if i not in taken and fold(cell)]
+
+
+def nearest_columns(cell: str, columns: Iterable[Column]) -> list[Column]:
+    """The columns with a name that is like a header, at most three, the nearest first."""
+    names = {fold(name): column for column in columns for name in (column.header, *column.also)}
+    near = difflib.get_close_matches(split_header(cell)[0], names, n=9, cutoff=0.6)
+    return list(dict.fromkeys(names[name] for name in near))[:3]
 
 
 def _choose(
