@@ -46,7 +46,7 @@ from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.spelling.wording import Wording
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.decisions import read_decisions
-from warehouse.store.editions import ABOUT, read_about
+from warehouse.store.editions import MANIFEST, read_manifest
 
 SLOW_S: Final = 2.0
 HANG_S: Final = 20.0
@@ -257,7 +257,7 @@ def targets(folder: Path) -> list[Target]:
         *(Target(str(path), path.read_bytes(), here) for path in lists),
         Target(DECISIONS, _DECISION, lambda path, _: read_decisions(path) and None),
         Target("beheer.toml", _SETTINGS, lambda path, _: read_settings(path.parent) and None),
-        Target(ABOUT, b'{"edition": "1", "kind": "as_printed"}', _read_about),
+        Target(MANIFEST, b'{"edition": "1", "kind": "as_printed"}', _read_manifest),
         Target("method.toml", shipped_text(list(shipped_methods())[-1]).encode(), _read_method),
     ]
 
@@ -311,8 +311,8 @@ datum = 2026-05-08
 _SETTINGS: Final = b'nightly = "0 3 * * *"\nwebhook = "https://example.org/"\nfactor_jump = 0.01\n'
 
 
-def _read_about(path: Path, _: bytes) -> None:
-    read_about(path.parent)
+def _read_manifest(path: Path, _: bytes) -> None:
+    read_manifest(path.parent)
 
 
 def _read_method(path: Path, data: bytes) -> None:

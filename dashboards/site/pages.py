@@ -155,7 +155,7 @@ PART = pl.col("part") + 1
 
 LINK_COLUMNS = (
     *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
-    *("influence", "influence_boat", "factor_no_boats", "agreement"),
+    *("influence", "influence_boat"),
 )
 STEP_COLUMNS = (
     *("method", "season", "part", "log", "n_boats", "level_step_percent"),

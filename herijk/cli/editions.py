@@ -84,8 +84,8 @@ def publish(
         folder = publish_edition(store, known_methods(data).get(str(method)), terms, carry)
     made = published(store, folder)
     if as_json:
-        rest = {name: value for name, value in vars(made).items() if name != "about"}
-        typer.echo(as_json_text(made.about.model_dump(mode="json") | rest))
+        rest = {name: value for name, value in vars(made).items() if name != "manifest"}
+        typer.echo(as_json_text(made.manifest.model_dump(mode="json") | rest))
     else:
         typer.echo(text.published(made))
 

@@ -10,8 +10,8 @@ from pipeline.words.catalogue import code
 from warehouse.editions.words import CHANGES, CREWS, STATUSES, Language
 
 if TYPE_CHECKING:
+    from warehouse.editions.chain import Finding
     from warehouse.editions.compare import DiffReport, Group
-    from warehouse.editions.finding import Finding
     from warehouse.editions.lineage import Lineage, LineLineage
     from warehouse.editions.publish import Published
     from warehouse.editions.verify import Verification
@@ -84,8 +84,8 @@ def _register_line(line: Row) -> tuple[object, ...]:
 
 def published(report: "Published") -> str:
     """An edition that was just published."""
-    about = report.about
-    lines = about.tables["register"].rows
+    about = report.manifest
+    lines = sum(report.statuses.values())
     source = about.method or tell("as printed")
     statuses = ", ".join(f"{n} {_words().word(STATUSES, s)}" for s, n in report.statuses.items())
     compared = (

@@ -39,7 +39,7 @@ from warehouse.queries.due import DueReport
 from warehouse.queries.rebase import RebaseReport
 from warehouse.queries.register import RegisterReport
 from warehouse.queries.reports import LogErrorReport, RebuildReport
-from warehouse.store.editions import About
+from warehouse.store.editions import Manifest
 
 Schema = dict[str, Any]
 Fields = Mapping[str, Any]
@@ -196,7 +196,6 @@ def _log_error() -> Schema:
     links = columns(
         "season_links",
         *("n_tows", "n_links", "component", "influence", "influence_boat"),
-        *("factor_no_boats", "agreement"),
     )
     factor = columns("log_factors", "season", "factor", "lo", "hi", "source")
     return of(
@@ -251,7 +250,7 @@ ABOUT: Final = columns(
 def _publish() -> Schema:
     to_look_at = LINE | columns("register", "status", "tow_id") | {"flags": texts("its flags")}
     report = of(Published, to_look_at=to_look_at)
-    about = report["properties"].pop("about")["properties"]
+    about = report["properties"].pop("manifest")["properties"]
     report["properties"] |= about | ABOUT
     return report
 
@@ -312,7 +311,7 @@ def _lineage() -> Schema:
     }
     return of(
         Lineage,
-        about=of(About)["properties"] | ABOUT,
+        about=of(Manifest)["properties"] | ABOUT,
         lines={
             "line": columns("register") | TYPED | columns("boats", "ht_no") | inputs | origin,
             "tow": columns("tows") | columns("boats", "boat_type") | inputs,

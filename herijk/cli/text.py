@@ -170,13 +170,10 @@ def log_error(report: "LogErrorReport") -> str:
         _factors(report.factors),
         _plots(report.factors),
         tell(
-            "links: boats also towed in other seasons; without boats: a second "
-            "estimate that does not\nknow which boat is which; sd apart: how far the "
-            "two are, in standard deviations; step is\nof: whether the season differs "
-            "by its log or by its load cell (force), as the bend of\nthe same boats' "
-            "curves tells; prescribed: nothing ties the season to one with dGPS, "
-            "so\nits factor is not determined and the method's prescribed one is "
-            "used."
+            "links: boats also towed in other seasons; step is of: whether the season "
+            "differs by its\nlog or by its load cell (force), as the bend of the same "
+            "boats' curves tells; prescribed:\nnothing ties the season to one with dGPS, "
+            "so its factor is not determined and the method's\nprescribed one is used."
         ),
     ]
     lacking = _seasons_between([r["season"] for r in report.factors])
@@ -192,16 +189,11 @@ def log_error(report: "LogErrorReport") -> str:
 
 
 def _factors(factors: list[Row]) -> str:
-    head = (
-        *("season", "factor", "from", "to", "source", "tows", "links", "without boats"),
-        *("sd apart", "step is of"),
-    )
+    head = (*("season", "factor", "from", "to", "source", "tows", "links", "step is of"),)
     rows = [
         (
             r["season"],
             *_factor(r),
-            decimals(r["factor_no_boats"], 4),
-            "-" if r["agreement"] is None else tell("{:+.1f}", r["agreement"]),
             code(r["cause"]),
         )
         for r in factors

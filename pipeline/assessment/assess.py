@@ -13,16 +13,12 @@ from typing import Final
 import polars as pl
 
 from pipeline.assessment.checks import CHECK, CHECKS, CODES, DOUBTS, UNUSUAL
-from pipeline.assessment.days import days_apart
-from pipeline.assessment.freeboard import by_freeboard
 from pipeline.assessment.season_levels import season_levels
 from pipeline.assessment.shared import (
     rising_with_speed,
-    rising_with_wind,
     ways_apart,
 )
 from pipeline.choice import SAME_SHARE
-from pipeline.quantiles import NORMAL
 from pipeline.season_log.diagnosis import FAULT
 from pipeline.season_log.effects import FLEET
 from pipeline.tables.archive import Tows
@@ -77,10 +73,7 @@ def assess(
         _of_sizes(tows),
         _of_steps(curves, tows),
         ways_apart(curves, run_points),
-        rising_with_wind(curves, run_points),
-        by_freeboard(tows),
         _of_season(curves, tows, diagnosis),
-        days_apart(curves, tows),
         _of_previous_curve(pairs),
         _of_like_boats(curves, tows),
     ]
@@ -177,12 +170,8 @@ def _beside_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame
 
 def _of_curves(curves: pl.DataFrame) -> pl.DataFrame:
     has_curve = pl.col("a_kg_m").is_not_null()
-    apart = (pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).log().abs()
-    both = pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")
-    both *= pl.col("cw_best_hi_kg_m") / pl.col("cw_best_lo_kg_m")
     return curves.select(
         "tow_id",
-        best_estimate_differs=apart / (0.5 * both.log()),
         no_curve=has_curve,
         few_runs="runs_used",
         residual_large="residual_sd_ratio",
@@ -312,19 +301,16 @@ def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
     `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
     `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is
-    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed. `ln_sd` is that of
-    ln Cw, where the method estimates the logs: the interval of others holds the runs alone.
+    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed.
     """
     of_tow = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
     displacement = pl.col("weight_kg") + pl.col("crew_weight_kg")
-    ln_width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
         .join(tows.select("tow_id", "boat_type", *of_tow), on="tow_id", maintain_order="left")
         .with_columns(
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
-            ln_sd=pl.when(pl.col("cw_others_kg_m").is_not_null()).then(ln_width / (2 * NORMAL)),
         )
         .sort("tow_date", "tow_id")
     )
@@ -365,8 +351,7 @@ def _pairs(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) ->
 
     `ln` is what weight and length leave unexplained of ln Cw / Cw before; null where there is none
     before, or an alteration was reported. Between seasons whose logs are not on one scale, what all
-    boats changed together is no change of this one. `sd` is its standard uncertainty, where the
-    method knows it.
+    boats changed together is no change of this one.
     """
     change = _cw_at(_before("declared_speed_m_s", LINE)) / _before("cw_kg_m", LINE)
     by_size = (pl.col("size") / _before("size", LINE)).fill_null(1.0)
@@ -377,7 +362,6 @@ def _pairs(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) ->
         before=_before("season", LINE),
         change=change,
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
-        sd=(pl.col("ln_sd") ** 2 + _before("ln_sd", LINE) ** 2).sqrt(),
     )
     level = season_levels(changed.drop_nulls("ln"), _seasons_to_scale(curves, diagnosis))
     now, then = (
@@ -392,7 +376,6 @@ def _of_previous_curve(pairs: pl.DataFrame) -> pl.DataFrame:
         "tow_id",
         curve_changed=pl.col("change") - 1,
         curve_change_unexplained=pl.col("ln").exp() - 1,
-        curve_change_significant=pl.col("ln") / pl.col("sd"),
     )
 
 

@@ -70,8 +70,6 @@ CHECKS: Final = (
     Check("season_in_doubt", highest=0.0),
     Check("coarse_readings", highest=0.01),
     Check("ways_differ", lowest=-0.01, highest=0.01),
-    Check("rises_with_wind", lowest=-0.01, highest=0.01),
-    Check("days_differ", highest=0.01),
     # The runs
     Check("log2_differs", highest=0.01, unit="m/s", severity="note"),
     Check("large_scatter_in_run", highest=0.1, severity="note"),
@@ -101,13 +99,9 @@ CHECKS: Final = (
     Check("beam_changed", lowest=-0.02, highest=0.02),
     Check("bow_height_changed", lowest=-0.05, highest=0.05),
     Check("freeboard_changed", highest=0.03, unit="m"),
-    Check("weight_by_freeboard", lowest=-0.2, highest=0.2, severity="note"),
-    Check("balance_changed", lowest=-0.02, highest=0.02, severity="note"),
     # The curve against others
     Check("curve_changed", lowest=-0.05, highest=0.05, severity="note"),
     Check("curve_change_unexplained", lowest=-0.05, highest=0.05),
-    Check("curve_change_significant", lowest=-3.0, highest=3.0),
-    Check("best_estimate_differs", highest=1.0),
     Check("pulled_askew", highest=0.05, last_season=2013),
 )
 """Every check, in the order in which flags are listed."""

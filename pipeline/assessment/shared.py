@@ -10,7 +10,6 @@ import polars as pl
 import scipy
 
 from pipeline.channels import SECOND_FILE_OFFSET
-from pipeline.tables.keys import LINE
 
 CHANCE: Final = 0.001
 """Share of sound seasons or archives in which chance alone shows as much."""
@@ -87,47 +86,4 @@ def ways_apart(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     )
     return _of_season("ways_differ", ln_ratios, curves).with_columns(
         pl.col("ways_differ").exp() - 1
-    )
-
-
-def rising_with_wind(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
-    """What the wind of a tow adds to Cw after the wind correction, by a slope over all tows.
-
-    Waves grow with the square of the wind. The slope is that among the tows of one boat, against
-    the boat's best estimate. The square of the true wind is that of the wind as felt, out and back,
-    less that of the boat's speed.
-
-    Returns:
-        `tow_id, rises_with_wind`; nothing without best estimates.
-    """
-    felt, speed, way = pl.col("wind_m_s") ** 2, pl.col("speed_m_s") ** 2, pl.col("direction")
-    excess = felt - speed
-    both_ways = (excess.filter(way > 0).mean() + excess.filter(way < 0).mean()) / 2
-    ln, wind2 = pl.col("ln"), pl.col("wind2")
-    tows = (
-        run_points.filter("used")
-        .group_by("tow_id", maintain_order=True)
-        .agg(wind2=both_ways.clip(0.0))
-        .join(curves, on="tow_id", maintain_order="left")
-        .with_columns(ln=(pl.col("cw_kg_m") / pl.col("cw_best_kg_m")).log())
-        .filter(ln.is_finite(), wind2.is_finite())
-    )
-    within = tows.filter(pl.len().over(LINE) > 1).select(
-        x=wind2 - wind2.mean().over(LINE), y=ln - ln.mean().over(LINE), line=pl.struct(LINE)
-    )
-    x, y = pl.col("x"), pl.col("y")
-    slopes = within.select(
-        slope=(x * y).sum() / (x**2).sum(),
-        square=(x**2).sum(),
-        yy=(y**2).sum(),
-        dof=pl.len() - pl.col("line").n_unique() - 1.0,
-    ).with_columns(
-        sd=((pl.col("yy") - pl.col("slope") ** 2 * pl.col("square")) / pl.col("dof")).sqrt()
-        / pl.col("square").sqrt()
-    )
-    sure = slopes.filter(pl.col("dof") + 1 >= FEWEST).select(
-        sure=unless_chance(pl.col("slope"), pl.col("sd"), pl.col("dof"))
-    )
-    return tows.join(sure, how="cross").select(
-        "tow_id", rises_with_wind=(pl.col("sure") * wind2).exp() - 1
     )

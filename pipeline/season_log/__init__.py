@@ -12,7 +12,6 @@ Belongs here:
 - what it says of tows (`tows`), seasons (`diagnosis`) and factors (`estimate`);
 - what it all rests on (`network`);
 - which boats to tow again (`retow_design`);
-- the second estimate, without boat identity (`without_boats`);
 - the factor of the log that is not in use (`other_log`).
 
 Does not belong here: how Cw of a tow is computed, prescribed corrections (never data here), and

@@ -1,4 +1,4 @@
-"""From tows to season factors: the joint posterior and its independent check, as tables."""
+"""From tows to season factors: the joint posterior as tables."""
 
 from dataclasses import dataclass, replace
 from typing import Final
@@ -22,7 +22,6 @@ from pipeline.season_log.guard import refused
 from pipeline.season_log.network import GROUP, Network
 from pipeline.season_log.posterior import Posterior, Problem, solve
 from pipeline.season_log.tows import best_estimates, instrument_errors
-from pipeline.season_log.without_boats import Second, without_boats
 
 ESTIMATED: Final = "estimated"
 GPS: Final = "gps"
@@ -35,8 +34,7 @@ class SeasonFactors:
     Attributes:
         factors: one row per season, part and log that has tows without dGPS calibration, sorted:
             `season, part, log, factor, lo, hi, source, ln_sd, dof, n_tows, n_links, component,
-            influence, influence_boat, critical_boats, factor_no_boats, lo_no_boats, hi_no_boats,
-            agreement`. See `estimate_season_factors`.
+            influence, influence_boat, critical_boats`. See `estimate_season_factors`.
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
         tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
@@ -127,8 +125,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
         network (0 has the anchor). `influence` is the largest change of the factor when one boat
         (`influence_boat`) is left out, and `critical_boats` how many boats would leave the season
-        undetermined. `agreement` is the factor less the one without boat identity, in standard
-        deviations.
+        undetermined.
 
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
@@ -140,7 +137,6 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     ageing = int(np.flatnonzero(posterior.names == AGEING)[0])
     ageing_per_year = float(posterior.mean[ageing])
     ageing_sd = float(np.sqrt(posterior.covariance[ageing, ageing]))
-    second = without_boats(posterior.problem.network, (ageing_per_year, ageing_sd), USUAL)
     along = _group_means(posterior)
     covariance = _of_means(posterior, along @ posterior.covariance @ along.T)
     change = _without_each_boat(posterior)
@@ -150,7 +146,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
     diagnosis = season_diagnosis(posterior)
     return SeasonFactors(
-        factors=_described(posterior, along, covariance, change, second),
+        factors=_described(posterior, along, covariance, change),
         covariance=covariance,
         tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
         calibration_sd=calibration_sd,
@@ -233,7 +229,6 @@ def _described(
     along: FloatArray,
     covariance: FloatArray,
     change: FloatArray,
-    second: Second,
 ) -> pl.DataFrame:
     """The factor of each group with its interval and what it rests on; see `SeasonFactors`.
 
@@ -241,7 +236,6 @@ def _described(
         along: as `_group_means` gives it.
         covariance: of the determined ln factors.
         change: of every unknown of the fit without each boat, (boats, unknowns).
-        second: the estimate without boats.
     """
     network, fit = posterior.problem.network, posterior.fit
     known = np.flatnonzero(network.determined)
@@ -260,9 +254,6 @@ def _described(
     ln_factor, dof = placed(mean), placed(fit.dof(along))
     sd = placed(np.sqrt(np.diag(covariance)))
     half = _half_width(sd, dof)
-    other = pl.Series(np.where(second.known, second.ln_factor, np.nan)).fill_nan(None)
-    other_sd = pl.Series(second.sd)
-    other_half = _half_width(other_sd, pl.Series(second.dof))
     by_gps_alone = (network.links == 0) & (network.has_gps | network.calibrated)
     source = np.where(by_gps_alone, GPS, ESTIMATED) if fit.settled else NOT_SETTLED
     source = np.where(network.component == 0, source, NOT_DETERMINED)
@@ -280,10 +271,6 @@ def _described(
         influence=placed(np.where(np.isfinite(influence), influence, np.nan)),
         influence_boat=pl.Series(network.boat_names).gather(placed(boat).cast(pl.Int64)),
         critical_boats=placed(critical.sum(axis=0)).cast(pl.Int64),
-        factor_no_boats=other.exp(),
-        lo_no_boats=(other - other_half).exp(),
-        hi_no_boats=(other + other_half).exp(),
-        agreement=(ln_factor - other) / (sd**2 + other_sd**2).sqrt(),
     )
 
 

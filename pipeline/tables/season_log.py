@@ -39,12 +39,6 @@ class SeasonLinks(PerPart):
     dof = column.number("1", "its degrees of freedom", nullable=True)
     influence = column.number("1", "largest change when one boat is left out", nullable=True)
     influence_boat = column.text("that boat", nullable=True)
-    factor_no_boats = column.number(
-        "1", "the same without boat identity, a check; empty too if not settled", nullable=True
-    )
-    lo_no_boats = column.number("1", "lower end of its 95 % interval", nullable=True)
-    hi_no_boats = column.number("1", "upper end", nullable=True)
-    agreement = column.number("1", "difference of the two in standard deviations", nullable=True)
 
 
 class SeasonSteps(PerPart):

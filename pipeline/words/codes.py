@@ -86,8 +86,6 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.speed_unusual": ("snelheid valt op", "speed stands out"),
     "code.coarse_readings": ("grove stappen in de aflezing", "coarse readings"),
     "code.ways_differ": ("heen en terug verschillen heel het seizoen", "ways differ all season"),
-    "code.rises_with_wind": ("Cw stijgt met de wind", "Cw rises with the wind"),
-    "code.days_differ": ("dagen verschillen", "days differ"),
     "code.season_in_doubt": ("instrument van het seizoen onzeker", "season's instrument in doubt"),
     "code.correction_not_used": (
         "correctie uit de sleeplijst niet gebruikt",
@@ -95,11 +93,6 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     ),
     "code.lamps_burned": ("lampjes brandden lang", "warning lamps burned long"),
     "code.load_cell_off": ("krachtmeter wijkt af van ijkgewicht", "load cell off"),
-    "code.weight_by_freeboard": (
-        "gewicht volgens vrijboord wijkt af",
-        "weight by freeboard differs",
-    ),
-    "code.balance_changed": ("gewichtsverdeling veranderd", "balance changed"),
     "code.force_not_plausible": ("kracht kan niet kloppen", "force cannot be right"),
     "code.wind_not_plausible": ("wind kan niet kloppen", "wind cannot be right"),
     "code.speed_not_plausible": ("snelheid kan niet kloppen", "speed cannot be right"),
@@ -198,14 +191,6 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.weight_changed": ("gewicht veranderd", "weight changed"),
     "code.curve_changed": ("kromme veranderd", "curve changed"),
     "code.curve_change_unexplained": ("kromme onverklaard veranderd", "unexplained curve change"),
-    "code.curve_change_significant": (
-        "kromme meer veranderd dan de onzekerheid",
-        "curve changed beyond its uncertainty",
-    ),
-    "code.best_estimate_differs": (
-        "beste schatting spreekt de proef tegen",
-        "best estimate contradicts the tow",
-    ),
     "code.b_at_cap": ("B op zijn bovengrens", "B at its cap"),
     "code.water_differs": ("ander water dan die dag", "water unlike its day's"),
     "code.heavier_after": ("na de proef zwaarder", "heavier after"),

@@ -170,8 +170,6 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.n_links": ("Sloepen ook elders", "Boats also elsewhere"),
     "column.influence": ("Grootste invloed", "Largest influence"),
     "column.influence_boat": ("van sloep", "of boat"),
-    "column.factor_no_boats": ("Zonder sloepen", "Without boats"),
-    "column.agreement": ("Verschil [sd]", "Difference [sd]"),
     "column.verification_code": ("Controle\u00adcode", "Verification code"),
     "column.kind": ("Soort", "Kind"),
     "column.valid_from": ("Geldig vanaf", "Valid from"),

@@ -488,7 +488,6 @@ COMMAND: Final[dict[str, str]] = {
     "where": "waar",
     "why": "waarom",
     "window s": "venster s",
-    "without boats": "zonder sloepen",
     "speed": "snelheid",
     "-inertia": "-traagheid",
     "-air": "-lucht",
@@ -667,17 +666,14 @@ COMMAND: Final[dict[str, str]] = {
     "True speed = log speed x factor, under {} (95 % intervals):": (
         "Ware snelheid = logsnelheid x factor, volgens {} (95 %-intervallen):"
     ),
-    "links: boats also towed in other seasons; without boats: a second estimate that does "
-    "not\nknow which boat is which; sd apart: how far the two are, in standard deviations; "
-    "step is\nof: whether the season differs by its log or by its load cell (force), as "
-    "the bend of\nthe same boats' curves tells; prescribed: nothing ties the season to one "
-    "with dGPS, so\nits factor is not determined and the method's prescribed one is used.": (
-        "koppelingen: sloepen die ook in andere seizoenen gesleept zijn; zonder sloepen: "
-        "een tweede schatting die niet\nweet welke sloep welke is; sd verschil: hoe ver "
-        "die twee uiteen liggen, in standaardafwijkingen; stap komt van:\nof het seizoen "
-        "afwijkt door de log of door de krachtmeter, te zien aan de bocht van de krommen "
-        "van dezelfde\nsloepen; voorgeschreven: niets verbindt het seizoen met een met "
-        "dGPS, dus de factor is niet bepaald en die van\nde methode is gebruikt."
+    "links: boats also towed in other seasons; step is of: whether the season differs by its\n"
+    "log or by its load cell (force), as the bend of the same boats' curves tells; prescribed:\n"
+    "nothing ties the season to one with dGPS, so its factor is not determined and the method's\n"
+    "prescribed one is used.": (
+        "koppelingen: sloepen die ook in andere seizoenen gesleept zijn; stap komt van: of het "
+        "seizoen\nafwijkt door de log of door de krachtmeter, te zien aan de bocht van de "
+        "krommen van dezelfde\nsloepen; voorgeschreven: niets verbindt het seizoen met een met "
+        "dGPS, dus de factor is niet\nbepaald en die van de methode is gebruikt."
     ),
     "No sound tow in {}: nothing is known of the log there.": (
         "Geen bruikbare proef in {}: over de log daar is niets bekend."

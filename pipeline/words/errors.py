@@ -407,11 +407,6 @@ ERRORS: Final[dict[str, str]] = {
         "de tabellen van methode {} horen niet bij het archief en het programma van "
         "vandaag; draai: herijk rebuild --archive MAP --data {} --method {}"
     ),
-    "the curve of tow {}, and {} more, are not what {} makes of its samples: a table of "
-    "the data folder was changed. Remove {} and run herijk rebuild": (
-        "de kromme van sleepproef {}, en nog {}, zijn niet wat {} van de metingen maakt: "
-        "een tabel van de datamap is veranderd. Haal {} weg en draai herijk rebuild"
-    ),
     "an edition needs a decision: say who decided it and where, with --decision": (
         "een editie vraagt een besluit: zeg met --decision wie het nam en waar"
     ),
@@ -479,12 +474,6 @@ ERRORS: Final[dict[str, str]] = {
     "it was made by other code: {}": "het is door een ander programma gemaakt: {}",
     "it has no number in the chain of editions": "het heeft geen nummer in de rij van edities",
     "the head is {}, and should be {}": "het laatste zegel is {}, en zou {} moeten zijn",
-    "it was written anew; its values are the same": (
-        "het is opnieuw geschreven; de waarden zijn gelijk"
-    ),
-    "it cannot be read any more: {}": "het is niet meer te lezen: {}",
-    "it has {} lines; there were {}": "het heeft {} regels; het waren er {}",
-    "it has another number of cells": "het aantal cellen is anders",
     "it says {!r}; it was {!r}": "er staat {!r}; het was {!r}",
     "and {} more places differ": "en nog {} plaatsen verschillen",
     "the archive is not where the last rebuild found it; run herijk rebuild --archive DIR": (
@@ -495,22 +484,17 @@ ERRORS: Final[dict[str, str]] = {
     "{} is not the file that the edition was made from": (
         "{} is niet het bestand waaruit de editie gemaakt is"
     ),
-    "tow {} is no longer in the tow lists": "proef {} staat niet meer in de sleeplijsten",
     "{}: {} is {}; it was {}": "{}: {} is {}; het was {}",
     "it cannot be made again: {}": "hij is niet opnieuw te maken: {}",
     "made again, there is a line that the edition has not: {}": (
         "opnieuw gemaakt is er een regel die de editie niet heeft: {}"
     ),
     "made again, {}: {}": "opnieuw gemaakt, {}: {}",
-    "the boat list changed": "de lijst van sloepen is gewijzigd",
-    "the printed register in the archive says so now": (
-        "het gedrukte register in het archief zegt het nu zo"
+    "its method has options that there are no longer": (
+        "de methode heeft keuzes die er niet meer zijn"
     ),
-    "tow {} is no longer in the warehouse": "proef {} is niet meer in de tabellen",
-    "the files or the list row of tow {} changed": (
-        "de bestanden of de rij in de lijst van proef {} zijn gewijzigd"
-    ),
-    "other tows that went into it changed": "andere proeven die meetellen, zijn gewijzigd",
+    "{} is no longer in the warehouse": "{} is niet meer in de tabellen",
+    "tows that went into it changed": "proeven die meetellen, zijn gewijzigd",
     "either the code changed since, or the edition did": (
         "of de code is sindsdien gewijzigd, of de editie"
     ),

@@ -666,11 +666,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Waar een log binnen een seizoen is vervangen, heeft elk deel een eigen factor; de "
         "grafiek hierboven toont hun gemiddelde. De andere log heeft ook een regel: de methode "
         "gebruikt hem niet. Grootste invloed: hoever de factor hoogstens verschuift als één sloep "
-        "ontbreekt. Verschil: met de factor die niet let op welke sloep het is (Zonder sloepen).",
+        "ontbreekt.",
         "Where a log was replaced within a season each part has its own factor; the chart above "
         "shows their mean. The other log has a line too: the method does not use it. Largest "
-        "influence: how far the factor moves at most when one boat is left out. Difference: with "
-        "the factor that does not know which boat is which (Without boats).",
+        "influence: how far the factor moves at most when one boat is left out.",
     ),
     "season_steps": ("Log of krachtmeter?", "Log or load cell?"),
     "season_steps_note": (

@@ -65,8 +65,8 @@ REPORT: Final[dict[str, tuple[str, str]]] = {
         "boats stayed within their intervals",
     ),
     "code.editions_can_be_made_again": (
-        "edities zijn na te rekenen",
-        "editions can be made again",
+        "edities zijn wat ze waren, en na te rekenen",
+        "editions are what they were and can be made again",
     ),
     "code.every_listed_tow_accounted_for": (
         "elke proef van de lijst is terug te vinden",
@@ -98,8 +98,8 @@ REPORT: Final[dict[str, tuple[str, str]]] = {
         "boats moved beyond their intervals",
     ),
     "failed.editions_can_be_made_again": (
-        "edities zijn niet na te rekenen",
-        "editions cannot be made again",
+        "edities, of de bestanden waar ze uit komen, zijn niet meer wat ze waren",
+        "editions, or the files that they were made from, are not what they were",
     ),
     "failed.every_listed_tow_accounted_for": (
         "proeven van de lijst zijn niet terug te vinden",

@@ -18,11 +18,10 @@ from pipeline.season_log import (
     other_log_factors,
     posterior,
     retow_choice,
-    without_boats,
 )
 from pipeline.season_log.assumed import Settings
+from pipeline.season_log.effects import slopes
 from pipeline.season_log.network import Network
-from pipeline.season_log.scale import scale_effect
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 
@@ -89,14 +88,19 @@ def test_a_boat_left_out_moves_its_own_tows_as_leaving_it_out_does():
 
 
 @pytest.mark.parametrize("factor", [0.94, 1.0, 1.06])
-def test_scale_effect_is_that_of_refitting_the_hyperbola(factor):
+def test_a_scale_error_does_what_refitting_the_hyperbola_does(factor):
     a, b, v0 = 31.6, 4.44, 2.35
     a_log, b_log = a * factor**2, b / factor
     by_log = curve.cw(a_log, curve.s_of_b(b_log), v0)
-    shift, slope = scale_effect(math.log(factor), (v0 / b) ** 2)
-    assert shift == pytest.approx(math.log(by_log / curve.cw(a, curve.s_of_b(b), v0)), abs=1e-12)
-    above, below = (scale_effect(math.log(factor) + x, (v0 / b) ** 2)[0] for x in (1e-6, -1e-6))
-    assert slope == pytest.approx((above - below) / 2e-6, rel=1e-6)
+    r = (v0 / b) ** 2
+    q, force, reference = (np.array([x]) for x in (r / (1 - r), 300.0, 0.0))
+    at, above, below = (
+        slopes(q, force, np.array([math.log(factor) + x]), reference) for x in (0, 1e-6, -1e-6)
+    )
+    ln_ratio = math.log(by_log / curve.cw(a, curve.s_of_b(b), v0))
+    assert at.predicted[0, 0] == pytest.approx(ln_ratio, abs=1e-12)
+    difference = (above.predicted - below.predicted)[0, :2] / 2e-6
+    assert at.ways["speed"][0, :2] == pytest.approx(difference, rel=1e-6)
 
 
 def test_without_noise_the_factors_are_exact():
@@ -304,7 +308,6 @@ def test_a_season_without_any_repeat_or_gps_is_not_determined():
     assert row["source"] == "not determined"
     assert (row["factor"], row["lo"], row["hi"], row["n_links"]) == (None, None, None, 0)
     assert row["component"] > 0
-    assert row["factor_no_boats"] is not None  # the other estimate still says something
     assert (found.factors.filter(pl.col("season") != 2010)["source"] == "estimated").all()
     assert found.covariance.shape == (4, 4)
 
@@ -363,42 +366,6 @@ def test_parts_of_a_season_have_factors_of_their_own():
     assert source == "estimated"
     ratio = found["factor"][1] / found["factor"][0]
     assert math.log(ratio) == pytest.approx(0.03, abs=0.006)
-
-
-def test_without_boat_identity_the_second_estimate_agrees():
-    errors, beyond = [], []
-    for seed in range(WORLDS):
-        world, whole = estimated(CLEAN, 1000 + seed)
-        found = whole.factors
-        truth = np.exp([world.ln_factor[s] for s in found["season"]])
-        errors.append(found["factor_no_boats"].to_numpy() - truth)
-        beyond.append(np.abs(found["agreement"].to_numpy()) > 3)
-    assert np.sqrt(np.mean(np.square(errors))) < 0.006
-    assert not np.any(beyond)
-
-
-def test_a_fleet_of_one_type_and_crew_has_factors():
-    """A one-design class: nothing but size tells its boats apart."""
-    tows = simulate(replace(CLEAN, boats=12, tows_a_season=8), 1).tows.with_columns(
-        boat_type=pl.lit("whaler"), crew_class=pl.lit("H"), rowers=pl.lit(8, pl.Int8)
-    )
-    found = estimate_season_factors(tows).factors
-    assert found["factor_no_boats"].null_count() < found.height
-
-
-def test_a_fleet_altered_in_one_winter_shows_as_disagreement():
-    """All old boats became heavier to tow in 2014: repeat tows take that for a log error."""
-    tows = simulate(replace(CLEAN, boats=150, tows_a_season=40), 9).tows
-    late, new = pl.col("season") >= ANCHORED_FROM, pl.int_range(pl.len()) % 2 == 0
-    tows = tows.with_columns(
-        pl.lit(None, pl.Float64).alias("gps_ln_ratio"),
-        pl.when(late & new).then("new " + pl.col("fsn_no")).otherwise("fsn_no").alias("fsn_no"),
-    )
-    fouled = late & ~pl.col("fsn_no").str.starts_with("new")
-    before = estimate_season_factors(tows).factors
-    found = estimate_season_factors(moved(tows, fouled, 0.25)).factors
-    assert (before["agreement"].abs() < 2).all()
-    assert (found["agreement"].abs() > 2).all()
 
 
 @pytest.mark.parametrize("seasons", [(2014, 2018), (2009, 2010)])
@@ -522,15 +489,6 @@ def test_a_search_that_does_not_come_to_rest_says_so_of_every_season(limit, monk
     assert set(found.factors["source"]) == {"not settled"}
     assert found.of_season(2010, found.factors["log"][0])[3] == "not settled"
     assert set(found.diagnosis["season"]) == set(tows["season"])
-
-
-def test_a_second_estimate_that_does_not_come_to_rest_is_not_given(monkeypatch):
-    world, whole = estimated(CLEAN, 1000)
-    monkeypatch.setattr(without_boats, "REGRESSIONS", 1)
-    second = estimate_season_factors(world.tows).factors
-    assert whole.factors["factor_no_boats"].null_count() == 0
-    assert second["factor_no_boats"].null_count() == second.height
-    assert second["factor"].to_list() == whole.factors["factor"].to_list()
 
 
 def test_where_logs_alone_tell_a_load_cell_a_little_off_would_not_show():

@@ -24,26 +24,28 @@ from warehouse.editions.publish import publish, publish_printed
 from warehouse.store.decisions import FILE_NAME
 from warehouse.store.editions import (
     CHANGES,
-    TABLES,
     edition_names,
-    read_about,
     read_edition,
+    read_manifest,
 )
-from warehouse.store.store import table_digest
 
+TABLES = (
+    *("register", "tows", "tow_runs", "curves", "run_points", "log_factors", "season_links"),
+    *("tow_instruments", "ensemble"),
+)
 FILES = {
     "register.csv",
     "register.xlsx",
     "inputs.csv",
     "datapackage.json",
-    "edition.json",
+    "manifest.json",
     "method.toml",
     "decisions.json",
     "bericht.md",
     "notice.md",
     "toelichting.md",
     "release_notes.md",
-    *(f"{name}.parquet" for name in TABLES if name != CHANGES),
+    *(f"{name}.parquet" for name in TABLES),
 }
 """Files of the first edition."""
 
@@ -59,19 +61,17 @@ def folder(bench, name="2014-1"):
 def test_an_edition_holds_everything_behind_it(published):
     path = folder(published)
     assert {f.name for f in path.iterdir()} == FILES
-    about = read_about(path)
-    assert set(about.files) == FILES - {"edition.json"}
+    about = read_manifest(path)
+    assert set(about.files) == FILES - {"manifest.json"}
     assert (about.method, about.valid_from) == ("as-published", dt.date(2014, 6, 1))
     assert about.seal == about.expected_seal
     assert about.method_hash == shipped_method("as-published").content_hash
-    for name, frame in edition_of(published).tables.items():
-        assert about.tables[name].rows == frame.height
-        assert about.tables[name].digest == table_digest(frame)
+    assert edition_of(published).tables.keys() == set(TABLES)
 
 
 def test_an_edition_keeps_what_changed_since_the_one_before(published):
     second = edition_of(published, "2014-2")
-    assert second.about.previous == "2014-1"
+    assert second.manifest.previous == "2014-1"
     changes = conform("register_changes", second.tables[CHANGES])
     assert set(changes["from_edition"]) == {"2014-1"}
     assert changes.height == second.register.height
@@ -158,9 +158,8 @@ def test_a_reader_with_dutch_settings_takes_numbers_for_numbers_and_days_for_day
 )
 def test_separators_quotes_and_letters_in_a_name_survive_the_csv(published, name):
     register = edition_of(published).register.with_columns(pl.lit(name).alias("name"))
-    rows = sheets.read_csv_cells(sheets.csv_bytes(register, sheets.REGISTER_FIELDS))
-    assert {row[2] for row in rows[1:]} == {name}
-    assert {len(row) for row in rows} == {len(sheets.REGISTER_FIELDS)}
+    cells = sheets.read_csv_cells(sheets.csv_bytes(register, sheets.REGISTER_FIELDS))
+    assert [cells[f"C{row}"] for row in range(2, register.height + 2)] == [name] * register.height
 
 
 @pytest.mark.parametrize(
@@ -173,10 +172,10 @@ def test_separators_quotes_and_letters_in_a_name_survive_the_csv(published, name
 def test_a_name_that_looks_like_a_formula_is_none_in_the_sheets(published, name, written):
     edition = edition_of(published)
     register = edition.register.with_columns(pl.lit(name).alias("name"))
-    rows = sheets.read_csv_cells(sheets.csv_bytes(register, sheets.REGISTER_FIELDS))
-    assert {row[2] for row in rows[1:]} == {written}
-    content = sheets.xlsx_bytes(register, sheets.REGISTER_FIELDS, edition.about)
-    assert sheets.read_xlsx_cells(content)["C2"] == name
+    cells = sheets.read_csv_cells(sheets.csv_bytes(register, sheets.REGISTER_FIELDS))
+    assert cells["C2"] == written
+    content = sheets.xlsx_bytes(register, sheets.REGISTER_FIELDS, edition.manifest)
+    assert sheets.read_xlsx_cells(content)["register!C2"] == name
 
 
 def test_numbers_in_the_xlsx_are_numbers_and_days_are_days(published):
@@ -186,10 +185,12 @@ def test_numbers_in_the_xlsx_are_numbers_and_days_are_days(published):
         zip((f.header for f in sheets.REGISTER_FIELDS), string.ascii_uppercase, strict=True)
     )
     for row, line in enumerate(register.iter_rows(named=True), 2):
-        assert cells[f"{letter['fsn_nr']}{row}"] == line["fsn_no"]
-        assert cells[f"{letter['roeiers']}{row}"] == line["rowers"]
-        assert cells.get(f"{letter['Cw [kg/m]']}{row}") == pytest.approx(line["cw_kg_m"], abs=5e-4)
-        assert cells[f"{letter['sleepdatum']}{row}"] == line["tow_date"]
+        assert cells[f"register!{letter['fsn_nr']}{row}"] == line["fsn_no"]
+        assert cells[f"register!{letter['roeiers']}{row}"] == line["rowers"]
+        assert cells.get(f"register!{letter['Cw [kg/m]']}{row}") == pytest.approx(
+            line["cw_kg_m"], abs=5e-4
+        )
+        assert cells[f"register!{letter['sleepdatum']}{row}"] == line["tow_date"]
 
 
 def test_the_data_package_validates_with_its_own_tool(published):
@@ -336,7 +337,7 @@ def test_two_publications_at_once_have_numbers_of_their_own(bench_of_editions, m
 
     monkeypatch.setattr(publish_module, "write_folder", after_another)
     bench.publish("2014-2")
-    first, second = (read_about(folder(bench, name)) for name in ("2014-1", "2014-2"))
+    first, second = (read_manifest(folder(bench, name)) for name in ("2014-1", "2014-2"))
     assert (first.number, second.number, second.after_seal) == (1, 2, first.seal)
 
 
@@ -441,7 +442,7 @@ def publish_register_of(bench, season=2012, edition="gedrukt-2012"):
 def test_a_printed_register_stands_as_an_edition(with_printed):
     publish_register_of(with_printed)
     edition = edition_of(with_printed, "gedrukt-2012")
-    assert edition.about.kind == "as_printed"
+    assert edition.manifest.kind == "as_printed"
     assert edition.method is None
     by_boat = {row["fsn_no"]: row for row in edition.register.iter_rows(named=True)}
     assert by_boat["FSN900"]["cw_kg_m"] == 41.63

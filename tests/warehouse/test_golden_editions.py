@@ -37,9 +37,7 @@ def integrity(store):
 
 def sealed(about):
     """What an edition says of itself under a new seal, as somebody in the know would make it."""
-    unsaid = {"number", "after_seal"} if about["number"] is None else set()
-    unsaid |= {"texts_version"} if about["texts_version"] is None else set()
-    content = {name: value for name, value in about.items() if name not in unsaid | {"seal"}}
+    content = {name: about[name] for name in about.keys() - {"seal", "texts_version"}}
     text = json.dumps(content, sort_keys=True)
     return about | {"seal": hashlib.sha256(text.encode()).hexdigest()}
 
@@ -67,14 +65,11 @@ def test_one_flipped_bit_of_any_file_is_found(store, edition):
         file.write_bytes(whole)
 
 
-def test_a_changed_number_is_found_in_its_cell(store):
+def test_a_changed_number_is_found(store):
     file = store.editions / "2014-1" / "register.csv"
     text = file.read_bytes().decode()
     file.write_bytes(text.replace(";39,992;", ";35,993;").encode())
-    assert integrity(store) == {
-        ("2014-1", "register.csv"),
-        ("2014-1", "register.csv, line 3 (FSN101), column Cw [kg/m]"),
-    }
+    assert integrity(store) == {("2014-1", "register.csv")}
 
 
 def test_a_copy_out_of_the_chain_with_other_numbers_is_found(store):
@@ -111,7 +106,7 @@ def test_they_are_read_with_the_lines_that_were_printed(store):
 @pytest.mark.parametrize("name", EDITIONS)
 def test_their_verification_codes_follow_from_their_lines(store, name):
     edition = read_edition(store, name)
-    codes = verification_codes(edition.register, edition.about.method_hash)
+    codes = verification_codes(edition.register, edition.manifest.method_hash)
     assert codes == edition.register["verification_code"].to_list()
 
 

@@ -70,16 +70,6 @@ def test_other_programs_read_what_the_database_holds(built: Workbench, folder: P
     assert duckdb.read_parquet(str(path)).fetchall() == pl.read_parquet(path).rows()
 
 
-def test_catalogues_find_the_same_files(folder: Path):
-    catalogue, package = _read(folder / "dcat.jsonld"), _read(folder / "datapackage.json")
-    found = {
-        (d["dcat:downloadURL"]["@id"], f"sha256:{d['spdx:checksum']['spdx:checksumValue']}")
-        for d in catalogue["dcat:distribution"]
-    }
-    assert found == {(r["path"], r["hash"]) for r in package["resources"]}
-    assert catalogue["dct:license"] == {"@id": "https://spdx.org/licenses/CC0-1.0"}
-
-
 def described(folder: Path, origin: Origin = MEASURED) -> dict:
     """The description of a folder with the tables of a database about itself, empty."""
     files = {folder / f"{name}.parquet": schema for name, schema in ABOUT.items()}
@@ -114,4 +104,3 @@ def test_without_a_declared_licence_none_is_given(tmp_path):
     package = described(tmp_path, Origin("1", False, Rights(), ()))
     assert "licenses" not in package
     assert "declares no licence" in package["description"]
-    assert "dct:license" not in _read(tmp_path / "dcat.jsonld")

@@ -18,15 +18,15 @@ from warehouse.store.editions import (
     Edition,
     edition_names,
     edition_path,
-    read_about,
     read_edition,
+    read_manifest,
 )
 from warehouse.store.store import Store
 
 
 def published_made_from(store: Store) -> dict[str, str]:
     """The seals of all editions: what the rows of `published_tables` are made from."""
-    return {name: read_about(store.editions / name).expected_seal for name in edition_names(store)}
+    return {name: read_manifest(store.editions / name).seal for name in edition_names(store)}
 
 
 def published_tables(store: Store) -> dict[str, pl.DataFrame]:
@@ -46,8 +46,8 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
         if CHANGES in edition.tables:
             rows[CHANGES].append(edition.tables[CHANGES])
         if edition.method is not None:
-            hashes = {edition.method.name: edition.about.method_hash}
-            tows, code_version = edition.tables["tows"], edition.about.code_version
+            hashes = {edition.method.name: edition.manifest.method_hash}
+            tows, code_version = edition.tables["tows"], edition.manifest.code_version
             rows["lineage"].append(lineage_rows(edition.register, tows, hashes, code_version))
     return {
         table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
@@ -57,7 +57,7 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
 
 def decisions_of(store: Store, edition: Edition) -> pl.DataFrame:
     """The decisions about tows with which an edition was made."""
-    text = (edition_path(store, edition.about.edition) / DECISIONS).read_text(encoding="utf-8")
+    text = (edition_path(store, edition.manifest.edition) / DECISIONS).read_text(encoding="utf-8")
     return decided.decision_table(TypeAdapter(tuple[decided.Decision, ...]).validate_json(text))
 
 
@@ -69,14 +69,14 @@ def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
     lines = edition.register.drop_nulls("cw_kg_m")
     if edition.method is None:
         return history_rows(
-            lines, edition.about.edition, lines["method"][0] if lines.height else ""
+            lines, edition.manifest.edition, lines["method"][0] if lines.height else ""
         )
-    tows = edition.tables["tows"].filter(pl.col("tow_date") <= edition.about.valid_from)
+    tows = edition.tables["tows"].filter(pl.col("tow_date") <= edition.manifest.valid_from)
     earlier = lines_of_all_days(
         edition.tables["curves"], tows, edition.method.validity, decisions_of(store, edition)
     ).join(lines, on=[*LINE, "tow_id"], how="anti")
     both = pl.concat([earlier, lines.select(earlier.columns)])
-    return history_rows(both, edition.about.edition, edition.method.name)
+    return history_rows(both, edition.manifest.edition, edition.method.name)
 
 
 def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame:
@@ -92,7 +92,7 @@ def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame
 
 def _edition_row(edition: Edition) -> pl.DataFrame:
     """What an edition says of itself."""
-    about = edition.about.model_dump(include=set(TABLES["editions"].column_names()))
+    about = edition.manifest.model_dump(include=set(TABLES["editions"].column_names()))
     interval = edition.method and edition.method.interval
     strings = ("previous", "method", "method_hash", "interval")
     return pl.DataFrame([about | {"interval": interval}]).cast(dict.fromkeys(strings, pl.String))

@@ -30,7 +30,7 @@ from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.published import lines_in_time
 from warehouse.derive.version import code_version
-from warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
+from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
 from warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
 from warehouse.store.store import Store, archive_root
 
@@ -64,7 +64,7 @@ def diff(store: Store, old: str, new: str) -> Comparison:
         BrokenPromiseError: a file of it is missing or damaged.
     """
     before, after = read_edition(store, old), read_edition(store, new)
-    if after.about.previous == old:
+    if after.manifest.previous == old:
         return Comparison(before, after, after.tables[CHANGES])
     return compare(store, before, after)
 
@@ -106,14 +106,14 @@ def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     Known where the new edition was made by the code of today and the warehouse still has all
     inputs of the old one, unchanged.
     """
-    versions = (old.about.code_version, new.about.code_version)
+    versions = (old.manifest.code_version, new.manifest.code_version)
     if old.method is None or versions[0] == versions[1] or versions[1] != code_version():
         return NO_PARTS
     if len(unchanged_tows(store, old)) < old.tables["tows"].height:
         return NO_PARTS
-    from warehouse.editions.lines import made_again  # noqa: PLC0415 - much, and seldom needed
+    from warehouse.editions.making import made_again  # noqa: PLC0415 - much, and seldom needed
 
-    again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
+    again = made_again(store, old).register.with_columns(pl.lit("again").alias("edition"))
     changes = register_changes(old.register, again)
     return _parts("code", changes.with_columns(pl.col("cw_ratio").fill_null(1.0)))
 
@@ -159,7 +159,7 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
 
     there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
-    tows, runs = tows_of_today(store).filter(there), intake.runs_with_windows(store).filter(there)
+    tows, runs = (table.filter(there) for table in tables_of_today(store).values())
     if tows.is_empty():
         return NO_STEPS
     from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
@@ -182,7 +182,7 @@ def _grounds(old: Edition, new: Edition, separated: set[object], code_known: boo
     pairs = old.register.select(shared).join(
         new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
     )
-    code = not code_known and old.about.code_version != new.about.code_version
+    code = not code_known and old.manifest.code_version != new.manifest.code_version
     same = None
     if "tows" in old.tables and "tows" in new.tables:
         same = same_tows(old.tables, new.tables)
@@ -204,7 +204,7 @@ def _ground(
         return "tow"
     own = line["tow_id"] not in same
     others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
-    method = old.about.method_hash != new.about.method_hash
+    method = old.manifest.method_hash != new.manifest.method_hash
     return ground_of(own, others, method and line["tow_id_new"] not in separated, code)
 
 
@@ -321,9 +321,9 @@ def report(comparison: Comparison) -> DiffReport:
     by_size = moved.sort(size, "fsn_no", descending=[True, False])
     editions = (comparison.old, comparison.new)
     return DiffReport(
-        from_edition=comparison.old.about.edition,
-        to_edition=comparison.new.about.edition,
-        simulated=any(edition.about.simulated for edition in editions),
+        from_edition=comparison.old.manifest.edition,
+        to_edition=comparison.new.manifest.edition,
+        simulated=any(edition.manifest.simulated for edition in editions),
         lines=lines.height,
         changes=dict(lines["change"].value_counts().sort("change").rows()),
         gain=_group(gain),
@@ -331,7 +331,7 @@ def report(comparison: Comparison) -> DiffReport:
         exceeds_interval=int(moved["exceeds_interval"].fill_null(False).sum()),
         interval_unknown=int(moved["exceeds_interval"].null_count()),
         runs_alone=[
-            edition.about.edition
+            edition.manifest.edition
             for edition in editions
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],

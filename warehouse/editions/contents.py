@@ -1,4 +1,4 @@
-"""The files of an edition: tables, sheets, texts, and what it says of itself.
+"""The files of an edition: tables, sheets, texts, and its manifest.
 
 Publishing writes them, `verify` makes them again.
 """
@@ -15,63 +15,55 @@ from warehouse.editions import notes, sheets
 from warehouse.editions.compare import compare
 from warehouse.store import decisions as decided
 from warehouse.store.editions import (
-    ABOUT,
     CHANGES,
     CSV,
     DECISIONS,
     INPUTS,
+    MANIFEST,
     METHOD,
     PACKAGE,
-    TABLES,
+    PARQUET,
     XLSX,
     Edition,
-    TableDigest,
     read_edition,
 )
 from warehouse.store.package import Rights
-from warehouse.store.store import Store, table_digest
+from warehouse.store.store import Store
 
 
 def contents_of(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
-    """An edition's files: tables, sheets, texts, and last what it says of itself.
+    """An edition's files: tables, sheets, texts, and last its manifest.
 
     Args:
         store: the data folder.
         edition: the edition, without its comparison with the one before.
         files: what it was made from, as `input_files` gives it.
     """
-    about = edition.about
+    manifest = edition.manifest
     tables = dict(edition.tables)
     previous = None
-    if about.previous is not None:
-        previous = compare(store, read_edition(store, about.previous), edition)
+    if manifest.previous is not None:
+        previous = compare(store, read_edition(store, manifest.previous), edition)
         tables[CHANGES] = previous.lines
     written = notes.texts(edition, previous)
     if edition.method is not None:
-        decisions = decisions_of(store, about.published_on)
+        decisions = decisions_up_to(store, manifest.published_on)
         written |= {
             METHOD: method_text(edition.method),
             DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
         }
     contents = {
         CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
-        XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, about),
+        XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, manifest),
         INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
         **{name: text.encode("utf-8") for name, text in written.items()},
-        **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
+        **{name + PARQUET: _parquet(frame) for name, frame in tables.items()},
     }
     summary, rights = notes.summary(edition), Rights.of(store)
-    contents[PACKAGE] = sheets.package_bytes(about, contents, summary, rights)
-    sealed = about.model_copy(
-        update={
-            "tables": {
-                name: TableDigest(rows=frame.height, digest=table_digest(frame))
-                for name, frame in tables.items()
-            },
-            "files": {n: hashlib.sha256(c).hexdigest() for n, c in sorted(contents.items())},
-        }
-    ).sealed()
-    contents[ABOUT] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
+    contents[PACKAGE] = sheets.package_bytes(manifest, contents, summary, rights)
+    hashes = {name: hashlib.sha256(c).hexdigest() for name, c in sorted(contents.items())}
+    sealed = manifest.model_copy(update={"files": hashes}).sealed()
+    contents[MANIFEST] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
     return contents
 
 
@@ -81,7 +73,7 @@ def _parquet(frame: pl.DataFrame) -> bytes:
     return target.getvalue()
 
 
-def decisions_of(store: Store, published_on: dt.date) -> tuple[decided.Decision, ...]:
-    """Decisions about tows taken up to the day of publication."""
+def decisions_up_to(store: Store, day: dt.date) -> tuple[decided.Decision, ...]:
+    """Decisions about tows taken up to a day."""
     decisions = decided.read_decisions(store.root / decided.FILE_NAME)
-    return tuple(d for d in decisions if d.datum <= published_on)
+    return tuple(d for d in decisions if d.datum <= day)

@@ -1,7 +1,7 @@
-"""What went into an edition: tows with their files, each tow's own hash, and one for all together.
+"""What went into an edition: tows with their files, and per tow a hash of all it is made from.
 
 A number depends on its own tow, and under some methods on all tows at once (a coefficient of the
-whole archive), so both hashes are kept. Which files still are what they were is `verify`'s.
+whole archive). Which files still are what they were is `verify`'s.
 """
 
 from collections import defaultdict
@@ -12,7 +12,7 @@ import polars as pl
 
 from pipeline.recompute.facts import samples_files
 from warehouse.store.editions import Edition
-from warehouse.store.store import Store, fingerprint, table_digest
+from warehouse.store.store import Store, fingerprint
 
 JUDGED: Final = ("doubts", "unusual")
 """What all other tows say of a tow."""
@@ -43,21 +43,12 @@ def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
     return tows.with_columns(pl.Series(INPUTS_HASH, hashes, pl.String))
 
 
-def tows_of_today(store: Store) -> pl.DataFrame:
-    """The tows of the warehouse as it is now, with their hashes."""
-    return with_input_hashes(*_tables_of_today(store).values())
-
-
-def _tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
-    """Tables `tows` and `tow_runs` of the warehouse as it is now."""
+def tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
+    """Tables `tows`, with the hash of their inputs, and `tow_runs` of the warehouse as it is."""
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - all that reads archives
 
-    return {"tows": intake.typed_tows(store), "tow_runs": intake.runs_with_windows(store)}
-
-
-def inputs_digest(tows: pl.DataFrame) -> str:
-    """One hash for all tows together."""
-    return table_digest(tows.select("tow_id", INPUTS_HASH).sort("tow_id"))
+    runs = intake.runs_with_windows(store)
+    return {"tows": with_input_hashes(intake.typed_tows(store), runs), "tow_runs": runs}
 
 
 def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) -> frozenset[str]:
@@ -78,7 +69,7 @@ def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) 
 
 def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
     """Tows of an edition that the warehouse has with the same inputs."""
-    return same_tows(edition.tables, _tables_of_today(store))
+    return same_tows(edition.tables, tables_of_today(store))
 
 
 def listed_inputs(store: Store) -> pl.DataFrame:

@@ -4,6 +4,7 @@ Everything is read from the edition itself, so it holds however archive and ware
 """
 
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 import polars as pl
 
@@ -12,8 +13,10 @@ from pipeline.register.register import LINE
 from pipeline.tables.row import Row
 from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
 from warehouse.store.boats import boats_named, the_boat
-from warehouse.store.editions import Edition, edition_path, read_edition
+from warehouse.store.editions import Edition, Manifest, edition_path, read_edition
 from warehouse.store.store import Store
+
+SAID: Final = Manifest.model_fields.keys() - {"files"}
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ def lineage(store: Store, edition: str, boat: str) -> Lineage:
         )
     lines = published.register.filter(pl.col("fsn_no") == the_boat(boats, boat))
     return Lineage(
-        about=published.about.model_dump(mode="json", exclude={"files", "tables"}),
+        about=published.manifest.model_dump(mode="json", include=SAID),
         folder=str(edition_path(store, edition)),
         lines=[_line(published, row) for row in lines.sort(LINE).iter_rows(named=True)],
     )

@@ -93,26 +93,26 @@ def summary(edition: Edition) -> str:
 
 
 def _facts(edition: Edition, language: Language) -> dict[str, object]:
-    about = edition.about
+    manifest = edition.manifest
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
     carried, as_it_was = (
         edition.register.filter(basis=basis).height for basis in (REBASED, NOT_REBASED)
     )
     ensemble = edition.tables.get("ensemble")
     return {
-        "edition": about.edition,
-        "simulated": about.simulated,
-        "decision": about.decision.strip().rstrip("."),
-        "published_on": language.day(about.published_on),
-        "valid_from": language.day(about.valid_from),
-        "code_version": about.code_version,
+        "edition": manifest.edition,
+        "simulated": manifest.simulated,
+        "decision": manifest.decision.strip().rstrip("."),
+        "published_on": language.day(manifest.published_on),
+        "valid_from": language.day(manifest.valid_from),
+        "code_version": manifest.code_version,
         "method": _method(edition, language),
         "statuses": ", ".join(
             f"{count} {language.word(STATUSES, status)}" for status, count in counts.rows()
         ),
         "carried": language.count(carried) if carried else None,
         "not_rebased": language.count(as_it_was) if as_it_was else None,
-        "carried_from": about.carried_from,
+        "carried_from": manifest.carried_from,
         "members": None if ensemble is None else ensemble["member"].n_unique(),
         "complete": edition.method is not None and edition.method.interval == COMPLETE,
     }

@@ -120,10 +120,10 @@ def _carried(printed: Edition, log_factors: pl.DataFrame, method: Method) -> pl.
     Raises:
         MissingKnowledgeError: the edition is not a printed one.
     """
-    if printed.about.kind != "as_printed":
+    if printed.manifest.kind != "as_printed":
         raise MissingKnowledgeError(
             "edition {} was recomputed; only lines of an edition as printed can be carried over",
-            printed.about.edition,
+            printed.manifest.edition,
         )
     usable = ("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s")
     lines = printed.register.drop_nulls(usable)

@@ -1,8 +1,8 @@
-"""Publishing: from the tables of a method, or from a printed register, to a frozen edition.
+"""Publishing: from the samples and lists of an archive to a frozen edition.
 
-Which tow counts is decided in `pipeline.register.register`, how sheets look in `sheets`, how a
-folder appears whole or not at all in `warehouse.store.editions`. Only a person publishes, who gives
-the name, the day from which it counts, the decision and the day of publication.
+What an edition holds is made in `warehouse.editions.making`, how a folder appears whole or not at
+all in `warehouse.store.editions`. Only a person publishes, who gives the name, the day from which
+it counts, the decision and the day of publication.
 """
 
 import datetime as dt
@@ -11,47 +11,28 @@ from pathlib import Path
 
 import polars as pl
 
-from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import Method
-from pipeline.recompute.recompute import recompute
 from pipeline.register.register import DOUBTED, LINE
 from pipeline.tables.row import Row
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
 from warehouse.derive.version import code_version
 from warehouse.editions.chain import chain_head
-from warehouse.editions.contents import contents_of, decisions_of
-from warehouse.editions.inputs import (
-    REGISTER,
-    input_files,
-    inputs_digest,
-    listed_inputs,
-    tows_of_today,
-)
-from warehouse.editions.lines import (
-    MADE,
-    NUMBERS,
-    SAME_NUMBER,
-    completed,
-    method_lines,
-)
-from warehouse.editions.printed import (
-    printed_lines,
-    printed_path,
-    with_carried,
-)
-from warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
+from warehouse.editions.contents import contents_of, decisions_up_to
+from warehouse.editions.inputs import REGISTER, input_files, listed_inputs
+from warehouse.editions.making import as_printed, recomputed
+from warehouse.editions.printed import printed_path
 from warehouse.store import decisions as decided
 from warehouse.store.editions import (
-    About,
     Edition,
+    Manifest,
     check_new_name,
     edition_names,
-    read_about,
     read_edition,
+    read_manifest,
     write_folder,
 )
-from warehouse.store.ensemble import read_ensemble
 from warehouse.store.store import Store
 
 
@@ -90,9 +71,19 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
         MissingKnowledgeError: the tables are not up to date, a name or decision cannot be used.
     """
     _check_terms(store, terms)
-    edition = recomputed_edition(store, method, terms, carry)
-    files = input_files(edition.tables["tows"], listed_inputs(store))
-    return _write(store, edition, files)
+    if store.made_from("tows") is None or METHOD_STEP.is_stale(Scope(store, [method], method)):
+        raise MissingKnowledgeError(
+            "the tables of method {} are not those of the archive and code of today; "
+            "run: herijk rebuild --archive DIR --data {} --method {}",
+            method.name,
+            store.root,
+            method.name,
+        )
+    decisions = decided.decision_table(decisions_up_to(store, terms.published_on))
+    _check_decided_tows(decisions, store.read("tows"))
+    manifest = _manifest(store, terms, method, carry)
+    edition = recomputed(store, manifest, method, decisions, store.read("listed_boats"))
+    return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
 
 
 def publish_printed(store: Store, season: int, terms: Terms) -> Path:
@@ -107,76 +98,16 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Path:
     path = printed_path(store, season)
     files = store.read("listed_files").filter(pl.col("path") == path)
     files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
-    about = _about(store, terms, None, inputs_digest="")
-    register = completed(store, printed_lines(store, path), about, None)
-    return _write(store, Edition(about, {"register": register}, None), files)
-
-
-def recomputed_edition(
-    store: Store, method: Method, terms: Terms, carry: str | None = None
-) -> Edition:
-    """The edition that would be published, not yet written; see `publish`."""
-    if store.made_from("tows") is None or METHOD_STEP.is_stale(Scope(store, [method], method)):
-        raise MissingKnowledgeError(
-            "the tables of method {} are not those of the archive and code of today; "
-            "run: herijk rebuild --archive DIR --data {} --method {}",
-            method.name,
-            store.root,
-            method.name,
-        )
-    tows = tows_of_today(store)
-    decisions = decided.decision_table(decisions_of(store, terms.published_on))
-    _check_decided_tows(decisions, tows)
-    tables = {
-        "tows": tows,
-        "tow_runs": runs_with_windows(store),
-        **{name: store.read(name, method.name) for name in MADE},
-    }
-    _check_made(store, method, tables["curves"])
-    crews = store.read("listed_boats")
-    lines = method_lines(tables, crews, terms.valid_from, method.validity, decisions)
-    if carry is not None:
-        printed = read_edition(store, carry)
-        factors = tables["log_factors"]
-        lines = with_carried(lines, printed, factors, terms.valid_from, method)
-    tables["ensemble"] = read_ensemble(store, method.name).join(
-        lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
-    )
-    about = _about(store, terms, method, inputs_digest(tows), carry)
-    tables["register"] = completed(store, lines, about, method)
-    return Edition(about, tables, method)
-
-
-def _check_made(store: Store, method: Method, curves: pl.DataFrame) -> None:
-    """Refuses curves that are not those that the method makes of the blocks."""
-    made = recompute(method, typed_tows(store), run_blocks(store), with_bands=False).curves
-    pairs = curves.join(made, on="tow_id", how="full", suffix="_made", maintain_order="left_right")
-    same = [
-        (pl.col(name) / pl.col(f"{name}_made") - 1.0).abs().fill_null(0.0) < SAME_NUMBER
-        for name in NUMBERS
-    ]
-    null = [pl.col(name).is_null() == pl.col(f"{name}_made").is_null() for name in NUMBERS]
-    status = pl.col("status").eq_missing(pl.col("status_made"))
-    unequal = pairs.filter(~pl.all_horizontal(*same, *null, status))
-    if unequal.height:
-        raise BrokenPromiseError(
-            "the curve of tow {}, and {} more, are not what {} makes of its samples: "
-            "a table of the data folder was changed. Remove {} and run herijk "
-            "rebuild",
-            unequal["tow_id"][0],
-            unequal.height - 1,
-            method.name,
-            store.root / "lake",
-        )
+    return _write(store, as_printed(store, _manifest(store, terms, None), path), files)
 
 
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
     """The edition that counted last before a day; None if there is none."""
-    known = [read_about(store.editions / name) for name in edition_names(store)]
-    earlier = [a for a in known if (a.valid_from, a.published_on) <= (valid_from, published_on)]
+    known = [read_manifest(store.editions / name) for name in edition_names(store)]
+    earlier = [m for m in known if (m.valid_from, m.published_on) <= (valid_from, published_on)]
     if not earlier:
         return None
-    return max(earlier, key=lambda a: (a.valid_from, a.published_on, a.edition)).edition
+    return max(earlier, key=lambda m: (m.valid_from, m.published_on, m.edition)).edition
 
 
 @dataclass(frozen=True)
@@ -184,13 +115,13 @@ class Published:
     """An edition that was just published.
 
     Attributes:
-        about: what it is.
+        manifest: what it is.
         folder: where it is.
         statuses: how many lines have each.
         to_look_at: rows of the register to look at.
     """
 
-    about: About
+    manifest: Manifest
     folder: str
     statuses: dict[str, int]
     to_look_at: list[Row]
@@ -200,7 +131,7 @@ def published(store: Store, folder: Path) -> Published:
     """What there is to say about an edition that was just published."""
     edition = read_edition(store, folder.name)
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
-    return Published(edition.about, str(folder), dict(counts.rows()), lines_to_look_at(edition))
+    return Published(edition.manifest, str(folder), dict(counts.rows()), lines_to_look_at(edition))
 
 
 def lines_to_look_at(edition: Edition) -> list[Row]:
@@ -229,10 +160,10 @@ def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
         )
 
 
-def _about(
-    store: Store, terms: Terms, method: Method | None, inputs_digest: str, carry: str | None = None
-) -> About:
-    return About(
+def _manifest(
+    store: Store, terms: Terms, method: Method | None, carry: str | None = None
+) -> Manifest:
+    return Manifest(
         edition=terms.edition,
         kind="as_printed" if method is None else "recomputed",
         method=None if method is None else method.name,
@@ -242,7 +173,6 @@ def _about(
         published_on=terms.published_on,
         decision=terms.decision,
         simulated=bool(store.read("about_archive")["simulated"][0]),
-        inputs_digest=inputs_digest,
         carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
     )
@@ -250,13 +180,12 @@ def _about(
 
 def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
     """Writes an edition's folder as the next of the chain."""
-    name = edition.about.edition
-    return write_folder(store, name, lambda: contents_of(store, _chained(store, edition), files))
 
+    def contents() -> dict[str, bytes]:
+        head = chain_head(store)
+        number, seal = (0, None) if head is None else (head.number or 0, head.seal)
+        place = {"number": number + 1, "after_seal": seal}
+        manifest = edition.manifest.model_copy(update=place)
+        return contents_of(store, replace(edition, manifest=manifest), files)
 
-def _chained(store: Store, edition: Edition) -> Edition:
-    """The edition with its place in the chain, after the one published last."""
-    head = chain_head(store)
-    number, seal = (0, None) if head is None else (head.number or 0, head.seal)
-    about = edition.about.model_copy(update={"number": number + 1, "after_seal": seal})
-    return replace(edition, about=about)
+    return write_folder(store, edition.manifest.edition, contents)

@@ -23,9 +23,10 @@ from xlsxwriter.utility import xl_rowcol_to_cell  # type: ignore[import-untyped,
 
 from pipeline.register.register import NO_EMPTY_THWART
 from warehouse.editions.words import STATUSES
-from warehouse.store.editions import CSV, INPUTS, About
+from warehouse.store.editions import CSV, INPUTS, Manifest
 from warehouse.store.package import Rights
 
+REGISTER_SHEET: Final = "register"
 A4: Final = 9
 """The paper's number in a spreadsheet."""
 BOM: Final = "\ufeff"
@@ -53,8 +54,6 @@ class Field:
     type: FieldType
     description: str
     decimals: int = 3
-    scale: float = 1.0
-    """What a number is multiplied by before it is printed."""
 
 
 LOWER_END: Final = (
@@ -104,16 +103,6 @@ LINE_KEY: Final = ["fsn_nr", "roeiers", "klasse", "lege doft"]
 CODE_FIELD: Final = Field(
     CODE_HEADER, "verification_code", "string", "hash van invoer, methode en getallen van de regel"
 )
-WITHDRAWN_FIELD: Final = Field(
-    "fout te zien vanaf [%]",
-    "unseen_error_ratio",
-    "number",
-    "kleinste fout in Cw die zou opvallen; ingetrokken",
-    0,
-    100.0,
-)
-"""What sheets of editions up to version 1.0.0 have; its promise did not hold."""
-
 SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 """The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
 
@@ -124,6 +113,9 @@ INPUT_FIELDS: Final = (
 )
 
 Cells = list[list[str]]
+
+Places = dict[str, object]
+"""What is in the filled cells of a sheet, by place ("B3")."""
 
 
 def printed_cells(frame: pl.DataFrame, fields: Sequence[Field]) -> Cells:
@@ -158,10 +150,23 @@ def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
     return (BOM + text.getvalue()).encode("utf-8")
 
 
-def read_csv_cells(content: bytes) -> Cells:
-    """The cells of such a CSV, with the header as first row."""
+def read_csv_cells(content: bytes) -> Places:
+    """The filled cells of such a CSV."""
+    return _places(_csv_rows(content))
+
+
+def _csv_rows(content: bytes) -> Cells:
     text = content.decode("utf-8-sig", errors="replace")
     return list(csv.reader(io.StringIO(text, newline=""), delimiter=";"))
+
+
+def _places(grid: Sequence[Sequence[object]], sheet: str = "") -> Places:
+    return {
+        sheet + xl_rowcol_to_cell(row, place): cell
+        for row, cells in enumerate(grid)
+        for place, cell in enumerate(cells)
+        if cell != ""
+    }
 
 
 def read_inputs(edition: Path) -> list[tuple[str, str, str]]:
@@ -169,11 +174,11 @@ def read_inputs(edition: Path) -> list[tuple[str, str, str]]:
 
     A row of another width was changed, which is found where the files themselves are looked at.
     """
-    rows = read_csv_cells((edition / INPUTS).read_bytes())[1:]
+    rows = _csv_rows((edition / INPUTS).read_bytes())[1:]
     return [(row[0], row[1], row[2]) for row in rows if len(row) == len(INPUT_FIELDS)]
 
 
-def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], about: About) -> bytes:
+def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], manifest: Manifest) -> bytes:
     """A sheet as XLSX, numbers as numbers and days as days, with what the edition is beside it."""
     target = io.BytesIO()
     options = {
@@ -182,23 +187,77 @@ def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], about: About) -> by
         "strings_to_urls": False,
         "strings_to_numbers": False,
     }
+    words = _in_words(frame)
+    columns = [words[f.column].alias(f.header) for f in fields]
+    rounded = pl.DataFrame(
+        column.round(field.decimals) if field.type == "number" else column
+        for column, field in zip(columns, fields, strict=True)
+    )
     with xlsxwriter.Workbook(target, options) as book:
-        created = dt.datetime.combine(about.published_on, dt.time())
-        book.set_properties({"title": f"Sloepenregister {about.edition}", "created": created})
-        _write_register(book, _in_words(frame), fields)
-        _write_about(book, about)
+        created = dt.datetime.combine(manifest.published_on, dt.time())
+        book.set_properties({"title": f"Sloepenregister {manifest.edition}", "created": created})
+        rounded.write_excel(
+            book,
+            REGISTER_SHEET,
+            column_formats={field.header: _number_format(field) for field in fields},
+            autofit=True,
+            freeze_panes=(1, 1),
+        )
+        sheet = book.get_worksheet_by_name(REGISTER_SHEET)
+        sheet.repeat_rows(0)
+        sheet.set_landscape()
+        sheet.set_paper(A4)
+        sheet.fit_to_pages(1, 0)
+        said = pl.DataFrame(list(_said(manifest).items()), ["editie", "waarde"], orient="row")
+        said.write_excel(book, "editie", include_header=False, autofit=True)
     return target.getvalue()
 
 
-def package_bytes(about: About, contents: dict[str, bytes], notes: str, rights: Rights) -> bytes:
+def _number_format(field: Field) -> str:
+    if field.type == "number":
+        return "0." + "0" * field.decimals if field.decimals else "0"
+    return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
+
+
+def _said(manifest: Manifest) -> dict[str, str]:
+    """What an edition is, in words."""
+    return {
+        "editie": manifest.edition,
+        "geldt vanaf": manifest.valid_from.isoformat(),
+        "vastgesteld op": manifest.published_on.isoformat(),
+        "besluit": manifest.decision,
+        "methode": manifest.method or "zoals gedrukt",
+        "methode-hash": manifest.method_hash or "",
+        "programmaversie": manifest.code_version,
+        "gesimuleerd": "ja: geen metingen van de federatie" if manifest.simulated else "nee",
+    }
+
+
+def read_xlsx_cells(content: bytes) -> Places:
+    """The filled cells of all sheets, by sheet and place ("register!B3").
+
+    Raises:
+        ValueError: this is no XLSX.
+    """
+    try:
+        book = python_calamine.load_workbook(io.BytesIO(content))
+        grids = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
+    except python_calamine.CalamineError as error:
+        raise ValueError(f"no XLSX: {error}") from error
+    return {k: v for name, grid in grids.items() for k, v in _places(grid, f"{name}!").items()}
+
+
+def package_bytes(
+    manifest: Manifest, contents: dict[str, bytes], notes: str, rights: Rights
+) -> bytes:
     """The Frictionless descriptor of the CSV files of an edition."""
     package = {
         "profile": "tabular-data-package",
-        "name": about.edition.lower(),
-        "title": f"Sloepenregister {about.edition}",
+        "name": manifest.edition.lower(),
+        "title": f"Sloepenregister {manifest.edition}",
         "description": notes,
-        "version": about.edition,
-        "created": f"{about.published_on}T00:00:00Z",
+        "version": manifest.edition,
+        "created": f"{manifest.published_on}T00:00:00Z",
         **rights.described,
         "resources": [
             _resource("register", CSV, contents[CSV], SHEET_FIELDS, LINE_KEY),
@@ -255,7 +314,7 @@ def _printed(value: Any, field: Field) -> str:
     if value is None:
         return ""
     if field.type == "number":
-        return f"{value * field.scale:.{field.decimals}f}".replace(".", ",")
+        return f"{value:.{field.decimals}f}".replace(".", ",")
     text = str(value)
     return FORMULA.sub(r"\1\2'\3", text) if field.type == "string" else text
 
@@ -264,75 +323,3 @@ def _code(parts: Sequence[str | None]) -> str:
     text = json.dumps(list(parts), ensure_ascii=False, separators=(",", ":"))
     digest = hashlib.sha256(text.encode("utf-8")).digest()
     return base64.b32encode(digest).decode("ascii")[:CODE_LENGTH]
-
-
-def _write_register(
-    book: xlsxwriter.Workbook, frame: pl.DataFrame, fields: Sequence[Field]
-) -> None:
-    sheet = book.add_worksheet("register")
-    head = book.add_format({"bold": True, "bottom": 1})
-    for place, field in enumerate(fields):
-        style = book.add_format({"num_format": _number_format(field)})
-        sheet.write_string(0, place, field.header, head)
-        sheet.set_column(place, place, max(10, len(field.header) + 2))
-        for row, value in enumerate(frame[field.column].to_list(), 1):
-            _write_cell(sheet, (row, place), value, field, style)
-    sheet.freeze_panes(1, 1)
-    sheet.repeat_rows(0)
-    sheet.set_landscape()
-    sheet.set_paper(A4)
-    sheet.fit_to_pages(1, 0)
-    sheet.autofilter(0, 0, frame.height, len(fields) - 1)
-
-
-def _number_format(field: Field) -> str:
-    if field.type == "number":
-        return "0." + "0" * field.decimals if field.decimals else "0"
-    return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
-
-
-def _write_cell(sheet: Any, place: tuple[int, int], value: Any, field: Field, style: Any) -> None:
-    if value is None:
-        return
-    if field.type == "date":
-        sheet.write_datetime(*place, dt.datetime.combine(value, dt.time()), style)
-    elif field.type == "string":
-        sheet.write_string(*place, str(value), style)
-    else:
-        sheet.write_number(*place, round(value * field.scale, field.decimals), style)
-
-
-def _write_about(book: xlsxwriter.Workbook, about: About) -> None:
-    sheet = book.add_worksheet("editie")
-    sheet.set_column(0, 0, 20)
-    rows = {
-        "editie": about.edition,
-        "geldt vanaf": about.valid_from.isoformat(),
-        "vastgesteld op": about.published_on.isoformat(),
-        "besluit": about.decision,
-        "methode": about.method or "zoals gedrukt",
-        "methode-hash": about.method_hash or "",
-        "programmaversie": about.code_version,
-        "gesimuleerd": "ja: geen metingen van de federatie" if about.simulated else "nee",
-    }
-    for row, (name, value) in enumerate(rows.items()):
-        sheet.write_string(row, 0, name)
-        sheet.write_string(row, 1, value)
-
-
-def read_xlsx_cells(content: bytes) -> dict[str, object]:
-    """The filled cells of the first sheet, by place ("B3").
-
-    Raises:
-        ValueError: this is no XLSX.
-    """
-    try:
-        grid = python_calamine.load_workbook(io.BytesIO(content)).get_sheet_by_index(0).to_python()
-    except python_calamine.CalamineError as error:
-        raise ValueError(f"no XLSX: {error}") from error
-    return {
-        xl_rowcol_to_cell(row, place): cell
-        for row, cells in enumerate(grid)
-        for place, cell in enumerate(cells)
-        if cell != ""
-    }

@@ -14,7 +14,7 @@ from warehouse.queries.as_of import lay_over, lay_published
 from warehouse.queries.chosen_tows import choose
 from warehouse.queries.due import RETOW_CHOICE
 from warehouse.store.database import open_results
-from warehouse.store.editions import edition_names, edition_path, read_about, read_table
+from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
 from warehouse.store.store import Store
 
 DRAFT: Final = "concept-"
@@ -92,7 +92,7 @@ class Views:
         """Whether an edition is of simulated tows; a draft, whether today's archive is."""
         if edition.startswith(DRAFT):
             return self.about().get("simulated") == "true"
-        return read_about(edition_path(self.store, edition)).simulated
+        return read_manifest(edition_path(self.store, edition)).simulated
 
     def curves(self) -> pl.DataFrame:
         """Curves with the day, name and what was on board."""

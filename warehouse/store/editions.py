@@ -2,6 +2,9 @@
 
 Everything is written beside, synced and renamed. A second edition of the same name is refused. What
 goes into the files, and whether they are still what they were, belongs to `warehouse.editions`.
+
+Four kinds of hash: of a file, of what something was made from (the inputs of a tow, a method, the
+code), the seal over the manifest with the hashes of all files, and the verification code of a line.
 """
 
 import datetime as dt
@@ -32,7 +35,11 @@ from warehouse.store.store import Store
 
 Kind = Literal["recomputed", "as_printed"]
 
-ABOUT: Final = "edition.json"
+MANIFEST: Final = "manifest.json"
+OLDER_MANIFEST: Final = "edition.json"
+"""What the manifest was called up to version 1.0.0."""
+
+PARQUET: Final = ".parquet"
 METHOD: Final = "method.toml"
 DECISIONS: Final = "decisions.json"
 CSV: Final = "register.csv"
@@ -46,48 +53,29 @@ NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
 MEASURED: Final = "measured"
 """The basis of a line that was computed from a tow."""
-TABLES: Final = (
-    "register",
-    "tows",
-    "tow_runs",
-    "curves",
-    "run_points",
-    "log_factors",
-    "season_links",
-    "tow_instruments",
-    "ensemble",
-    CHANGES,
-)
 
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,59}")
 _LOCK: Final = f"{TEMPORARY_PREFIX}lock"
 
 
-class TableDigest(BaseModel):
-    """Rows and digest of a table's values."""
+class Manifest(BaseModel):
+    """What an edition is, by whose decision, and the hashes of all its files.
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    rows: int
-    digest: str
-
-
-class About(BaseModel):
-    """`edition.json`: what an edition is, by whose decision, and the hashes of all its files.
+    Manifests of before say more (digests of tables, of all inputs, of the code of the texts), which
+    their seals cover.
 
     Attributes:
         kind: `recomputed` from the archive, or `as_printed`: a register as the federation had it.
         method, method_hash: None for a register as printed.
-        inputs_digest: of all tows that went in with their files, not only those of the lines.
         carried_from: the printed edition of which lines were taken over, if any.
         previous: the edition that the release notes compare with.
-        texts_version: of the code and templates that wrote its texts; None in editions of before
-            that was noted.
         number, after_seal: place in the chain of editions, from 1, and seal of the one published
-            before; None in editions of before there was a chain.
+            before; a number of None where there was no chain yet.
+        files: SHA-256 of every other file.
+        seal: see `expected_seal`.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="allow")
 
     edition: str
     kind: Kind
@@ -98,27 +86,24 @@ class About(BaseModel):
     published_on: dt.date
     decision: str
     simulated: bool
-    inputs_digest: str
     carried_from: str | None
     previous: str | None
-    texts_version: str | None = None
     number: int | None = None
     after_seal: str | None = None
-    tables: dict[str, TableDigest] = {}
     files: dict[str, str] = {}
     seal: str = ""
 
-    def sealed(self) -> "About":
-        """The same with its seal: a hash of all the rest."""
-        return self.model_copy(update={"seal": self.expected_seal})
-
     @property
     def expected_seal(self) -> str:
-        """SHA-256 of everything but the seal."""
-        unknown = {"number", "after_seal"} if self.number is None else set()
-        unknown |= {"texts_version"} if self.texts_version is None else set()
-        content = self.model_dump(mode="json", exclude={"seal", *unknown})
+        """SHA-256 of all that it says but the seal."""
+        content = self.model_dump(mode="json", exclude={"seal"}, exclude_unset=True)
+        if content.get("texts_version") is None:  # never sealed where it was not noted
+            content.pop("texts_version", None)
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+    def sealed(self) -> "Manifest":
+        """The same with its seal."""
+        return self.model_copy(update={"seal": self.expected_seal})
 
 
 @dataclass(frozen=True)
@@ -126,13 +111,13 @@ class Edition:
     """An edition with its tables, read or about to be written.
 
     Attributes:
-        about: what it is.
-        tables: by name, those of `TABLES` it has: `register` always, `register_changes` when there
-            was an edition before it, the others when it was recomputed.
+        manifest: what it is.
+        tables: by name: `register` always, `register_changes` when there was an edition before it,
+            and when it was recomputed its tows and runs, and what the method made of them.
         method: the method, with every option of every season; None when as printed.
     """
 
-    about: About
+    manifest: Manifest
     tables: dict[str, pl.DataFrame]
     method: Method | None
 
@@ -181,20 +166,27 @@ def check_new_name(store: Store, edition: str) -> None:
         )
 
 
-def read_about(path: Path) -> About:
-    """What an edition says about itself.
+def manifest_path(path: Path) -> Path:
+    """The manifest of an edition, under its name of now or of before."""
+    older = path / OLDER_MANIFEST
+    return older if older.exists() else path / MANIFEST
+
+
+def read_manifest(path: Path) -> Manifest:
+    """What an edition says of itself.
 
     Raises:
-        BrokenPromiseError: its `edition.json` is missing or cannot be read.
+        BrokenPromiseError: its manifest is missing or cannot be read.
     """
+    file = manifest_path(path)
     try:
-        return About.model_validate_json((path / ABOUT).read_text(encoding="utf-8"))
+        return Manifest.model_validate_json(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, ValidationError) as error:
         reason = str(error).splitlines()[0]
         raise BrokenPromiseError(
             "edition {}: {} is missing or damaged ({}); put the folder back from a copy",
             path.name,
-            ABOUT,
+            file.name,
             reason,
         ) from error
 
@@ -208,21 +200,19 @@ def read_edition(store: Store, edition: str) -> Edition:
         BrokenPromiseError: a file is missing or damaged.
     """
     path = edition_path(store, edition)
-    about = read_about(path)
-    tables = {name: read_table(path, name) for name in about.tables}
-    tables |= {
-        name: with_empty_thwart(tables[name]) for name in ("register", CHANGES) if name in tables
-    }
-    tables |= {
-        name: _with_later_columns(schema, tables[name])
-        for name, schema in {"register": Register, "curves": Curves}.items()
-        if name in tables
-    }
+    manifest = read_manifest(path)
+    names = [name.removesuffix(PARQUET) for name in manifest.files if name.endswith(PARQUET)]
+    tables = {name: read_table(path, name) for name in names}
+    for name in {"register", CHANGES} & tables.keys():
+        tables[name] = with_empty_thwart(tables[name])
+    for name, schema in {"register": Register, "curves": Curves}.items():
+        if name in tables:
+            tables[name] = _with_later_columns(schema, tables[name])
     method = None
-    if about.kind == "recomputed":
+    if manifest.kind == "recomputed":
         text = (path / METHOD).read_text(encoding="utf-8")
         method = parse_method(text, f"{edition}/{METHOD}", published=True)
-    return Edition(about, tables, method)
+    return Edition(manifest, tables, method)
 
 
 def _with_later_columns(schema: type[dy.Schema], frame: pl.DataFrame) -> pl.DataFrame:
@@ -256,7 +246,7 @@ def read_table(path: Path, name: str) -> pl.DataFrame:
         BrokenPromiseError: the file is missing or damaged.
     """
     try:
-        return pl.read_parquet((path / f"{name}.parquet").read_bytes())
+        return pl.read_parquet((path / f"{name}{PARQUET}").read_bytes())
     except (OSError, pl.exceptions.PolarsError) as error:
         raise BrokenPromiseError(
             "edition {}: {}.parquet is missing or damaged; put the folder back from a copy",

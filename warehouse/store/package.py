@@ -1,8 +1,8 @@
-"""The tables of the lake described for any program: as a data package, and for DCAT.
+"""The tables of the lake described for any program: as a data package.
 
 `lake/tables/` can be copied and passed on as it is. Of its Parquet files, one per table or per
 method, `datapackage.json` (Frictionless Data Package, version 2) gives columns, keys, licence,
-sources and hashes; `dcat.jsonld` (DCAT 3) says the same to catalogues. Both are written last.
+sources and hashes. It is written last.
 """
 
 import hashlib
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from pipeline.tables.declare import dy
 
 DESCRIPTOR: Final = "datapackage.json"
-CATALOGUE: Final = "dcat.jsonld"
-_PARQUET: Final = "application/vnd.apache.parquet"
 _NO_LICENCE: Final = "The archive declares no licence. Ask its owner before passing this on."
 _SIMULATED: Final = "Simulated: these are not the federation's measurements."
 
@@ -83,11 +81,9 @@ def write_package(folder: Path, files: "Mapping[Path, type[dy.Schema]]", origin:
         origin: where they come from.
     """
     resources = [_resource(folder, path, schema) for path, schema in sorted(files.items())]
-    package = _package(resources, origin)
-    for name, said in ((DESCRIPTOR, package), (CATALOGUE, _catalogue(package, origin, folder))):
-        with written_beside(folder / name) as beside:
-            text = json.dumps(said, indent=1, ensure_ascii=False)
-            beside.write_text(text, encoding="utf-8")
+    text = json.dumps(_package(resources, origin), indent=1, ensure_ascii=False)
+    with written_beside(folder / DESCRIPTOR) as beside:
+        beside.write_text(text, encoding="utf-8")
 
 
 def package_is_whole(folder: Path) -> bool:
@@ -95,7 +91,7 @@ def package_is_whole(folder: Path) -> bool:
     try:
         package = json.loads((folder / DESCRIPTOR).read_text(encoding="utf-8"))
         described = {resource["path"]: resource["hash"] for resource in package["resources"]}
-        return (folder / CATALOGUE).exists() and all(
+        return all(
             f"sha256:{file_sha256(folder / path)}" == hashed for path, hashed in described.items()
         )
     except (OSError, ValueError, KeyError, TypeError):
@@ -110,7 +106,7 @@ def _resource(folder: Path, path: Path, schema: "type[dy.Schema]") -> dict[str, 
         "type": "table",
         "path": within.as_posix(),
         "format": "parquet",
-        "mediatype": _PARQUET,
+        "mediatype": "application/vnd.apache.parquet",
         "description": schema.__doc__,
         "hash": f"sha256:{file_sha256(path)}",
         "rowcount": count_rows(path),
@@ -167,56 +163,4 @@ def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
         "sources": [{"title": title, "sha256": sha256} for title, sha256 in origin.sources],
         **origin.rights.described,
         "resources": resources,
-    }
-
-
-def _catalogue(package: Mapping[str, Any], origin: Origin, folder: Path) -> dict[str, Any]:
-    """The same for catalogues of open data."""
-    described: dict[str, object] = {
-        "@context": {
-            "dcat": "http://www.w3.org/ns/dcat#",
-            "dct": "http://purl.org/dc/terms/",
-            "foaf": "http://xmlns.com/foaf/0.1/",
-            "prov": "http://www.w3.org/ns/prov#",
-            "spdx": "http://spdx.org/rdf/terms#",
-        },
-        "@id": package["id"],
-        "@type": "dcat:Dataset",
-        "dct:title": package["title"],
-        "dct:description": package["description"],
-        "dct:identifier": package["id"],
-        "dcat:version": package["version"],
-        "dct:conformsTo": {"@id": package["$schema"]},
-        "prov:wasDerivedFrom": [
-            {"dct:title": title, "dct:identifier": f"urn:sha256:{sha256}"}
-            for title, sha256 in origin.sources
-        ],
-        "dcat:distribution": [_distribution(resource, folder) for resource in package["resources"]],
-    }
-    rights = origin.rights
-    if rights.publisher:
-        described["dct:publisher"] = {"@type": "foaf:Agent", "foaf:name": rights.publisher}
-    if rights.licence:
-        described["dct:license"] = {"@id": _address(rights.licence)}
-    else:
-        described["dct:accessRights"] = _NO_LICENCE
-    return described
-
-
-def _address(licence: str) -> str:
-    return licence if "://" in licence else f"https://spdx.org/licenses/{licence}"
-
-
-def _distribution(resource: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    return {
-        "@type": "dcat:Distribution",
-        "dct:title": resource["name"],
-        "dct:description": resource["description"],
-        "dcat:downloadURL": {"@id": resource["path"]},
-        "dcat:mediaType": f"https://www.iana.org/assignments/media-types/{_PARQUET}",
-        "dcat:byteSize": (folder / resource["path"]).stat().st_size,
-        "spdx:checksum": {
-            "spdx:algorithm": {"@id": "spdx:checksumAlgorithm_sha256"},
-            "spdx:checksumValue": resource["hash"].removeprefix("sha256:"),
-        },
     }

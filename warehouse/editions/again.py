@@ -1,0 +1,233 @@
+"""Whether archive and code of today give a published edition again: every line, table and file.
+
+What comes out otherwise does not say whether the code changed or the edition did: whoever kept the
+head of the chain knows (see `verify`).
+"""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import polars as pl
+from pydantic import ValidationError
+
+from pipeline.errors import HerijkError, MissingKnowledgeError
+from pipeline.register.register import LINE
+from pipeline.tables.row import Row
+from pipeline.tables.schemas import TABLES
+from pipeline.words import say
+from warehouse.editions import sheets
+from warehouse.editions.chain import Finding
+from warehouse.editions.contents import contents_of
+from warehouse.editions.inputs import NOT_INPUT, SAMPLES, input_files, same_tows
+from warehouse.editions.making import made_again
+from warehouse.store.editions import (
+    CHANGES,
+    MANIFEST,
+    METHOD,
+    PARQUET,
+    XLSX,
+    Edition,
+    edition_path,
+    read_edition,
+)
+from warehouse.store.store import Store
+
+SAME_NUMBER: Final = 1e-9
+"""Relative difference up to which a number made again is the same.
+
+Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
+
+INPUT_TABLES: Final = ("tows", "tow_runs")
+CANNOT: Final = (HerijkError, ValidationError, OSError, ValueError, pl.exceptions.PolarsError)
+MOST_CELLS: Final = 20
+"""Cells of a sheet that are named one by one."""
+
+
+class Counts(NamedTuple):
+    """Lines of an edition, those made again and those of them that came out equal."""
+
+    lines: int | None = None
+    made_again: int | None = None
+    equal: int | None = None
+
+
+def differing(store: Store, name: str) -> tuple[Counts, list[Finding]]:
+    """Makes an edition again: how many lines it has and come out equal, and what does not.
+
+    Args:
+        store: the editions, and the archive as tables of today.
+        name: the edition.
+    """
+    try:
+        edition = read_edition(store, name)
+    except MissingKnowledgeError as error:
+        message = say("it was made by other code: {}", str(error).splitlines()[0])
+        return Counts(), [Finding(name, "differs", METHOD, message)]
+    except CANNOT as error:
+        return Counts(), [_not_made(name, error)]
+    if edition.method is not None and edition.method.content_hash != edition.manifest.method_hash:
+        gone = say("its method has options that there are no longer")
+        message = say("it was made by other code: {}", gone)
+        return Counts(), [Finding(name, "differs", METHOD, message)]
+    height = edition.register.height
+    try:
+        again = made_again(store, edition)
+        inputs = [f for table in INPUT_TABLES for f in _inputs(edition, again, table)]
+        lines = list(_lines(edition, again))
+        others = [] if inputs or lines else [*_tables(edition, again), *_files(store, edition)]
+    except CANNOT as error:
+        return Counts(height, 0, 0), [_not_made(name, error)]
+    return Counts(height, height, height - len(lines)), [*inputs, *lines, *others]
+
+
+def _not_made(name: str, error: Exception) -> Finding:
+    reason = str(error).splitlines()[0]
+    return Finding(name, "unchecked", "register", say("it cannot be made again: {}", reason))
+
+
+def _inputs(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
+    """Tows and runs of which the lists say something else now."""
+    if table not in edition.tables:
+        return
+    was, now = edition.tables[table], again.tables[table]
+    facts = [
+        name
+        for name in was.columns
+        if name in now.columns and name not in NOT_INPUT and not name.endswith("_sha256")
+    ]
+    key = TABLES[table].primary_key()
+    for one, other, unequal in _differences(was.select(facts), now.select(facts), key):
+        row = one or other or {}
+        name = "tow " + ", run ".join(str(row[k]) for k in key)
+        if other is None:
+            message = say("{} is no longer in the warehouse", name)
+            yield Finding(edition.manifest.edition, "missing", name, message)
+            continue
+        for fact in unequal:
+            message = say("{}: {} is {}; it was {}", name, fact, other[fact], row[fact])
+            yield Finding(edition.manifest.edition, "swapped", name, message)
+
+
+def _lines(edition: Edition, again: Edition) -> Iterator[Finding]:
+    """Lines of the register that come out otherwise."""
+    why = say("either the code changed since, or the edition did")
+    if "tows" in edition.tables:
+        same = same_tows(edition.tables, again.tables)
+        if len(same) < edition.tables["tows"].height:
+            why = say("tows that went into it changed")
+    for one, other, unequal in _differences(edition.register, again.register, LINE):
+        if one is None:
+            message = say("made again, there is a line that the edition has not: {}", why)
+        else:
+            now = other or {}
+            what = ", ".join(f"{n} {_text(one.get(n))} > {_text(now.get(n))}" for n in unequal)
+            message = say("made again, {}: {}", what, why)
+        row = one or other or {}
+        where = f"{row['fsn_no']} {row['rowers']}{row['crew_class']}"
+        yield Finding(edition.manifest.edition, "differs", where, message)
+
+
+def _tables(edition: Edition, again: Edition) -> Iterator[Finding]:
+    """The tables behind the lines, where they come out otherwise though the lines do not."""
+    for table in sorted(again.tables):
+        yield from _table(edition, table, again.tables[table])
+
+
+def _table(edition: Edition, table: str, now: pl.DataFrame) -> Iterator[Finding]:
+    was = edition.tables.get(table, now.clear())
+    key = TABLES[table].primary_key()
+    unequal = {name for *_, names in _differences(was, now, key) for name in names}
+    if unequal:
+        message = say("made again, it comes out otherwise in {}", ", ".join(sorted(unequal)))
+        yield Finding(edition.manifest.edition, "differs", table + PARQUET, message)
+
+
+def _files(store: Store, edition: Edition) -> Iterator[Finding]:
+    """Sheets, texts and lists that do not say what the tables of the edition say."""
+    manifest, path = edition.manifest, edition_path(store, edition.manifest.edition)
+    bare = {name: frame for name, frame in edition.tables.items() if name != CHANGES}
+    files = _made_from(sheets.read_inputs(path), bare.get("tows"))
+    expected = contents_of(store, Edition(manifest, bare, edition.method), files)
+    if CHANGES + PARQUET in expected:
+        yield from _table(edition, CHANGES, pl.read_parquet(expected[CHANGES + PARQUET]))
+    for file in sorted({*expected, *manifest.files} - {MANIFEST}):
+        if file.endswith(PARQUET):
+            continue
+        found = (path / file).read_bytes() if (path / file).exists() else b""
+        for where, said in _unlike(file, expected.get(file, b""), found):
+            yield Finding(manifest.edition, "differs", where, said)
+
+
+def _made_from(stated: list[tuple[str, str, str]], tows: pl.DataFrame | None) -> pl.DataFrame:
+    """What the edition was made from, by its tows; lists as stated: `verify` looks at them."""
+    schema = dict.fromkeys(("path", "kind", "sha256"), pl.String())
+    files = pl.DataFrame(stated, schema, orient="row").select("path", "sha256", "kind")
+    return files if tows is None else input_files(tows, files.filter(pl.col("kind") != SAMPLES))
+
+
+def _unlike(file: str, was: bytes, now: bytes) -> list[tuple[str, str]]:
+    """Where a file says something else than it should: of a sheet the cells."""
+    if was == now:
+        return []
+    read = {".csv": sheets.read_csv_cells, ".xlsx": sheets.read_xlsx_cells}.get(Path(file).suffix)
+    if read is None or not was or not now:
+        return [(file, say("{} does not say what the tables of the edition say", file))]
+    one, other = read(was), read(now)
+    if one == other and file == XLSX:  # packed by another version of its library
+        return []
+    if one == other:
+        return [(file, say("{} does not say what the tables of the edition say", file))]
+    places = [place for place in one.keys() | other.keys() if one.get(place) != other.get(place)]
+    named: list[tuple[str, str]] = [
+        (
+            f"{file}, cell {place}",
+            say("it says {!r}; it was {!r}", other.get(place, ""), one.get(place, "")),
+        )
+        for place in sorted(places)[:MOST_CELLS]
+    ]
+    more = len(places) - len(named)
+    return [*named, (file, say("and {} more places differ", more))] if more else named
+
+
+def _differences(
+    was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]
+) -> Iterator[tuple[Row | None, Row | None, list[str]]]:
+    """Rows that differ, as they were and are, and in which columns; None where there is none.
+
+    Numbers are the same up to `SAME_NUMBER` of the largest of their column.
+    """
+    names = list(dict.fromkeys([*was.columns, *now.columns]))
+    limits = {c.name: SAME_NUMBER * _largest(c) for c in was if c.dtype.is_float()}
+    before, after = (_by_key(frame, key) for frame in (was, now))
+    for place in before | after:
+        one, other = before.get(place), after.get(place)
+        unequal = [
+            name
+            for name in names
+            if not _same((one or {}).get(name), (other or {}).get(name), limits.get(name, 0.0))
+        ]
+        if unequal:
+            yield one, other, unequal
+
+
+def _by_key(frame: pl.DataFrame, key: Sequence[str]) -> dict[tuple[object, ...], Row]:
+    """Rows by their key; one that is there twice stands beside the first."""
+    count = pl.int_range(pl.len()).over(key)
+    places = frame.select(*key, count.alias("count")).rows()
+    return dict(zip(places, frame.iter_rows(named=True), strict=True))
+
+
+def _largest(numbers: pl.Series) -> float:
+    largest = numbers.abs().max()
+    return largest if isinstance(largest, float) else 0.0
+
+
+def _same(was: object, now: object, limit: float) -> bool:
+    if isinstance(was, float) and isinstance(now, float):
+        return abs(now - was) <= limit
+    return was == now
+
+
+def _text(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value or "nothing")
