@@ -161,7 +161,6 @@ COMMAND: Final[dict[str, str]] = {
         "Beoordeel op deze dag, alsof van later niets bekend is; anders op de dag van de "
         "laatste proef of wedstrijd van het archief."
     ),
-    "Write what is proposed to archief.toml.": "Schrijf het voorstel naar archief.toml.",
     "Folder to make.": "Map die gemaakt wordt.",
     "Method to add to those of the data folder, or to renew; repeat for more. A file is kept "
     "there. Default: those that beheer.toml lists, or all that ship.": (

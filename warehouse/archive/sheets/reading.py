@@ -35,6 +35,7 @@ from warehouse.archive.spelling.synonyms import CLASSES, NOTHING
 from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.wording import Wording
 
+CREW: Final = ("rowers", "crew_class")
 _CREW: Final = re.compile(r"([0-9]{1,2})\s*([^\W\d_]+)")
 """Rowers and class in one cell: `8H`."""
 
@@ -147,9 +148,11 @@ def _columns_of(sheet: Sheet, wanted: Sequence[Column], wording: Wording) -> dic
     if strange:
         free = [column for column in wanted if column.key not in places]
         raise DefectiveInputError("unknown_column", about_unknown(strange, free), sheet.line)
-    if "rowers" in places and _has_crews(sheet, places["rowers"].index):
-        wanted = [c if c.key != "crew_class" else replace(c, required=False) for c in wanted]
-    return find_columns(sheet.header, wanted, sheet.line)
+    of_both = [places[k] for k in CREW if k in places and _has_crews(sheet, places[k].index)]
+    if not of_both:
+        return find_columns(sheet.header, wanted, sheet.line)
+    wanted = [replace(c, required=False) if c.key in CREW else c for c in wanted]
+    return dict.fromkeys(CREW, of_both[0]) | find_columns(sheet.header, wanted, sheet.line)
 
 
 def _has_crews(sheet: Sheet, place: int) -> bool:
@@ -182,12 +185,13 @@ def _cells(fields: Sequence[str], reading: Reading) -> dict[str, str]:
 
 def _crew_apart(cells: Mapping[str, str]) -> dict[str, str]:
     """Rowers and class of a cell with both, where the class is empty or the same."""
-    crew = _crew_in(cells.get("rowers", ""))
+    rowers, crew_class = (cells.get(key, "") for key in CREW)
+    crew = _crew_in(rowers)
     if crew is None:
         return {}
-    said = fold_word(cells.get("crew_class", ""))
-    is_its_own = not said or CLASSES.get(said) == CLASSES[fold_word(crew[1])]
-    return dict(zip(("rowers", "crew_class"), crew, strict=True)) if is_its_own else {}
+    said = CLASSES.get(fold_word(crew_class))
+    is_its_own = crew_class in {"", rowers} or said == CLASSES[fold_word(crew[1])]
+    return dict(zip(CREW, crew, strict=True)) if is_its_own else {}
 
 
 def _meant(cell: str, words: Mapping[str, str]) -> str:
