@@ -466,7 +466,6 @@ COMMAND: Final[dict[str, str]] = {
     "race": "wedstrijd",
     "raced": "geroeid",
     "reason": "reden",
-    "sd apart": "sd verschil",
     "season": "seizoen",
     "seasons": "seizoenen",
     "seconds": "seconden",
