@@ -194,6 +194,24 @@ def force_with_a_minus(archive: Archive) -> None:
         archive.cells(4, lambda cell, _: f"-{cell}".replace("--", ""), 2, lines, name)
 
 
+def headers_over_three_lines(archive: Archive) -> None:
+    """Two rows of names and one of units, where only a person sees which lines these are."""
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        names = "vaart;snelheid;snelheid;snelheid;trek;wind;wind\nnr;BB;SB;gps;lijn;;hoek"
+        above = f"Meting van zaterdag\n{names}\n-;m/s;m/s;m/s;N;m/s;graden"
+        archive.replace(path.relative_to(archive.root).as_posix(), HEADER, above)
+    header = "Nr;HT;Naam;Type;Lengte;Breedte;Hoogte;Gewicht;Ploeg;\nFSN;;;;lijn;;;leeg;aantal;h/d"
+    units = ";;;;m;m;m;kg;;"
+    archive.edit(BOATS, lambda t: "\n".join(["Onze sloepen", header, units, *t.split("\n")[1:]]))
+
+
+def boats_by_name(archive: Archive) -> None:
+    """No numbers of boats in the tow list, and one name that is spelled in another way."""
+    archive.edit(TOWS, lambda t: t.replace(";fsn_nr;", ";Sloep;"))
+    for number, name in (("1", "Eerste Boot"), ("2", "de 2e boot"), ("3", "derde-boot")):
+        archive.replace(TOWS, f";FSN{number};", f";{name};")
+
+
 def runs_of_another_name(archive: Archive) -> None:
     for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
         archive.replace(path.relative_to(archive.root).as_posix(), "run;", "rondje;")
@@ -225,6 +243,21 @@ OF_2014 = '[[profile]]\nseasons = "2014"\n'
 CHANNELS = f'{OF_2014}columns = {{ log1 = "SB", log2 = "BB", force = "Dynamometer" }}\n'
 SETTLED = {
     force_with_a_minus: f'{OF_2014}reversed = ["force"]\n',
+    headers_over_three_lines: f"""[header_lines]
+        "{BOATS}" = "2:4"
+        [headers]
+        "Nr FSN" = "fsn_nr"
+        "Lengte lijn" = "lengte"
+        "Ploeg aantal" = "roeiers"
+        "Ploeg h/d" = "klasse"
+        [[profile]]
+        seasons = "2014"
+        header_lines = "2:4"
+        columns.log1 = "snelheid BB"
+        columns.log2 = "snelheid SB"
+        columns.force = "trek lijn"
+        """,
+    boats_by_name: '[words]\n"de 2e boot" = "tweede boot"\n',
     runs_of_another_name: f'{OF_2014}columns.run = "rondje"\n',
     times_of_another_name: f'{OF_2014}columns.time = "Tid"\n',
     other_names: """[files]
@@ -630,3 +663,24 @@ def test_a_profile_that_is_no_file_is_not_taken_for_none(tmp_path, put):
     put(tmp_path / "archief.toml")
     with pytest.raises(MissingKnowledgeError, match="is no file"):
         read_profiles(tmp_path)
+
+
+def test_a_boat_that_no_list_has_is_asked_with_the_nearest_names(archive: Archive) -> None:
+    boats_by_name(archive)
+    (cause,) = check_archive(archive.root).causes
+    assert cause.reason_code == "unknown_boat"
+    assert cause.settings == ('[words] "de 2e boot" = "?"  # derde boot, tweede boot, eerste boot',)
+
+
+@pytest.mark.parametrize("lines", ['"0:2"', '"a"', "3", '"1:2:3"'])
+def test_header_lines_are_lines(lines: str) -> None:
+    with pytest.raises(MissingKnowledgeError, match="header_lines"):
+        parse_profiles(f'[header_lines]\n"a.csv" = {lines}\n')
+
+
+def test_a_header_below_the_end_of_a_file_is_a_fault(archive: Archive) -> None:
+    (archive.root / "archief.toml").write_text(
+        f'[header_lines]\n"{TOWS}" = "40:41"\n[[profile]]\nseasons = "2014"\nheader_lines = "99"\n'
+    )
+    (fault,) = [fault for fault in archive.scan().faults if fault.path == TOWS]
+    assert fault.reason_code == "missing_column"

@@ -20,7 +20,9 @@ Values = Mapping[str, Any]
 """What is filled in in the sentence of a fault."""
 
 _SAMPLES: Final = {column.key: column for column in SAMPLE_COLUMNS}
-_STANDS_FOR: Final = ", ".join([*(kind.name for kind in LIST_KINDS), SAMPLES])
+_STANDS_FOR: Final = ", ".join(
+    f"{name}_<jaar>" for name in (SAMPLES, *(k.name for k in LIST_KINDS))
+)
 _LONGEST_WORD: Final = 30
 """A cell longer than that is no word that stands for something."""
 
@@ -44,23 +46,32 @@ def _quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False)
 
 
-def _of_headers(_: str, values: Values, in_profile: str) -> Iterator[str]:
+def _in_lines(path: str, in_profile: str = "") -> str:
+    """Which lines a header takes."""
+    key = f"{in_profile}header_lines" if in_profile else f"[header_lines] {_quoted(path)}"
+    return f'{key} = "?"  # its first and last line, such as 3:5'
+
+
+def _of_headers(path: str, values: Values, in_profile: str) -> Iterator[str]:
     for header, near in values.get("near", ()):
         ignored = f"ignore = [{_quoted(header)}]"
         yield f'[headers] {_quoted(header)} = "?"  # {", ".join([*near, ignored])}'
+    if "number" in values:
+        yield _in_lines(path)
     if "name" in values and in_profile:
         ignored = f"ignore = [{_quoted(values['name'])}]"
         yield f"{in_profile}columns.gps = {_quoted(_without_unit(values['name']))}  # {ignored}"
 
 
-def _of_samples(_: str, values: Values, in_profile: str) -> Iterator[str]:
-    """The columns that a samples file lacks, each with the headers whose unit does not forbid it.
+def _of_samples(path: str, values: Values, in_profile: str) -> Iterator[str]:
+    """The columns that a file lacks; of samples with the headers whose unit does not forbid it.
 
     What a season can go without may be declared absent.
     """
     header = values.get("header", ())
     keys = ("run", "time") if values.get("keys") == ("run",) else values.get("keys", ())
     if not in_profile:
+        yield _in_lines(path)
         return
     for key in keys:
         can_be = [_quoted(_without_unit(cell)) for cell in header if _may_be(cell, key)]
@@ -90,6 +101,14 @@ def _of_value(_: str, values: Values, __: str) -> Iterator[str]:
         yield f'[words] {_quoted(fold_word(cell))} = "?"  # {choices}'
 
 
+def _of_boat(_: str, values: Values, __: str) -> Iterator[str]:
+    """A boat under a name, or a spelling of it, that the boat list does not have."""
+    near = values.get("near_boats", [])
+    if not values["boat"].isdigit():
+        line = f'[words] {_quoted(fold_word(values["boat"]))} = "?"  # {", ".join(near)}'
+        yield line.removesuffix("  # ")
+
+
 def _has_digit(cell: str) -> bool:
     return any(map(str.isdigit, cell))
 
@@ -108,9 +127,11 @@ def _of_times(_: str, values: Values, in_profile: str) -> Iterator[str]:
         yield f"{in_profile}sample_rate_hz = {values['observed']:.0f}"
 
 
-def _of_unit(_: str, values: Values, in_profile: str) -> Iterator[str]:
+def _of_unit(path: str, values: Values, in_profile: str) -> Iterator[str]:
     for name in values.get("absent", ()) if in_profile else ():
         yield f'{in_profile}absent = ["{name}"]'
+    if "can_be" in values:
+        yield _in_lines(path, in_profile)
 
 
 def _of_sign(_: str, values: Values, in_profile: str) -> Iterator[str]:
@@ -120,8 +141,9 @@ def _of_sign(_: str, values: Values, in_profile: str) -> Iterator[str]:
 
 def _of_file(_: str, values: Values, __: str) -> Iterator[str]:
     if "path" in values:
-        path = _quoted(values["path"])
-        yield f'[files] {path} = "?"  # {_STANDS_FOR} (_<jaar>), ignore = [{path}]'
+        path, inside = _quoted(values["path"]), map(_quoted, values.get("inside", ()))
+        choices = ", ".join([_STANDS_FOR, f"ignore = [{path}]", *inside])
+        yield f'[files] {path} = "?"  # {choices}'
 
 
 _RULES: Final = {
@@ -133,6 +155,7 @@ _RULES: Final = {
     "short_run": _of_times,
     "unknown_unit": _of_unit,
     "negative_force": _of_sign,
+    "unknown_boat": _of_boat,
     "unrecognised_file": _of_file,
     **dict.fromkeys(
         ("bad_list_row", "bad_boat_row", "bad_race_row", "bad_register_row"), _of_value

@@ -54,13 +54,13 @@ def strangers(root: Path, profiles: Profiles) -> list[Fault]:
         for path in list_misnamed(root)
     ]
     return misnamed + [
-        Fault(path, None, None, "unrecognised_file", _about_stranger(path))
+        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
         for path in list_strangers(root, profiles.wording.files)
         if fold(path) not in profiles.wording.ignore
     ]
 
 
-def _about_stranger(path: str) -> str:
+def _about_stranger(root: Path, path: str) -> str:
     """The sentence about what is not read."""
     kind = Path(path)
     if kind.suffix.lower() in PACKED:
@@ -72,4 +72,11 @@ def _about_stranger(path: str) -> str:
         "'{path}' is not read: it has another name than the archive's files. Say what it is under "
         "[files] in archief.toml, or put it under ignore.",
         path=path,
+        inside=_lists_inside(root, path),
     )
+
+
+def _lists_inside(root: Path, path: str) -> list[str]:
+    """The first files in a folder, each of which can be a list."""
+    inner = sorted(file for file in (root / path).rglob("*") if not file.is_dir())
+    return [file.relative_to(root).as_posix() for file in inner[:3]]

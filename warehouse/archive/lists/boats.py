@@ -1,5 +1,6 @@
 """The boats of the archive: `sloependata.csv`, or several lists of boats."""
 
+import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +18,7 @@ from warehouse.archive.files.list_kinds import BOATS
 from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.sheets.row import ListRow, others_of
 from warehouse.archive.spelling.synonyms import NO_TYPE
-from warehouse.archive.spelling.text import fold_word
+from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.wording import Wording
 
 OF_THE_BOAT: Final = (
@@ -52,11 +53,24 @@ class Boats:
         return frame_of(ListedBoats, rows).unique(maintain_order=True)
 
     def find(self, fsn_no: str) -> Row | None:
-        """A boat by its number; leading zeros do not matter where that leaves one boat."""
+        """A boat by its number or a name; leading zeros do not matter where one boat is left."""
         if fsn_no in self.good:
             return self.good[fsn_no]
-        alike = [b for number, b in self.good.items() if _bare(number) == _bare(fsn_no)]
-        return alike[0] if len(alike) == 1 else None
+        numbers = [number for number in self.good if _bare(number) == _bare(fsn_no)]
+        alike = numbers or [n for n, names in self._names().items() if fold(fsn_no) in names]
+        return self.good[alike[0]] if len(alike) == 1 else None
+
+    def nearest(self, name: str) -> list[str]:
+        """Names of boats that are like a name, the nearest first."""
+        written = {fold(boat["name"]): boat["name"] for boat in self.crews}
+        return [written[near] for near in difflib.get_close_matches(fold(name), written)]
+
+    def _names(self) -> Mapping[str, set[str]]:
+        """The names that each boat has had, folded, by its number."""
+        names: dict[str, set[str]] = {}
+        for boat in self.crews:
+            names.setdefault(boat["fsn_no"], set()).add(fold(boat["name"]))
+        return names
 
 
 def _bare(fsn_no: str) -> str:

@@ -79,7 +79,7 @@ def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[L
     wanted = wording.with_names(kind.columns)
     file, sheet = split_sheet(path)
     suffix = file[file.rfind(".") :].casefold()
-    sheets = read_sheets(data, wanted, suffix, sheet)
+    sheets = read_sheets(data, wanted, suffix, sheet, wording.header_lines.get(path))
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
     told = wording.decimals.get(path, wording.decimals.get("*", ""))
@@ -148,11 +148,11 @@ def _columns_of(sheet: Sheet, wanted: Sequence[Column], wording: Wording) -> dic
     if strange:
         free = [column for column in wanted if column.key not in places]
         raise DefectiveInputError("unknown_column", about_unknown(strange, free), sheet.line)
+    serving = {c.key: places[c.or_else] for c in wanted if c.or_else in places}
     of_both = [places[k] for k in CREW if k in places and _has_crews(sheet, places[k].index)]
-    if not of_both:
-        return find_columns(sheet.header, wanted, sheet.line)
-    wanted = [replace(c, required=False) if c.key in CREW else c for c in wanted]
-    return dict.fromkeys(CREW, of_both[0]) | find_columns(sheet.header, wanted, sheet.line)
+    serving |= dict.fromkeys(CREW, of_both[0]) if of_both else {}
+    wanted = [replace(c, required=c.required and c.key not in serving) for c in wanted]
+    return serving | find_columns(sheet.header, wanted, sheet.line)
 
 
 def _has_crews(sheet: Sheet, place: int) -> bool:

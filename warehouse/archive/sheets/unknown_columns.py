@@ -34,7 +34,7 @@ def about_unknown(unknown: Iterable[str], free: Sequence[Column]) -> str:
         unknown: their headers.
         free: the columns that no header has; of each, those with the nearest names are offered.
     """
-    near = {header: [c.header for c in nearest_columns(header, free)] for header in unknown}
+    near = {header: [c.header for c in nearest_columns(header, free, 0.7)] for header in unknown}
     return say(
         "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or put "
         "it there under ignore.",
