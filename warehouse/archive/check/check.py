@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from pipeline.messages import innermost
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedTows
-from pipeline.words import innermost
 from warehouse.archive.check.headers_and_samples import faults_in_headers, faults_in_samples
 from warehouse.archive.check.settings import settings_for
 from warehouse.archive.faults import OF_A_HEADER, Fault

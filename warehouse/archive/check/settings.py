@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from pipeline.words import Sentence, innermost
+from pipeline.messages import Sentence, innermost
 from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import LIST_KINDS
 from warehouse.archive.files.names import SAMPLES
@@ -49,7 +49,7 @@ def _quoted(text: str) -> str:
 def _in_lines(path: str, in_profile: str = "") -> str:
     """Which lines a header takes."""
     key = f"{in_profile}header_lines" if in_profile else f"[header_lines] {_quoted(path)}"
-    return f'{key} = "?"  # its first and last line, such as 3:5'
+    return f'{key} = "?"  # 1:3, 3:5'
 
 
 def _of_headers(path: str, values: Values, in_profile: str) -> Iterator[str]:
@@ -97,7 +97,7 @@ def _of_value(_: str, values: Values, __: str) -> Iterator[str]:
     """A word where a number, a class or a choice belongs."""
     cell = values.get("cell")
     if isinstance(cell, str) and 0 < len(cell) <= _LONGEST_WORD and not _has_digit(cell):
-        choices = values.get("choices", '"" is nothing')
+        choices = values.get("choices", '""')
         yield f'[words] {_quoted(fold_word(cell))} = "?"  # {choices}'
 
 
