@@ -5,7 +5,7 @@ each season whole.
 """
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -25,6 +25,8 @@ from warehouse.archive.lists.registers import read_published_registers
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
 
+MOST_SETTINGS: Final = 20
+"""Lines to fill in for one cause."""
 _PIECE: Final = 1 << 16
 
 
@@ -75,7 +77,8 @@ def check_archive(root: Path) -> Checked:
         index, again = _faults(root, profiles.ignoring(unknown))
         faults += (f for f in again if f.reason_code not in OF_A_HEADER or f.path not in told)
     seasons = _seasons(root, profiles, index)
-    return Checked(tows, _by_cause(dict.fromkeys(faults), seasons))
+    boats = index.boats["name"].to_list() if index else []
+    return Checked(tows, _by_cause(dict.fromkeys(faults), seasons, boats))
 
 
 def _unknown_columns(faults: Iterable[Fault]) -> list[str]:
@@ -129,22 +132,29 @@ def quick_hash(path: Path) -> str:
         return hashlib.sha256(start + file.read(_PIECE) + str(size).encode()).hexdigest()
 
 
-def _by_cause(faults: Iterable[Fault], seasons: Mapping[str, int]) -> tuple[Cause, ...]:
+def _by_cause(
+    faults: Iterable[Fault], seasons: Mapping[str, int], boats: Sequence[str]
+) -> tuple[Cause, ...]:
     """The faults by cause, those with most first."""
     by_cause: dict[tuple[str, str], list[Fault]] = {}
     for fault in faults:
         by_cause.setdefault((fault.reason_code, fault.cause), []).append(fault)
     causes = [
-        Cause(code, tuple(same), _settings(same, seasons)) for (code, _), same in by_cause.items()
+        Cause(code, tuple(same), _settings(same, seasons, boats))
+        for (code, _), same in by_cause.items()
     ]
     return tuple(sorted(causes, key=lambda cause: -len(cause.faults)))
 
 
-def _settings(faults: Iterable[Fault], seasons: Mapping[str, int]) -> tuple[str, ...]:
-    """The lines that settle faults of one cause, each once."""
-    lines = (
-        line
-        for fault in faults
-        for line in settings_for(fault, seasons.get(fault.path.split(PARTS)[0], 0))
-    )
-    return tuple(dict.fromkeys(lines))
+def _settings(
+    faults: Iterable[Fault], seasons: Mapping[str, int], boats: Sequence[str]
+) -> tuple[str, ...]:
+    """The first lines that settle faults of one cause, each once."""
+    said = {(fault.path, innermost(fault.message)): fault for fault in faults}
+    settings: dict[str, None] = {}
+    for fault in said.values():
+        season = seasons.get(fault.path.split(PARTS)[0], 0)
+        settings |= dict.fromkeys(settings_for(fault, season, boats))
+        if len(settings) >= MOST_SETTINGS:
+            break
+    return tuple(settings)

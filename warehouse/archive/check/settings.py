@@ -3,8 +3,9 @@
 Only a person knows what a column of another name holds: the nearest names stand behind a `#`.
 """
 
+import difflib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from pipeline.messages import Sentence, innermost
@@ -12,6 +13,7 @@ from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import LIST_KINDS
 from warehouse.archive.files.names import SAMPLES
 from warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS
+from warehouse.archive.sheets.row import BOAT_NUMBER
 from warehouse.archive.spelling.headers import split_header
 from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.units import find_scale
@@ -27,14 +29,17 @@ _LONGEST_WORD: Final = 30
 """A cell longer than that is no word that stands for something."""
 
 
-def settings_for(fault: Fault, season: int) -> tuple[str, ...]:
+def settings_for(fault: Fault, season: int, boats: Iterable[str]) -> tuple[str, ...]:
     """The lines to fill in; none where `archief.toml` cannot settle it.
 
     Args:
         fault: what is wrong.
         season: of the samples file that it is in; 0 where that is not known, and for a list.
+        boats: the names of the boats that are listed.
     """
     what = innermost(fault.message)
+    if fault.reason_code == "unknown_boat" and isinstance(what, Sentence):
+        return tuple(_of_boat(what.values["boat"], boats))
     rule = _RULES.get(fault.reason_code)
     if rule is None or not isinstance(what, Sentence):
         return ()
@@ -101,12 +106,12 @@ def _of_value(_: str, values: Values, __: str) -> Iterator[str]:
         yield f'[words] {_quoted(fold_word(cell))} = "?"  # {choices}'
 
 
-def _of_boat(_: str, values: Values, __: str) -> Iterator[str]:
-    """A boat under a name, or a spelling of it, that the boat list does not have."""
-    near = values.get("near_boats", [])
-    if not values["boat"].isdigit():
-        line = f'[words] {_quoted(fold_word(values["boat"]))} = "?"  # {", ".join(near)}'
-        yield line.removesuffix("  # ")
+def _of_boat(boat: str, boats: Iterable[str]) -> Iterator[str]:
+    """A boat under a name, or a spelling of it, that no boat list has."""
+    if BOAT_NUMBER.fullmatch(boat) is None:
+        written = {fold(name): name for name in boats}
+        near = [written[name] for name in difflib.get_close_matches(fold(boat), written)]
+        yield f'[words] {_quoted(fold_word(boat))} = "?"  # {", ".join(near)}'.removesuffix("  # ")
 
 
 def _has_digit(cell: str) -> bool:
@@ -155,7 +160,6 @@ _RULES: Final = {
     "short_run": _of_times,
     "unknown_unit": _of_unit,
     "negative_force": _of_sign,
-    "unknown_boat": _of_boat,
     "unrecognised_file": _of_file,
     **dict.fromkeys(
         ("bad_list_row", "bad_boat_row", "bad_race_row", "bad_register_row"), _of_value

@@ -181,8 +181,7 @@ def join_boat(entry: Entry, boats: Boats) -> None:
         )
         raise entry.row.fault(message, why.reason_code)
     if boat is None:
-        cell, near = entry.row.text("fsn_no"), boats.nearest(fsn_no)
-        message = say("boat {boat} is not in the boat list.", boat=shorten(cell), near_boats=near)
+        message = say("boat {boat} is not in the boat list.", boat=shorten(fsn_no))
         raise entry.row.fault(message, "unknown_boat")
     apart = tow_list.unlike_boat(entry.tow, boat, entry.row)
     weight = [apart.pop(key) for key in ("weight_kg",) if key in apart]

@@ -1,8 +1,8 @@
 """The boats of the archive: `sloependata.csv`, or several lists of boats."""
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Final
 
@@ -57,20 +57,16 @@ class Boats:
         if fsn_no in self.good:
             return self.good[fsn_no]
         numbers = [number for number in self.good if _bare(number) == _bare(fsn_no)]
-        alike = numbers or [n for n, names in self._names().items() if fold(fsn_no) in names]
+        alike = numbers or sorted(self._by_name.get(fold(fsn_no), ()))
         return self.good[alike[0]] if len(alike) == 1 else None
 
-    def nearest(self, name: str) -> list[str]:
-        """Names of boats that are like a name, the nearest first."""
-        written = {fold(boat["name"]): boat["name"] for boat in self.crews}
-        return [written[near] for near in difflib.get_close_matches(fold(name), written)]
-
-    def _names(self) -> Mapping[str, set[str]]:
-        """The names that each boat has had, folded, by its number."""
-        names: dict[str, set[str]] = {}
+    @cached_property
+    def _by_name(self) -> Mapping[str, set[str]]:
+        """The numbers of the boats that have or had a name, by that name folded."""
+        boats: dict[str, set[str]] = {}
         for boat in self.crews:
-            names.setdefault(boat["fsn_no"], set()).add(fold(boat["name"]))
-        return names
+            boats.setdefault(fold(boat["name"]), set()).add(boat["fsn_no"])
+        return boats
 
 
 def _bare(fsn_no: str) -> str:
