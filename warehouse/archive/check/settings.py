@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from pipeline.messages import Sentence, innermost
 from warehouse.archive.faults import Fault
-from warehouse.archive.files.list_kinds import LIST_KINDS
+from warehouse.archive.files.list_kinds import BOATS, LIST_KINDS
 from warehouse.archive.files.names import SAMPLES
 from warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS
 from warehouse.archive.sheets.row import BOAT_NUMBER
@@ -23,7 +23,7 @@ Values = Mapping[str, Any]
 
 _SAMPLES: Final = {column.key: column for column in SAMPLE_COLUMNS}
 _STANDS_FOR: Final = ", ".join(
-    f"{name}_<jaar>" for name in (SAMPLES, *(k.name for k in LIST_KINDS))
+    [BOATS.name, *(f"{kind.name}_<jaar>" for kind in LIST_KINDS if kind != BOATS), SAMPLES]
 )
 _LONGEST_WORD: Final = 30
 """A cell longer than that is no word that stands for something."""
