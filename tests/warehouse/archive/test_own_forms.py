@@ -216,11 +216,6 @@ def days_with_slashes(archive: Archive) -> None:
     archive.replace(TOWS, "2014-03-03", "3/3/2014")
 
 
-def runs_of_another_name(archive: Archive) -> None:
-    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
-        archive.replace(path.relative_to(archive.root).as_posix(), "run;", "rondje;")
-
-
 def times_of_another_name(archive: Archive) -> None:
     """No column of runs, and only the name of the time is unknown."""
     for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
@@ -263,7 +258,6 @@ SETTLED = {
         """,
     days_with_slashes: f'[dates]\n"{TOWS}" = "dmy"\n',
     boats_by_name: '[words]\n"de 2e boot" = "tweede boot"\n',
-    runs_of_another_name: f'{OF_2014}columns.run = "rondje"\n',
     times_of_another_name: f'{OF_2014}columns.time = "Tid"\n',
     other_names: """[files]
         "Onze boten.csv" = "sloependata"
