@@ -83,20 +83,11 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     lines = (
         changes.join(side_by_side(old.register, new.register), on=LINE, maintain_order="left")
         .join(names.unique(LINE, keep="first"), on=LINE, how="left", maintain_order="left")
-        .join(
-            old.register.select(*LINE, old_status="status"),
-            on=LINE,
-            how="left",
-            maintain_order="left",
-        )
-        .join(
-            new.register.select(*LINE, new_status="status"),
-            on=LINE,
-            how="left",
-            maintain_order="left",
-        )
         .sort(LINE)
     )
+    for side, edition in (("old", old), ("new", new)):
+        status = edition.register.select(*LINE, pl.col("status").alias(f"{side}_status"))
+        lines = lines.join(status, on=LINE, how="left", maintain_order="left")
     return Comparison(old, new, lines)
 
 

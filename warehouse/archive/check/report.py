@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from pipeline.words import innermost, spoken
+from pipeline.messages import innermost, spoken
 from warehouse.archive.check.check import Cause, Checked
 
 SHOWN: Final = 3

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Sequence
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.sheets.sheet import Sheet
 from warehouse.archive.spelling.columns import Column, nearest_columns
 from warehouse.archive.spelling.synonyms import NOTHING
