@@ -308,8 +308,6 @@ def report(comparison: Comparison) -> DiffReport:
     moved = compared.filter(pl.col("change") == "changed")
     gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
     loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
-    size = pl.col("cw_ratio").log().abs()
-    by_size = moved.sort(size, "fsn_no", descending=[True, False])
     editions = (comparison.old, comparison.new)
     return DiffReport(
         from_edition=comparison.old.manifest.edition,
@@ -326,8 +324,8 @@ def report(comparison: Comparison) -> DiffReport:
             for edition in editions
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
-        causes=_causes(compared),
-        largest=_rows(by_size.head(LARGEST)),
+        causes=causes_of(compared),
+        largest=_rows(largest_first(moved).head(LARGEST)),
         rows=_rows(lines),
     )
 
@@ -367,8 +365,13 @@ def _median(values: pl.Series) -> float | None:
     return median if isinstance(median, float) else None
 
 
-def _causes(lines: pl.DataFrame) -> list[CauseSummary]:
-    """Per cause and step: the lines it moved, and its factors there."""
+def largest_first(moved: pl.DataFrame) -> pl.DataFrame:
+    """Lines that changed, by the size of the change, whatever its sign."""
+    return moved.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
+
+
+def causes_of(lines: pl.DataFrame) -> list[CauseSummary]:
+    """Per cause and step, the most lines first: the lines it moved, and its factors there."""
     moved = [
         {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
         for text in lines["causes"]
