@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Final
 
@@ -17,7 +18,7 @@ from warehouse.archive.files.list_kinds import BOATS
 from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.sheets.row import ListRow, others_of
 from warehouse.archive.spelling.synonyms import NO_TYPE
-from warehouse.archive.spelling.text import fold_word
+from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.wording import Wording
 
 OF_THE_BOAT: Final = (
@@ -52,11 +53,20 @@ class Boats:
         return frame_of(ListedBoats, rows).unique(maintain_order=True)
 
     def find(self, fsn_no: str) -> Row | None:
-        """A boat by its number; leading zeros do not matter where that leaves one boat."""
+        """A boat by its number or a name; leading zeros do not matter where one boat is left."""
         if fsn_no in self.good:
             return self.good[fsn_no]
-        alike = [b for number, b in self.good.items() if _bare(number) == _bare(fsn_no)]
-        return alike[0] if len(alike) == 1 else None
+        numbers = [number for number in self.good if _bare(number) == _bare(fsn_no)]
+        alike = numbers or sorted(self._by_name.get(fold(fsn_no), ()))
+        return self.good[alike[0]] if len(alike) == 1 else None
+
+    @cached_property
+    def _by_name(self) -> Mapping[str, set[str]]:
+        """The numbers of the boats that have or had a name, by that name folded."""
+        boats: dict[str, set[str]] = {}
+        for boat in self.crews:
+            boats.setdefault(fold(boat["name"]), set()).add(boat["fsn_no"])
+        return boats
 
 
 def _bare(fsn_no: str) -> str:
