@@ -145,7 +145,7 @@ def test_methods_lists_and_shows(herijk):
 def test_a_method_is_shown_with_every_option_and_what_differs_is_marked(herijk):
     shown = " ".join(herijk("methods", "show", "corrected-2013")[1].split())
     first, *others = shown.split("Season")[1:]
-    assert "Prescribed correction (0.06 is 6 %): 0.06 *" in first
+    assert "Prescribed factor: 1.06 *" in first
     assert not any("*" in seasons for seasons in others)
     steps = Steps.model_json_schema()["$defs"].values()
     assert first.count(";") + len(steps) == sum(len(step["properties"]) for step in steps)
