@@ -233,11 +233,11 @@ ARCHIVE: Final[dict[str, str]] = {
         "Het rekenblad is uitgepakt {:.0f} MB groot; een lijst is hoogstens {:.0f} MB. Kopieer "
         "alleen de lijst naar een nieuw rekenblad."
     ),
-    "A sheet of the workbook reaches to row {} and column {}; a list has at most {} rows and {} "
-    "columns. Delete what is far below or beside the list, or copy the list alone into a new "
-    "workbook.": (
-        "Een werkblad loopt door tot rij {} en kolom {}; een lijst heeft hoogstens {} rijen en {} "
-        "kolommen. Verwijder wat ver onder of naast de lijst staat, of kopieer alleen de lijst "
+    "A sheet of the workbook reaches to row {} and column {}; a list has at most {} rows, {} "
+    "columns and {} cells. Delete what is far below or beside the list, or copy the list alone "
+    "into a new workbook.": (
+        "Een werkblad loopt door tot rij {} en kolom {}; een lijst heeft hoogstens {} rijen, {} "
+        "kolommen en {} cellen. Verwijder wat ver onder of naast de lijst staat, of kopieer alleen de lijst "
         "naar een nieuw rekenblad."
     ),
     "The file is empty.": "Het bestand is leeg.",

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Final
 
@@ -55,8 +56,16 @@ class Boats:
         """A boat by its number; leading zeros do not matter where that leaves one boat."""
         if fsn_no in self.good:
             return self.good[fsn_no]
-        alike = [b for number, b in self.good.items() if _bare(number) == _bare(fsn_no)]
+        alike = self._by_bare_number.get(_bare(fsn_no), [])
         return alike[0] if len(alike) == 1 else None
+
+    @cached_property
+    def _by_bare_number(self) -> Mapping[str, Sequence[Row]]:
+        """The good boats by their number without leading zeros."""
+        boats: dict[str, list[Row]] = {}
+        for number, boat in self.good.items():
+            boats.setdefault(_bare(number), []).append(boat)
+        return boats
 
 
 def _bare(fsn_no: str) -> str:
