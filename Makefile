@@ -5,6 +5,7 @@ PYTHON ?= python3
 BIN = .venv/bin
 READY = .venv/.ready
 DEVELOP = .venv/.ready-develop
+TEXTS = pipeline/locale/nl/LC_MESSAGES/herijk.po
 DEMO = demo
 DEMO_WORLD = --seasons 2009:2018 --tows-per-season 10 --rate 1000 --seed 1
 
@@ -13,13 +14,14 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test test-more slow lint wheel docs pictures bench growth accuracy survive fuzz clean
+.PHONY: help env demo test test-more slow texts lint wheel docs pictures bench growth accuracy survive fuzz clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
 	@echo "make test   run all tests but those below"
 	@echo "make test-more  run the tests in a browser and those that kill processes"
 	@echo "make slow   run the tests that take half a minute and more each"
+	@echo "make texts  find the texts that are said, and put those without Dutch in $(TEXTS)"
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make wheel  build the wheel and try it in a clean environment"
 	@echo "make docs   make the documents and the reference as pages, in docs/_build"
@@ -41,7 +43,7 @@ define install
     --no-deps --require-hashes --requirement $(1)
 endef
 
-$(READY): requirements-uv.lock requirements.lock pyproject.toml
+$(READY): requirements-uv.lock requirements.lock pyproject.toml hatch_build.py
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 	  echo "Herijk needs Python 3.11 or newer, and $(PYTHON) is not. Name one that is, for example: make PYTHON=python3.12 env" >&2; \
 	  exit 1; }
@@ -60,7 +62,10 @@ $(DEVELOP): $(READY) requirements-dev.lock
 	@$(call install,requirements-dev.lock)
 	@touch $(DEVELOP)
 
-demo: $(READY) $(DEMO)/archief
+$(TEXTS:.po=.mo): $(TEXTS) $(READY)
+	@$(BIN)/python hatch_build.py
+
+demo: $(READY) $(TEXTS:.po=.mo) $(DEMO)/archief
 	@$(BIN)/herijk rebuild --archive $(DEMO)/archief --data $(DEMO)/data
 	@echo
 	@echo "These were simulated boats. The archive is $(DEMO)/archief. Open the site in a browser:"
@@ -88,7 +93,12 @@ test-more: $(DEVELOP)
 slow: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -m slow
 
+texts: $(DEVELOP)
+	@$(BIN)/python -m tests.texts
+	@$(BIN)/python hatch_build.py
+
 lint: $(DEVELOP)
+	@$(BIN)/python -m tests.texts --check
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy

@@ -10,6 +10,7 @@ import dagster as dg
 
 from assets.progress import Progress
 from assets.resources import Setup
+from pipeline.messages import say
 from warehouse.derive import integrity
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.editions.verify import verify
@@ -113,7 +114,7 @@ def of_the_whole(
     setup: Setup, progress: dg.ResourceParam[Progress]
 ) -> Iterator[dg.AssetCheckResult]:
     """What all checks say of a finished database, in one step."""
-    progress.step("checking the tables")
+    progress.step(say("checking the tables"))
     for check in CHECKS:
         yield check(setup)._replace(
             asset_key=dg.AssetKey(DATABASE_TABLE), check_name=check.__name__

@@ -15,6 +15,7 @@ from assets.report import Done, Report, write_report
 from assets.settings import read_settings
 from assets.stale import Stale, look
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import say
 from warehouse.derive.mending import mending
 from warehouse.store.lock import only_writer
 from warehouse.store.machine_faults import machine_faults_explained
@@ -57,7 +58,7 @@ def rebuild(
         checks: list[dg.AssetCheckEvaluation] = []
 
         def work() -> None:
-            progress.step("looking at what the archive holds")
+            progress.step(say("looking at what the archive holds"))
             stale = look(archive, store, known, seasons)
             if stale.assets:
                 checks[:] = make_assets((archive, data), methods, seasons, progress, stale, done)

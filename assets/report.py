@@ -21,8 +21,7 @@ from dashboards.report import (
     mail,
     with_later_rebuild,
 )
-from pipeline.words import LANGUAGE
-from pipeline.words.catalogue import speaker
+from pipeline.messages import LANGUAGE, say, speaker
 from warehouse.derive.step import QUARANTINE
 from warehouse.derive.version import code_version
 from warehouse.queries.change_report import (
@@ -163,7 +162,7 @@ def tell(notifier: Notifier, report: Report) -> list[str]:
 
 def tell_failure(notifier: Notifier, failure: str) -> list[str]:
     """Says that a rebuild that nobody watched could not be done."""
-    subject = speaker("nl")("report_failed")
+    subject = speaker("nl")(say("The rebuild failed"))
     return notifier.send(Message(subject, f"{failure}\n", {"failed": failure}, _now()))
 
 

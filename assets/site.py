@@ -7,6 +7,7 @@ from assets import workers
 from assets.progress import Progress
 from assets.resources import Setup
 from assets.site_state import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
+from pipeline.messages import say
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.store.code import code_hash
 
@@ -23,7 +24,7 @@ def site(setup: Setup, progress: dg.ResourceParam[Progress]) -> dg.MaterializeRe
     """Pages people can look at, swapped in whole; pictures are drawn by who helps."""
     store = setup.store
     if is_stale := site_is_stale(store):
-        progress.step("making the site")
+        progress.step(say("making the site"))
         from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
 
         build_site(store, workers.workers(setup.dask))

@@ -1,6 +1,6 @@
 """The owner's answer in sentences: what changes for a boat, why, how certainly, what follows.
 
-The numbers come from `warehouse.queries.answers`, the texts from `pipeline.words.answers`.
+The numbers come from `warehouse.queries.answers`.
 """
 
 import json
@@ -11,13 +11,19 @@ from typing import Final
 
 from markupsafe import Markup
 
+from dashboards import labels
 from dashboards.pictures import curve_picture, waterfall_picture
 from dashboards.speech import Speech
+from pipeline.messages import say
 from pipeline.tables.row import Row
 from warehouse.queries.documents import Curve
 
 FEW: Final = 2
 """A place among fewer says nothing."""
+UNKNOWN_VERDICT: Final = say(
+    "Whether the change is larger than the uncertainty cannot be told: that of one "
+    "of the numbers is not known."
+)
 SHOWN: Final = 5e-4
 """A cause that moves Cw by less than this is 0.0 % and is summed with the others."""
 
@@ -68,29 +74,37 @@ def told(answer: Answer, speech: Speech) -> Told:
         headline=_headline(line, speech),
         sentences=list(_sentences(answer, speech)),
         waterfall=_waterfall(line, speech, title),
-        curve=curve_picture(answer.curve, line, speech, f"{speech.say('boat_curve')}: {title}"),
+        curve=curve_picture(
+            answer.curve, line, speech, f"{speech.say('Resistance curve')}: {title}"
+        ),
     )
 
 
 def crew_name(line: Row, speech: Speech) -> str:
     """How many rowers of which class: 8 rowers, women."""
-    people = speech.say(f"crew.{line['crew_class']}")
-    return speech.say("crew_of").format(rowers=line["rowers"], people=people)
+    people = speech.say(labels.crew(line["crew_class"]))
+    return speech.say("{rowers} rowers, {people}", rowers=line["rowers"], people=people)
 
 
 def _headline(line: Row, speech: Speech) -> str:
     if line["cw_kg_m"] is None:
-        return speech.say("answer_none").format(status=speech.say(f"code.{line['status']}"))
+        return speech.say(
+            "No valid number: {status}.", status=speech.say(labels.code(line["status"]))
+        )
     new = speech.number(line["cw_kg_m"], 2)
     if line["cw_ratio"] is None:
-        return speech.say("answer_number").format(new=new)
+        return speech.say("Cw is {new} kg/m.", new=new)
     ratio = line["cw_kg_m"] / line["old_cw_kg_m"]  # of the two that are shown, each at its speed
     if abs(ratio - 1) <= SHOWN:
-        return speech.say("answer_same").format(new=new)
-    key = "answer_lower" if ratio < 1 else "answer_higher"
+        return speech.say("Cw stays {new} kg/m.", new=new)
+    change = (
+        say("Cw goes from {old} to {new} kg/m: {by} % lower.")
+        if ratio < 1
+        else say("Cw goes from {old} to {new} kg/m: {by} % higher.")
+    )
     old = speech.number(line["old_cw_kg_m"], 2)
     by = speech.number(100 * abs(ratio - 1), 1)
-    return speech.say(key).format(old=old, new=new, by=by)
+    return speech.say(change, old=old, new=new, by=by)
 
 
 def _sentences(answer: Answer, speech: Speech) -> Iterator[str]:
@@ -110,11 +124,15 @@ def _change(line: Row, speech: Speech) -> Iterator[str]:
     """Compared with what, why, and what it is worth in a race."""
     if line["cw_ratio"] is None:
         return
-    yield speech.say("answer_compared").format(
-        new=speech.edition(line["edition"]), old=speech.edition(line["from_edition"])
+    yield speech.say(
+        "Compared: \u201c{new}\u201d with \u201c{old}\u201d.",
+        new=speech.edition(line["edition"]),
+        old=speech.edition(line["from_edition"]),
     )
     if line["old_declared_speed_m_s"] != line["declared_speed_m_s"]:
-        yield speech.say("answer_other_speed").format(
+        yield speech.say(
+            "The declared speed is another one: {new} instead of {old} m/s. At the old "
+            "speed Cw changes by {by}; what follows is about that.",
             old=speech.number(line["old_declared_speed_m_s"], 2),
             new=speech.number(line["declared_speed_m_s"], 2),
             by=speech.per_cent(line["cw_ratio"]),
@@ -122,17 +140,21 @@ def _change(line: Row, speech: Speech) -> Iterator[str]:
     if line["change"] == "same":
         return
     causes = "; ".join(f"{name} {speech.per_cent(f)}" for name, f in causes_of(line, speech))
-    yield speech.say("answer_causes").format(causes=causes)
+    yield speech.say("Why: {causes}.", causes=causes)
     seconds = line["gain_in_two_hours_s"]
     if seconds is not None:
-        key = "answer_slower" if seconds > 0 else "answer_faster"
-        yield speech.say(key).format(seconds=speech.number(abs(seconds), 0))
+        yield speech.say(
+            "For the same power the crew may take {seconds} s longer over a race of two hours."
+            if seconds > 0
+            else "For the same power the crew has to row a race of two hours {seconds} s faster.",
+            seconds=speech.number(abs(seconds), 0),
+        )
 
 
 def causes_of(line: Row, speech: Speech) -> list[tuple[str, float]]:
     """Name and factor of what made the change, the largest first; small ones as one."""
     causes = [
-        (speech.say(f"code.{cause.get('step', cause['cause'])}"), float(cause["factor"]))
+        (speech.say(labels.code(cause.get("step", cause["cause"]))), float(cause["factor"]))
         for cause in json.loads(line["causes"] or "[]")
     ]
     small = [factor for _, factor in causes if abs(factor - 1) < SHOWN]
@@ -141,23 +163,52 @@ def causes_of(line: Row, speech: Speech) -> list[tuple[str, float]]:
     for factor in small:
         rest *= factor
     large.sort(key=lambda cause: -abs(cause[1] - 1))
-    return [*large, *([(speech.say("code.rest"), rest)] if abs(rest - 1) >= SHOWN else [])]
+    return [*large, *([(speech.say(labels.code("rest")), rest)] if abs(rest - 1) >= SHOWN else [])]
 
 
 def _certainty(line: Row, speech: Speech) -> Iterator[str]:
     """The interval, what it leaves out, and whether the change exceeds it."""
     low, high = line["cw_lo_kg_m"], line["cw_hi_kg_m"]
     if low is not None and high is not None:
-        key = "answer_interval" if line["new_log_known"] else "answer_spread"
-        yield speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
+        yield interval_in_words(low, high, line["new_log_known"], speech)
     if line["change"] != "changed":
         return
-    verdict = {True: "answer_exceeds", False: "answer_within", None: "answer_unknown"}
-    key = verdict[line["exceeds_interval"]]
-    of_one_tow = key != "answer_unknown" and line["old_tow_id"] == line["tow_id"]
-    yield speech.say(f"{key}_old" if of_one_tow else key)
+    of_one_tow = line["old_tow_id"] == line["tow_id"]
+    yield speech.say(VERDICTS[line["exceeds_interval"]][of_one_tow])
     if line["exceeds_interval"] is not None and not line["old_log_known"]:
-        yield speech.say("answer_old_spread")
+        yield speech.say(
+            "The uncertainty of the old number leaves out the error of the log: it is too small."
+        )
+
+
+def interval_in_words(low: float, high: float, log_known: bool, speech: Speech) -> str:
+    """The interval of Cw [kg/m], and whether the error of the log is in it."""
+    return speech.say(
+        "With 95 % confidence Cw lies between {low} and {high} kg/m."
+        if log_known
+        else "The scatter of the runs alone leaves Cw between {low} and {high} kg/m; the "
+        "error of the log comes on top of that and is not known under this method.",
+        low=speech.number(low, 2),
+        high=speech.number(high, 2),
+    )
+
+
+VERDICTS: Final = {
+    True: (
+        say("The change is larger than the uncertainty of both numbers together."),
+        say(
+            "Both numbers come from the same tow; the new one lies outside the interval of the old."
+        ),
+    ),
+    False: (
+        say("The change lies within the uncertainty of both numbers together."),
+        say(
+            "Both numbers come from the same tow; the new one lies within the interval of the old."
+        ),
+    ),
+    None: (UNKNOWN_VERDICT, UNKNOWN_VERDICT),
+}
+"""Whether a change exceeds the uncertainty: of two tows, and of one."""
 
 
 def _best(line: Row, speech: Speech) -> Iterator[str]:
@@ -167,9 +218,19 @@ def _best(line: Row, speech: Speech) -> Iterator[str]:
     best = (line[f"cw_best_{end}kg_m"] for end in ("", "lo_", "hi_"))
     value, low, high = (speech.number(number, 2) for number in best)
     share = speech.number(100 * line["own_weight"], 0)
-    yield speech.say("answer_best").format(best=value, low=low, high=high, share=share)
+    yield speech.say(
+        "The best estimate from all tows of the archive is {best} kg/m ({low} to "
+        "{high}); {share} % of it rests on this tow.",
+        best=value,
+        low=low,
+        high=high,
+        share=share,
+    )
     if line["best_moved_ratio"] is not None and abs(line["moved_ratio"] - 1) >= SHOWN:
-        yield speech.say("answer_moved").format(
+        yield speech.say(
+            "Against the tow of {before} Cw at equal speed is {moved}; by the best "
+            "estimate {kept}. What differs between the two comes from measuring rather "
+            "than from the boat.",
             before=line["season_before"],
             moved=speech.per_cent(line["moved_ratio"]),
             kept=speech.per_cent(line["best_moved_ratio"]),
@@ -181,7 +242,11 @@ def _instruments(answer: Answer, speech: Speech) -> Iterator[str]:
     line = answer.line
     if line["log_source"] == "estimated":
         factor, low, high = (line[f"log_{part}"] for part in ("factor", "lo", "hi"))
-        yield speech.say("answer_log_low" if factor > 1 else "answer_log_high").format(
+        yield speech.say(
+            "In {season} the log read {by} % too low (95 %: {low} to {high}); that is corrected."
+            if factor > 1
+            else "In {season} the log read {by} % too high (95 %: {low} to {high}); that is "
+            "corrected.",
             season=line["season"],
             by=speech.number(100 * abs(1 - 1 / factor), 1),
             low=speech.per_cent(1 / high),
@@ -191,11 +256,31 @@ def _instruments(answer: Answer, speech: Speech) -> Iterator[str]:
     yield from dict.fromkeys(_fault(fault, speech) for fault in answer.faults)
 
 
+FAULTS: Final = {
+    "fault": say(
+        "In {season} something is probably wrong: {instrument}, {size} (chance {chance} %)."
+    ),
+    "cannot be told": say(
+        "Whether something was wrong in {season} ({instrument}) cannot be told (chance {chance} %)."
+    ),
+    "not settled": say(
+        "The search for the errors of the instruments did not settle. What is "
+        "estimated of {season} cannot be relied on."
+    ),
+    "alarm": say(
+        "In {season} an instrument lies far from what is assumed: {instrument}, "
+        "{size}. A person should look."
+    ),
+}
+"""What is said of a season, by the verdict on an instrument."""
+
+
 def _fault(fault: Row, speech: Speech) -> str:
     """What may be wrong with one instrument."""
     chance = fault["p_fault"]
-    return speech.say(f"answer_{fault['verdict'].replace(' ', '_')}").format(
-        instrument=speech.say(f"code.{fault['instrument']}"),
+    return speech.say(
+        FAULTS[fault["verdict"]],
+        instrument=speech.say(labels.code(fault["instrument"])),
         season=fault["season"],
         chance="" if chance is None else speech.number(100 * chance, 0),
         size=_size(fault["estimate"], fault["unit"], speech),
@@ -214,52 +299,79 @@ def _place(line: Row, speech: Speech) -> Iterator[str]:
     if line["new_type_place"] is None or not line["boat_type"] or line["type_size"] < FEW:
         return
     same = line["old_type_place"] in (None, line["new_type_place"])
-    key = "answer_place" if same else "answer_place_moved"
-    yield speech.say(key).format(
-        place=line["new_type_place"], old=line["old_type_place"], size=line["type_size"],
-        type=line["boat_type"], people=speech.say(f"crew.{line['crew_class']}"),
-    )  # fmt: skip
+    yield speech.say(
+        "At equal power per rower this boat ranks {place} of {size} of type {type} by "
+        "speed ({people})."
+        if same
+        else "At equal power per rower this boat now ranks {place} of {size} of type {type} "
+        "by speed ({people}); it was {old}.",
+        place=line["new_type_place"],
+        old=line["old_type_place"],
+        size=line["type_size"],
+        type=line["boat_type"],
+        people=speech.say(labels.crew(line["crew_class"])),
+    )
 
 
 def _race(race: Row, speech: Speech) -> str:
     if race["new_rank"] is None:
         why = [
-            f"{speech.edition(race[edition])}: {speech.say(f'code.{race[remark]}')}"
+            f"{speech.edition(race[edition])}: {speech.say(labels.code(race[remark]))}"
             for edition, remark in (("from_edition", "old_remark"), ("to_edition", "new_remark"))
             if race[remark]
         ]
-        return speech.say("answer_race_none").format(
-            race=race["race"], day=race["race_date"], why="; ".join(why)
+        return speech.say(
+            "{race} {day}: there are no two places to compare ({why}).",
+            race=race["race"],
+            day=race["race_date"],
+            why="; ".join(why),
         )
     moved = race["old_rank"] != race["new_rank"]
-    return speech.say("answer_race_moved" if moved else "answer_race").format(
-        race=race["race"], day=race["race_date"], size=race["race_size"],
-        old=race["old_rank"], new=race["new_rank"],
-    )  # fmt: skip
+    return speech.say(
+        "{race} {day}: place {new} of the {size} crews that both editions rank; it was {old}."
+        if moved
+        else "{race} {day}: place {new} of the {size} crews that both editions rank, as before.",
+        race=race["race"],
+        day=race["race_date"],
+        size=race["race_size"],
+        old=race["old_rank"],
+        new=race["new_rank"],
+    )
 
 
 def _validity(line: Row, speech: Speech) -> Iterator[str]:
     """Until when it counts, and the next tow."""
     if line["valid_until"] is not None:
-        key = "answer_valid" if line["status"] == "valid" else "answer_expired"
-        yield speech.say(key).format(until=line["valid_until"], tow=line["tow_date"])
+        yield speech.say(
+            "The tow of {tow} counts up to and including {until}."
+            if line["status"] == "valid"
+            else "The tow of {tow} counted up to and including {until}.",
+            until=line["valid_until"],
+            tow=line["tow_date"],
+        )
     if line["tow_speed_m_s"] is not None:
-        yield speech.say("answer_next").format(
+        yield speech.say(
+            "Next tow: at {speed} m/s ({reason}).",
             speed=speech.number(line["tow_speed_m_s"], 2),
-            reason=speech.say(f"code.{line['speed_reason']}"),
+            reason=speech.say(labels.code(line["speed_reason"])),
         )
 
 
 def _objection(line: Row, speech: Speech) -> str:
     code = line["verification_code"]
-    asked = speech.say("answer_with_code").format(code=code) if code else ""
-    return speech.say("answer_object").format(fsn_no=line["fsn_no"], code=asked)
+    asked = speech.say(" and verification code {code}", code=code) if code else ""
+    return speech.say(
+        "Is something wrong? Tell the committee, and name {fsn_no}{code}. How the "
+        "number was made is shown below.",
+        fsn_no=line["fsn_no"],
+        code=asked,
+    )
 
 
 def _waterfall(line: Row, speech: Speech, title: str) -> Markup:
     if line["cw_ratio"] is None or line["change"] == "same":
         return Markup()
     old = line["cw_ratio"] and line["old_cw_kg_m"]
-    caption = f"{speech.say('waterfall')}: {title}"
+    caption = f"{speech.say('From the old number to the new, Cw in kg/m')}: {title}"
     new = old * line["cw_ratio"]
     return waterfall_picture((old, new), causes_of(line, speech), speech, caption)

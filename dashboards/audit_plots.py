@@ -13,10 +13,10 @@ import altair as alt
 import polars as pl
 from markupsafe import Markup
 
-from dashboards import drawn
+from dashboards import drawn, labels
 from dashboards.figures import FIGURES, drop
 from dashboards.site.parts import default_method
-from pipeline.words.catalogue import speaker
+from pipeline.messages import speaker
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import TypesAudit
 from warehouse.queries.chosen_tows import rows_of
@@ -25,9 +25,6 @@ from warehouse.store.files import written_beside
 from warehouse.store.store import Store
 
 SCATTERS: Final = ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "cw_standard_speed")
-
-CAPTIONS: Final = {"history": "boat_history", "shared_bend": "types_homogeneity"}
-"""Figures that are called otherwise in the texts."""
 
 
 class Plot(NamedTuple):
@@ -123,11 +120,11 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: s
     if plot.of in about:
         of = [plot.of]
     else:
-        of = [*about, *([say(f"method.{plot.of}")] if plot.of else [])]
-    caption = say(CAPTIONS.get(plot.figure, plot.figure))
+        of = [*about, *([say(labels.method(plot.of))] if plot.of else [])]
+    caption = say(labels.FIGURES[plot.figure])
     title = alt.Title(
         f"{caption} · {', '.join(of)}",
-        subtitle=[say("simulated")] if report.simulated else [],
+        subtitle=[say(labels.SIMULATED)] if report.simulated else [],
     )
     spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
     drop(spec, "href")

@@ -9,7 +9,7 @@ import polars as pl
 from dashboards import drawn
 from dashboards.figures.style import HEIGHT, OKABE_ITO, WIDTH, number
 from herijk.library.curves import Fit
-from pipeline.words.catalogue import speaker
+from pipeline.messages import speaker
 from warehouse.store.files import written_beside
 
 BAND_POINTS = 41
@@ -24,9 +24,9 @@ def write_fit_plot(fit: Fit, path: Path, language: str) -> None:
     speed = np.linspace(speeds.min() * (1 - MARGIN), speeds.max() * (1 + MARGIN), BAND_POINTS)
     band = [{"speed_m_s": v, **fit.cw(float(v))._asdict()} for v in speed]
     points = pl.DataFrame({"speed_m_s": speeds, "value": fit.points.cw_kg_m[0]})
-    x = number(alt.X, "speed_m_s", say("speed"))
-    y = number(alt.Y, "value", say("cw"))
-    low, high = alt.Y("lo:Q", title=say("cw")), alt.Y2("hi:Q")
+    x = number(alt.X, "speed_m_s", say("Speed through water [m/s]"))
+    y = number(alt.Y, "value", say("Cw [kg/m]"))
+    low, high = alt.Y("lo:Q", title=say("Cw [kg/m]")), alt.Y2("hi:Q")
     curve = alt.Chart(pl.DataFrame(band))
     chart = alt.layer(
         curve.mark_area(color=OKABE_ITO[5], opacity=0.35).encode(x, low, high),

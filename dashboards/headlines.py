@@ -9,7 +9,9 @@ from collections import Counter
 
 import polars as pl
 
+from dashboards import labels
 from dashboards.speech import Headline, Speech
+from pipeline.messages import say
 from warehouse.queries.due import WORTH
 
 CLEAR_P = 0.05
@@ -20,8 +22,11 @@ MONTHS_AHEAD = dt.timedelta(days=365)
 def register(lines: pl.DataFrame) -> Headline:
     """How many lines have a curve, and on which day that was judged."""
     known, day = lines["cw_kg_m"].drop_nulls().len(), lines["as_of"].max()
-    return lambda speech: speech.say("head_register").format(
-        lines=lines.height, known=known, day=day
+    return lambda speech: speech.say(
+        "{known} of {lines} lines have a valid curve on {day}.",
+        lines=lines.height,
+        known=known,
+        day=day,
     )
 
 
@@ -31,14 +36,18 @@ def changes(lines: pl.DataFrame) -> Headline:
     causes = Counter(filter(None, (_largest(text) for text in changed["causes"].to_list())))
 
     def sentence(speech: Speech) -> str:
-        text = _from_to(lines, speech) + speech.say("head_changes").format(
-            changed=changed.height, lines=lines.height
+        text = _from_to(lines, speech) + speech.say(
+            "{changed} of {lines} lines change", changed=changed.height, lines=lines.height
         )
         text += beyond_interval(changed, speech)
         if causes:
             cause = causes.most_common(1)[0][0]
-            key = "head_printed" if cause == "printed" else "head_mostly"
-            text += speech.say(key).format(cause=speech.say(f"code.{cause}"))
+            text += speech.say(
+                "; why is not known, as how the printed register was computed is not recorded"
+                if cause == "printed"
+                else "; most often mainly: {cause}",
+                cause=speech.say(labels.code(cause)),
+            )
         return f"{text}.{_log_unknown(changed, speech)}"
 
     return sentence
@@ -48,10 +57,19 @@ def beyond_interval(changed: pl.DataFrame, speech: Speech) -> str:
     """How many lines change by more than their uncertainty, and of how many that is not known."""
     known = changed["exceeds_interval"].drop_nulls()
     if known.is_empty():
-        return speech.say("head_beyond_unknown") if changed.height else ""
-    text = speech.say("head_beyond").format(beyond=known.sum() or speech.say("code.none"))
+        return (
+            speech.say("; whether by more than the uncertainty is not known of any")
+            if changed.height
+            else ""
+        )
+    text = speech.say(
+        "; {beyond} by more than the uncertainty",
+        beyond=known.sum() or speech.say(labels.code("none")),
+    )
     unknown = changed.height - known.len()
-    return text + (speech.say("head_beyond_some").format(unknown=unknown) if unknown else "")
+    return text + (
+        speech.say(", and of {unknown} that is not known", unknown=unknown) if unknown else ""
+    )
 
 
 def _log_unknown(changed: pl.DataFrame, speech: Speech) -> str:
@@ -64,7 +82,10 @@ def _log_unknown(changed: pl.DataFrame, speech: Speech) -> str:
     ]
     if not unknown:
         return ""
-    return speech.say("head_old_spread").format(editions=speech.say("and").join(unknown))
+    return speech.say(
+        " The uncertainty of {editions} leaves out the error of the log: it is really larger.",
+        editions=speech.say(" and ").join(unknown),
+    )
 
 
 def _from_to(lines: pl.DataFrame, speech: Speech) -> str:
@@ -72,7 +93,7 @@ def _from_to(lines: pl.DataFrame, speech: Speech) -> str:
     if lines.is_empty():
         return ""
     old, new = (speech.edition(lines[f"{side}_edition"][0]) for side in ("from", "to"))
-    return speech.say("head_from_to").format(old=old, new=new)
+    return speech.say("From \u201c{old}\u201d to \u201c{new}\u201d: ", old=old, new=new)
 
 
 def _largest(causes: str) -> str | None:
@@ -88,7 +109,13 @@ def due(lines: pl.DataFrame) -> Headline:
     as_of = lines.select(pl.col("as_of").max()).item()
     soon = lines.filter(pl.col("valid_until").is_between(as_of, as_of + MONTHS_AHEAD)).height
     over = lines.filter(pl.col("valid_until") < as_of).height
-    return lambda speech: speech.say("head_due").format(soon=soon, over=over, day=as_of)
+    return lambda speech: speech.say(
+        "Crews that have to tow within a year of {day}: {soon}; tows that have expired "
+        "by that day: {over}.",
+        soon=soon,
+        over=over,
+        day=as_of,
+    )
 
 
 def retow(choice: pl.DataFrame) -> Headline:
@@ -97,9 +124,13 @@ def retow(choice: pl.DataFrame) -> Headline:
     before, after = choice.select(ends).row(0)
 
     def sentence(speech: Speech) -> str:
-        key = "head_retow" if after < WORTH * before else "head_retow_not"
-        return speech.say(key).format(
-            before=speech.number(100 * before, 2), after=speech.number(100 * after, 2)
+        return speech.say(
+            "These tows bring the uncertainty of the log factors from {before} to {after} %."
+            if after < WORTH * before
+            else "For that alone it is not worth it: these tows bring the uncertainty of the "
+            "log factors from {before} to {after} %.",
+            before=speech.number(100 * before, 2),
+            after=speech.number(100 * after, 2),
         )
 
     return sentence
@@ -108,7 +139,9 @@ def retow(choice: pl.DataFrame) -> Headline:
 def statuses(rows: pl.DataFrame) -> Headline:
     """How many curves are sound."""
     counts = dict(rows.group_by("status", maintain_order=True).agg(pl.col("number").sum()).rows())
-    return lambda speech: speech.say("head_statuses").format(
+    return lambda speech: speech.say(
+        "Of {curves} curves {accepted} are sound, {flagged} need a look and {rejected} "
+        "are rejected.",
         curves=sum(counts.values()),
         accepted=counts.get("accepted", 0),
         flagged=counts.get("flagged", 0),
@@ -123,13 +156,17 @@ def reproducibility(rows: pl.DataFrame, method: str) -> Headline | None:
     if method not in spread:
         return None
     first, now = next(iter(spread)), spread[method]
-    return lambda speech: speech.say("head_reproducibility").format(
-        now=speech.number(100 * now["sd_ratio"], 1), method=speech.say(f"method.{method}"),
-        low=speech.number(100 * now["lo"], 1), high=speech.number(100 * now["hi"], 1),
+    return lambda speech: speech.say(
+        "The random error of one tow is {now} % ({method}; 95 %: {low} to {high} %, "
+        "from {pairs} pairs); it was {then} % ({first}).",
+        now=speech.number(100 * now["sd_ratio"], 1),
+        method=speech.say(labels.method(method)),
+        low=speech.number(100 * now["lo"], 1),
+        high=speech.number(100 * now["hi"], 1),
         pairs=now["n_pairs"],
         then=speech.number(100 * spread[first]["sd_ratio"], 1),
-        first=speech.say(f"method.{first}"),
-    )  # fmt: skip
+        first=speech.say(labels.method(first)),
+    )
 
 
 def log_factors(rows: pl.DataFrame) -> Headline | None:
@@ -138,8 +175,10 @@ def log_factors(rows: pl.DataFrame) -> Headline | None:
     if known.is_empty():
         return None
     off = known.sort((pl.col("factor") - 1).abs(), descending=True).row(0, named=True)
-    key = "head_log" if off["lo"] is None else "head_log_interval"
-    return lambda speech: speech.say(key).format(
+    return lambda speech: speech.say(
+        "The log was furthest off in {season}: {by}."
+        if off["lo"] is None
+        else "The log was furthest off in {season}: {by} (95 %: {low} to {high}).",
         season=off["season"],
         **{
             name: speech.per_cent(1 / off[bound])
@@ -152,9 +191,17 @@ def log_factors(rows: pl.DataFrame) -> Headline | None:
 def homogeneity(test: pl.DataFrame) -> Headline:
     """Whether the boats of a type have equal curves: yes, no, or not to be told."""
     if test.is_empty() or test["p_value"][0] is None:
-        return lambda speech: speech.say("head_type_few")
+        return lambda speech: speech.say("Too few boats to tell whether they are equal.")
     p_value, power = test["p_value"][0], test["power_at_10pct"][0] or 0.0
-    key = "head_type_differ" if p_value < CLEAR_P else "head_type_equal"
-    if p_value >= CLEAR_P and power < STRONG_POWER:
-        key = "head_type_unknown"
-    return lambda speech: speech.say(key).format(n=test["n"][0], p=speech.number(p_value, 2))
+    verdict = say(
+        "Whether the bends of the curves of these {n} tows differ cannot be told: the "
+        "test is too weak."
+    )
+    if p_value < CLEAR_P:
+        verdict = say(
+            "The bends of the curves of these {n} tows differ by more than noise explains "
+            "(p = {p})."
+        )
+    elif power >= STRONG_POWER:
+        verdict = say("No sign that the bends of the curves of these {n} tows differ (p = {p}).")
+    return lambda speech: speech.say(verdict, n=test["n"][0], p=speech.number(p_value, 2))

@@ -97,8 +97,10 @@ def _axes(x: Axis, y: Axis, speech: Speech) -> list[str]:
     parts = [
         _LINE.format(left, floor, WIDTH - 12, floor, GREY, 1),
         _LINE.format(left, floor, left, TOP, GREY, 1),
-        _TEXT.format((left + WIDTH) / 2, HEIGHT - 5, "middle", speech.text("speed")),
-        _TEXT.format(4, 11, "start", speech.text("cw")),
+        _TEXT.format(
+            (left + WIDTH) / 2, HEIGHT - 5, "middle", speech.text("Speed through water [m/s]")
+        ),
+        _TEXT.format(4, 11, "start", speech.text("Cw [kg/m]")),
     ]
     for tick in x.ticks:
         parts.append(_LINE.format(x.place(tick), floor, x.place(tick), floor + 4, GREY, 1))
@@ -128,7 +130,7 @@ def waterfall_picture(
     steps = list(accumulate([before_all, *(factor for _, factor in causes)], mul))
     x = Axis.over([*steps, *_around(steps)], LABEL, WIDTH - VALUE)
     floor = (len(steps) + 1) * ROW + 4
-    parts = [*_scale(x, floor, speech), _number(0, "before_number", steps[0], x, speech)]
+    parts = [*_scale(x, floor, speech), _number(0, speech.say("was"), steps[0], x, speech)]
     for row, ((name, factor), *ends) in enumerate(zip(causes, steps, steps[1:], strict=False), 1):
         before, after = map(x.place, ends)
         ink = MORE if factor > 1 else LESS
@@ -140,7 +142,7 @@ def waterfall_picture(
         ]
     row, end = len(steps), x.place(after_all)
     parts.append(_LINE.format(end, row * ROW - 5, end, row * ROW + 5, GREY, 1))
-    parts.append(_number(row, "after_number", after_all, x, speech))
+    parts.append(_number(row, speech.say("becomes"), after_all, x, speech))
     height = floor + 20
     return _picture(height, title, parts)
 
@@ -161,10 +163,10 @@ def _scale(x: Axis, floor: float, speech: Speech) -> list[str]:
     return parts
 
 
-def _number(row: int, key: str, value: float, x: Axis, speech: Speech) -> str:
+def _number(row: int, name: str, value: float, x: Axis, speech: Speech) -> str:
     """A row with a mark where a number lies."""
     mark = _NUMBER.format(x.place(value), row * ROW + 5, TOTAL)
-    return mark + _row(row, speech.say(key), speech.number(value, 2))
+    return mark + _row(row, name, speech.number(value, 2))
 
 
 def _row(row: int, name: str, value: str) -> str:

@@ -8,8 +8,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from dashboards import labels
+from pipeline.messages import Say, pgettext, say, speaker
 from pipeline.tables.row import Row
-from pipeline.words.catalogue import Say, speaker
 from warehouse.queries.change_report import ChangeSummary
 
 LINES_IN_MAIL: Final = 20
@@ -42,7 +43,7 @@ def outcome_of(check: Check) -> str:
 
 def found_in_words(check: Check, say: Say) -> str:
     """What a check found."""
-    return ", ".join(f"{say('code.' + name)} {value}" for name, value in values_found(check))
+    return ", ".join(f"{say(labels.code(name))} {value}" for name, value in values_found(check))
 
 
 def values_found(check: Check) -> list[tuple[str, str]]:
@@ -57,11 +58,13 @@ def mail(changes: ChangeSummary, checks: Sequence[Check], simulated: bool) -> tu
     """Subject and text of the mail, in Dutch."""
     say = speaker("nl")
     lines = headlines(changes, checks, say)
-    marked = f"{say('simulated')}\n\n" if simulated else ""
+    marked = f"{say(labels.SIMULATED)}\n\n" if simulated else ""
     moved = [_line(line) for line in changes.lines[:LINES_IN_MAIL]]
     more = len(changes.lines) - len(moved)
     rest = [f"  + {more}"] if more > 0 else []
-    return f"{say('site')}: {lines[0]}", marked + "\n".join([*lines, "", *moved, *rest]) + "\n"
+    return f"{say('Tow tests re-based')}: {lines[0]}", marked + "\n".join(
+        [*lines, "", *moved, *rest]
+    ) + "\n"
 
 
 def _line(line: Row) -> str:
@@ -74,7 +77,7 @@ def _line(line: Row) -> str:
 def headlines(changes: ChangeSummary, checks: Sequence[Check], say: Say) -> list[str]:
     """What happened in a few lines, the most important first."""
     sentences = [*_wrong(checks, say), *_moved(changes, say)]
-    return sentences or [say("report_nothing")]
+    return sentences or [say("Nothing changed since the last report.")]
 
 
 def in_short(changes: ChangeSummary, checks: Sequence[Check], say: Say) -> str:
@@ -84,7 +87,7 @@ def in_short(changes: ChangeSummary, checks: Sequence[Check], say: Say) -> str:
 
 def with_later_rebuild(page: str, made_at: str, say: Say) -> str:
     """The page about a rebuild, saying that one after it changed nothing."""
-    text = say("report_later").format(made_at=minutes_of(made_at))
+    text = say("The rebuild of {made_at} changed nothing after that.", made_at=minutes_of(made_at))
     return _LATER.sub(f"{LATER}{text}", page)
 
 
@@ -99,30 +102,53 @@ LATER: Final = "<!-- later -->"
 _LATER: Final = re.compile(f"{LATER}.*")
 
 
+FAILED: Final = {
+    "tables_fit_their_schemas": say("tables do not fit their schemas"),
+    "counts_agree": say("counts do not agree"),
+    "few_tows_set_aside": say("many tows are set aside"),
+    "nothing_unforeseen": say(
+        "Herijk itself failed; report this to whoever maintains it, with the folder unforeseen"
+    ),
+    "log_factors_stayed": say("log factors moved"),
+    "boats_stayed_within_their_intervals": say("boats moved beyond their intervals"),
+    "editions_can_be_made_again": say(
+        "editions, or the files that they were made from, are not what they were"
+    ),
+    "every_listed_tow_accounted_for": say("listed tows are not accounted for"),
+    "every_tow_has_a_curve_row": say("tows have no row among the curves"),
+    "most_tows_sound": say("most tows are not sound"),
+    "steps_multiply_to_the_total": say("steps do not multiply to the total"),
+}
+"""What it means that a check failed."""
+
+
 def _wrong(checks: Sequence[Check], say: Say) -> Iterable[str]:
     for check in checks:
         if not check.passed:
-            outcome = say(f"code.{outcome_of(check)}")
-            yield f"{outcome}: {say('failed.' + check.check)} ({found_in_words(check, say)})"
+            outcome = say(labels.code(outcome_of(check)))
+            failed = say(FAILED.get(check.check, check.check))
+            yield f"{outcome}: {failed} ({found_in_words(check, say)})"
 
 
 def _moved(changes: ChangeSummary, say: Say) -> Iterable[str]:
     if changes.first:
-        yield say("report_first")
+        yield say("First report: everything is new.")
     if changes.seasons_gone:
-        yield f"{say('report_seasons_gone')}: {', '.join(map(str, changes.seasons_gone))}"
+        gone = ", ".join(map(str, changes.seasons_gone))
+        yield f"{say('Seasons of which the archive has no tow any more')}: {gone}"
     for row in changes.methods:
-        yield f"{say('report_method')} {row['method']}: {say('code.' + row['what'])}"
-    counted = (("report_tows", changes.tows), ("report_set_aside", changes.set_aside))
+        yield f"{say('Method')} {row['method']}: {say(labels.code(row['what']))}"
+    counted = ((pgettext("number", "Tows"), changes.tows), (say("Set aside"), changes.set_aside))
     for title, rows in counted:
         by_what: dict[str, int] = {}
         for row in rows:
             by_what[row["what"]] = by_what.get(row["what"], 0) + row["number"]
         if by_what:
-            parts = (f"{number} {say('code.' + what)}" for what, number in by_what.items())
+            parts = (f"{number} {say(labels.code(what))}" for what, number in by_what.items())
             yield f"{say(title)}: {', '.join(parts)}"
     if changes.factors:
-        yield f"{say('report_factors')}: {len(changes.factors)}"
+        yield f"{say('Log factors that moved')}: {len(changes.factors)}"
     if changes.lines:
         beyond = changes.beyond_interval
-        yield f"{say('report_lines')}: {len(changes.lines)}, {beyond} {say('report_beyond')}"
+        title, of_them = say("Changed lines of the drafts"), say("beyond their interval")
+        yield f"{title}: {len(changes.lines)}, {beyond} {of_them}"

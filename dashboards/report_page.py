@@ -20,8 +20,7 @@ from dashboards.report import (
 )
 from dashboards.site.parts import Page, Section, Table
 from dashboards.site.render import Edition
-from pipeline.words import LANGUAGES
-from pipeline.words.catalogue import speaker
+from pipeline.messages import LANGUAGES, pgettext, say, speaker
 from warehouse.queries.change_report import ChangeReport, summary_of
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
@@ -31,6 +30,13 @@ TO_SITE: Final = "../site/"
 _LATER: Final = Markup(LATER)  # noqa: S704 - a constant
 
 OF_A_CHECK: Final = ("check", "outcome", "quantity", "value")
+_TITLES: Final = {
+    "lines": say("Changed lines of the drafts"),
+    "tows": pgettext("number", "Tows"),
+    "set_aside": say("Set aside"),
+    "factors": say("Log factors that moved"),
+    "checks": say("Checks"),
+}
 _COLUMNS: Final = {
     "tows": ("what", "tow_id", "fsn_no", "season"),
     "set_aside": ("what", "path", "tow_id", "line", "reason_code", "message"),
@@ -69,14 +75,19 @@ def report_pages(
         "checks": counted,
     }
     sections = [
-        Section(f"report_{name}", tables=[Table(name, frame, _COLUMNS[name], f"report_{name}")])
+        Section(
+            f"report_{name}",
+            _TITLES[name],
+            tables=[Table(name, frame, _COLUMNS[name], _TITLES[name])],
+        )
         if frame.height
-        else Section(f"report_{name}", empty="report_none")
+        else Section(f"report_{name}", _TITLES[name], empty=say("Nothing."))
         for name, frame in frames.items()
     ]
     summary = summary_of(changes)
     in_words = Section(
         "report_summary",
+        say("In short"),
         headline=lambda speech: Markup("{} {}").format(
             in_short(summary, checks, speech.say), _LATER
         ),
@@ -86,9 +97,9 @@ def report_pages(
             PAGES[language]: Edition(views, language).html(
                 Page(
                     PAGES[language],
-                    "report",
+                    say("Report of the rebuild"),
                     [in_words, *sections],
-                    name=f"{speaker(language)('report')} {minutes_of(made_at)}",
+                    name=f"{speaker(language)('Report of the rebuild')} {minutes_of(made_at)}",
                     site=TO_SITE,
                     others=PAGES,
                 )

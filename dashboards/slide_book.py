@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.slides import EXPLAINING, QUANTITIES
 from dashboards.slide_rows import (
     RECOMPUTED_SEASON,
@@ -24,9 +25,9 @@ from dashboards.slide_rows import (
 )
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import Say, Sentence, ngettext, say
 from pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
 from pipeline.tables.row import Row
-from pipeline.words.catalogue import Say
 from warehouse.queries.chosen_tows import ALL, STATED, rows_of, spoken_range, with_choices
 from warehouse.queries.views import Views
 from warehouse.store.unforeseen import Border
@@ -38,6 +39,30 @@ RACED_COLUMNS: Final = (
     *("method", "label", "speed_case", "power_w", "raced_power_w"),
     *("power_ratio_raced", "power_ratio_raced_lo", "power_ratio_raced_hi"),
 )
+
+OF: Final = {
+    "b": say("B"),
+    "a": say("A"),
+    "cw": say("Cw at the standard speed"),
+}
+AGAINST: Final = {
+    "weight": say("{y} against weight: {types}"),
+    "speed": say("{y} against tow speed: {types}"),
+    "length": say("{y} against length: {types}"),
+}
+IN_SENTENCES: Final = {
+    "weight": say("weight"),
+    "speed": say("tow speed"),
+    "length": say("length"),
+}
+IS_HULL_SPEED: Final = {
+    True: say("It may be: B lies at {ratio} times hull speed ({lo} to {hi}; {boats}, {after})."),
+    False: say(
+        "No: B lies at {ratio} times hull speed ({lo} to {hi}; {boats}, {after}); "
+        "{share} lie within 5 % of it."
+    ),
+    None: say("Too few boats with a B to tell ({boats})."),
+}
 
 CLEAR_R2: Final = 0.3
 """From here on a line without a clear slope is not called "no link": too few boats tell."""
@@ -138,7 +163,7 @@ class Book:
 
     def method(self, name: str) -> str:
         """A method as people call it."""
-        return self.say(f"method.{name}")
+        return self.say(labels.method(name))
 
     def against(
         self, quantity: str, explaining: str, types: list[str], tows: str
@@ -148,12 +173,10 @@ class Book:
         own &= pl.col("method").is_in(methods_of(self.held, tows))
         drawn = self._line_points.filter(own, tows=self._stated(tows))
         rows = pl.concat([self.compared.filter(rows_of(tows), own), drawn], how="diagonal_relaxed")
-        title = self.say(f"slide.{explaining}").format(
-            y=self.say(f"slide.{quantity}"), types=" / ".join(types)
-        )
+        title = self.say(AGAINST[explaining], y=self.say(OF[quantity]), types=" / ".join(types))
         if tows != ALL:
-            words = self.say(f"code.{tows}") if tows in STATED else spoken_range(tows)
-            title += self.say("slide.of_season").format(tows=words)
+            words = self.say(labels.code(tows)) if tows in STATED else spoken_range(tows)
+            title += self.say(", {tows} only", tows=words)
         said = [self.line((quantity, explaining), name, tows, self.ends(tows)) for name in types]
         yield Slide(
             f"{quantity} {explaining} {tows}", f"slide_{quantity}_{explaining}", rows, title, said
@@ -177,14 +200,17 @@ class Book:
         before, after = (self._lines.get((*key, method)) for method in ends)
         counted = self._counted(after)
         if after is None or after["slope"] is None:
-            return self.say("slide.no_line").format(type=boat_type, counted=counted)
+            return self.say(
+                "{type}: too few boats for a line ({counted}).", type=boat_type, counted=counted
+            )
         words = {
-            "y": self.say(f"slide.{of[0]}"),
-            "x": self.say(f"slide.x.{of[1]}"),
+            "y": self.say(OF[of[0]]),
+            "x": self.say(IN_SENTENCES[of[1]]),
         }
-        said = self.say("slide.line").format(
+        said = self.say(
+            "{type}: {verdict}. R² {r2_after} {after}, {r2_before} {before}; {counted}.",
             type=boat_type,
-            verdict=self.say(f"slide.{_direction(after)}").format(**words),
+            verdict=self.say(_verdict(after), **words),
             before=self.method(ends[0]),
             after=self.method(ends[1]),
             r2_before=_share(before["r2"] if before else None),
@@ -192,17 +218,18 @@ class Book:
             counted=counted,
         )
         names = self._outliers.get((boat_type, self._stated(tows)))
-        return f"{said} {self.say('slide.outside').format(names=names)}" if names else said
+        return f"{said} {self.say('Outliers in Cw: {names}.', names=names)}" if names else said
 
     def _counted(self, line: Row | None) -> str:
         """How many tows of how many boats."""
         n, boats = (line["n"], line["n_boats"]) if line else (0, 0)
-        return self.say("slide.counted").format(
-            tows=self._number(n, "tow"), boats=self._number(boats, "boat")
-        )
+        return self.say("{tows} of {boats}", tows=self._tows(n), boats=self._boats(boats))
 
-    def _number(self, n: int, what: str) -> str:
-        return self.say(f"slide.{'one' if n == 1 else 'many'}_{what}").format(n=n)
+    def _tows(self, n: int) -> str:
+        return self.say(ngettext("1 tow", "{n} tows", n))
+
+    def _boats(self, n: int) -> str:
+        return self.say(ngettext("1 boat", "{n} boats", n))
 
     @cached_property
     def _outliers(self) -> dict[tuple[str, str], str]:
@@ -221,18 +248,18 @@ class Book:
         own = rows_of(self.tows) & (pl.col("boat_type") != UNKNOWN_TYPE)
         known = self._compared_methods().filter(own)
         said = [self.b_and_hull_speed(self.tows)]
-        yield Slide("hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), said)
+        yield Slide("hull speed", "slide_hull_speed", known, self.say("Is B hull speed?"), said)
 
     def b_and_hull_speed(self, tows: str) -> str:
         """Whether B is hull speed."""
         after, of_all = self.ends()[1], self._hull_speed(tows)
-        key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[of_all["b_is_hull_speed"]]
-        return self.say(f"slide.{key}").format(
+        return self.say(
+            IS_HULL_SPEED[of_all["b_is_hull_speed"]],
             after=self.method(after),
             ratio=self._digits(of_all["b_ratio"]),
             lo=self._digits(of_all["b_ratio_lo"]),
             hi=self._digits(of_all["b_ratio_hi"]),
-            boats=self._number(of_all["n_boats"], "boat"),
+            boats=self._boats(of_all["n_boats"]),
             share=_share(of_all["b_share_within_5pct"]),
         )
 
@@ -253,13 +280,22 @@ class Book:
         rows = self.compared.filter(rows_of(self.tows), after)
         rows = rows.with_columns(newest_method="method")
         said = [self.part_of_hull_speed(self.tows)]
-        yield Slide("towed at", "slide_towed_at", rows, self.say("slide.towed_at"), said)
+        yield Slide(
+            "towed at",
+            "slide_towed_at",
+            rows,
+            self.say("At what part of hull speed are boats towed?"),
+            said,
+        )
 
     def part_of_hull_speed(self, tows: str) -> str:
         """At what part of hull speed boats are towed."""
         of_all = self._hull_speed(tows)
-        return self.say("slide.towed").format(
-            ratio=_share(of_all["tow_ratio"]), share=_share(of_all["tow_share_60_70"])
+        return self.say(
+            "Half of the tows lie above {ratio} of hull speed; {share} lie between 60 and "
+            "70 %, where the presentation puts rowing.",
+            ratio=_share(of_all["tow_ratio"]),
+            share=_share(of_all["tow_share_60_70"]),
         )
 
     def raced_beyond(self) -> Iterator[Slide]:
@@ -274,13 +310,16 @@ class Book:
         if after.is_empty():
             return
         both = after.filter(pl.col("raced_high") & (pl.col("power_w") < _low_power()))
-        sentence = self.say("slide.raced").format(
-            n=self._number(after.height, "tow"),
+        sentence = self.say(
+            "Towed with little power or raced off their own curve: {n}. The own curve of "
+            "{up} of these gives too much power, of {down} too little (the interval leaves "
+            "out 1). Towed under 70 W (women 40) and raced above 100 W (women 57): {both}.",
+            n=self._tows(after.height),
             up=after.filter(pl.col("power_ratio_raced_lo") > 1).height,
             down=after.filter(pl.col("power_ratio_raced_hi") < 1).height,
-            both=", ".join(both["label"]) or self.say("slide.no_tow"),
+            both=", ".join(both["label"]) or self.say("no tow"),
         )
-        title = self.say("slide.raced_beyond")
+        title = self.say("Boats that race faster than their curve holds")
         drawn = rows.select(RACED_COLUMNS)
         yield Slide("raced beyond", "slide_raced_beyond", drawn, title, [sentence])
 
@@ -294,19 +333,26 @@ class Book:
         of = {(r["method"], r["era"]): r for r in rows.iter_rows(named=True)}
         ends = self.ends()
         said = [
-            self.say("slide.apart").format(
-                era=era, before=self._apart(of[ends[0], era]), after=self._apart(of[ends[1], era])
+            self.say(
+                "From a tow of {era} to the next of the same boat: {before}; {after}.",
+                era=era,
+                before=self._apart(of[ends[0], era]),
+                after=self._apart(of[ends[1], era]),
             )
             for era in rows["era"].unique().sort()
             if all((name, era) in of for name in ends)
         ]
         if said:
-            yield Slide("eras", "eras", rows, self.say("slide.eras"), said)
+            yield Slide(
+                "eras", "eras", rows, self.say("Do tows of an era differ from later ones?"), said
+            )
 
     def _apart(self, row: Row) -> str:
         """Whether the next tow of the same boats stands apart from those of an era, old to new."""
-        key = "slide.is_apart" if row["apart"] else "slide.not_apart"
-        return self.say(key).format(
+        return self.say(
+            "{method} it stands apart, Cw {shift} ({lo} to {hi})"
+            if row["apart"]
+            else "{method} no difference is seen, {shift} ({lo} to {hi})",
             method=self.method(row["method"]),
             shift=self._signed(row["shift_ratio"] - 1.0),
             lo=self._signed(row["lo"] - 1.0),
@@ -323,7 +369,7 @@ class Book:
         rows = self.views.curve_points_of(fsn_no).join(
             common, on=["method", "tow_id"], maintain_order="left"
         )
-        title = self.say("slide.boat_years").format(name=name)
+        title = self.say("{name} through the years", name=name)
         yield Slide(f"years {name}", "slide_boat_years", rows, title, self._years(own))
         yield from self._ticks(own.sort("season", "tow_id"))
 
@@ -338,14 +384,17 @@ class Book:
             method=self._ticked(), study="tool", tow_id=tow["tow_id"]
         )
         at_read = rows.filter(speed=AS_READ)["cw_kg_m"].to_numpy()
-        sentence = self.say("slide.ticks_said").format(
+        sentence = self.say(
+            "{tow}: the highest of {n} curves lies {spread} above the lowest (Cw at the "
+            "declared speed, log as read, {method}). On average over the other choices: "
+            "{effects}.",
             tow=tow["label"],
             spread=_share(float(at_read.max() / at_read.min()) - 1.0),
             n=len(at_read),
             method=self.method(self._ticked()),
             effects=self._effects(dict(effects.select("option", "cw_effect_ratio").rows())),
         )
-        title = self.say("slide.ticks").format(tow=tow["label"])
+        title = self.say("{tow}: all combinations of the four options of 2015", tow=tow["label"])
         yield Slide(f"ticks {tow['name']}", "slide_ticks", rows, title, [sentence])
 
     def _ticked(self) -> str:
@@ -361,11 +410,12 @@ class Book:
             tows: over how many; told of those over fewer than the others.
         """
         most = max(tows.values()) if tows else 0
-        fewer = {o: f" ({self._number(n, 'tow')})" for o, n in (tows or {}).items() if n < most}
+        fewer = {o: f" ({self._tows(n)})" for o, n in (tows or {}).items() if n < most}
         known = {o: e - 1.0 for o, e in of.items() if e is not None and o in (*TICKS, *SPEEDS)}
         largest = sorted(known, key=lambda option: -abs(known[option]))
         return ", ".join(
-            f"{self.say(f'code.{o}')} {self._signed(known[o])}{fewer.get(o, '')}" for o in largest
+            f"{self.say(labels.code(o))} {self._signed(known[o])}{fewer.get(o, '')}"
+            for o in largest
         )
 
     def tick_effects(self) -> Iterator[Slide]:
@@ -374,15 +424,17 @@ class Book:
         own = rows.filter(method=self._ticked())
         if own.is_empty():
             return
-        sentence = self.say("slide.tick_effects_said").format(
+        sentence = self.say(
+            "The median change of Cw over {tows}: {effects} ({method}). The bar holds the "
+            "middle 90 % of the tows.",
             method=self.method(self._ticked()),
-            tows=self._number(max(own["tows"].to_list()), "tow"),
+            tows=self._tows(max(own["tows"].to_list())),
             effects=self._effects(
                 dict(own.select("option", "median_ratio").rows()),
                 dict(own.select("option", "tows").rows()),
             ),
         )
-        title = self.say("slide.tick_effects")
+        title = self.say("What the options of 2015 do to all boats")
         yield Slide("ticks fleet", "slide_tick_effects", rows, title, [sentence])
 
     def _years(self, own: pl.DataFrame) -> list[str]:
@@ -397,7 +449,9 @@ class Book:
         )
         spread = {(m, c): (n, value) for m, c, n, value in crews.sort("crew").iter_rows()}
         said = [
-            self.say("slide.years").format(
+            self.say(
+                "{crew}: Cw at {speed} m/s spreads by {after_spread} {after}, {before_spread} "
+                "{before} (highest / lowest of {n}).",
                 speed=self._digits(own["standard_speed_m_s"][0]),
                 crew=crew,
                 n=n,
@@ -409,29 +463,30 @@ class Book:
             for (method, crew), (n, value) in spread.items()
             if method == after
         ]
-        return said or [self.say("slide.one_tow_a_crew")]
+        return said or [self.say("Every crew was towed once: there is nothing to compare.")]
 
     def _digits(self, value: float | None) -> str:
         """A number with two decimals, as this language writes it."""
-        text = "-" if value is None else f"{value:.2f}"
-        return text.replace(".", self.say("decimal_mark"))
+        return "-" if value is None else self.say("{:.2f}", value)
 
     def _signed(self, ratio: float) -> str:
         """A change in per cent with one decimal, as this language writes it."""
-        return f"{100 * ratio:+z.1f} %".replace(".", self.say("decimal_mark"))
+        return self.say("{:+z.1f} %", 100 * ratio)
 
 
 def _low_power() -> pl.Expr:
     return pl.col("crew_class").replace_strict({"H": 70.0, "D": 40.0}, return_dtype=pl.Float64)
 
 
-def _direction(line: Row) -> str:
+def _verdict(line: Row) -> Sentence:
     """Whether a slope's interval leaves out zero, and on which side; else whether it could."""
     if line["slope_lo"] > 0:
-        return "rises"
+        return say("{y} rises with {x}")
     if line["slope_hi"] < 0:
-        return "falls"
-    return "unclear" if (line["r2"] or 0.0) >= CLEAR_R2 else "none"
+        return say("{y} falls with {x}")
+    if (line["r2"] or 0.0) >= CLEAR_R2:
+        return say("too few boats to tell whether {y} goes with {x}")
+    return say("no relation seen between {y} and {x}")
 
 
 def _share(ratio: float | None) -> str:

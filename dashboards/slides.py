@@ -10,11 +10,11 @@ import altair as alt
 import pypdf
 import vl_convert
 
-from dashboards import drawn
+from dashboards import drawn, labels
 from dashboards.audit_plots import file_name
 from dashboards.figures import FIGURES
 from dashboards.slide_book import THE_PRESENTATION, Asked, Slide, slides
-from pipeline.words.catalogue import speaker
+from pipeline.messages import speaker
 from warehouse.queries.views import Views
 from warehouse.store.database import open_results
 from warehouse.store.files import written_beside
@@ -73,7 +73,10 @@ def _put(path: Path, content: bytes) -> Path:
 
 def _svg(slide: Slide, language: str, simulated: bool) -> str:
     say = speaker(language)
-    said = [*slide.said, *([say("simulated")] if simulated else [])]
+    said = [
+        *slide.said,
+        *([say(labels.SIMULATED)] if simulated else []),
+    ]
     lines = [line for text in said for line in textwrap.wrap(text, WIDTH_OF_TEXT)]
     title = alt.Title(slide.title, subtitle=lines, anchor="start", offset=12)
     chart = FIGURES[slide.figure](slide.rows, say).properties(title=title, padding=MARGIN)

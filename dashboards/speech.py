@@ -1,15 +1,14 @@
 """Numbers and texts as people of one language write them."""
 
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Final, TypeAlias, cast
 
 import polars as pl
 from markupsafe import Markup, escape
 
+from dashboards import labels
+from pipeline.messages import DECIMALS, speaker
 from pipeline.races.race import FATIGUE_REFERENCE
-from pipeline.words import DECIMALS
-from pipeline.words.catalogue import speaker, unbroken
 
 MINUS: Final = "\u2212"
 
@@ -21,13 +20,15 @@ class Speech:
         self.language = language
         self.say = speaker(language)
         self.decimal = DECIMALS[language]
-        self.text: Callable[[str], Markup] = cache(lambda key: escape(self.say(key)))
-        """A text, escaped."""
         self._marks = str.maketrans({".": self.decimal, "-": MINUS})
 
-    def unbroken(self, key: str) -> str:
+    def text(self, text: str) -> Markup:
+        """A text, escaped."""
+        return escape(self.say(text))
+
+    def unbroken(self, heading: str) -> str:
         """A heading without the places where it may be broken."""
-        return unbroken(self.say(key))
+        return labels.unbroken(self.say(heading))
 
     def number(self, value: float, digits: int, sign: str = "") -> str:
         """A number with so many decimals; `sign` is "+" where a plus is to be shown."""
@@ -46,7 +47,7 @@ class Speech:
         """An edition as people call it: a draft by its method."""
         if not edition.startswith("concept-"):
             return edition
-        return f"{self.say('draft')}: {self.say('method.' + edition.removeprefix('concept-'))}"
+        return f"{self.say('draft')}: {self.say(labels.method(edition.removeprefix('concept-')))}"
 
 
 def duration(seconds: float) -> str:
@@ -65,7 +66,11 @@ def stretched_fatigue(times_s: pl.Series, speech: Speech) -> str:
         name: duration(cast(float, time))
         for name, time in zip(("low", "high"), (times_s.min(), times_s.max()), strict=True)
     }
-    return speech.say("fatigue_stretched").format(**ends)
+    return speech.say(
+        " Where another wins, that rests in part on the correction for fatigue, which "
+        "was made for 2 to 3 hours and is used outside them here ({low} to {high}).",
+        **ends,
+    )
 
 
 Headline: TypeAlias = Callable[[Speech], str]

@@ -25,6 +25,7 @@ import dashboards.report_page
 from assets.progress import Progress
 from assets.report import Done, Report
 from assets.stale import Stale
+from hatch_build import compile_catalogues
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.tables.schemas import TABLES
@@ -33,6 +34,8 @@ from warehouse.derive.graph import DATABASE, METHOD, STEPS
 from warehouse.intake import seasons as intake
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
+
+compile_catalogues(Path(__file__).parents[1])
 
 # The same examples every time, whatever the machine's speed.
 settings.register_profile("repeatable", deadline=None, derandomize=True, max_examples=50)

@@ -5,16 +5,24 @@ from typing import Final
 
 import segno
 
-from dashboards.answer import crew_name
+from dashboards import labels
+from dashboards.answer import crew_name, interval_in_words
 from dashboards.documents import page, pdf
 from dashboards.pictures import curve_picture
 from dashboards.speech import Speech
+from pipeline.messages import pgettext, say
 from pipeline.tables.row import Row
 from warehouse.queries.documents import certificate_lines, curve_of
 from warehouse.queries.views import Views
 from warehouse.store.unforeseen import Border
 
-READING: Final = ("certificate_read_cw", "certificate_read_curve", "certificate_read_power")
+READING: Final = (
+    say("Cw is the tow force divided by the speed squared. The lower, the easier the boat runs."),
+    say("Cw = A / (1 - (v/B)²) holds from 85 to 115 % of the declared speed."),
+    say(
+        "The power is what each rower gives on average at that speed, in still water and still air."
+    ),
+)
 
 
 def certificates(
@@ -46,16 +54,16 @@ def certificates(
     made_by = lines[0]["code_version"] or about.get("code_version", "")
     content = {
         "language": language,
-        "title": f"{say('certificate')} {fsn_no or ''} {edition}".replace("  ", " "),
-        "kind": f"{say('certificate')} · {speech.edition(edition)}",
-        "simulated": say("simulated") if views.simulated(edition) else "",
-        "curve_title": say("boat_curve"),
-        "power_title": say("certificate_power"),
-        "power_head": [say("speed_short"), say("cw"), say("certificate_watts")],
-        "reading_title": say("certificate_reading"),
-        "reading": [say(key) for key in READING],
-        "checking_title": say("certificate_checking"),
-        "footing": f"{say('made_by')} {made_by}",
+        "title": f"{say('Certificate')} {fsn_no or ''} {edition}".replace("  ", " "),
+        "kind": f"{say('Certificate')} · {speech.edition(edition)}",
+        "simulated": say(labels.SIMULATED) if views.simulated(edition) else "",
+        "curve_title": say("Resistance curve"),
+        "power_title": say("Power at speed"),
+        "power_head": [say("Speed [m/s]"), say("Cw [kg/m]"), say("W/rower")],
+        "reading_title": say("How to read this certificate"),
+        "reading": [say(text) for text in READING],
+        "checking_title": say("How to check it"),
+        "footing": f"{say('Made by code')} {made_by}",
         "certificates": made,
     }
     return page("certificate.html.j2", content) if as_page else pdf("certificate.typ", content)
@@ -70,21 +78,32 @@ def _one(line: Row, speech: Speech) -> dict[str, object]:
         "subtitle": " · ".join(filter(None, (line["fsn_no"], line["boat_type"], crew))),
         "code": code,
         "qr": _qr(line, code),
-        "headline": say("certificate_headline").format(
-            cw=number(line["cw_kg_m"], 2), speed=number(line["declared_speed_m_s"], 2)
+        "headline": say(
+            "Cw {cw} kg/m at {speed} m/s",
+            cw=number(line["cw_kg_m"], 2),
+            speed=number(line["declared_speed_m_s"], 2),
         ),
         "interval": _interval(line, speech),
         "caution": _caution(line, speech),
         "left": _numbers(line, speech),
         "right": _terms(line, speech),
         "curve": str(curve_picture(curve, line, speech, crew)),
-        "curve_note": say("curve_caption"),
-        "curve_alt": f"{say('boat_curve')} {line['fsn_no']} {crew}",
+        "curve_note": say(
+            "Cw against speed, from A and B; the bar is the interval at the declared speed"
+        ),
+        "curve_alt": f"{say('Resistance curve')} {line['fsn_no']} {crew}",
         "powers": [
             [number(speed, 2), number(cw, 2), number(power, 1)] for speed, cw, power in curve
         ],
-        "checking": say("certificate_check" if code else "certificate_uncheckable").format(
-            code=code, fsn_no=line["fsn_no"], edition=line["edition"]
+        "checking": say(
+            "Look {fsn_no} up in the register of edition {edition}: the same verification "
+            "code {code} must be there, with the same numbers. The QR code holds edition, "
+            "number, crew and code. If something is wrong, tell the committee."
+            if code
+            else "This line is not published and has no verification code.",
+            code=code,
+            fsn_no=line["fsn_no"],
+            edition=line["edition"],
         ),
     }
 
@@ -100,16 +119,19 @@ def _qr(line: Row, code: str) -> str:
 def _caution(line: Row, speech: Speech) -> str:
     """Why a line is no valid certificate; nothing where it is one."""
     if not line["verification_code"]:
-        return speech.say("certificate_draft")
-    return speech.say("certificate_expired") if line["status"] == "expired" else ""
+        return speech.say("Draft: not decided, and so no valid certificate.")
+    return (
+        speech.say("Expired: this certificate is no longer valid.")
+        if line["status"] == "expired"
+        else ""
+    )
 
 
 def _interval(line: Row, speech: Speech) -> str:
     low, high = line["cw_lo_kg_m"], line["cw_hi_kg_m"]
     if low is None or high is None:
-        return speech.say("certificate_no_interval")
-    key = "answer_interval" if line["log_known"] else "answer_spread"
-    return speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
+        return speech.say("The uncertainty of this number is not known.")
+    return interval_in_words(low, high, line["log_known"], speech)
 
 
 def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:
@@ -124,23 +146,23 @@ def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:
 
 def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str]:
     """A measure with its unit, by the heading of its column."""
-    name = speech.unbroken(f"column.{column}")
+    name = speech.unbroken(labels.column(column))
     value = line[column]
     return name, "\u2013" if value is None else speech.number(value, digits)
 
 
 def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
     say = speech.say
-    method = say(f"method.{line['method']}") if line["method"] else None
+    method = say(labels.method(line["method"])) if line["method"] else None
     if line["basis"] == "printed_rebased":
-        method = f"{method} ({say('code.printed_rebased')})"
+        method = f"{method} ({say(labels.code('printed_rebased'))})"
     rows = [
-        ("certificate_tow", line["tow_date"]),
-        ("column.valid_from", line["valid_from"]),
-        ("certificate_until", line["valid_until"]),
-        ("column.edition", speech.edition(line["edition"])),
-        ("column.method", method),
-        ("column.decision", line["decision"]),
-        ("column.empty_thwart", line["empty_thwart"] or say("code.none")),
+        (say("Tow of"), line["tow_date"]),
+        (say(labels.column("valid_from")), line["valid_from"]),
+        (say(pgettext("certificate", "Valid until")), line["valid_until"]),
+        (say(labels.column("edition")), speech.edition(line["edition"])),
+        (say(labels.column("method")), method),
+        (say(labels.column("decision")), line["decision"]),
+        (say(labels.column("empty_thwart")), line["empty_thwart"] or say(labels.code("none"))),
     ]
-    return [(say(key), "\u2013" if value is None else str(value)) for key, value in rows]
+    return [(name, "\u2013" if value is None else str(value)) for name, value in rows]

@@ -8,11 +8,11 @@ from typing import Any, Final
 
 import polars as pl
 
-from dashboards import headlines
+from dashboards import headlines, labels
 from dashboards.documents import pdf
 from dashboards.speech import Speech, stretched_fatigue
+from pipeline.messages import in_per_cent, pgettext, say
 from pipeline.register.register import draft_name
-from pipeline.words import in_per_cent
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
@@ -39,25 +39,44 @@ def proposal(
     titles = {method: known.get(method).titled(language) for method in methods}
     content = {
         "language": language,
-        "title": say("proposal_title" if len(methods) == 1 else "proposal_ballot").format(
-            method="; ".join(titles.values())
+        "title": say(
+            "Proposal: {method}" if len(methods) == 1 else "Ballot: {method}",
+            method="; ".join(titles.values()),
         ),
-        "kind": say("proposal"),
-        "simulated": say("simulated") if about.get("simulated") == "true" else "",
+        "kind": say("Proposal to the members"),
+        "simulated": say(labels.SIMULATED) if about.get("simulated") == "true" else "",
         "opening": [
-            say("proposal_opening").format(old=speech.edition(against)),
-            say("proposal_why"),
+            say(
+                "This document shows what happens to the register if all tow tests are "
+                "computed by the proposed method, compared with: {old}.",
+                old=speech.edition(against),
+            ),
+            say(
+                "Why: through the years measuring and computing was done in several ways. Only "
+                "with one method for all seasons can boats be compared fairly. Who gains or "
+                "loses is no reason for or against a method."
+            ),
         ],
         "parts": [
             *([_ballot(lines, speech)] if len(methods) > 1 else []),
             *(part for method in methods for part in _parts(views, method, lines[method], speech)),
-            _part(say("proposal_check"), say("proposal_checking")),
+            _part(
+                say("Checking, and objecting"),
+                say(
+                    "Every boat has a page on the site with the old and new number, the causes, "
+                    "and the measurements below. If something is wrong, tell the committee before "
+                    "the vote, with the FSN number and what you think it should be."
+                ),
+            ),
         ],
         "annexes": [
-            {"title": f"{say('proposal_annex')}: {title}", "text": known.text(method)}
+            {
+                "title": f"{say('Annex: the file of the method')}: {title}",
+                "text": known.text(method),
+            }
             for method, title in titles.items()
         ],
-        "footing": f"{say('made_by')} {about.get('code_version', '')}",
+        "footing": f"{say('Made by code')} {about.get('code_version', '')}",
     }
     return pdf("proposal.typ", content)
 
@@ -76,18 +95,19 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
         known = changes.drop_nulls("cw_ratio")
         rows.append(
             [
-                speech.say(f"method.{method}"),
+                speech.say(labels.method(method)),
                 str(changes.filter(change="changed").height),
                 _beyond(changes["exceeds_interval"], speech),
                 *(speech.per_cent(ratio) for ratio in _middle_and_ends(known)),
             ]
         )
     heads = (
-        *("method", "code.changed", "column.exceeds_interval"),
-        *("column.median", "column.lowest_ratio", "column.highest_ratio"),
+        say("Method"),
+        labels.code("changed"),
+        *map(labels.column, ("exceeds_interval", "median", "lowest_ratio", "highest_ratio")),
     )
     return _part(
-        speech.say("proposal_side_by_side"), head=[*map(speech.unbroken, heads)], rows=rows
+        speech.say("The methods side by side"), head=[*map(speech.unbroken, heads)], rows=rows
     )
 
 
@@ -102,27 +122,41 @@ def _middle_and_ends(changes: pl.DataFrame) -> tuple[float, float, float]:
 def _beyond(exceeds: pl.Series, speech: Speech) -> str:
     """How many lines change by more than their uncertainty; none of them need be known."""
     known = exceeds.drop_nulls()
-    return speech.say("unknown_word") if known.is_empty() else str(known.sum())
+    return speech.say("not known") if known.is_empty() else str(known.sum())
 
 
 def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
     """What a method changes, why, for whom, in races, and what it leaves undecided."""
     say = speech.say
     yield _part(
-        say("proposal_what").format(method=say(f"method.{method}")),
+        say("What changes: {method}", method=say(labels.method(method))),
         headlines.changes(lines)(speech),
-        head=[say("column.step"), say("proposal_mean"), say("column.number")],
+        head=[say(labels.column("step")), say("Mean effect on Cw"), say(labels.column("number"))],
         rows=_steps(lines, speech),
     )
     yield _types(lines, speech)
     yield _boats(lines, speech)
     yield _races(views, lines, speech)
     unknown = int(lines["exceeds_interval"].null_count())
-    sure = say("proposal_unknown").format(unknown=unknown) if unknown else say("proposal_known")
+    sure = (
+        say(
+            "Lines of which it cannot be told whether the change is larger than the "
+            "uncertainty: {unknown}.",
+            unknown=unknown,
+        )
+        if unknown
+        else say("Of every line it can be told whether the change is larger than the uncertainty.")
+    )
     flagged = views.flagged_boats().filter(method=method)["tow_id"].implode()
     voted = lines.drop_nulls("new_cw_kg_m").select(pl.col("new_tow_id").is_in(flagged))
-    flags = say("proposal_unsure").format(flagged=voted.to_series().sum(), lines=voted.height)
-    yield _part(say("proposal_undecided"), sure, flags)
+    flags = say(
+        "Lines with a flag that the committee still has to look at: {flagged} of "
+        "{lines}. Old numbers often have too small an uncertainty: the error of the "
+        "log is not in it.",
+        flagged=voted.to_series().sum(),
+        lines=voted.height,
+    )
+    yield _part(say("What stays undecided"), sure, flags)
 
 
 def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
@@ -133,7 +167,7 @@ def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
             factors[cause.get("step", cause["cause"])].append(log(cause["factor"]))
     means = {name: sum(values) / len(values) for name, values in factors.items()}
     return [
-        [speech.say(f"code.{name}"), speech.per_cent(exp(means[name])), str(len(factors[name]))]
+        [speech.say(labels.code(name)), speech.per_cent(exp(means[name])), str(len(factors[name]))]
         for name in sorted(means, key=lambda name: -abs(means[name]))
     ]
 
@@ -153,16 +187,22 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
         .sort("boat_type", "crew_class", descending=[False, True])
     )
     heads = (
-        *("type", "column.number", "proposal_median"),
-        *("column.gain_in_two_hours_s", "column.exceeds_interval"),
+        say("Type"),
+        labels.column("number"),
+        say("Cw, median"),
+        *map(labels.column, ("gain_in_two_hours_s", "exceeds_interval")),
     )
     return _part(
-        speech.say("proposal_types"),
-        speech.say("proposal_seconds"),
+        speech.say("For whom: by type"),
+        speech.say(
+            "In 2 h: seconds that a crew may take longer (+) over a race of two hours at "
+            "the same power, or has to be faster (\u2212). Last column: how many lines change "
+            "by more than the uncertainty."
+        ),
         head=[*map(speech.unbroken, heads)],
         rows=[
             [
-                f"{speech.say(f'code.{boat_type}')}, {speech.say(f'crew.{crew_class}')}",
+                f"{speech.say(labels.code(boat_type))}, {speech.say(labels.crew(crew_class))}",
                 str(number),
                 speech.per_cent(ratio),
                 speech.number(seconds, 0, "+"),
@@ -177,11 +217,14 @@ def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
     """The boats that change most, up or down."""
     shown = largest_changes(lines).head(LARGEST)
     heads = (
-        *("boat", "column.old_cw_kg_m", "column.new_cw_kg_m", "proposal_change"),
-        *("column.gain_in_two_hours_s", "column.exceeds_interval"),
+        say("Boat"),
+        labels.column("old_cw_kg_m"),
+        labels.column("new_cw_kg_m"),
+        pgettext("proposal", "Change"),
+        *map(labels.column, ("gain_in_two_hours_s", "exceeds_interval")),
     )
     return _part(
-        speech.say("proposal_boats"),
+        speech.say("The largest changes"),
         head=[*map(speech.unbroken, heads)],
         rows=[_boat(line, speech) for line in shown.to_dicts()],
     )
@@ -195,7 +238,7 @@ def largest_changes(lines: pl.DataFrame) -> pl.DataFrame:
 
 def _boat(line: dict[str, Any], speech: Speech) -> list[str]:
     crew = f"{line['rowers']}{line['crew_class']}"
-    beyond = {None: "unknown_word", True: "yes", False: "no"}[line["exceeds_interval"]]
+    beyond = {None: say("not known"), True: say("yes"), False: say("no")}[line["exceeds_interval"]]
     return [
         " · ".join(filter(None, (line["name"], line["fsn_no"], crew))),
         speech.number(line["old_cw_kg_m"], 2),
@@ -211,22 +254,27 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
     say = speech.say
     winners, moved = replayed(views, lines["from_edition"][0], lines["to_edition"][0])
     if winners.is_empty():
-        return _part(say("races"), say("no_races"))
+        return _part(say("Races"), say("The archive holds no races to compute again."))
     last = winners.filter(pl.col("race_date").dt.year() == winners["race_date"].dt.year().max())
     names = dict(views.table("boats").select("fsn_no", "name").rows())
     return _part(
-        say("proposal_races").format(year=last["race_date"][0].year),
+        say("The races of {year}", year=last["race_date"][0].year),
         *filter(None, [stretched_fatigue(_times(views, last), speech).strip()]),
-        say("proposal_moved").format(moved=moved[0], results=moved[1]),
+        say(
+            "Of the {results} results of crews with a valid line on that day in both, "
+            "{moved} change place. The winners of the last year:",
+            moved=moved[0],
+            results=moved[1],
+        ),
         head=[
-            say("column.race"),
-            say("proposal_old"),
-            say("proposal_new"),
-            say("proposal_chance"),
+            say(labels.column("race")),
+            say("Old"),
+            say("New"),
+            say("Chance of another"),
         ],
         rows=[
             [
-                f"{race['race']} {race['race_date']}, {say('crew.' + race['crew_class'])}",
+                f"{race['race']} {race['race_date']}, {say(labels.crew(race['crew_class']))}",
                 names.get(race["old_winner"]) or "\u2013",
                 names.get(race["new_winner"]) or "\u2013",
                 _chance(race["change_probability"], speech),
@@ -244,4 +292,4 @@ def _times(views: Views, winners: pl.DataFrame) -> pl.Series:
 
 
 def _chance(chance: float | None, speech: Speech) -> str:
-    return speech.say("unknown_word") if chance is None else in_per_cent(chance)
+    return speech.say("not known") if chance is None else in_per_cent(chance)

@@ -24,7 +24,7 @@ from dashboards.figures import (
     tool,
     types,
 )
-from pipeline.words.catalogue import Say, speaker
+from pipeline.messages import Say, speaker
 
 alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import altair as alt
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.style import (
     BACK,
     GREY,
@@ -20,10 +21,10 @@ from dashboards.figures.style import (
     number,
     tips,
 )
+from pipeline.messages import Say
 from pipeline.method.definition import COMPLETE
 from pipeline.steps.window import CUT_REASONS
 from pipeline.uncertainty.propagation import COMPONENTS
-from pipeline.words.catalogue import Say
 
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 
@@ -31,11 +32,13 @@ DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 def _directions(say: Say) -> tuple[alt.Color, alt.Shape]:
     """Out and back apart by colour and shape, in one legend."""
     legend = alt.Legend(
-        labelExpr=DIRECTION.format(out=say("code.direction.1"), back=say("code.direction.-1"))
+        labelExpr=DIRECTION.format(
+            out=say(labels.code("direction.1")), back=say(labels.code("direction.-1"))
+        )
     )
     inks = alt.Scale(domain=[1, -1], range=[OUT, BACK])
     shapes = alt.Scale(domain=[1, -1], range=["circle", "triangle-up"])
-    title = say("column.direction")
+    title = say(labels.column("direction"))
     return (
         alt.Color("direction:N", title=title, scale=inks, legend=legend),
         alt.Shape("direction:N", title=title, scale=shapes, legend=legend),
@@ -50,15 +53,15 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> Drawing:
             cw_hi_kg_m, run, direction, used`, and the `interval` of the method.
         say: gives texts.
     """
-    x = number(alt.X, "speed_m_s", say("speed"))
-    y = number(alt.Y, "cw_kg_m", say("cw"))
+    x = number(alt.X, "speed_m_s", say("Speed through water [m/s]"))
+    y = number(alt.Y, "cw_kg_m", say("Cw [kg/m]"))
     whole = alt.Chart(frame)
     line = whole.transform_filter("datum.kind == 'line'")
     point = whole.transform_filter("datum.kind == 'point'")
     declared = whole.transform_filter("datum.kind == 'declared'")
-    low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
-    point_tips = tips(say, "run:O", "speed_m_s:Q", ("cw_kg_m:Q", say("cw")))
-    declared_tips = tips(say, ("speed_m_s:Q", say("tow_speed")), "cw_kg_m:Q")
+    low, high = alt.Y("cw_lo_kg_m:Q", title=say("Cw [kg/m]")), alt.Y2("cw_hi_kg_m:Q")
+    point_tips = tips(say, "run:O", "speed_m_s:Q", ("cw_kg_m:Q", say("Cw [kg/m]")))
+    declared_tips = tips(say, ("speed_m_s:Q", say("Declared speed [m/s]")), "cw_kg_m:Q")
     ink, form = _directions(say)
     dash, complete = interval_dash(say), f"datum.interval == '{COMPLETE}'"
     full, light = alt.value(0.35), alt.value(0.12)
@@ -90,8 +93,8 @@ def history(frame: pl.DataFrame, say: Say) -> Drawing:
         frame: rows of `curves` with `tow` and the `interval` of their method.
         say: gives texts.
     """
-    base = alt.Chart(frame).encode(alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)))
-    value, ends = ("cw_kg_m", say("cw_declared")), ("cw_lo_kg_m", "cw_hi_kg_m")
+    base = alt.Chart(frame).encode(alt.X("tow:O", title=say("Tow"), axis=alt.Axis(labelAngle=-30)))
+    value, ends = ("cw_kg_m", say("Cw at the declared speed [kg/m]")), ("cw_lo_kg_m", "cw_hi_kg_m")
     more = ("tow:N", "a_kg_m:Q", "b_m_s:Q")
     bars = by_method(base, say, value, ends, more, dash=interval_dash(say))
     return alt.layer(*bars).properties(width=WIDTH, height=HEIGHT)
@@ -110,7 +113,7 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
         (("force_n", OKABE_ITO[2], [1, 0]),),
         (("wind_m_s", OKABE_ITO[6], [1, 0]),),
     ]
-    titles = (say("speed_short"), say("column.force_n"), say("wind"))
+    titles = (say("Speed [m/s]"), say(labels.column("force_n")), say("Apparent wind [m/s]"))
     first, *others = zip(rows, titles, strict=True)
     return alt.vconcat(
         _trace_row(frame, say, *first, _cut_reasons(say)),
@@ -122,7 +125,7 @@ def _cut_reasons(say: Say) -> list[alt.Chart]:
     """Why the rest of a run was cut, in words, a line a reason, in the room above the traces."""
     text = "datum.cut_reason"
     for code in CUT_REASONS:
-        text = f"replace({text}, '{code}', {json.dumps(say(f'code.{code}'))})"
+        text = f"replace({text}, '{code}', {json.dumps(say(labels.code(code)))})"
     why = (
         alt.Chart()
         .transform_filter("datum.kind == 'window' && datum.cut_reason")
@@ -161,7 +164,7 @@ def _trace_row(
     title: str,
     above: Sequence[alt.Chart] = (),
 ) -> Drawing:
-    x = alt.X("second:Q", title=say("time"))
+    x = alt.X("second:Q", title=say("Time in the run [s]"))
     height = 110 + (REASONS_PX if above else 0)
     scale = alt.Scale(zero=False, range=[height, REASONS_PX if above else 0])
     lines = [
@@ -174,7 +177,7 @@ def _trace_row(
     return (
         alt.layer(*_cut_parts(), *lines, *above, data=frame)
         .properties(width=150, height=height)
-        .facet(alt.Facet("run:O", title=say("column.run")), columns=6)
+        .facet(alt.Facet("run:O", title=say(labels.column("run"))), columns=6)
     )
 
 
@@ -185,15 +188,15 @@ def out_and_back(frame: pl.DataFrame, say: Say) -> Drawing:
         frame: rows with `stage` (gross or net), `speed_m_s, cw_kg_m, direction, run`.
         say: gives texts.
     """
-    label = f"datum.value == 'gross' ? '{say('code.gross')}' : '{say('code.net')}'"
+    label = f"datum.value == 'gross' ? '{say(labels.code('gross'))}' : '{say(labels.code('net'))}'"
     return (
         alt.Chart(frame)
         .mark_point(size=80, filled=True, opacity=0.9)
         .encode(
-            number(alt.X, "speed_m_s", say("speed")),
-            number(alt.Y, "cw_kg_m", say("cw")),
+            number(alt.X, "speed_m_s", say("Speed through water [m/s]")),
+            number(alt.Y, "cw_kg_m", say("Cw [kg/m]")),
             *_directions(say),
-            tooltip=tips(say, "run:O", ("cw_kg_m:Q", say("cw"))),
+            tooltip=tips(say, "run:O", ("cw_kg_m:Q", say("Cw [kg/m]"))),
         )
         .properties(width=280, height=240)
         .facet(alt.Facet("stage:N", title=None, header=alt.Header(labelExpr=label)), columns=2)
@@ -214,11 +217,11 @@ def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
         .encode(
             alt.X(
                 "wind_angle_deg:Q",
-                title=say("wind_angle"),
+                title=say("Wind angle, 0 from ahead [deg]"),
                 scale=angles,
                 axis=alt.Axis(values=[-180, -135, -90, -45, 0, 45, 90, 135, 180]),
             ),
-            number(alt.Y, "wind_m_s", say("wind"), zero=True),
+            number(alt.Y, "wind_m_s", say("Apparent wind [m/s]"), zero=True),
             *_directions(say),
             tooltip=tips(say, "run:O", "wind_m_s:Q"),
         )
@@ -233,10 +236,10 @@ def budget(frame: pl.DataFrame, say: Say) -> alt.Chart:
         alt.Chart(frame)
         .mark_bar(color=OKABE_ITO[0])
         .encode(
-            alt.X("u_ratio:Q", title=say("u_ratio")),
+            alt.X("u_ratio:Q", title=say("Standard uncertainty / Cw")),
             alt.Y(
                 "component:N",
-                title=say("column.component"),
+                title=say(labels.column("component")),
                 sort="-x",
                 axis=alt.Axis(labelExpr=label, labelLimit=220),
             ),

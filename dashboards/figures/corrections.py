@@ -3,6 +3,7 @@
 import altair as alt
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.style import (
     HEIGHT,
     OKABE_ITO,
@@ -14,20 +15,20 @@ from dashboards.figures.style import (
     number,
     tips,
 )
+from pipeline.messages import Say
 from pipeline.studies.ladder import STEP_ORDER
 from pipeline.studies.options import CHOICES
-from pipeline.words.catalogue import Say
 
 
 def log_factors(frame: pl.DataFrame, say: Say) -> Drawing:
     """True speed / log speed per season and method, with 95 % intervals; `frame` is the table."""
-    value = ("factor", say("column.factor"))
+    value = ("factor", say(labels.column("factor")))
     return _per_season(frame, say, value, ("lo", "hi"), ("season:O", "source:N"))
 
 
 def season_change(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw re-based / as published: median and range per season; `frame` is `season_changes`."""
-    value, ends = ("median_ratio", say("ratio_cw")), ("lowest_ratio", "highest_ratio")
+    value, ends = ("median_ratio", say("Cw after / Cw before")), ("lowest_ratio", "highest_ratio")
     return _per_season(frame, say, value, ends, ("season:O", "tows:Q"))
 
 
@@ -38,7 +39,7 @@ def _per_season(
     ends: tuple[str, str],
     more: tuple[str, ...],
 ) -> Drawing:
-    base = alt.Chart(frame).encode(alt.X("season:O", title=say("column.season")))
+    base = alt.Chart(frame).encode(alt.X("season:O", title=say(labels.column("season"))))
     layers = by_method(base, say, value, ends, more)
     return alt.layer(at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
@@ -55,11 +56,11 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart(frame).encode(
         alt.X(
             "step:N",
-            title=say("column.step"),
+            title=say(labels.column("step")),
             sort=order,
             axis=alt.Axis(labelExpr=label, labelAngle=-45, orient="top"),
         ),
-        alt.Y("season:O", title=say("column.season")),
+        alt.Y("season:O", title=say(labels.column("season"))),
     )
     shades = alt.Scale(
         domain=[0.8, 1.0, 1.2],
@@ -69,7 +70,7 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     )
     return alt.layer(
         base.mark_rect(stroke="#dddddd").encode(
-            alt.Color("factor:Q", title=say("column.factor"), scale=shades),
+            alt.Color("factor:Q", title=say(labels.column("factor")), scale=shades),
             tooltip=tips(say, "season:O", "step:N", "factor:Q"),
         ),
         base.mark_text(color="black").encode(alt.Text("factor:Q", format=".3f")),
@@ -81,16 +82,18 @@ def sensitivity_study(frame: pl.DataFrame, say: Say) -> Drawing:
     label = named([c.name for c in CHOICES], say)
     base = alt.Chart(frame).encode(
         alt.Y(
-            "option:N", title=say("column.option"), axis=alt.Axis(labelExpr=label, labelLimit=260)
+            "option:N",
+            title=say(labels.column("option")),
+            axis=alt.Axis(labelExpr=label, labelLimit=260),
         )
     )
     return alt.layer(
         at_one(frame, "x"),
         base.mark_rule(strokeWidth=3, color=OKABE_ITO[0]).encode(
-            number(alt.X, "lo_ratio", say("ratio_cw")), alt.X2("hi_ratio:Q")
+            number(alt.X, "lo_ratio", say("Cw after / Cw before")), alt.X2("hi_ratio:Q")
         ),
         base.mark_point(filled=True, size=80, color="black", opacity=1).encode(
-            number(alt.X, "median_ratio", say("ratio_cw")),
+            number(alt.X, "median_ratio", say("Cw after / Cw before")),
             tooltip=tips(say, "option:N", "median_ratio:Q"),
         ),
     ).properties(width=480, height=220)

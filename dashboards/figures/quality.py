@@ -3,8 +3,9 @@
 import altair as alt
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.style import OKABE_ITO, WIDTH, named, tips
-from pipeline.words.catalogue import Say
+from pipeline.messages import Say
 
 STATUSES = ["accepted", "flagged", "rejected"]
 
@@ -16,11 +17,11 @@ def statuses(frame: pl.DataFrame, say: Say) -> alt.Chart:
         alt.Chart(frame)
         .mark_bar(stroke="black", strokeWidth=0.5)
         .encode(
-            alt.X("season:O", title=say("column.season")),
-            alt.Y("number:Q", title=say("column.number")),
+            alt.X("season:O", title=say(labels.column("season"))),
+            alt.Y("number:Q", title=say(labels.column("number"))),
             alt.Color(
                 "status:N",
-                title=say("column.status"),
+                title=say(labels.column("status")),
                 scale=shades,
                 legend=alt.Legend(labelExpr=named(STATUSES, say)),
             ),

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import altair as alt
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.style import (
     GREY,
     HEIGHT,
@@ -21,7 +22,7 @@ from dashboards.figures.style import (
     tips,
     type_legend,
 )
-from pipeline.words.catalogue import Say
+from pipeline.messages import Say
 
 
 def spread(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -29,11 +30,11 @@ def spread(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart(frame).encode(
         alt.X(
             "scope:N",
-            title=say("column.era"),
+            title=say(labels.column("era")),
             axis=alt.Axis(labelAngle=0, labelExpr=named(["all"], say)),
         )
     )
-    value, more = ("sd_ratio", say("sd_ratio")), ("scope:N", "n_pairs:Q")
+    value, more = ("sd_ratio", say("Standard deviation / Cw")), ("scope:N", "n_pairs:Q")
     layers = by_method(base, say, value, ("lo", "hi"), more, zero=True)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
 
@@ -41,9 +42,15 @@ def spread(frame: pl.DataFrame, say: Say) -> Drawing:
 def era_shifts(frame: pl.DataFrame, say: Say) -> Drawing:
     """Next tow of the same boats against the tows of an era; `frame` is `era_shifts`."""
     base = alt.Chart(frame).encode(
-        alt.X("era:N", title=say("column.era"), axis=alt.Axis(labelAngle=0))
+        alt.X("era:N", title=say(labels.column("era")), axis=alt.Axis(labelAngle=0))
     )
-    layers = by_method(base, say, ("shift_ratio", say("shift_ratio")), ("lo", "hi"), ("n:Q",))
+    layers = by_method(
+        base,
+        say,
+        ("shift_ratio", say("Cw new / old without ageing, median")),
+        ("lo", "hi"),
+        ("n:Q",),
+    )
     return alt.layer(at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
 
@@ -53,8 +60,8 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
         alt.Chart(frame)
         .mark_point(size=45, filled=True, opacity=0.8, cursor="pointer")
         .encode(
-            alt.X("season:O", title=say("column.season")),
-            number(alt.Y, "cw_ratio", say("column.cw_ratio")),
+            alt.X("season:O", title=say(labels.column("season"))),
+            number(alt.Y, "cw_ratio", say(labels.column("cw_ratio"))),
             *methods(say),
             xOffset="method:N",
             href="page:N",
@@ -69,13 +76,15 @@ def components(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart().encode(
         alt.X(
             "component:N",
-            title=say("column.component"),
+            title=say(labels.column("component")),
             axis=alt.Axis(
                 labelExpr=named(["boat", "season", "boat_season", "run"], say), labelAngle=0
             ),
         )
     )
-    layers = by_method(base, say, ("sd_ratio", say("sd_ratio")), ("lo", "hi"), zero=True)
+    layers = by_method(
+        base, say, ("sd_ratio", say("Standard deviation / Cw")), ("lo", "hi"), zero=True
+    )
     header = alt.Header(labelExpr=named(["fleet", "within_type"], say))
     return (
         alt.layer(*layers, data=frame)
@@ -89,18 +98,24 @@ def predicted(frame: pl.DataFrame, say: Say) -> Drawing:
     equal = (
         alt.Chart(frame)
         .mark_line(color=GREY, strokeDash=[4, 3])
-        .encode(number(alt.X, "cw_kg_m", say("tow_cw")), number(alt.Y, "cw_kg_m", ""))
+        .encode(number(alt.X, "cw_kg_m", say("Cw of the tow [kg/m]")), number(alt.Y, "cw_kg_m", ""))
     )
-    places = {"cw_kg_m": say("tow_cw"), "predicted_cw_kg_m": say("predicted_cw")}
-    by = ("boat_type", say("type"), type_legend(say))
+    places = {
+        "cw_kg_m": say("Cw of the tow [kg/m]"),
+        "predicted_cw_kg_m": say("Predicted Cw [kg/m]"),
+    }
+    by = ("boat_type", say("Type"), type_legend(say))
     points = _boats(frame, say, places, by)
     return alt.layer(equal, points).properties(width=480, height=360)
 
 
 def register_changes(frame: pl.DataFrame, say: Say) -> Drawing:
     """Time and Cw of every changed register line, new / old; `frame` has `page`."""
-    places = {"cw_ratio": say("column.cw_ratio"), "time_ratio": say("column.time_ratio")}
-    points = _boats(frame, say, places, ("to_edition", say("edition"), editions_legend(say)))
+    places = {
+        "cw_ratio": say(labels.column("cw_ratio")),
+        "time_ratio": say(labels.column("time_ratio")),
+    }
+    points = _boats(frame, say, places, ("to_edition", say("Edition"), editions_legend(say)))
     return alt.layer(at_one(frame, "x"), at_one(frame, "y"), points).properties(
         width=WIDTH, height=HEIGHT
     )
@@ -130,24 +145,33 @@ def race_ranks(frame: pl.DataFrame, say: Say) -> Drawing:
     same = (
         alt.Chart(frame)
         .mark_line(color=GREY, strokeDash=[4, 3])
-        .encode(alt.X("old_rank:Q", title=say("column.old_rank")), alt.Y("old_rank:Q", title=""))
+        .encode(
+            alt.X("old_rank:Q", title=say(labels.column("old_rank"))), alt.Y("old_rank:Q", title="")
+        )
     )
     points = (
         alt.Chart(frame)
         .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
         .encode(
             alt.X(
-                "old_rank:Q", title=say("column.old_rank"), axis=alt.Axis(tickMinStep=1, format="d")
+                "old_rank:Q",
+                title=say(labels.column("old_rank")),
+                axis=alt.Axis(tickMinStep=1, format="d"),
             ),
             alt.Y(
-                "new_rank:Q", title=say("column.new_rank"), axis=alt.Axis(tickMinStep=1, format="d")
+                "new_rank:Q",
+                title=say(labels.column("new_rank")),
+                axis=alt.Axis(tickMinStep=1, format="d"),
             ),
             *crews(say),
             href="page:N",
             tooltip=tips(
                 say,
                 *("race:N", "name:N", "fsn_no:N", "old_rank:Q", "new_rank:Q"),
-                *(("old_power_w:Q", say("old_power")), ("new_power_w:Q", say("new_power"))),
+                *(
+                    ("old_power_w:Q", say("Power before [W/rower]")),
+                    ("new_power_w:Q", say("Power after [W/rower]")),
+                ),
             ),
         )
     )

@@ -12,6 +12,7 @@ from typing import Any, Final
 import altair as alt
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.style import (
     GREY,
     Drawing,
@@ -24,10 +25,10 @@ from dashboards.figures.style import (
 )
 from pipeline.consistency.compared import ROWED_RATIO
 from pipeline.consistency.tow_speed import HIGH, LOW, MIDDLE
+from pipeline.messages import Say, say
 from pipeline.studies.claims import CHANNELS
 from pipeline.studies.options import CHOICES
 from pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
-from pipeline.words.catalogue import Say
 
 METHODS: Final = ("as-published", "corrected-2013", "rebased-2015", "rebased")
 """The four that are compared, in the order of history."""
@@ -59,12 +60,12 @@ EXPLAINING: Final = {
     "length": "waterline_length_m",
 }
 TITLES: Final = {
-    "b_m_s": "column.b_m_s",
-    "a_kg_m": "column.a_kg_m",
-    "cw_standard_kg_m": "cw_standard",
-    "weight_kg": "column.weight_kg",
-    "declared_speed_m_s": "tow_speed",
-    "waterline_length_m": "waterline_length",
+    "b_m_s": labels.column("b_m_s"),
+    "a_kg_m": labels.column("a_kg_m"),
+    "cw_standard_kg_m": say("Cw at the standard speed [kg/m]"),
+    "weight_kg": labels.column("weight_kg"),
+    "declared_speed_m_s": say("Declared speed [m/s]"),
+    "waterline_length_m": say("Waterline length [m]"),
 }
 
 
@@ -78,7 +79,7 @@ def panels(chart: Any, say: Say, of: str = "", **look: Any) -> Drawing:
     place = f"indexof({json.dumps(_ORDER)}, datum.method)"
     value = f"datum.{of}" if of else "''"
     key = f"{value} + '|' + ({place} < 0 ? 9 : {place}) + '|' + datum.method"
-    names = json.dumps({name: say(f"method.{name}") for name in _ORDER})
+    names = json.dumps({name: say(labels.method(name)) for name in _ORDER})
     first, method = (f"split(datum.value, '|')[{n}]" for n in (0, 2))
     label = f"({names})[{method}] || {method}"
     if of:
@@ -101,7 +102,7 @@ def small(field: str, title: str) -> alt.X:
 
 def in_words(value: str, say: Say) -> str:
     """A Vega expression that says what a code means; names stay as they are."""
-    texts = {code: say(f"code.{code}") for code in CODES}
+    texts = {code: say(labels.code(code)) for code in CODES}
     return f"(({json.dumps(texts)})[{value}] || {value})"
 
 
@@ -220,21 +221,23 @@ def _within_reach(chart: alt.Chart, lo: str, hi: str) -> alt.Chart:
 def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """B of every tow against length, with the line on which B is hull speed."""
     tow = alt.Chart().transform_filter("datum.kind == 'tow'")
-    x = small("waterline_length_m", say("waterline_length"))
-    ink = colour("boat_type", say("type"), legend=alt.Legend(orient="bottom"))
+    x = small("waterline_length_m", say("Waterline length [m]"))
+    ink = colour("boat_type", say("Type"), legend=alt.Legend(orient="bottom"))
     points = (
         tow.transform_filter("isValid(datum.b_m_s)")
         .mark_point(size=30)
         .encode(
             x,
-            number(alt.Y, "b_m_s", say("column.b_m_s")),
+            number(alt.Y, "b_m_s", say(labels.column("b_m_s"))),
             ink,
-            alt.Shape("boat_type:N", title=say("type")),
+            alt.Shape("boat_type:N", title=say("Type")),
             tooltip=tips(say, "label:N", "b_m_s:Q", "b_hull_ratio:Q"),
         )
     )
     hull = tow.mark_line(color="black", strokeDash=[5, 3]).encode(
-        x, number(alt.Y, "hull_speed_m_s", say("column.b_m_s")), order="waterline_length_m:Q"
+        x,
+        number(alt.Y, "hull_speed_m_s", say(labels.column("b_m_s"))),
+        order="waterline_length_m:Q",
     )
     return panels(alt.layer(points, hull, data=frame), say)
 
@@ -254,9 +257,9 @@ def towed_at(frame: pl.DataFrame, say: Say) -> Drawing:
         .transform_filter("datum.kind == 'tow' && datum.method == datum.newest_method")
         .mark_point(size=40, opacity=0.7)
         .encode(
-            number(alt.X, "tow_hull_ratio", say("tow_hull_ratio")),
+            number(alt.X, "tow_hull_ratio", say("Tow speed / hull speed")),
             alt.Y(
-                "boat_type:N", title=say("type"), axis=alt.Axis(labelExpr=named(["unknown"], say))
+                "boat_type:N", title=say("Type"), axis=alt.Axis(labelExpr=named(["unknown"], say))
             ),
             ink,
             form,
@@ -269,8 +272,8 @@ def towed_at(frame: pl.DataFrame, say: Say) -> Drawing:
 def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
     """Power by a tow's own curve / by its type's bend, at the fastest speed that it raced."""
     base = alt.Chart().transform_filter("isValid(datum.power_ratio_raced)")
-    y = alt.Y("label:N", title=say("tow"))
-    ratio = say("power_ratio_raced")
+    y = alt.Y("label:N", title=say("Tow"))
+    ratio = say("Power: own curve / type's curve")
     legend = alt.Legend(orient="bottom", labelExpr=in_words("datum.value", say))
     bar = base.mark_rule().encode(
         small("power_ratio_raced_lo", ratio), alt.X2("power_ratio_raced_hi:Q"), y
@@ -278,10 +281,14 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
     point = base.mark_point(filled=True, size=60).encode(
         small("power_ratio_raced", ratio),
         y,
-        colour("speed_case", say("speed_case"), legend=legend),
-        alt.Shape("speed_case:N", title=say("speed_case"), legend=legend),
+        colour("speed_case", say("Tow speed by hull speed"), legend=legend),
+        alt.Shape("speed_case:N", title=say("Tow speed by hull speed"), legend=legend),
         tooltip=tips(
-            say, "label:N", ("power_w:Q", say("power")), "raced_power_w:Q", "power_ratio_raced:Q"
+            say,
+            "label:N",
+            ("power_w:Q", say("Power when towed [W]")),
+            "raced_power_w:Q",
+            "power_ratio_raced:Q",
         ),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
@@ -297,18 +304,18 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
     """
     base = alt.Chart()
     ink = alt.Color(
-        "season:O", title=say("column.season"), scale=alt.Scale(scheme="viridis"),
+        "season:O", title=say(labels.column("season")), scale=alt.Scale(scheme="viridis"),
         legend=alt.Legend(orient="bottom"),
     )  # fmt: skip
     curve = base.mark_line(strokeWidth=2).encode(
-        small("speed_m_s", say("speed_short")),
-        number(alt.Y, "cw_kg_m", say("cw")),
+        small("speed_m_s", say("Speed [m/s]")),
+        number(alt.Y, "cw_kg_m", say("Cw [kg/m]")),
         ink,
-        alt.StrokeDash("crew:N", title=say("crew"), legend=alt.Legend(orient="bottom")),
+        alt.StrokeDash("crew:N", title=say("Crew"), legend=alt.Legend(orient="bottom")),
         alt.Detail("tow_id:N"),
         tooltip=tips(say, "tow_id:N", "season:O"),
     )
     common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
-        alt.X("mean(standard_speed_m_s):Q", title=say("speed_short"))
+        alt.X("mean(standard_speed_m_s):Q", title=say("Speed [m/s]"))
     )
     return panels(alt.layer(common, curve, data=frame), say, "name")

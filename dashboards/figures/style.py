@@ -7,9 +7,10 @@ from typing import Any, Final
 import altair as alt
 import polars as pl
 
+from dashboards import labels
+from pipeline.messages import Say
 from pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_method, shipped_methods
 from pipeline.register.register import draft_name
-from pipeline.words.catalogue import Say, unbroken
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -35,8 +36,8 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
 
 def crews(say: Say) -> tuple[alt.Color, alt.Shape]:
     """Men and women apart by colour and shape, in one legend."""
-    people = f"{{'H': '{say('crew.H')}', 'D': '{say('crew.D')}'}}[datum.value]"
-    title, legend = say("crew_class"), alt.Legend(labelExpr=people, orient="bottom")
+    people = f"{{'H': '{say(labels.crew('H'))}', 'D': '{say(labels.crew('D'))}'}}[datum.value]"
+    title, legend = say("Crew"), alt.Legend(labelExpr=people, orient="bottom")
     shapes = alt.Scale(domain=["H", "D"], range=["circle", "triangle-up"])
     inks = alt.Scale(domain=["H", "D"], range=[OKABE_ITO[0], OKABE_ITO[1]])
     return (
@@ -54,7 +55,7 @@ def methods(say: Say) -> tuple[alt.Color, alt.Shape]:
     known = alt.DomainUnionWith(unionWith=list(shipped_methods()))
     legend = alt.Legend(values=alt.ExprRef("domain('xOffset')"), labelExpr=methods_named(say))
     inks, shapes = (alt.Scale(domain=known, range=list(looks)) for looks in (OKABE_ITO, SHAPES))
-    look: dict[str, Any] = {"title": say("method"), "sort": None, "legend": legend}
+    look: dict[str, Any] = {"title": say("Method"), "sort": None, "legend": legend}
     return alt.Color("method:N", scale=inks, **look), alt.Shape("method:N", scale=shapes, **look)
 
 
@@ -76,14 +77,14 @@ SCENARIO: Final = "werkbank"
 
 def methods_named(say: Say) -> str:
     """A Vega expression that gives a method that ships, or the workbench's, its name in words."""
-    texts = {name: say(f"method.{name}") for name in (*shipped_methods(), SCENARIO)}
+    texts = {name: say(labels.method(name)) for name in (*shipped_methods(), SCENARIO)}
     return f"({json.dumps(texts)})[datum.value] || datum.value"
 
 
 def editions_legend(say: Say) -> alt.Legend:
     """A legend of editions: drafts by the name of their method in words."""
     texts = {
-        draft_name(name): f"{say('draft')}: {say(f'method.{name}')}"
+        draft_name(name): f"{say('draft')}: {say(labels.method(name))}"
         for name in (*shipped_methods(), SCENARIO)
     }
     return alt.Legend(labelExpr=f"({json.dumps(texts)})[datum.value] || datum.value")
@@ -107,7 +108,7 @@ def tips(say: Say, *shown: str | tuple[str, str]) -> list[alt.Tooltip]:
 
 
 def _column(field: str, say: Say) -> str:
-    return unbroken(say(f"column.{field.partition(':')[0]}"))
+    return labels.unbroken(say(labels.column(field.partition(":")[0])))
 
 
 def at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
@@ -163,7 +164,7 @@ def interval_dash(say: Say) -> alt.StrokeDash:
     """Full for a 95 % interval, dashed for the spread of the runs alone; `interval` says which."""
     return alt.StrokeDash(
         "interval:N",
-        title=say("column.interval"),
+        title=say(labels.column("interval")),
         scale=alt.Scale(domain=[COMPLETE, RUNS_ALONE], range=[[1, 0], [4, 3]]),
         legend=alt.Legend(
             labelExpr=named([COMPLETE, RUNS_ALONE], say), labelLimit=400, orient="bottom"
@@ -173,5 +174,5 @@ def interval_dash(say: Say) -> alt.StrokeDash:
 
 def named(codes: Iterable[str], say: Say) -> str:
     """A Vega expression that gives codes on an axis their text, and leaves others as they are."""
-    texts = {code: say(f"code.{code}") for code in codes}
+    texts = {code: say(labels.code(code)) for code in codes}
     return f"({json.dumps(texts)})[datum.value] || datum.value"

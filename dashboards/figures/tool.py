@@ -5,12 +5,13 @@ from typing import Final
 import altair as alt
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.slides import SIDE, in_words, panels, small
 from dashboards.figures.style import GREY, OKABE_ITO, Drawing, number, tips
+from pipeline.messages import Say
 from pipeline.studies.claims import CHANNELS
 from pipeline.studies.options import CHOICES
 from pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
-from pipeline.words.catalogue import Say
 
 MOST_SCATTER: Final = 0.10
 """Sleepproef 2017: "standaard-deviatie < 10% van de meetwaarde"."""
@@ -40,18 +41,18 @@ def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
         )
         .mark_line(strokeWidth=1.2, opacity=0.8)
         .encode(
-            small("speed_m_s", say("speed_short")),
-            number(alt.Y, "cw_curve_kg_m", say("cw")),
+            small("speed_m_s", say("Speed [m/s]")),
+            number(alt.Y, "cw_curve_kg_m", say("Cw [kg/m]")),
             alt.Color(
                 "on:N",
-                title=say("ticked"),
+                title=say("Ticked"),
                 # Dark and light: apart in grey print too.
                 scale=alt.Scale(domain=[False, True], range=[OKABE_ITO[0], OKABE_ITO[4]]),
                 legend=alt.Legend(labelExpr=seen, orient="bottom"),
             ),
             alt.StrokeDash(
                 "speed:N",
-                title=say("column.speed"),
+                title=say(labels.column("speed")),
                 scale=alt.Scale(range=[[1, 0], [5, 2], [2, 2]]),
                 sort=list(SPEED_NAMES),
                 legend=alt.Legend(labelExpr=used, orient="bottom"),
@@ -81,12 +82,12 @@ def tick_effects(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart().encode(
         alt.Y(
             "option:N",
-            title=say("column.option"),
+            title=say(labels.column("option")),
             sort=order,
             axis=alt.Axis(labelExpr=in_words("datum.value", say), labelLimit=260),
         )
     )
-    ratio = say("ratio_cw")
+    ratio = say("Cw after / Cw before")
     bar = base.mark_rule(strokeWidth=3, color=OKABE_ITO[0]).encode(
         small("lo_ratio", ratio), alt.X2("hi_ratio:Q")
     )
@@ -105,12 +106,12 @@ def run_statistics(frame: pl.DataFrame, say: Say) -> Drawing:
         alt.Chart()
         .mark_point(filled=True, size=60, color=OKABE_ITO[0])
         .encode(
-            alt.X("run:O", title=say("column.run")),
-            number(alt.Y, "sd_ratio", say("sd_mean_ratio"), zero=True),
+            alt.X("run:O", title=say(labels.column("run"))),
+            number(alt.Y, "sd_ratio", say("Standard deviation / mean"), zero=True),
             tooltip=tips(
                 say,
                 *("run:O", "mean:Q", "sd:Q", "median:Q"),
-                *(("median_ratio:Q", say("median_ratio")), "log1_ratio:Q"),
+                *(("median_ratio:Q", say("Median / mean")), "log1_ratio:Q"),
             ),
         )
     )

@@ -10,6 +10,7 @@ from typing import Final
 import altair as alt
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.style import (
     Drawing,
     kinds,
@@ -18,18 +19,18 @@ from dashboards.figures.style import (
     tips,
     type_legend,
 )
-from pipeline.words.catalogue import Say
+from pipeline.messages import Say, say
 
 QUANTITIES: Final = {
-    "b": ("b_m_s", "column.b_m_s"),
-    "a": ("a_kg_m", "column.a_kg_m"),
-    "cw_standard": ("cw_standard_kg_m", "cw_standard"),
+    "b": ("b_m_s", labels.column("b_m_s")),
+    "a": ("a_kg_m", labels.column("a_kg_m")),
+    "cw_standard": ("cw_standard_kg_m", say("Cw at the standard speed [kg/m]")),
 }
 EXPLAINING: Final = {
-    "weight": ("weight_kg", "column.weight_kg"),
-    "speed": ("declared_speed_m_s", "tow_speed"),
+    "weight": ("weight_kg", labels.column("weight_kg")),
+    "speed": ("declared_speed_m_s", say("Declared speed [m/s]")),
 }
-"""Columns of the axes, with the keys of their titles."""
+"""Columns of the axes, with their titles."""
 
 
 def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Drawing]:
@@ -50,7 +51,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
             .encode(
                 number(alt.X, x, say(x_title)),
                 number(alt.Y, y, say(y_title)),
-                *kinds("boat_type", say("type"), legend=legend),
+                *kinds("boat_type", say("Type"), legend=legend),
                 size=alt.condition("datum.fsn_no == chosen", alt.value(320), alt.value(70)),
                 opacity=alt.condition(brush, alt.value(0.9), alt.value(0.2)),
                 href="page:N",
@@ -70,16 +71,16 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
 
 def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """B of each boat: its own, drawn to its type's, and shared; `frame` is `Views.shared_bends`."""
-    names = {code: say(f"code.{code}") for code in ("own", "partial", "shared")}
+    names = {code: say(labels.code(code)) for code in ("own", "partial", "shared")}
     legend = alt.Legend(labelExpr=f"({names})[datum.value] || datum.value")
     return (
         alt.Chart(frame)
         .mark_point(filled=True, size=60, opacity=0.85)
         .encode(
-            number(alt.X, "b_m_s", say("column.b_m_s")),
-            alt.Y("crew:N", title=say("boat")),
-            *kinds("pooling", say("pooling"), legend=legend),
-            tooltip=tips(say, ("crew:N", say("boat")), "b_m_s:Q"),
+            number(alt.X, "b_m_s", say(labels.column("b_m_s"))),
+            alt.Y("crew:N", title=say("Boat")),
+            *kinds("pooling", say("Bend"), legend=legend),
+            tooltip=tips(say, ("crew:N", say("Boat")), "b_m_s:Q"),
         )
         .properties(width=360)
     )

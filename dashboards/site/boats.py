@@ -22,6 +22,7 @@ from dashboards.site.parts import (
     methods_select,
     once_for_methods,
 )
+from pipeline.messages import Sentence, say
 from warehouse.queries.answers import (
     answers,
     newest_edition,
@@ -40,6 +41,17 @@ EXTRA = {
 """Tables about tows that are shown where there are any, with the columns shown; which tow and
 method they are of, the selectors say."""
 
+
+EXTRA_TEXTS = {
+    "assessments": (
+        say("Checks"),
+        say("Only what lies beyond its limit; all checks are in the table assessments."),
+    ),
+    "hand_windows": (
+        say("Windows chosen by hand"),
+        say("Windows that a person chose, with the reason."),
+    ),
+}
 
 AT_ONCE: Final = 64
 """Boats whose rows are formatted in one go: each go costs time, and each boat memory."""
@@ -108,7 +120,7 @@ class _Own(NamedTuple):
         self,
         name: str,
         columns: Sequence[str],
-        caption: str,
+        caption: Sentence,
         follows: Sequence[str] = (),
         exact: bool = True,
     ) -> Table:
@@ -297,22 +309,26 @@ LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash",
 
 def _page(fsn_no: str, boats: _Boats, methods: Sequence[str], told: Sequence[Answer]) -> Page:
     own = boats.tables(fsn_no)
-    facts = Section("facts", tables=[own["boats"].table("boats", FACT_COLUMNS, "facts")])
+    facts = Section(
+        "facts",
+        say("Dimensions"),
+        tables=[own["boats"].table("boats", FACT_COLUMNS, say("Dimensions"))],
+    )
     boat = own["boats"].rows.row(0, named=True)
     name = boat["name"]
     subtitle = " · ".join(filter(None, (fsn_no, boat["ht_no"], boat["boat_type"])))
     curves = own["curves"].rows
     named = dict(zip(curves["tow_id"], curves["tow"], strict=True))
     if not named:
-        return Page(boat_path(fsn_no), "boat", [facts], name=name, subtitle=subtitle)
+        return Page(boat_path(fsn_no), say("Boat"), [facts], name=name, subtitle=subtitle)
     tows = list(named)
     selects = [
-        Select("tow_id", "tow", tows, tows[-1], named=lambda tow, _: named[tow]),
+        Select("tow_id", say("Tow"), tows, tows[-1], named=lambda tow, _: named[tow]),
         methods_select(methods),
     ]
     return Page(
         boat_path(fsn_no),
-        "boat",
+        say("Boat"),
         [replace(facts, folded=True), *_sections(own)],
         name=name,
         selects=selects,
@@ -338,43 +354,123 @@ DRAWN = {
 
 def _sections(own: dict[str, _Own]) -> list[Section]:
     """How the numbers were made: all of it folded."""
-    curve = Chart("resistance_curve", "curve", "boat_curve", OF_THE_CURVE)
-    history = Chart("history", "curves", "boat_history")
-    traces = Chart("traces", "traces", "boat_traces", OF_THE_CURVE)
-    budget = Chart("budget", "budget", "uncertainty_budget", OF_THE_CURVE)
+    curve = Chart("resistance_curve", "curve", say("Resistance curve"), OF_THE_CURVE)
+    history = Chart("history", "curves", say("Through the years"))
+    traces = Chart("traces", "traces", say("What the instruments said"), OF_THE_CURVE)
+    budget = Chart("budget", "budget", say("What the uncertainty is made of"), OF_THE_CURVE)
     sides = [
-        Chart("out_and_back", "stages", "boat_out_back", OF_THE_CURVE),
-        Chart("wind", "runs", "wind", OF_THE_CURVE),
+        Chart("out_and_back", "stages", say("Out against back, and the wind"), OF_THE_CURVE),
+        Chart("wind", "runs", say("Apparent wind [m/s]"), OF_THE_CURVE),
     ]
     of_tow = {"tow_id": "tow_id"}
     ticks = [
-        Chart("slide_ticks", "ticks", "slide_ticks", of_tow),
-        Chart("slide_tick_effects", "choices", "slide_tick_effects", of_tow),
+        Chart("slide_ticks", "ticks", say("Curves under all combinations of the options"), of_tow),
+        Chart("slide_tick_effects", "choices", say("What each option does to Cw"), of_tow),
     ]
-    statistics = Chart("run_statistics", "statistics", "run_statistics", of_tow)
-    curves = own["curves"].table("curves", CURVE_COLUMNS, "boat_history", exact=False)
-    runs = own["runs"].table("run_points", RUN_COLUMNS, "boat_runs", FOLLOWS, exact=False)
-    lines = own["register"].table("register", LINE_COLUMNS, "boat_lines")
+    statistics = Chart(
+        "run_statistics", "statistics", say("Spread within each run; dashed: 10 %"), of_tow
+    )
+    curves = own["curves"].table("curves", CURVE_COLUMNS, say("Through the years"), exact=False)
+    runs = own["runs"].table("run_points", RUN_COLUMNS, say("Runs"), FOLLOWS, exact=False)
+    lines = own["register"].table("register", LINE_COLUMNS, say("In the register"))
     sections = [
-        Section("boat_lines", tables=[lines]),
-        Section("boat_history", "boat_history_note", [history], [curves]),
-        Section("boat_curve", "boat_curve_note", [curve]),
-        Section("boat_runs", "boat_runs_note", tables=[runs]),
-        Section("boat_traces", "boat_traces_note", [traces]),
-        Section("boat_out_back", "boat_out_back_note", sides),
-        Section("uncertainty_budget", "uncertainty_budget_note", [budget]),
-        Section("boat_ticks", "slides_ticks_note", ticks),
-        Section("boat_statistics", "boat_statistics_note", [statistics]),
+        Section("boat_lines", say("In the register"), tables=[lines]),
+        Section(
+            "boat_history",
+            say("Through the years"),
+            say(
+                "Cw at the declared speed of every tow, by every method. A solid line is its "
+                "95 % interval, a dashed one the spread of the runs alone: the log's error is "
+                "not in it."
+            ),
+            [history],
+            [curves],
+        ),
+        Section(
+            "boat_curve",
+            say("Resistance curve"),
+            say(
+                "The line is Cw = A / (1 - (v/B)^2) over the valid range, 85 to 115 % of the "
+                "declared speed; the bar is the interval at that speed. A full band and bar "
+                "are the 95 % interval, with all that the uncertainty is made of; a light band "
+                "and a dashed bar the spread of the runs alone: the log's error is not in it. "
+                "Open marks do not count."
+            ),
+            [curve],
+        ),
+        Section(
+            "boat_runs",
+            say("Runs"),
+            say(
+                "How each run comes to its Cw, from left to right: gross F/v², less "
+                "acceleration, less wind, plus still air, plus temperature."
+            ),
+            tables=[runs],
+        ),
+        Section(
+            "boat_traces",
+            say("What the instruments said"),
+            say(
+                "Means per second; speed: solid log 1, dashed GPS. What is grey is cut for the "
+                "reason above it; the rest counts."
+            ),
+            [traces],
+        ),
+        Section(
+            "boat_out_back",
+            say("Out against back, and the wind"),
+            say(
+                "Cw before and after the air correction, out (runs 1-3) and back (runs 4-6). "
+                "After the correction out and back should coincide. Wind angle: 0 degrees is "
+                "from ahead, minus from port, 180 from behind."
+            ),
+            sides,
+        ),
+        Section(
+            "uncertainty_budget",
+            say("What the uncertainty is made of"),
+            say(
+                "Relative standard uncertainty of Cw by cause; the table says which tows share it."
+            ),
+            [budget],
+        ),
+        Section(
+            "boat_ticks",
+            say("What other choices do to the curve"),
+            say(
+                "Optimisation, trimming, wind-vane correction and B from length: all sixteen "
+                "combinations overlaid, with the log's speed and after correction. Each panel "
+                "colours one option."
+            ),
+            ticks,
+        ),
+        Section(
+            "boat_statistics",
+            say("The measurements per run"),
+            say(
+                "What the tool of 2014 showed of each run: mean, spread, median and their "
+                "ratios, here of means per second. The numbers are in the table below it."
+            ),
+            [statistics],
+        ),
     ]
     for name, columns in EXTRA.items():
         rows = own.get(name)
         if rows is not None and rows.number:
             follows = [c for c in FOLLOWS if c in rows.whole.columns]
-            table = rows.table(name, columns, name, follows, exact=False)
-            sections.append(Section(name, f"{name}_note", tables=[table]))
-    lineage = own["lineage"].table("lineage", LINEAGE_COLUMNS, "boat_lineage")
+            title, note = EXTRA_TEXTS[name]
+            table = rows.table(name, columns, title, follows, exact=False)
+            sections.append(Section(name, title, note, tables=[table]))
+    lineage = own["lineage"].table("lineage", LINEAGE_COLUMNS, say("Lineage"))
     if own["lineage"].number:
-        sections.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))
+        sections.append(
+            Section(
+                "boat_lineage",
+                say("Lineage"),
+                say("The files, the method and the code behind every register line."),
+                tables=[lineage],
+            )
+        )
     return [replace(section, folded=True) for section in sections]
 
 

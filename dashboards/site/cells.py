@@ -11,9 +11,10 @@ from typing import Any, Final
 import polars as pl
 from markupsafe import Markup, escape
 
+from dashboards import labels
 from dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
 from dashboards.speech import Speech, duration
-from pipeline.words import LANGUAGES
+from pipeline.messages import LANGUAGES
 from warehouse.queries.chosen_tows import STATED, spoken_range
 
 DIGITS: Final = (
@@ -148,17 +149,17 @@ class Cells:
             return lambda value: self._type(value, root)
         named = {
             **dict.fromkeys(("titles", "meanings", "messages"), self._titles),
-            "direction": lambda value: self.text(f"code.direction.{value}"),
+            "direction": lambda value: self.text(labels.code(f"direction.{value}")),
             "causes": self._causes,
             "candidates": lambda names: Markup(", ").join(
-                self.text(f"candidate.{name}") for name in names
+                self.text(labels.candidate(name)) for name in names
             ),
             "tows": lambda value: (
-                self.text(f"code.{value}") if value in STATED else escape(spoken_range(value))
+                self.text(labels.code(value)) if value in STATED else escape(spoken_range(value))
             ),
             "unit": lambda value: self._plain("" if value == "1" else value),
             **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
-            **dict.fromkeys(METHODS, lambda value: self.text(f"method.{value}")),
+            **dict.fromkeys(METHODS, lambda value: self.text(labels.method(value))),
             **dict.fromkeys(EDITIONS, self._edition),
             **dict.fromkeys(CODES, self._code),
         }
@@ -169,7 +170,7 @@ class Cells:
 
     def _type(self, value: str, root: str) -> Markup:
         if value in ("unknown", "all"):
-            return self.text(f"code.{value}")
+            return self.text(labels.code(value))
         return Markup('<a href="{}{}">{}</a>').format(root, type_path(value), value)
 
     def _plain(self, value: object) -> Markup:
@@ -180,12 +181,12 @@ class Cells:
     def _code(self, value: Any) -> Markup:
         """A code, or several with commas or as a list, in words."""
         codes = value.split(",") if isinstance(value, str) else list(value)
-        return Markup(", ").join(self.text(f"code.{code}") for code in codes if code)
+        return Markup(", ").join(self.text(labels.code(code)) for code in codes if code)
 
     def _causes(self, value: str) -> Markup:
         """What a change is attributed to (a method's step by its name), each in per cent."""
         parts = [
-            self.text(f"code.{cause.get('step', cause['cause'])}")
+            self.text(labels.code(cause.get("step", cause["cause"])))
             + f" {self.speech.per_cent(cause['factor'])}"
             for cause in json.loads(value)
         ]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
+from typing import Final
 
 import polars as pl
 
@@ -26,12 +27,13 @@ from dashboards.site.prose import edition_pages, guide_pages
 from dashboards.site.races import race_pages
 from dashboards.site.start import CARDS, methods_table, start_page, words_page
 from dashboards.site.types import type_pages, types_page
-from pipeline.words.tables import TABLES_IN_DUTCH
+from pipeline.messages import Sentence, say, speaker
+from pipeline.tables.schemas import TABLES, summary_of
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
 
-MENU = ("index", *CARDS)
+MENU: Final = {"index": say("Start")} | {name: title for name, (title, _) in CARDS.items()}
 
 
 def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
@@ -62,12 +64,12 @@ def method_names(views: Views) -> list[str]:
     return names
 
 
-def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> list[Section]:
+def _whole(views: Views, name: str, title: Sentence, columns: Sequence[str] = ()) -> list[Section]:
     """A section with a table as it is; none where there is no such table."""
     if not views.has(name):
         return []
     frame = views.table(name)
-    return [Section(title, tables=[Table(name, frame, columns or frame.columns, title)])]
+    return [Section(name, title, tables=[Table(name, frame, columns or frame.columns, title)])]
 
 
 REGISTER_COLUMNS = (
@@ -92,16 +94,27 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
     editions = lines["edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     table = Table(
-        "register", lines, REGISTER_COLUMNS, "register", ["edition"], search=True,
+        "register", lines, REGISTER_COLUMNS, say("Register"), ["edition"], search=True,
         cards=REGISTER_CARDS,
     )  # fmt: skip
     headline = headlines.register(lines.filter(edition=chosen))
     return Page(
         "register.html",
-        "register",
+        say("Register"),
         [
-            Section("register", "register_note", tables=[table], headline=headline),
-            *_whole(views, "editions", "editions", EDITION_COLUMNS),
+            Section(
+                "register",
+                say("Register"),
+                say(
+                    "A and B hold from 85 to 115 % of the declared speed; Cw holds at that speed. "
+                    "Its interval is a 95 % interval for a method that estimates the log's error. "
+                    "For other methods it is the spread of the runs alone: the log's error is not "
+                    "in it. An expired line has no A, B and Cw. A draft is not published."
+                ),
+                tables=[table],
+                headline=headline,
+            ),
+            *_whole(views, "editions", say("Published editions"), EDITION_COLUMNS),
             *_downloads(views),
         ],
         selects=[editions_select("edition", editions, chosen)],
@@ -115,7 +128,18 @@ def _downloads(views: Views) -> list[Section]:
         return []
     files = [file for name in names for file in files_of(name)]
     pages = [(edition_page(name), name) for name in names]
-    return [Section("downloads", "downloads_note", pages=pages, files=files)]
+    return [
+        Section(
+            "downloads",
+            say("Downloads"),
+            say(
+                "The register of every edition as published, with the notice to the members "
+                "and the release notes in Dutch and English."
+            ),
+            pages=pages,
+            files=files,
+        )
+    ]
 
 
 DUE_COLUMNS = (
@@ -134,17 +158,50 @@ CHOICE_COLUMNS = (
 def _due(views: Views, methods: Sequence[str]) -> Page:
     """Who has to tow again, at what speed, and which boats to tow again."""
     rows = views.due_list().rename({"tow_date": "last_tow"})
-    due = Table("due_list", rows, DUE_COLUMNS, "due_list", ["method"], search=True, cards=DUE_CARDS)
+    due = Table(
+        "due_list",
+        rows,
+        DUE_COLUMNS,
+        say("Who has to tow again"),
+        ["method"],
+        search=True,
+        cards=DUE_CARDS,
+    )
     headline = headlines.due(rows.filter(method=default_method(methods)))
     choice = views.retow_choice()
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
     retow, said = choice.hstack(sd), headlines.retow(choice)
     return Page(
         "due.html",
-        "due",
+        say("Due to tow"),
         [
-            Section("due_list", "due_list_note", tables=[due], headline=headline),
-            *listed("retow_choice", "retow_choice", retow, CHOICE_COLUMNS, headline=said),
+            Section(
+                "due_list",
+                say("Who has to tow again"),
+                say(
+                    "Until when each tow counts, as judged on the day of the last tow or race (As "
+                    "of), and the speed of the next one. Lowest and Highest: 70 to 90 W per rower "
+                    "(men) or 40 to 55 W (women) on the known curve. Beyond the curve: outside 85 "
+                    "to 115 % of the declared speed."
+                ),
+                tables=[due],
+                headline=headline,
+            ),
+            *listed(
+                Section(
+                    "retow_choice",
+                    say("Which boats to tow again"),
+                    say(
+                        "Boats that, towed again with dGPS, reduce the uncertainty of the log "
+                        "factors most; the first one most. Sd: standard deviation of a factor, "
+                        "before and after."
+                    ),
+                ),
+                "retow_choice",
+                retow,
+                CHOICE_COLUMNS,
+                headline=said,
+            ),
         ],
         selects=[methods_select(methods)],
     )
@@ -176,23 +233,104 @@ def _corrections(views: Views, methods: list[str]) -> Page:
     ladder = views.table("season_ladder")
     options = views.table("option_summary").filter(study=JUDGEMENT)
     said = headlines.log_factors(factors.filter(method=default_method(methods)))
-    of_factors = Chart("log_factors", "log_factors", "log_factors")
-    of_ladder = Chart("ladder", "ladder", "ladder", {"to_method": "method"})
-    of_seasons = Chart("season_change", "season_change", "season_change")
-    of_options = Chart("options", "options", "options")
+    of_factors = Chart("log_factors", "log_factors", say("Log factor per season"))
+    of_ladder = Chart("ladder", "ladder", say("What each step does"), {"to_method": "method"})
+    of_seasons = Chart("season_change", "season_change", say("Relative to the published Cw"))
+    of_options = Chart("options", "options", say("Sensitivity to choices"))
     to_method = ladder.with_columns(method="to_method")
     return Page(
         "corrections.html",
-        "corrections",
+        say("Corrections"),
         [
             *listed(
-                "log_factors", "log_factors", factors, FACTOR_COLUMNS, [of_factors], headline=said
+                Section(
+                    "log_factors",
+                    say("Log factor per season"),
+                    say(
+                        "True speed = log speed x factor. A factor without a bar has no known "
+                        "interval."
+                    ),
+                ),
+                "log_factors",
+                factors,
+                FACTOR_COLUMNS,
+                [of_factors],
+                headline=said,
             ),
-            *listed("season_links", "season_links", links, LINK_COLUMNS),
-            *listed("season_steps", "season_steps", steps, STEP_COLUMNS, exact=False),
-            *listed("ladder", "season_ladder", to_method, LADDER_COLUMNS, [of_ladder]),
-            *listed("season_change", "season_changes", changes, SEASON_COLUMNS, [of_seasons]),
-            *listed("options", "option_summary", options, OPTION_COLUMNS, [of_options], ()),
+            *listed(
+                Section(
+                    "season_links",
+                    say("What a log factor rests on"),
+                    say(
+                        "Where a log was replaced within a season each part has its own factor; "
+                        "the chart above shows their mean. The other log has a line too: the "
+                        "method does not use it. Largest influence: how far the factor moves at "
+                        "most when one boat is left out."
+                    ),
+                ),
+                "season_links",
+                links,
+                LINK_COLUMNS,
+            ),
+            *listed(
+                Section(
+                    "season_steps",
+                    say("Log or load cell?"),
+                    say(
+                        "A season may differ from the other tows of the same boats because the log "
+                        "or because the load cell was wrong. The bend of the curves tells the two "
+                        "apart. Steps of Cw in per cent, with their standard deviation (sd); for a "
+                        "step below 3 % or below twice its sd no cause is looked for."
+                    ),
+                ),
+                "season_steps",
+                steps,
+                STEP_COLUMNS,
+                exact=False,
+            ),
+            *listed(
+                Section(
+                    "ladder",
+                    say("What each step does"),
+                    say(
+                        "Factor on Cw of each step, geometric mean over a season's tows. The "
+                        "factors of a season multiply to the total."
+                    ),
+                ),
+                "season_ladder",
+                to_method,
+                LADDER_COLUMNS,
+                [of_ladder],
+            ),
+            *listed(
+                Section(
+                    "season_change",
+                    say("Relative to the published Cw"),
+                    say(
+                        "Cw by the method / Cw as published, of the same tow: median, and lowest "
+                        "to highest."
+                    ),
+                ),
+                "season_changes",
+                changes,
+                SEASON_COLUMNS,
+                [of_seasons],
+            ),
+            *listed(
+                Section(
+                    "options",
+                    say("Sensitivity to choices"),
+                    say(
+                        "How Cw would change if one choice were made otherwise: median and the "
+                        "middle 90 % of tows."
+                    ),
+                ),
+                "option_summary",
+                options,
+                OPTION_COLUMNS,
+                [of_options],
+                (),
+            ),
         ],
         selects=[methods_select(methods)],
         data={
@@ -204,6 +342,54 @@ def _corrections(views: Views, methods: list[str]) -> Page:
     )
 
 
+AGREEMENT_TEXTS = {
+    "reproducibility": Section(
+        "repro",
+        say("Spread of one tow"),
+        say(
+            "Standard deviation of one tow from repeats of unaltered boats, with 95 % "
+            "interval. Lower is better."
+        ),
+    ),
+    "eras": Section(
+        "eras",
+        say("Does an era differ?"),
+        say(
+            "Next tow of the same boats, in a later era, against that in the era itself, "
+            "without ageing: median of n pairs with 95 % interval. The chart has all types "
+            "together."
+        ),
+    ),
+    "repeats": Section(
+        "repeats",
+        say("Every pair"),
+        say(
+            "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by "
+            "both intervals together; beyond 1 two tows disagree. Where these are the "
+            "spread of the runs alone, that may be the log's error. Click a point to go to "
+            "the boat."
+        ),
+    ),
+    "components": Section(
+        "components",
+        say("Where the spread comes from"),
+        say(
+            "What differences between boats, between seasons, of a boat between seasons, "
+            "and between runs add to the spread of Cw: standard deviation with 95 % "
+            "interval, from one model of all tows with a curve (n). Each crew of a boat "
+            "counts as a boat, and again after an alteration."
+        ),
+    ),
+    "predicted": Section(
+        "predicted",
+        say("Predicted without towing"),
+        say(
+            "Cw from length, weight, beam and type against Cw from the tow. On the line "
+            "they agree. Disagrees: by more than the uncertainty of both; under a method "
+            "that does not estimate the log's error, that is not in it."
+        ),
+    ),
+}
 AGREEMENT = {
     "reproducibility": "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
     "eras": "method boat_type era n shift_percent lo_percent hi_percent apart ageing_per_year",
@@ -222,18 +408,26 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         "variance_components": views.table("variance_components").drop_nulls("sd_ratio"),
         "predicted_cw": with_page(views.predicted()),
     }
-    said = {"repro": headlines.reproducibility(frames["reproducibility"], default_method(methods))}
+    said = headlines.reproducibility(frames["reproducibility"], default_method(methods))
     sections: list[Section] = []
     for (name, frame), (figure, columns) in zip(frames.items(), AGREEMENT.items(), strict=True):
-        title, shown = "repro" if figure == name else figure, columns.split()
+        section, shown = AGREEMENT_TEXTS[figure], columns.split()
         rows = frame if "method" in shown else once_for_methods(frame.select("method", *shown))
         follows = {"method": "method"} if figure == "predicted" else {}
-        chart = Chart(figure, name, title, follows)
-        sections += listed(title, name, rows, shown, [chart], exact=False, headline=said.get(title))
+        chart = Chart(figure, name, section.title, follows)
+        sections += listed(
+            section,
+            name,
+            rows,
+            shown,
+            [chart],
+            exact=False,
+            headline=said if figure == name else None,
+        )
     drawn = frames | {"era_shifts": frames["era_shifts"].filter(boat_type="all")}
     return Page(
         "reproducibility.html",
-        "reproducibility",
+        say("Reproducibility"),
         sections,
         selects=[methods_select(methods)],
         data={name: [frame] for name, frame in drawn.items()},
@@ -249,20 +443,42 @@ def _in_per_cent(eras: pl.DataFrame) -> pl.DataFrame:
 def _changes(methods: Sequence[str], changes: pl.DataFrame) -> Page:
     changed = changes.filter(pl.col("change") != "same")
     if changed.is_empty():
-        return Page("changes.html", "changes", [Section("changes_list", empty="no_changes")])
+        return Page(
+            "changes.html",
+            say("Changes"),
+            [
+                Section(
+                    "changes_list", say("Changed lines"), empty=say("There are no changed lines.")
+                )
+            ],
+        )
     editions = changed["to_edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     table = Table(
-        "changes", changed, CHANGE_COLUMNS, "changes_list", ["to_edition"], search=True,
+        "changes", changed, CHANGE_COLUMNS, say("Changed lines"), ["to_edition"], search=True,
         cards=CHANGE_CARDS,
     )  # fmt: skip
-    chart = Chart("changes", "changes", "changes_list", {"to_edition": "to_edition"})
+    chart = Chart("changes", "changes", say("Changed lines"), {"to_edition": "to_edition"})
     drawn = with_page(changed.select(*DRAWN_CHANGES)).drop_nulls("cw_ratio")
     headline = headlines.changes(changes.filter(to_edition=chosen))
     return Page(
         "changes.html",
-        "changes",
-        [Section("changes_list", "changes_note", [chart], [table], headline=headline)],
+        say("Changes"),
+        [
+            Section(
+                "changes_list",
+                say("Changed lines"),
+                say(
+                    "New / old: at the old declared speed; power changes as much. In 2 h: seconds "
+                    "that the crew may take longer (+) or has to be faster (-) for the same power. "
+                    "Speed rank: among all boats of the class at equal power, not the place in a "
+                    "race. The causes multiply to Cw new / old."
+                ),
+                [chart],
+                [table],
+                headline=headline,
+            )
+        ],
         selects=[editions_select("to_edition", editions, chosen)],
         data={"changes": [drawn]},
     )
@@ -303,16 +519,30 @@ def _compare(views: Views, methods: Sequence[str]) -> Page:
     )
     crews = curves["crew"].unique().sort().to_list()
     if len(crews) < len(PAIR_OF_BOATS):
-        return Page("compare.html", "compare", [Section("compare", empty="no_values")])
-    chart = Chart("boats_compared", "curves", "compare", {"crew": PAIR_OF_BOATS})
+        return Page(
+            "compare.html",
+            say("Compare"),
+            [Section("compare", say("Compare"), empty=say("no values"))],
+        )
+    chart = Chart("boats_compared", "curves", say("Compare"), {"crew": PAIR_OF_BOATS})
     first, second = PAIR_OF_BOATS
     return Page(
         "compare.html",
-        "compare",
-        [Section("compare_boats", "compare_note", [chart])],
+        say("Compare"),
+        [
+            Section(
+                "compare_boats",
+                say("Two boats compared"),
+                say(
+                    "The curves under the best method, each with its 95 % band. Where bands touch, "
+                    "the data do not say which boat runs easier."
+                ),
+                [chart],
+            )
+        ],
         selects=[
-            Select(first, "pair_first", crews, crews[0]),
-            Select(second, "pair_second", crews, _another(crews)),
+            Select(first, say("Compare"), crews, crews[0]),
+            Select(second, say("with"), crews, _another(crews)),
         ],
         data={"curves": [curves]},
     )
@@ -332,29 +562,53 @@ def _quality(views: Views, methods: list[str]) -> Page:
     sections = [
         Section(
             "statuses",
+            say("Status of the curves"),
             headline=headlines.statuses(statuses.filter(method=default_method(methods))),
-            charts=[Chart("statuses", "statuses", "statuses", {"method": "method"})],
+            charts=[
+                Chart("statuses", "statuses", say("Status of the curves"), {"method": "method"})
+            ],
             tables=[
-                Table("statuses", statuses, statuses.columns, "statuses", ["method"]),
+                Table(
+                    "statuses", statuses, statuses.columns, say("Status of the curves"), ["method"]
+                ),
             ],
         ),
         _set_aside(views),
         *_season_diagnosis(views),
     ]
-    for kind, title, note in (("flag", "flags", "flags_note"), ("run", "run_reasons", None)):
+    for kind, name, title, note in (
+        (
+            "flag",
+            "flags",
+            say("Flags"),
+            say("A flag says what a person should look at; it never changes a number."),
+        ),
+        ("run", "run_reasons", say("Runs that do not count"), None),
+    ):
         frame = views.counts(kind)
         if frame.height:
-            tables = [Table(title, frame, ["code", "number"], title, ["method"])]
+            tables = [Table(name, frame, ["code", "number"], title, ["method"])]
             if kind == "flag":
                 tables.append(_flagged_boats(views))
-            sections.append(Section(title, note, tables=tables))
+            sections.append(Section(name, title, note, tables=tables))
     checks = views.checks()
     columns = ["method", "check", "severity", "tows", "beyond"]
-    table = Table("check_counts", checks, columns, "checks", ["method"])
-    sections += [Section("checks", "checks_note", tables=[table]), _rebuilt(views)]
+    table = Table("check_counts", checks, columns, say("What the checks found"), ["method"])
+    sections += [
+        Section(
+            "checks",
+            say("What the checks found"),
+            say(
+                "On how many tows each check was made, and how often something lay beyond its "
+                "limit."
+            ),
+            tables=[table],
+        ),
+        _rebuilt(views),
+    ]
     return Page(
         "quality.html",
-        "quality",
+        say("Quality"),
         sections,
         selects=[methods_select(methods)],
         data={"statuses": [statuses]},
@@ -377,41 +631,68 @@ def _season_diagnosis(views: Views) -> list[Section]:
     rows = doubted.with_columns(
         PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
     )
-    title = "season_diagnosis"
-    table = Table(title, rows, DIAGNOSIS_COLUMNS, title, ["method"], exact=False)
-    return [Section(title, f"{title}_note", tables=[table])]
+    title = say("Instruments by season")
+    table = Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, title, ["method"], exact=False)
+    note = say(
+        "What may be wrong in a season with log, GPS, load cell, anemometer or "
+        "temperature. Fault: likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 "
+        "standard deviations from what is usual. Would not show: a fault of the usual "
+        "size would be taken for something else. Size: in per cent, or in N; the "
+        "interval counts how seldom such a fault is, so it can be 0 to 0. What is not "
+        "in the table: no fault was seen, and a usual one would show."
+    )
+    return [Section("season_diagnosis", title, note, tables=[table])]
 
 
 def _flagged_boats(views: Views) -> Table:
     """Which boats each flag is about."""
     columns = ("flag", "name", "fsn_no", "rowers", "crew_class", "tow_date")
     rows = views.flagged_boats()
-    return Table("flagged_boats", rows, columns, "flagged_boats", ["method"], search=True)
+    return Table(
+        "flagged_boats", rows, columns, say("Which tows they are about"), ["method"], search=True
+    )
 
 
 def _set_aside(views: Views) -> Section:
     if not views.has("quarantine"):
-        return Section("set_aside", "set_aside_note", empty="nothing_set_aside")
+        return Section(
+            "set_aside",
+            say("Set aside"),
+            say("Files, lines and tows not used, with the reason."),
+            empty=say("Nothing was set aside."),
+        )
     columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"]
     columns.append("first_seen")
     faults = views.table("quarantine").with_columns(
         lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
     )
-    table = Table("quarantine", faults, columns, "set_aside", search=True)
-    return Section("set_aside", "set_aside_note", tables=[table])
+    table = Table("quarantine", faults, columns, say("Set aside"), search=True)
+    return Section(
+        "set_aside",
+        say("Set aside"),
+        say("Files, lines and tows not used, with the reason."),
+        tables=[table],
+    )
 
 
 def _rebuilt(views: Views) -> Section:
     """What the rebuild read, applied and made."""
     seasons, tables = views.table("seasons"), views.table("contents")
-    dutch = pl.col("table").replace(TABLES_IN_DUTCH)
+    in_dutch = speaker("nl")
+    dutch = pl.col("table").replace(
+        {name: in_dutch(summary_of(schema)) for name, schema in TABLES.items()}
+    )
     tables = tables.with_columns(meanings=pl.concat_list(dutch, "meaning"))
     return Section(
         "rebuilt",
-        "rebuilt_note",
+        say("What the rebuild did"),
+        say(
+            "Tows per season that the tow list holds and that were used; the methods "
+            "applied; and the tables made of them."
+        ),
         tables=[
-            Table("seasons", seasons, seasons.columns, "seasons"),
+            Table("seasons", seasons, seasons.columns, say("Seasons")),
             methods_table(views),
-            Table("contents", tables, ("table", "rows", "meanings"), "tables"),
+            Table("contents", tables, ("table", "rows", "meanings"), say("Tables in the database")),
         ],
     )

@@ -4,14 +4,17 @@ import datetime as dt
 import hashlib
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Final
 
 import polars as pl
 from markupsafe import Markup
 
+from dashboards import labels
 from dashboards.answer import Answer
 from dashboards.speech import Headline, Speech
+from pipeline.messages import Sentence, say
 from pipeline.register.register import draft_name
 from warehouse.derive.studies import STUDIED_METHOD
 from warehouse.queries.chosen_tows import ALL, NEWEST, choices_of, spoken_range
@@ -25,7 +28,7 @@ class Table:
         name: names the download.
         frame: its rows; columns keep the names they have in the warehouse.
         columns: what is shown, in order; the download holds the same.
-        caption: key of the text above it.
+        caption: the text above it.
         follows: columns that a selector of the page filters on.
         search: whether it has a search box.
         linked: whether a selection in a chart filters it by boat.
@@ -38,7 +41,7 @@ class Table:
     name: str
     frame: pl.DataFrame
     columns: Sequence[str]
-    caption: str
+    caption: Sentence
     follows: Sequence[str] = ()
     search: bool = False
     linked: bool = False
@@ -59,7 +62,7 @@ class Chart:
     Attributes:
         figure: name in `dashboards.figures.FIGURES`.
         data: name of the page's data it draws.
-        caption: key of its caption; also what a screen reader says.
+        caption: also what a screen reader says.
         follows: selector, or several, by data column: only rows that hold what one of them says
             are drawn, and rows where the column is empty. A column may hold lists: then one of
             its values has to be chosen.
@@ -70,7 +73,7 @@ class Chart:
 
     figure: str
     data: str
-    caption: str
+    caption: Sentence
     follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
     says: Headline | None = None
     said: str = ""
@@ -89,7 +92,7 @@ class Select:
     """
 
     name: str
-    caption: str
+    caption: Sentence
     options: Sequence[str]
     chosen: str
     with_all: bool = False
@@ -101,29 +104,31 @@ class Section:
     """A heading, a note, and what is under them.
 
     Attributes:
-        links: path of a page, key of its name and key of a sentence about it.
+        name: by which links find it.
+        links: path of a page, its title and a sentence about it.
         pages: path of a page and its name, which is data.
         files: path of a file to download, and its name, which is data.
-        empty: key of what is said where there is nothing to show.
+        empty: what is said where there is nothing to show.
         folded: whether it opens only when asked for.
         headline: what it shows, in each language; see `dashboards.headlines`.
-        terms: key of a word and key of its meaning.
-        key_figures: key of what is counted, and the figure.
+        terms: a word and its meaning.
+        key_figures: what is counted, and the figure.
         prose: a text to read, as HTML.
     """
 
-    title: str
-    note: str | None = None
+    name: str
+    title: Sentence
+    note: Sentence | None = None
     charts: Sequence[Chart] = ()
     tables: Sequence[Table] = ()
-    links: Sequence[tuple[str, str, str]] = ()
+    links: Sequence[tuple[str, Sentence, Sentence]] = ()
     pages: Sequence[tuple[str, str]] = ()
     files: Sequence[tuple[str, str]] = ()
-    empty: str | None = None
+    empty: Sentence | None = None
     folded: bool = False
     headline: Headline | None = None
-    terms: Sequence[tuple[str, str]] = ()
-    key_figures: Sequence[tuple[str, str | Headline]] = ()
+    terms: Sequence[tuple[Sentence, Sentence]] = ()
+    key_figures: Sequence[tuple[Sentence, str | Headline]] = ()
     prose: Callable[[Speech], Markup] | None = None
 
 
@@ -133,7 +138,6 @@ class Page:
 
     Attributes:
         path: within the site.
-        title: key of its title.
         sections: in order.
         name: of a boat, type or race, data rather than a text; empty elsewhere.
         subtitle: what tells a boat from one of the same name: its numbers and type.
@@ -146,7 +150,7 @@ class Page:
     """
 
     path: str
-    title: str
+    title: Sentence
     sections: Sequence[Section]
     name: str = ""
     selects: Sequence[Select] = ()
@@ -169,7 +173,7 @@ class Page:
 
 
 def listed(
-    title: str,
+    section: Section,
     name: str,
     frame: pl.DataFrame,
     columns: Sequence[str],
@@ -178,11 +182,11 @@ def listed(
     exact: bool = True,
     headline: Headline | None = None,
 ) -> list[Section]:
-    """A section with one table, and the note of its title; none where there are no rows."""
+    """A section with one table, called as the section is; none where there are no rows."""
     if frame.is_empty():
         return []
-    table = Table(name, frame, columns, title, follows, exact=exact)
-    return [Section(title, f"{title}_note", charts, [table], headline=headline)]
+    table = Table(name, frame, columns, section.title, follows, exact=exact)
+    return [replace(section, charts=charts, tables=[table], headline=headline)]
 
 
 def is_chosen(value: object, *wanted: str) -> bool:
@@ -203,22 +207,35 @@ def draft_of(methods: Sequence[str]) -> str:
     return draft_name(default_method(methods))
 
 
+METHOD_SELECTORS: Final = {
+    "method": say("Method"),
+    "before": say("Before"),
+    "after": say("After"),
+}
+
+
 def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "") -> Select:
     """A selector of methods, by what people call them."""
     first = chosen or default_method(methods)
-    return Select(name, name, methods, first, named=lambda m, speech: speech.say(f"method.{m}"))
+    return Select(
+        name,
+        METHOD_SELECTORS[name],
+        methods,
+        first,
+        named=lambda m, speech: speech.say(labels.method(m)),
+    )
 
 
 def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
     """A selector of editions; drafts by the name of their method."""
-    return Select(name, "edition", editions, chosen, named=lambda e, speech: speech.edition(e))
+    return Select(name, say("Edition"), editions, chosen, named=lambda e, speech: speech.edition(e))
 
 
 def tows_select(compared: pl.DataFrame) -> Select:
     """A selector of tows: all, the newest of each crew, or those of an era or a season."""
-    words = {ALL: "all_tows", NEWEST: "code.newest"}
+    words = {ALL: say("all tows"), NEWEST: labels.code("newest")}
     return Select(
-        "tows", "tows", choices_of(compared["season"]), ALL,
+        "tows", say("Tows"), choices_of(compared["season"]), ALL,
         named=lambda tows, s: s.say(words[tows]) if tows in words else spoken_range(tows),
     )  # fmt: skip
 

@@ -1,6 +1,6 @@
 """Pages that are read: the method, how to read an audit, and what goes with an edition."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -11,12 +11,30 @@ from dashboards.markdown import to_html
 from dashboards.site.downloads import files_of
 from dashboards.site.parts import Page, Section, edition_page
 from dashboards.speech import Speech
-from pipeline.words import LANGUAGES
-from pipeline.words.guides import GUIDES_IN_SHORT
+from pipeline.messages import LANGUAGES, Sentence, say
 from warehouse.queries.views import Views
 from warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, edition_path
 
-_TEXTS: Final = {"notice": (NOTICE, NOTICE_EN), "release_notes": (NOTES, NOTES_EN)}
+_SHORT: Final = Path(__file__).parent / "guides"
+"""The documents in short."""
+
+_TEXTS: Final = {
+    "notice": (say("Notice to the members"), NOTICE, NOTICE_EN),
+    "release_notes": (say("Release notes"), NOTES, NOTES_EN),
+}
+
+
+TITLES: Final = {
+    "method": (
+        say("The method"),
+        say("Every formula, from samples to a register line, with its source."),
+    ),
+    "audit": (
+        say("Reading an audit"),
+        say("How to read the audit of a boat or a type."),
+    ),
+}
+"""Title of each document, and a sentence about it."""
 
 
 def guide_pages() -> Iterator[Page]:
@@ -25,14 +43,24 @@ def guide_pages() -> Iterator[Page]:
     for name in GUIDES:
         nl, en = (guide_file(name, language).read_text(encoding="utf-8") for language in LANGUAGES)
         prose = _in_language((nl, en), links)
-        short = Section("guide_in_short", prose=_in_language(GUIDES_IN_SHORT[name], {}))
-        whole = Section("guide_whole", "guide_note", prose=prose)
-        yield Page(f"{name}.html", f"guide_{name}", [short, whole])
+        short = Section("guide_in_short", say("In short"), prose=_in_language(_short(name), {}))
+        whole = Section(
+            "guide_whole",
+            say("The whole text"),
+            say("The document of the project, as it is shipped with the program."),
+            prose=prose,
+        )
+        yield Page(f"{name}.html", TITLES[name][0], [short, whole])
 
 
-def guide_links() -> list[tuple[str, str, str]]:
-    """Path of each document, key of its title and of a sentence about it."""
-    return [(f"{name}.html", f"guide_{name}", f"about_guide_{name}") for name in GUIDES]
+def _short(name: str) -> tuple[str, str]:
+    nl, en = (_SHORT / f"{name}.{language}.md" for language in LANGUAGES)
+    return nl.read_text(encoding="utf-8"), en.read_text(encoding="utf-8")
+
+
+def guide_links() -> list[tuple[str, Sentence, Sentence]]:
+    """Path of each document, its title and a sentence about it."""
+    return [(f"{name}.html", *TITLES[name]) for name in GUIDES]
 
 
 def edition_pages(views: Views) -> Iterator[Page]:
@@ -41,19 +69,27 @@ def edition_pages(views: Views) -> Iterator[Page]:
         folder = edition_path(views.store, edition)
         yield Page(
             edition_page(edition),
-            "edition_title",
+            say("Edition"),
             [
                 *(
-                    Section(title, prose=_in_language(_texts(folder, files), {}))
-                    for title, files in _TEXTS.items()
+                    Section(name, title, prose=_in_language(_texts(folder, files), {}))
+                    for name, (title, *files) in _TEXTS.items()
                 ),
-                Section("downloads", "downloads_note", files=files_of(edition)),
+                Section(
+                    "downloads",
+                    say("Downloads"),
+                    say(
+                        "The register of every edition as published, with the notice to the "
+                        "members and the release notes in Dutch and English."
+                    ),
+                    files=files_of(edition),
+                ),
             ],
             name=edition,
         )
 
 
-def _texts(folder: Path, files: tuple[str, str]) -> tuple[str, str]:
+def _texts(folder: Path, files: Sequence[str]) -> tuple[str, str]:
     dutch, english = ((folder / file).read_bytes().decode() for file in files)
     return dutch, english
 

@@ -5,6 +5,7 @@ from typing import TypeAlias
 
 import polars as pl
 
+from dashboards import labels
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -16,7 +17,7 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.speech import Headline, Speech, stretched_fatigue
-from pipeline.words import in_per_cent
+from pipeline.messages import in_per_cent, say
 from warehouse.queries.answers import newest_edition, race_chances
 from warehouse.queries.views import Views
 
@@ -34,13 +35,32 @@ def race_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """The list of races, and a page for each."""
     races = views.races() if views.has("race_changes") else pl.DataFrame()
     if races.is_empty():
-        yield Page("races.html", "races", [Section("races", empty="no_races")])
+        yield Page(
+            "races.html",
+            say("Races"),
+            [
+                Section(
+                    "races", say("Races"), empty=say("The archive holds no races to compute again.")
+                )
+            ],
+        )
         return
     editions = races["to_edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     days = views.race_days()
     links = [(race_path(race, day), f"{race} {day}") for race, day in days]
-    yield Page("races.html", "races", [Section("races", "races_note", pages=links)])
+    yield Page(
+        "races.html",
+        say("Races"),
+        [
+            Section(
+                "races",
+                say("Races"),
+                say("Every result computed again by the old and the new edition; choose a race."),
+                pages=links,
+            )
+        ],
+    )
     chances = race_chances(views, races.filter(to_edition=chosen)["from_edition"][0], chosen)
     for race, day in days:
         own = races.filter(race=race, race_date=day)
@@ -56,12 +76,29 @@ def _race(
     chances: Chances,
 ) -> Page:
     now = rows.filter(to_edition=chosen)
-    table = Table("race_changes", rows, COLUMNS, "races", ["to_edition"], search=True, cards=CARDS)
-    chart = Chart("race_ranks", "races", "race_ranks", {"to_edition": "to_edition"})
+    table = Table(
+        "race_changes", rows, COLUMNS, say("Races"), ["to_edition"], search=True, cards=CARDS
+    )
+    chart = Chart(
+        "race_ranks", "races", say("Place before and after"), {"to_edition": "to_edition"}
+    )
     return Page(
         path,
-        "races",
-        [Section("race_results", "race_note", [chart], [table], headline=_winners(now, chances))],
+        say("Races"),
+        [
+            Section(
+                "race_results",
+                say("Results by both editions"),
+                say(
+                    "Power per rower in this race, and the place by it, by class: among the crews "
+                    "that have a valid line on that day in both editions. On the line the place "
+                    "stays the same."
+                ),
+                [chart],
+                [table],
+                headline=_winners(now, chances),
+            )
+        ],
         name=name,
         selects=[editions_select("to_edition", editions, chosen)],
         data={"races": [with_page(rows.drop_nulls("new_rank"), "../")]},
@@ -92,9 +129,15 @@ def _winner(
     few = _few_places(speech, crew_class, rows)
     if not old or not new:
         return few
-    key = "head_winner_same" if old[0] == new[0] else "head_winner_other"
-    people = speech.say(f"crew.{crew_class}")
-    text = speech.say(key).format(people=people, old=old[0], new=new[0])
+    people = speech.say(labels.crew(crew_class))
+    text = speech.say(
+        "Among the {people} {new} wins, as before."
+        if old[0] == new[0]
+        else "Among the {people} {new} wins instead of {old}.",
+        people=people,
+        old=old[0],
+        new=new[0],
+    )
     if old[0] != new[0]:
         text += stretched_fatigue(rows.drop_nulls("new_rank")["rowing_time_s"], speech)
     if few:
@@ -102,7 +145,9 @@ def _winner(
     chance = chances.get((f"{rows['race'][0]} {rows['race_date'][0]}", crew_class))
     if chance is None:
         return text
-    return text + speech.say("head_chance").format(chance=in_per_cent(chance))
+    return text + speech.say(
+        " Chance that another wins than before: {chance}.", chance=in_per_cent(chance)
+    )
 
 
 def _few_places(speech: Speech, crew_class: str, rows: pl.DataFrame) -> str:
@@ -111,6 +156,13 @@ def _few_places(speech: Speech, crew_class: str, rows: pl.DataFrame) -> str:
     known, placed = int(powers.to_series().sum()), rows["new_rank"].count()
     if placed == known:
         return ""
-    return speech.say("head_few_places" if placed else "head_no_places").format(
-        people=speech.say(f"crew.{crew_class}"), number=placed, all=known
+    return speech.say(
+        "Among the {people} only {number} of {all} crews have a valid line on that day "
+        "in both editions; the places are among these. "
+        if placed
+        else "Among the {people} none of {all} crews has a valid line on that day in both "
+        "editions: there are no places to compare. ",
+        people=speech.say(labels.crew(crew_class)),
+        number=placed,
+        all=known,
     )

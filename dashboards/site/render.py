@@ -20,7 +20,7 @@ import jinja2
 import vl_convert
 from markupsafe import Markup
 
-from dashboards import fonts
+from dashboards import fonts, labels
 from dashboards.answer import told
 from dashboards.html import as_json, environment
 from dashboards.kept import kept
@@ -32,10 +32,10 @@ from dashboards.site.pages import MENU, method_names, shared_pages
 from dashboards.site.parts import Page, boat_path, race_path, type_path
 from dashboards.site.slides import slides_page
 from dashboards.site.specifications import chart_specifications
+from dashboards.site.start import TERMS
 from dashboards.site.still import Stills, first_chart, stills
 from dashboards.speech import Speech
-from pipeline.words import LANGUAGES
-from pipeline.words.catalogue import WORDS, speaker
+from pipeline.messages import LANGUAGES, speaker
 from warehouse.queries.views import Views
 from warehouse.store.files import folder_written_beside
 from warehouse.store.store import Store
@@ -174,7 +174,7 @@ def _put(path: Path, text: str) -> None:
 @cache
 def _template() -> jinja2.Template:
     """The template of every page: to compile it takes as long as a few pages."""
-    names = {"policy": POLICY, "menu": MENU}
+    names = {"policy": POLICY, "menu": MENU, "SIMULATED": labels.SIMULATED}
     return environment(HERE / "templates", **names).get_template("page.html.j2")
 
 
@@ -187,7 +187,8 @@ class Edition:
         self._comments = _by_column(views.comments()) if language == "en" else {}
         self._cells = Cells(self.speech)
         self._names = {
-            "t": self.speech.text,
+            "_": self.speech.text,
+            "column_text": labels.column,
             "speech": self.speech,
             "heading": cache(self._heading),
             "told": lambda answer: told(answer, self.speech),
@@ -198,12 +199,12 @@ class Edition:
         """The heading of a column, which says what it means when pointed at."""
         meaning = self._comments.get(f"{table}.{column}") or self._comments.get(column)
         if not meaning and column in IN_GLOSSARY:
-            meaning = self.speech.say(f"meaning_{IN_GLOSSARY[column]}")
+            meaning = self.speech.say(TERMS[IN_GLOSSARY[column]][1])
         return HEADING.format(
             column=column,
             title=TITLE.format(meaning) if meaning else "",
             kind=NUMERIC if is_number else "",
-            text=self.speech.text(f"column.{column}"),
+            text=self.speech.text(labels.column(column)),
         )
 
     def address(self, page: Page) -> str:
@@ -298,7 +299,12 @@ def vega_bundle() -> str:
 def charts_script(language: str) -> str:
     """A script with the figures and their words in one language."""
     say = speaker(language)
-    named = {key: say(key) for key in WORDS if key.startswith(("column.", "code.", "method."))}
-    words = named | {key: say(key) for key in ("yes", "no", "no_values", "from", "to")}
+    words = {name: say(text) for name, text in labels.named().items()} | {
+        "yes": say("yes"),
+        "no": say("no"),
+        "no_values": say("no values"),
+        "from": say("from"),
+        "to": say("to"),
+    }
     figures = as_json(chart_specifications(language))
     return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import polars as pl
 
+from dashboards import labels
 from dashboards.figures.slides import EXPLAINING, QUANTITIES
 from dashboards.site.parts import (
     Chart,
@@ -26,11 +27,25 @@ from dashboards.slide_rows import (
     pair_of_types,
 )
 from dashboards.speech import Headline
-from pipeline.words import LANGUAGES
-from pipeline.words.catalogue import speaker
+from pipeline.messages import LANGUAGES, say, speaker
 from warehouse.queries.chosen_tows import ALL, with_choices
 from warehouse.queries.views import Views
 
+AGAINST = {
+    "weight": say("Against weight"),
+    "speed": say("Against tow speed"),
+    "length": say("Against length"),
+}
+NOTE = say(
+    "The methods stand side by side on equal axes. Circles are men, triangles "
+    "women. An open mark is a tow too slow or too fast for the standard speed, a "
+    "black dot one with too little power. The line is the straight line that fits "
+    "best, with its 95 % interval; against weight and length one per crew class. "
+    "R² is the share of the spread that the line explains, each tow weighted by "
+    "its error and tows of one boat as repeats. A tow whose Cw is an outlier of "
+    "its type is named. A bar is a tow's 95 % interval; a dashed one the spread of "
+    "the runs alone: the log's error is not in it."
+)
 PAIR_SELECTORS = ("pair_first", "pair_second")
 WHOLE = {
     "slide_hull_speed": Book.b_and_hull_speed,
@@ -63,7 +78,7 @@ CLAIMS = {
 def slides_page(views: Views, methods: Sequence[str]) -> Page:
     """The charts with what they say, two types below each other; then what the texts claim."""
     if not views.has("compared_tows"):
-        return Page("slides.html", "slides", [])
+        return Page("slides.html", say("Presentation 2015"), [])
     said = [{s.name: s for s in slides(views, speaker(language))} for language in LANGUAGES]
     book = Drawn(said[0], said[1])
     compared = compared_frame(views)
@@ -73,31 +88,54 @@ def slides_page(views: Views, methods: Sequence[str]) -> Page:
     sections = [
         Section(
             f"slides_{x}",
-            "slides_note" if x == "weight" else None,
+            AGAINST[x],
+            NOTE if x == "weight" else None,
             told_charts([f"slide_{y}_{x}" for y in QUANTITIES], told, pair, follows),
         )
         for x in EXPLAINING
     ]
     sections += [
-        Section("slides_2014", "slides_2014_note", book.of(*OF_2014)),
+        Section(
+            "slides_2014",
+            say("2014 recomputed"),
+            say(
+                "The tows of 2014 as they came out that year, recomputed early in 2015 after "
+                "all improvements, and as computed today."
+            ),
+            book.of(*OF_2014),
+        ),
         Section(
             "slides_hull_speed",
+            say("Is B hull speed?"),
             charts=told_charts(WHOLE, told, [], {"tows": "tows"}),
         ),
-        Section("slides_raced", charts=book.of("raced beyond")),
-        Section("slides_eras", charts=book.of("eras")),
-        Section("slides_years", charts=book.of("years")),
-        Section("slides_ticks", "slides_ticks_note", book.of("ticks")),
+        Section("slides_raced", say("Towed slowly, raced fast"), charts=book.of("raced beyond")),
+        Section(
+            "slides_eras",
+            say("Do seasons with other instruments stand apart?"),
+            charts=book.of("eras"),
+        ),
+        Section("slides_years", say("One boat through the years"), charts=book.of("years")),
+        Section(
+            "slides_ticks",
+            say("The four options of 2015"),
+            say(
+                "Optimisation, trimming, wind-vane correction and B from length: all sixteen "
+                "combinations overlaid, with the log's speed and after correction. Each panel "
+                "colours one option."
+            ),
+            book.of("ticks"),
+        ),
         *_claims(views),
     ]
     return Page(
         "slides.html",
-        "slides",
+        say("Presentation 2015"),
         [section for section in sections if section.charts or section.tables],
         selects=[
             tows_select(compared),
-            Select("pair_first", "pair_first", types, pair[0]),
-            Select("pair_second", "pair_second", types, pair[-1]),
+            Select("pair_first", say("Compare"), types, pair[0]),
+            Select("pair_second", say("with"), types, pair[-1]),
             methods_select(methods),
         ],
         data={"slides": drawn_rows(views), "said": [told]} | book.data(),
@@ -117,7 +155,7 @@ class Drawn(NamedTuple):
     def of(self, *names: str) -> list[Chart]:
         """The slides whose names begin so, each with its own rows."""
         return [
-            Chart(s.figure, _data_name(s), s.figure, says=self(s.name))
+            Chart(s.figure, _data_name(s), labels.FIGURES[s.figure], says=self(s.name))
             for s in self.nl.values()
             if s.name.startswith(names)
         ]
@@ -170,7 +208,14 @@ def told_charts(
     """Charts of the page's tows, each below what it shows; at first all tows of these types."""
     own = said.filter(pl.col("boat_type").is_null() | pl.col("boat_type").is_in(types), tows=ALL)
     return [
-        Chart(figure, "slides", figure, follows, _told(own.filter(figure=figure)), "said")
+        Chart(
+            figure,
+            "slides",
+            labels.FIGURES[figure],
+            follows,
+            _told(own.filter(figure=figure)),
+            "said",
+        )
         for figure in figures
     ]
 
@@ -179,9 +224,49 @@ def _told(said: pl.DataFrame) -> Headline:
     return lambda speech: " ".join(said[speech.language])
 
 
+CLAIM_TEXTS = {
+    "hull_speed": Section(
+        "claim_hull_speed",
+        say("B and hull speed per type"),
+        say(
+            "Tow speed and B as parts of hull speed, 1.25 times the root of the waterline. "
+            "Of B the median of the boats with its 95 % interval: if 1 lies outside it, B "
+            "is not hull speed."
+        ),
+    ),
+    "promise": Section(
+        "claim_promise",
+        say("Within 2 %, and within 1 %?"),
+        say(
+            "The presentation: a large majority within 2 %, after the improvements all "
+            "within 1 %. First what the tows state themselves (half the 95 % interval; "
+            "under the old methods the spread of the runs alone), then what repeat tows "
+            "show."
+        ),
+    ),
+    "season_changes": Section(
+        "claim_season_changes",
+        say("Is 6 % in speed 20-30 % in Cw?"),
+        say(
+            "The presentation: the logs of 2009-2011 corrected by up to 6 %, 20-30 % in "
+            "Cw. Here Cw at the declared speed under the chosen method over that as "
+            "published: the median of the season and the extremes."
+        ),
+    ),
+    "print_summary": Section(
+        "claim_print_summary",
+        say("Does print come out again?"),
+        say(
+            "Printed Cw divided by the recomputed one, per season. Look here before "
+            "anything is re-based: what is left is unexplained."
+        ),
+    ),
+}
+
+
 def _claims(views: Views) -> Iterator[Section]:
     for name, columns in CLAIMS.items():
         frame = views.table(name)
         follows = ["method", *(["tows"] if frame["tows"].dtype == pl.String else [])]
         shown = ["method", *columns.split()]
-        yield from listed(f"claim_{name}", name, frame, shown, follows=follows)
+        yield from listed(CLAIM_TEXTS[name], name, frame, shown, follows=follows)

@@ -4,7 +4,9 @@ import copy
 import json
 from collections.abc import Callable
 from functools import cache
+from hashlib import sha256
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import polars as pl
@@ -14,7 +16,7 @@ from dashboards import drawn
 from dashboards.figures import FIGURES, drop
 from dashboards.html import as_json
 from dashboards.kept import kept
-from pipeline.words.catalogue import WORDS, speaker
+from pipeline.messages import CATALOGUES, speaker
 from warehouse.store.code import code_hash
 from warehouse.store.store import fingerprint
 
@@ -51,7 +53,8 @@ def _kept(name: str, make: Callable[[], str]) -> dict[str, Any]:
 @cache
 def _made_from() -> str:
     versions = [version(name) for name in ("altair", "vl-convert-python")]
-    return fingerprint(versions, WORDS, code_hash("dashboards"))
+    texts = b"".join(file.read_bytes() for file in sorted(Path(CATALOGUES).rglob("*.mo")))
+    return fingerprint(versions, sha256(texts).hexdigest(), code_hash("dashboards"))
 
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:

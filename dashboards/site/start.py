@@ -1,10 +1,11 @@
 """The start page: where things stand; and the page of words."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import polars as pl
 
-from dashboards import headlines
+from dashboards import headlines, labels
 from dashboards.report import in_short
 from dashboards.site.parts import (
     Chart,
@@ -16,40 +17,202 @@ from dashboards.site.parts import (
 )
 from dashboards.site.prose import guide_links
 from dashboards.speech import Headline, Speech
+from pipeline.messages import Sentence, pgettext, say
 from warehouse.queries.answers import newest_edition
 from warehouse.queries.change_report import last_changes
 from warehouse.queries.views import Views
 
-CARDS = ("register", "due", "types", "compare", "races", "corrections", "reproducibility",
-         "changes", "quality", "slides", "words")  # fmt: skip
-TERMS = ("tow", "cw", "a", "b", "declared", "interval", "as_measured", "log_factor", "method",
-         "edition", "flag", "set_aside", "e_n", "power", "type", "crew_class",
-         "verification_code")  # fmt: skip
+CARDS: Final = {
+    "register": (
+        say("Register"),
+        say("Every boat and crew with A, B and Cw; search, sort, download."),
+    ),
+    "due": (
+        say("Due to tow"),
+        say("Who has to tow again, by when, and at what speed?"),
+    ),
+    "types": (
+        say("Types"),
+        say("Are equal boats equal? A, B and Cw against weight and tow speed, before and after."),
+    ),
+    "compare": (
+        say("Compare"),
+        say("Two boats compared: which runs easier, and at what speed?"),
+    ),
+    "races": (
+        say("Races"),
+        say("Every race computed again: is there another winner, and how likely is that?"),
+    ),
+    "corrections": (
+        say("Corrections"),
+        say("Log factors per season, and what each step of a method does to Cw."),
+    ),
+    "reproducibility": (
+        say("Reproducibility"),
+        say("How well do two tests of one unaltered boat agree?"),
+    ),
+    "changes": (
+        say("Changes"),
+        say("What changes between two editions of the register, and why."),
+    ),
+    "quality": (
+        say("Quality"),
+        say("Tows set aside, flags, and counts of the rebuild."),
+    ),
+    "slides": (
+        say("Presentation 2015"),
+        say(
+            "Every chart of the presentation of 24 January 2015, over all seasons, before "
+            "and after."
+        ),
+    ),
+    "words": (
+        say("Glossary"),
+        say("What the words and signs mean."),
+    ),
+}
+"""Title of each page, and a sentence about it."""
+
+TERMS: Final = {
+    "tow": (
+        pgettext("glossary", "Tow"),
+        say("Measuring resistance by towing the boat: six runs, three out and three back."),
+    ),
+    "cw": (
+        say("Cw"),
+        say(
+            "Resistance coefficient in kg/m: tow force divided by speed squared. The "
+            "lower, the easier the boat runs. It is not the dimensionless wave-making "
+            "coefficient that naval architects call Cw."
+        ),
+    ),
+    "a": (
+        say("A"),
+        say("Cw at very low speed, in kg/m."),
+    ),
+    "b": (
+        say("B"),
+        say(
+            "The speed in m/s at which the curve's resistance becomes infinite: the lower, "
+            "the faster Cw rises with speed. Cw = A / (1 - (v/B)²)."
+        ),
+    ),
+    "declared": (
+        say("Declared speed"),
+        say("The speed that the crew says it rows; the curve holds from 85 to 115 % of it."),
+    ),
+    "interval": (
+        say("95 % interval"),
+        say(
+            "Where the value lies with 95 % confidence, given all that the uncertainty is made of."
+        ),
+    ),
+    "as_measured": (
+        say("As measured and best estimate"),
+        say("As measured: from the tow itself. Best estimate: from all tows of the archive."),
+    ),
+    "log_factor": (
+        say("Log factor"),
+        say("True speed divided by the speed of the log, in a season."),
+    ),
+    "method": (
+        say("Method"),
+        say(
+            "The agreed way of computing, from measurement to A and B. Every number names its own."
+        ),
+    ),
+    "edition": (
+        say("Edition and draft"),
+        say("A register as decided, which never changes. A draft is not decided."),
+    ),
+    "flag": (
+        say("Flag"),
+        say("Something to look at; it changes no number."),
+    ),
+    "set_aside": (
+        say("Set aside"),
+        say("Not used, with the reason."),
+    ),
+    "e_n": (
+        say("E_n"),
+        say(
+            "Difference of two tows divided by both 95 % intervals together; beyond 1 they "
+            "disagree."
+        ),
+    ),
+    "power": (
+        say("Power per rower"),
+        say("What each rower gives on average, in watts; the crew that gives most wins."),
+    ),
+    "type": (
+        say("Standard speed"),
+        say("The median declared speed of a type, at which boats can be compared."),
+    ),
+    "crew_class": (
+        pgettext("glossary", "Class"),
+        say("H: men, D: women."),
+    ),
+    "verification_code": (
+        pgettext("glossary", "Verification code"),
+        say(
+            "Computed from everything behind a line of an edition: if any of that changes, "
+            "so does the code."
+        ),
+    ),
+}
+"""Words with what they mean."""
 
 
 def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
     """The edition in force, key figures, what changes, the years, and where to go."""
     editions = changes["to_edition"].unique().sort().to_list() if changes.height else []
     chosen = newest_edition(editions, draft_of(methods))
-    links = [(f"{name}.html", name, f"about_{name}") for name in CARDS] + guide_links()
+    links = [*((f"{name}.html", *texts) for name, texts in CARDS.items()), *guide_links()]
     years = views.table("season_changes")
     sections = [
         Section(
             "now",
-            "index_intro",
+            say("The current state"),
+            say(
+                "The resistance of rowing sloops is measured with a tow test. These pages show "
+                "the results of all tests, recomputed with one method: the register, every "
+                "boat with its measurements, and what each step changes."
+            ),
             key_figures=_figures(views),
             headline=headlines.changes(changes.filter(to_edition=chosen)) if editions else None,
         ),
         *_last_rebuild(views),
-        Section("index_pages", links=links),
+        Section("index_pages", say("Where to find what"), links=links),
     ]
     if years.height:
-        chart = Chart("season_change", "years", "season_change", {"method": "method"})
-        sections.append(Section("years", "season_change_note", [chart]))
-    sections.append(Section("methods", "methods_note", tables=[methods_table(views)]))
+        chart = Chart(
+            "season_change", "years", say("Relative to the published Cw"), {"method": "method"}
+        )
+        sections.append(
+            Section(
+                "years",
+                say("Through the seasons"),
+                say(
+                    "Cw by the method / Cw as published, of the same tow: median, and lowest to "
+                    "highest."
+                ),
+                [chart],
+            )
+        )
+    sections.append(
+        Section(
+            "methods",
+            say("Methods"),
+            say(
+                "Every number depends on a method, and names it. Two equal hashes are two "
+                "equal methods."
+            ),
+            tables=[methods_table(views)],
+        )
+    )
     return Page(
         "index.html",
-        "index",
+        say("Start"),
         sections,
         selects=[methods_select(methods)] if years.height else [],
         data={"years": [years]} if years.height else {},
@@ -61,39 +224,58 @@ def _last_rebuild(views: Views) -> list[Section]:
     changes = last_changes(views.store)
     if changes is None:
         return []
-    return [Section("last_rebuild", headline=lambda speech: in_short(changes, (), speech.say))]
+    return [
+        Section(
+            "last_rebuild",
+            say("What the last rebuild changed"),
+            headline=lambda speech: in_short(changes, (), speech.say),
+        )
+    ]
 
 
 def methods_table(views: Views) -> Table:
     """The methods, with the title in the language of the page."""
     frame = views.table("methods").with_columns(titles=pl.concat_list("title", "title_en"))
-    return Table("methods", frame, ["method", "titles", "content_hash"], "methods")
+    return Table("methods", frame, ["method", "titles", "content_hash"], say("Methods"))
 
 
-def _figures(views: Views) -> list[tuple[str, str | Headline]]:
+def _figures(views: Views) -> list[tuple[Sentence, str | Headline]]:
     """Which edition counts, and how much there is."""
     editions = views.table("editions").sort("valid_from")
     tows, season = views.table("tows"), pl.col("season")
     first, last = views.table("seasons").select(first=season.min(), last=season.max()).row(0)
     return [
-        ("edition_in_force", _in_force(editions)),
-        ("column.as_of", str(views.table("due_list")["as_of"].max())),
-        ("boats_number", str(views.table("boats").height)),
-        ("tows_number", f"{tows.height} ({first}\u2013{last})"),
+        (say("Current edition"), _in_force(editions)),
+        (labels.column("as_of"), str(views.table("due_list")["as_of"].max())),
+        (say("Boats"), str(views.table("boats").height)),
+        (pgettext("number", "Tows"), f"{tows.height} ({first}\u2013{last})"),
     ]
 
 
 def _in_force(editions: pl.DataFrame) -> Headline:
     def text(speech: Speech) -> str:
         if editions.is_empty():
-            return speech.say("no_edition")
+            return speech.say("none yet: this is a draft")
         last = editions.row(-1, named=True)
-        return speech.say("edition_from").format(edition=last["edition"], day=last["valid_from"])
+        return speech.say("{edition}, from {day}", edition=last["edition"], day=last["valid_from"])
 
     return text
 
 
 def words_page() -> Page:
     """What the words mean, and how to read a page."""
-    terms = [(f"term_{name}", f"meaning_{name}") for name in TERMS]
-    return Page("words.html", "words", [Section("words_list", "words_note", terms=terms)])
+    return Page(
+        "words.html",
+        say("Glossary"),
+        [
+            Section(
+                "words_list",
+                say("What the words mean"),
+                say(
+                    "A 95 % interval contains the true value in 19 of 20 cases if it includes all "
+                    "causes; where it does not, the page says so."
+                ),
+                terms=list(TERMS.values()),
+            )
+        ],
+    )

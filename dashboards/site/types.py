@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from dashboards import headlines
+from dashboards import headlines, labels
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -20,6 +20,7 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.site.slides import drawn_rows, sentences, told_charts
+from pipeline.messages import say
 from warehouse.queries.chosen_tows import with_choices
 from warehouse.queries.views import Views
 
@@ -31,7 +32,7 @@ SIDES = ("before", "after")
 def types_page(views: Views, methods: Sequence[str]) -> Page:
     """A, B and Cw at one speed of every tow against weight and speed, and what differs."""
     if not views.has("compared_tows"):
-        return Page("types.html", "types", [])
+        return Page("types.html", say("Types"), [])
     tows = with_choices(with_page(views.type_tows()))
     types = tows["boat_type"].unique().sort().to_list()
     columns = (
@@ -41,26 +42,46 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     )
     newest = tows.filter("newest").with_columns(after="method")
     table = Table(
-        "type_boats", newest, columns, "types_list", ["after", "boat_type"],
+        "type_boats", newest, columns, say("Boats"), ["after", "boat_type"],
         search=True, linked=True,
     )  # fmt: skip
     links = [(type_path(name), name) for name in types]
     follows = {"method": SIDES, "boat_type": "boat_type", "tows": "tows"}
-    charts = [Chart(name, "type_boats", name, follows) for name in SCATTERS]
+    charts = [Chart(name, "type_boats", labels.FIGURES[name], follows) for name in SCATTERS]
     return Page(
         "types.html",
-        "types",
+        say("Types"),
         [
-            Section("types_pages", "types_pages_note", pages=links),
-            Section("types_charts", "types_note", charts),
-            Section("types_list", tables=[table]),
+            Section(
+                "types_pages",
+                say("One type"),
+                say("Every type has a page: are the boats equal, and how do they compare?"),
+                pages=links,
+            ),
+            Section(
+                "types_charts",
+                say("B and Cw per type"),
+                say(
+                    "The chosen tows under two methods, on the same axes. Boats without a type are "
+                    "left out. Standard speed: the median declared speed of the type. Drag over a "
+                    "chart to select boats, or fill in from and to below it: the list shows them, "
+                    "each with its newest tow. Lowest and highest are a 95 % interval, or with a "
+                    "method that does not estimate the log's error the spread of the runs alone: "
+                    "that error is then not in it. Click a point to go to the boat. Two types by "
+                    "four methods are on the page Presentation 2015. Any range of seasons can be "
+                    "chosen in the workbench (herijk workbench), which computes its statistics "
+                    "anew."
+                ),
+                charts,
+            ),
+            Section("types_list", say("Boats"), tables=[table]),
             *_type_tables(views, tows),
         ],
         selects=[
             tows_select(tows),
             methods_select(methods, "before", methods[0]),
             methods_select(methods, "after"),
-            Select("boat_type", "type", types, "", with_all=True),
+            Select("boat_type", say("Type"), types, "", with_all=True),
         ],
         data={"type_boats": [tows.select("method", "page", "tows", *columns)]},
     )
@@ -90,19 +111,50 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
         own = pl.col("boat_type") == boat_type
         charts = told_charts(TYPE_FIGURES, said, [boat_type], {"tows": "tows"})
         listed = Table(
-            "type_boats", listed_tows.filter(own), TYPE_COLUMNS, "types_list", ["method", "tows"],
+            "type_boats", listed_tows.filter(own), TYPE_COLUMNS, say("Boats"), ["method", "tows"],
             search=True, exact=False, cards=TYPE_CARDS,
         )  # fmt: skip
         fitted = Table(
-            "type_lines", lines.filter(own), LINE_COLUMNS, "types_lines", ["method", "tows"]
+            "type_lines",
+            lines.filter(own),
+            LINE_COLUMNS,
+            say("Does it follow weight or speed?"),
+            ["method", "tows"],
         )
         verdict = headlines.homogeneity(tests.filter(own, method=default_method(methods)))
         yield Page(
             type_path(boat_type),
-            "types",
+            say("Types"),
             [
-                Section("type_verdict", "type_note", charts, [listed], headline=verdict),
-                Section("types_lines", "types_lines_note", tables=[fitted], folded=True),
+                Section(
+                    "type_verdict",
+                    say("Are these boats equal?"),
+                    say(
+                        "The verdict is about the newest tow of each boat and crew, charts and "
+                        "tables about the tows that you choose. Standard speed: the median "
+                        "declared speed of the type, at which Cw can be compared; the declared "
+                        "speed differs by crew. The line is the best straight fit with its 95 % "
+                        "interval. A full bar through a point is its 95 % interval; a dashed one "
+                        "is the spread of the runs alone: the log's error is not in it."
+                    ),
+                    charts,
+                    [listed],
+                    headline=verdict,
+                ),
+                Section(
+                    "types_lines",
+                    say("Does it follow weight or speed?"),
+                    say(
+                        "A straight line per type through n tows; tows of one boat count as "
+                        "repeats. The page of a type also has those through all tows and per "
+                        "season. The slope is the change of the quantity per kg or per m/s (of a "
+                        "power: the exponent); a slope whose interval holds 0 is not shown to "
+                        "exist. R²: share of the spread that the line explains. q is (v/B)²/(1 - "
+                        "(v/B)²) at the standard speed, the median declared speed of the type."
+                    ),
+                    tables=[fitted],
+                    folded=True,
+                ),
             ],
             name=boat_type,
             selects=[tows_select(tows), methods_select(methods)],
@@ -131,19 +183,74 @@ def _type_tables(views: Views, tows: pl.DataFrame) -> list[Section]:
     after = pl.col("method").alias("after")
     outside, newest = tows.filter("outside").with_columns(after), views.outliers()
     tables = [
-        Table("compared_tows", outside, OUTLIER_COLUMNS, "types_outliers_tows", [*OF_TYPE, "tows"])
+        Table(
+            "compared_tows",
+            outside,
+            OUTLIER_COLUMNS,
+            say("Chosen tows whose Cw differs from their type"),
+            [*OF_TYPE, "tows"],
+        )
     ]
     if newest.height:
         newest = newest.with_columns(after)
         tables.append(
-            Table("type_outliers", newest, NEWEST_COLUMNS, "types_outliers", OF_TYPE, exact=False)
+            Table(
+                "type_outliers",
+                newest,
+                NEWEST_COLUMNS,
+                say("Newest tows that differ from their type"),
+                OF_TYPE,
+                exact=False,
+            )
         )
     tests = views.table("type_homogeneity").with_columns(after)
     fitted = views.table("type_consistency").with_columns(after)
     columns = ("boat_type", *LINE_COLUMNS)
-    lines = Table("type_consistency", fitted, columns, "types_lines_newest", OF_TYPE)
+    lines = Table(
+        "type_consistency",
+        fitted,
+        columns,
+        say("Does it follow weight or speed? The newest tow of each crew"),
+        OF_TYPE,
+    )
     return [
-        Section("types_outliers", "types_outliers_note", tables=tables),
-        Section("types_lines_newest", "types_lines_note", tables=[lines]),
-        *listed("types_homogeneity", "type_homogeneity", tests, TEST_COLUMNS, follows=OF_TYPE),
+        Section(
+            "types_outliers",
+            say("Newest tows that differ from their type"),
+            say(
+                "Far from what the other boats of the type predict, in standard deviations "
+                "(sd) of that prediction. A possible cause is something to look at, not proven."
+            ),
+            tables=tables,
+        ),
+        Section(
+            "types_lines_newest",
+            say("Does it follow weight or speed? The newest tow of each crew"),
+            say(
+                "A straight line per type through n tows; tows of one boat count as repeats. "
+                "The page of a type also has those through all tows and per season. The slope "
+                "is the change of the quantity per kg or per m/s (of a power: the exponent); a "
+                "slope whose interval holds 0 is not shown to exist. R²: share of the spread "
+                "that the line explains. q is (v/B)²/(1 - (v/B)²) at the standard speed, the "
+                "median declared speed of the type."
+            ),
+            tables=[lines],
+        ),
+        *listed(
+            Section(
+                "types_homogeneity",
+                say("Could one B serve the type?"),
+                say(
+                    "Of the newest tow of each boat and crew (n). p: chance of so large a "
+                    "difference between the bends if all boats have the same B; a small p says "
+                    "that they have not. Chance to see 10 %: how likely a true spread of B of 10 % "
+                    "would have been noticed here. Share of noise: share of the spread that the "
+                    "runs alone give."
+                ),
+            ),
+            "type_homogeneity",
+            tests,
+            TEST_COLUMNS,
+            follows=OF_TYPE,
+        ),
     ]

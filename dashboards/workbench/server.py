@@ -19,16 +19,15 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
-from dashboards import fonts
+from dashboards import fonts, labels
 from dashboards.guard import guarded
 from dashboards.html import as_json, environment, in_both
 from dashboards.site.render import vega_bundle
 from dashboards.site.specifications import chart_specifications
 from dashboards.workbench.bench import Base, Bench, Named, Question
-from dashboards.workbench.texts import TEXTS
+from dashboards.workbench.texts import in_each, words
 from pipeline.errors import HerijkError
-from pipeline.words import LANGUAGES
-from pipeline.words.catalogue import both
+from pipeline.messages import LANGUAGES, pgettext, say
 
 LOOPBACK: Final = "127.0.0.1"
 HERE: Final = Path(__file__).parent
@@ -130,13 +129,20 @@ def _refusal(error: ValidationError) -> dict[str, object]:
 
 def _page(bench: Bench) -> str:
     start = bench.start()
-    data = Markup(as_json(start | {"words": TEXTS}))  # noqa: S704 - as_json escapes
-    made = environment(HERE / "templates", t=_text, both=lambda key: both(key, TEXTS))
+    data = Markup(as_json(start | {"words": words()}))  # noqa: S704 - as_json escapes
+    made = environment(
+        HERE / "templates",
+        _=_text,
+        both=in_each,
+        say=say,
+        pgettext=pgettext,
+        SIMULATED=labels.SIMULATED,
+    )
     return made.get_template("workbench.html.j2").render(start=start, data=data)
 
 
-def _text(key: str) -> Markup:
-    return in_both(both(key, TEXTS))
+def _text(text: str) -> Markup:
+    return in_both(in_each(text))
 
 
 def address(listening: socket.socket) -> str:

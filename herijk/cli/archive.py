@@ -9,7 +9,7 @@ import typer
 from herijk.cli.arguments import AsJson, show, show_files
 from herijk.cli.text import place
 from pipeline.errors import MissingKnowledgeError
-from pipeline.words import LANGUAGE, tell
+from pipeline.messages import LANGUAGE, tell
 
 if TYPE_CHECKING:
     from warehouse.archive.check import CauseReport, CheckReport

@@ -13,7 +13,7 @@ import typer
 
 from herijk.cli.arguments import AsJson, DataFolder, show
 from pipeline.errors import HerijkError
-from pipeline.words import LANGUAGE, spoken, tell
+from pipeline.messages import LANGUAGE, say, spoken, tell
 
 if TYPE_CHECKING:
     from warehouse.queries.reports import RebuildReport
@@ -72,19 +72,21 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     yield Finding("Herijk", True, version("herijk"))
     yield Finding("Python", True, sys.version.split()[0])
     yield _space(data)
-    yield _tried("settings", lambda: tell("applies {}", ", ".join(applied(data))))
+    yield _tried(say("settings"), lambda: tell("applies {}", ", ".join(applied(data))))
     known = known_methods(data)
     for name in known.own:
         yield _tried(tell("method {}", name), partial(_title, known, name))
     if data.is_dir():
-        yield _tried("lock", lambda: _taken(only_writer(data)))
-        yield _tried("tables", lambda: _tows(rebuild_report(Store(data))))
+        yield _tried(say("lock"), lambda: _taken(only_writer(data)))
+        yield _tried(say("tables"), lambda: _tows(rebuild_report(Store(data))))
     else:
-        yield Finding("data folder", True, tell("{} is not there yet; a rebuild makes it", data))
+        yield Finding(
+            say("data folder"), True, tell("{} is not there yet; a rebuild makes it", data)
+        )
     if archive is not None:
         there = archive.is_dir()
         said = str(archive) if there else tell("{} is not a folder", archive)
-        yield Finding("archive", there, said)
+        yield Finding(say("archive"), there, said)
 
 
 def _space(data: Path) -> Finding:
@@ -92,7 +94,9 @@ def _space(data: Path) -> Finding:
         folder for folder in (data.resolve(), *data.resolve().parents) if folder.exists()
     )
     free = shutil.disk_usage(nearest).free
-    return Finding("disk", free >= LEAST_FREE, tell("{:.1f} GB free at {}", free / 2**30, nearest))
+    return Finding(
+        say("disk"), free >= LEAST_FREE, tell("{:.1f} GB free at {}", free / 2**30, nearest)
+    )
 
 
 def _tried(what: str, look: Callable[[], str]) -> Finding:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from herijk.cli.arguments import AsJson, AsOf, DataFolder, show_files
-from pipeline.words import LANGUAGE, tell
+from pipeline.messages import LANGUAGE, tell
 
 
 def add_to(app: typer.Typer) -> None:

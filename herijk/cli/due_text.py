@@ -3,21 +3,21 @@
 from collections import Counter
 from typing import TYPE_CHECKING, Final
 
+from dashboards.labels import code_in_words
 from herijk.cli.text import boat, decimals, page, table
-from pipeline.words import tell
-from pipeline.words.catalogue import code
+from pipeline.messages import headings, say, tell
 from warehouse.queries.due import WORTH
 
 if TYPE_CHECKING:
     from pipeline.tables.row import Row
     from warehouse.queries.due import DueReport
 
-LAST_DAY: Final = ", the day of the last tow or race"
+LAST_DAY: Final = say(", the day of the last tow or race")
 URGENCIES: Final = {
-    "expired": "Expired: does not count any more",
-    "this_year": "Expires at the end of this year: tow before the next season",
-    "without_curve": "Without a curve: never towed, or no tow gave one",
-    "later": "Later",
+    "expired": say("Expired: does not count any more"),
+    "this_year": say("Expires at the end of this year: tow before the next season"),
+    "without_curve": say("Without a curve: never towed, or no tow gave one"),
+    "later": say("Later"),
 }
 
 
@@ -53,8 +53,8 @@ def due(report: "DueReport") -> str:
 
 def _lines(lines: list["Row"]) -> str:
     head = (
-        *("valid until", "boat", "name", "crew", "last tow", "declared", "W", "raced"),
-        *("from", "to", "tow at m/s", "why"),
+        *headings("valid until", "boat", "name", "crew", "last tow", "declared", "W", "raced"),
+        *headings("from", "to", "tow at m/s", "why"),
     )
     return table(head, [_line(line) for line in lines])
 
@@ -69,7 +69,7 @@ def _line(line: "Row") -> tuple[object, ...]:
         decimals(line["power_w"], 0),
         *(decimals(line[f"{which}_speed_m_s"], 2) for which in ("raced", "lowest", "highest")),
         tow_at,
-        code(line["speed_reason"]),
+        code_in_words(line["speed_reason"]),
     )
 
 
@@ -90,7 +90,9 @@ def _choice(choice: list["Row"]) -> str:
         )
         for c in choice
     ]
-    head = ("", "boat", "name", "crew", "towed in", "valid until", "tow at m/s", "uncertainty then")
+    head = headings(
+        "", "boat", "name", "crew", "towed in", "valid until", "tow at m/s", "uncertainty then"
+    )
     before = 100 * choice[0]["factor_sd_before_ratio"]
     after = 100 * choice[-1]["factor_sd_after_ratio"]
     worth = tell("It is not worth it for that alone.") if after >= WORTH * before else ""

@@ -3,10 +3,10 @@
 from collections import Counter
 from typing import TYPE_CHECKING, Final
 
+from dashboards.labels import code_in_words
 from herijk.cli.text import SIMULATED, boat, decimals, page, table, window
+from pipeline.messages import LANGUAGE, headings, in_per_cent, say, tell
 from pipeline.tables.row import Row
-from pipeline.words import LANGUAGE, in_per_cent, tell
-from pipeline.words.catalogue import code
 from warehouse.editions.words import CHANGES, CREWS, STATUSES, Language
 
 if TYPE_CHECKING:
@@ -16,6 +16,17 @@ if TYPE_CHECKING:
     from warehouse.editions.publish import Published
     from warehouse.editions.verify import Verification
     from warehouse.queries.register import RegisterReport
+
+
+KINDS: Final = {
+    "altered": say("altered"),
+    "differs": say("differs"),
+    "missing": say("missing"),
+    "notice": say("notice"),
+    "swapped": say("swapped"),
+    "unchecked": say("unchecked"),
+}
+"""What a check of editions can find."""
 
 
 def _words() -> Language:
@@ -30,7 +41,7 @@ def _to_look_at(lines: list[Row]) -> list[str]:
     rows = [
         f"  {line['fsn_no']} {line['rowers']}{line['crew_class']}: "
         + (
-            tell("tow {}: {}", line["tow_id"], ", ".join(map(code, line["flags"])))
+            tell("tow {}: {}", line["tow_id"], ", ".join(map(code_in_words, line["flags"])))
             if line["tow_id"]
             else tell("no numbers: the archive rules its tows out (see doubts in the table tows)")
         )
@@ -49,8 +60,8 @@ def _to_look_at(lines: list[Row]) -> list[str]:
 def register(report: "RegisterReport") -> str:
     """The lines of an edition, and the day on which their validity was judged."""
     head = (
-        *("boat", "name", "crew", "empty thwart", "status", "valid until", "tow", "v m/s"),
-        *("A kg/m", "B m/s", "Cw kg/m", "from", "to", "length m", "beam m", "bow m", "kg"),
+        *headings("boat", "name", "crew", "empty thwart", "status", "valid until", "tow", "v m/s"),
+        *headings("A kg/m", "B m/s", "Cw kg/m", "from", "to", "length m", "beam m", "bow m", "kg"),
     )
     counts = Counter(line["status"] for line in report.lines)
     statuses = ", ".join(f"{n} {_words().word(STATUSES, s)}" for s, n in counts.items())
@@ -154,7 +165,7 @@ def diff(report: "DiffReport") -> str:
             )
             for c in report.causes
         ]
-        head = ("cause", "lines", "median", "lowest", "highest")
+        head = headings("cause", "lines", "median", "lowest", "highest")
         parts.append(tell("Causes, with their factor on Cw:\n") + table(head, rows))
     every_line = tell(
         "Every line: A and Cw in kg/m, B in m/s, W per rower at the old declared "
@@ -183,8 +194,10 @@ def _group(group: "Group") -> str:
 
 def _lines(rows: list[Row]) -> str:
     head = (
-        *("boat", "name", "crew", "change", "A old", "new", "B old", "new", "Cw old", "new"),
-        *("W old", "new", "W %", "in 2 h", "rank", "new", "causes"),
+        *headings(
+            "boat", "name", "crew", "change", "A old", "new", "B old", "new", "Cw old", "new"
+        ),
+        *headings("W old", "new", "W %", "in 2 h", "rank", "new", "causes"),
     )
     return table(head, [_line(row) for row in rows])
 
@@ -211,10 +224,10 @@ def _line(row: Row) -> tuple[object, ...]:
 
 
 _FATIGUE: Final = {
-    "none": "Races, not corrected for fatigue: ",
-    "known": "Races, corrected for fatigue as published: ",
+    "none": say("Races, not corrected for fatigue: "),
+    "known": say("Races, corrected for fatigue as published: "),
     "extend": (
-        "Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): "
+        say("Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): ")
     ),
 }
 
@@ -257,7 +270,9 @@ def _winners(winners: list[Row]) -> str:
         )
         for w in winners
     ]
-    head = ("race", "day", "class", "old winner", "new winner", "", "chance that another wins")
+    head = headings(
+        "race", "day", "class", "old winner", "new winner", "", "chance that another wins"
+    )
     note = tell(
         "  The chance: in how many of the equally likely new registers the old winner loses."
     )
@@ -285,7 +300,7 @@ def _moved(moved: list[Row]) -> str:
         )
         for r in moved
     ]
-    columns = ("race", "day", "boat", "crew", "old W", "new W", "old rank", "new rank", "")
+    columns = headings("race", "day", "boat", "crew", "old W", "new W", "old rank", "new rank", "")
     return table(columns, rows)
 
 
@@ -293,8 +308,10 @@ def verify(report: "Verification") -> str:
     """What was checked and what is wrong."""
     if not report.editions and not report.findings:
         return tell("No edition has been published yet; nothing to verify.")
-    rows = [(e.edition, code(e.kind), e.lines, e.made_again, e.equal) for e in report.editions]
-    head = ("edition", "kind", "lines", "made again", "equal")
+    rows = [
+        (e.edition, code_in_words(e.kind), e.lines, e.made_again, e.equal) for e in report.editions
+    ]
+    head = headings("edition", "kind", "lines", "made again", "equal")
     parts = [
         tell(
             "{}\nMade again: measured lines from the samples files of the archive, carried "
@@ -305,12 +322,16 @@ def verify(report: "Verification") -> str:
     if report.findings:
         findings = [
             (
-                *(f.edition, tell("WRONG" if f.wrong else "notice"), tell(f.kind)),
+                *(
+                    f.edition,
+                    tell("WRONG" if f.wrong else "notice"),
+                    tell(KINDS.get(f.kind, f.kind)),
+                ),
                 *(f.where, f.message),
             )
             for f in report.findings
         ]
-        parts.append(table(("edition", "", "kind", "where", "what"), findings))
+        parts.append(table(headings("edition", "", "kind", "where", "what"), findings))
     if report.head is not None:
         parts.append(
             tell(
@@ -373,11 +394,11 @@ def _line_history(line: "LineLineage") -> str:
             window(run),
             run["speed_m_s"],
             run["cw_kg_m"],
-            tell("yes") if run["used"] else tell("no: {}", code(run["reason"])),
+            tell("yes") if run["used"] else tell("no: {}", code_in_words(run["reason"])),
         )
         for run in line.runs
     ]
-    parts.append(table(("run", "seconds", "v m/s", "Cw kg/m", "counts"), rows))
+    parts.append(table(headings("run", "seconds", "v m/s", "Cw kg/m", "counts"), rows))
     return "\n".join(parts)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from herijk.cli.arguments import AsJson, as_json_text
-from pipeline.words import LANGUAGE, tell
+from pipeline.messages import LANGUAGE, tell
 
 if TYPE_CHECKING:
     from herijk.library.curves import Estimate, Fit

@@ -27,7 +27,7 @@ from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
 from pipeline.errors import BrokenPromiseError, HerijkError, unexpected
-from pipeline.words import LANGUAGE, say, spoken, tell
+from pipeline.messages import LANGUAGE, say, spoken, tell
 from warehouse.store.machine_faults import REASSURANCE, machine_faults_explained
 
 if TYPE_CHECKING:
@@ -178,7 +178,7 @@ def rebuild(
     from assets.settings import applied, read_settings
     from dashboards.report import headlines
     from herijk.cli.progress import TerminalProgress
-    from pipeline.words.catalogue import speaker
+    from pipeline.messages import speaker
     from warehouse.queries import reports
     from warehouse.store.store import Store
 

@@ -7,11 +7,11 @@ import textwrap
 
 from pydantic import BaseModel
 
+from dashboards.labels import code_in_words
 from dashboards.workbench.form import unit_of
-from dashboards.workbench.texts import TEXTS
+from dashboards.workbench.texts import text
+from pipeline.messages import LANGUAGE, number, tell
 from pipeline.method.definition import LAST_SEASON, Method, SeasonSteps
-from pipeline.words import LANGUAGE, LANGUAGES, number, tell
-from pipeline.words.catalogue import both, code
 
 DIFFERS = "*"
 WIDTH = 100
@@ -54,10 +54,10 @@ def _value(option: str, value: object) -> str:
     if isinstance(value, str):
         return _text(f"choice.{value}")
     if isinstance(value, tuple):
-        return ", ".join(map(code, value)) or _text("nothing")
+        return ", ".join(map(code_in_words, value)) or _text("nothing")
     assert isinstance(value, int | float), "options are choices, codes and numbers"  # noqa: S101
     return f"{number(value, 'g')} {unit_of(option)}".strip()
 
 
 def _text(key: str) -> str:
-    return both(key, TEXTS)[LANGUAGES.index(LANGUAGE.get())]
+    return tell(text(key))

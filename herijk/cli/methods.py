@@ -11,7 +11,7 @@ import typer
 from herijk.cli.arguments import AsJson, DataFolder, as_json_text, show, show_files
 from herijk.cli.overview import Overview
 from pipeline.errors import HerijkError
-from pipeline.words import LANGUAGE, tell
+from pipeline.messages import LANGUAGE, say, tell
 
 if TYPE_CHECKING:
     from pipeline.method.definition import Method
@@ -177,7 +177,7 @@ def _diff_text(
         )
         for one in options
     ]
-    parts = [text.table(("option", "seasons", first, second), rows)]
+    parts = [text.table((say("option"), say("seasons"), first, second), rows)]
     if effect is not None:
         parts.append(text.rebase(effect))
     return "\n\n".join(parts)

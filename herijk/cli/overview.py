@@ -22,8 +22,8 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import LANGUAGE, LANGUAGES, say, tell
 from pipeline.toml_text import decoded, parse_toml
-from pipeline.words import LANGUAGE, LANGUAGES, tell
 
 if TYPE_CHECKING:
     from typer._click import Command
@@ -33,13 +33,13 @@ FOLDERS_FILE: Final = "herijk.toml"
 FOLDERS: Final = ("archive", "data")
 
 SECTIONS: Final = {
-    "Begin": ("init", "check", "rebuild", "simulate", "doctor"),
-    "Look": ("audit", "register", "due", "pages", "log-error", "slides", "fit", "workbench"),
-    "Change the method": ("methods", "rebase", "proposal"),
-    "Publish": ("publish", "diff", "verify", "lineage", "certificate"),
-    "Run it as a service, use it in programs": ("serve", "schema"),
+    say("Begin"): ("init", "check", "rebuild", "simulate", "doctor"),
+    say("Look"): ("audit", "register", "due", "pages", "log-error", "slides", "fit", "workbench"),
+    say("Change the method"): ("methods", "rebase", "proposal"),
+    say("Publish"): ("publish", "diff", "verify", "lineage", "certificate"),
+    say("Run it as a service, use it in programs"): ("serve", "schema"),
 }
-OTHER: Final = "More"
+OTHER: Final = say("More")
 
 
 # Language
@@ -103,24 +103,24 @@ class SpokenContext(Context):
 def _help_in_words(text: str) -> str:
     """A text of the help, and the brackets behind it: a default, `required`."""
     said, bracket, note = " ".join(text.split(" ")).partition("  [")
-    for word in ("default", "required", "env var") if bracket else ():
+    for word in (say("default"), say("required"), "env var") if bracket else ():
         note = note.replace(word, tell(word))
     return tell(" ".join(said.split())) + bracket + note
 
 
 USAGE: Final = (
-    "Missing option {}.",
-    "Missing argument {}.",
-    "Missing command.",
-    "No such option: {} (Possible options: {})",
-    "No such command {}. Did you mean {}?",
-    "No such option: {}",
-    "No such command {}.",
-    "Got unexpected extra argument(s) ({})",
-    "Option {} requires an argument.",
-    "Invalid value for {}: {}",
-    "Invalid value: {}",
-    "{} is not one of {}.",
+    say("Missing option {}."),
+    say("Missing argument {}."),
+    say("Missing command."),
+    say("No such option: {} (Possible options: {})"),
+    say("No such command {}. Did you mean {}?"),
+    say("No such option: {}"),
+    say("No such command {}."),
+    say("Got unexpected extra argument(s) ({})"),
+    say("Option {} requires an argument."),
+    say("Invalid value for {}: {}"),
+    say("Invalid value: {}"),
+    say("{} is not one of {}."),
 )
 """What the library that reads arguments says of them; braces stand for what is in its place."""
 

@@ -12,7 +12,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from pipeline.words import tell
+from pipeline.messages import tell
 
 
 class TerminalProgress:

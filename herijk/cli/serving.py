@@ -25,13 +25,13 @@ from starlette.staticfiles import StaticFiles
 from assets.webserver import MAY_START, READ_ONLY
 from dashboards.guard import LOOPBACK, guarded, listen
 from pipeline.errors import UnavailableError
-from pipeline.words import LANGUAGE, say
+from pipeline.messages import LANGUAGE, say
 from warehouse.store.files import WINDOWS
 
 SHOWN: Final = ("site", "report")
 """What of the data folder the site's address shows."""
 
-EXPOSED: Final = (
+EXPOSED: Final = say(
     "WARNING: everybody who can reach {host} can read the site and Dagster's page: there is no "
     "password. Put a proxy with one in front (docs/security.md), or serve on 127.0.0.1"
 )

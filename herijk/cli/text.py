@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
+from dashboards.labels import code_in_words
+from pipeline.messages import LANGUAGE, headings, in_per_cent, number, say, spoken, tell
 from pipeline.tables.row import Row
-from pipeline.words import LANGUAGE, in_per_cent, number, spoken, tell
-from pipeline.words.catalogue import code
 
 if TYPE_CHECKING:
     from assets.report import Done
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from warehouse.queries.reports import LogErrorReport, RebuildReport
 
 
-SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
+SIMULATED = say("SIMULATED archive: made by `herijk simulate`, not the federation's measurements.")
 
 _NUMBER: Final = re.compile(r"[-+]?[0-9]+([.,][0-9]+)?( %| N)?\*?|-?")
 """A cell that is aligned to the right."""
@@ -80,13 +80,13 @@ def _per_cent(ratio: float | None) -> str:
 def rebuild(report: "RebuildReport", done: "Done", headlines: list[str]) -> str:
     """The closing summary of a rebuild."""
     tows = ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
-    curves = [(r["method"], code(r["status"]), r["number"]) for r in report.curves]
+    curves = [(r["method"], code_in_words(r["status"]), r["number"]) for r in report.curves]
     parts = [
         _work_done(done),
         tell("Since the last report:\n") + "\n".join(f"  {line}" for line in headlines),
         tell("Tows accepted: ") + tows,
         *_set_aside(report),
-        tell("Curves:\n") + table(("method", "status", "number"), curves),
+        tell("Curves:\n") + table(headings("method", "status", "number"), curves),
     ]
     if report.by_season:
         parts.append(_by_season(report.by_season))
@@ -108,8 +108,11 @@ def _set_aside(report: "RebuildReport") -> list[str]:
     """How much was set aside, and the first fault of each cause."""
     if not report.set_aside:
         return [tell("Set aside: nothing.")]
-    rows = [(code("lost_" + r["lost"]), r["reason_code"], r["number"]) for r in report.set_aside]
-    counted = tell("Set aside:\n") + table(("lost", "reason", "number"), rows)
+    rows = [
+        (code_in_words("lost_" + r["lost"]), r["reason_code"], r["number"])
+        for r in report.set_aside
+    ]
+    counted = tell("Set aside:\n") + table(headings("lost", "reason", "number"), rows)
     return [counted, _faults(report.first_faults, sum(number for *_, number in rows))]
 
 
@@ -138,25 +141,25 @@ def place(fault: Row) -> str:
 
 
 def _by_season(rows: list[Row]) -> str:
-    ends = ("median", "lowest", "highest")
+    ends = headings("median", "lowest", "highest")
     lines = [
         (r["method"], r["season"], r["tows"], *(_per_cent(r[f"{end}_ratio"]) for end in ends))
         for r in rows
     ]
     title = tell("Change of Cw at the declared speed against {}:\n", rows[0]["compared_with"])
-    return title + table(("method", "season", "tows", *ends), lines)
+    return title + table((say("method"), say("season"), say("tows"), *ends), lines)
 
 
 def _biggest(rows: list[Row]) -> str:
     lines = [(r["to_edition"], *boat(r), _per_cent(r["cw_ratio"]), _in_two_hours(r)) for r in rows]
-    head = ("register", "boat", "name", "crew", "Cw", "in 2 h at equal power")
+    head = headings("register", "boat", "name", "crew", "Cw", "in 2 h at equal power")
     return tell("Biggest changes against {}:\n", rows[0]["from_edition"]) + table(head, lines)
 
 
 def methods(report: Row) -> str:
     """The list of methods."""
     rows = [(m["method"], m["title"], m["content_hash"][:12]) for m in report["methods"]]
-    return table(("method", "title", "hash"), rows)
+    return table(headings("method", "title", "hash"), rows)
 
 
 PLOT_WIDTH = 41
@@ -189,12 +192,12 @@ def log_error(report: "LogErrorReport") -> str:
 
 
 def _factors(factors: list[Row]) -> str:
-    head = (*("season", "factor", "from", "to", "source", "tows", "links", "step is of"),)
+    head = headings("season", "factor", "from", "to", "source", "tows", "links", "step is of")
     rows = [
         (
             r["season"],
             *_factor(r),
-            code(r["cause"]),
+            code_in_words(r["cause"]),
         )
         for r in factors
     ]
@@ -204,7 +207,7 @@ def _factors(factors: list[Row]) -> str:
 def _factor(row: Row) -> tuple[object, ...]:
     """A factor with its interval, where it is from, and on how many tows and links it rests."""
     ends = (decimals(row[name], 4) for name in ("factor", "lo", "hi"))
-    return (*ends, code(row["source"]), row["n_tows"], row["n_links"])
+    return (*ends, code_in_words(row["source"]), row["n_tows"], row["n_links"])
 
 
 def _plots(factors: list[Row]) -> str:
@@ -224,12 +227,12 @@ def _diagnosis(report: "LogErrorReport") -> str:
     """Faults that were found, or that cannot be told."""
     if not report.diagnosis:
         return tell("  nothing was found, and nothing is in doubt")
-    head = ("season", "what", "verdict", "size", "from", "to", "chance", "or else")
+    head = headings("season", "what", "verdict", "size", "from", "to", "chance", "or else")
     rows = [
         (
             r["season"],
             _what(r),
-            code(r["verdict"]),
+            code_in_words(r["verdict"]),
             *(_size(r[name], r["unit"]) for name in ("estimate", "lo", "hi")),
             "-" if r["p_fault"] is None else in_per_cent(r["p_fault"]),
             _or_else(r["confused_with"]),
@@ -249,12 +252,12 @@ def _or_else(confused_with: str | None) -> str:
     if confused_with is None:
         return "-"
     kinds = (kind.partition(" ") for kind in confused_with.split(", "))
-    return ", ".join(f"{code(kind)}{space}{season}" for kind, space, season in kinds)
+    return ", ".join(f"{code_in_words(kind)}{space}{season}" for kind, space, season in kinds)
 
 
 def _what(row: Row) -> str:
     """What may be wrong, in words, and from which tow on."""
-    words = code(row["instrument"])
+    words = code_in_words(row["instrument"])
     return words if row["first_tow"] is None else tell("{}, from {}", words, row["first_tow"])
 
 
@@ -263,7 +266,7 @@ def _size(value: float, unit: str) -> str:
 
 
 def _parts(parts: list[Row]) -> str:
-    head = ("season", "log", "part", "factor", "from", "to", "source", "tows", "links")
+    head = headings("season", "log", "part", "factor", "from", "to", "source", "tows", "links")
     return table(head, [(r["season"], r["log"], r["part"] + 1, *_factor(r)) for r in parts])
 
 
@@ -286,10 +289,10 @@ def _place_on_line(factor: float) -> int:
 
 def rebase(report: "RebaseReport") -> str:
     """What a method changes: the ladder per season, and the boats most affected."""
-    counts = ", ".join(f"{row['count']} {code(row['change'])}" for row in report.changes)
+    counts = ", ".join(f"{row['count']} {code_in_words(row['change'])}" for row in report.changes)
     seasons = report.by_season
     steps = [key for key in seasons[0] if key not in ("season", "tows", "total")]
-    season_head = ("season", "tows", *map(code, steps), "total")
+    season_head = (say("season"), say("tows"), *map(code_in_words, steps), say("total"))
     lines = [
         (row["season"], row["tows"], *(_per_cent(row[step]) for step in (*steps, "total")))
         for row in seasons
@@ -302,7 +305,14 @@ def rebase(report: "RebaseReport") -> str:
         )
         for row in report.boats
     ]
-    boat_head = ("boat", "name", "crew", *map(code, steps), "Cw", "in 2 h")
+    boat_head = (
+        say("boat"),
+        say("name"),
+        say("crew"),
+        *map(code_in_words, steps),
+        say("Cw"),
+        say("in 2 h"),
+    )
     by_step = tell(
         "Change of Cw at the declared speed by each step, median of the season's "
         "tows; a tow's\nown steps multiply to its total, medians need not:\n"

@@ -15,7 +15,7 @@ Cause = tuple[str, ...]
 
 def instead_of(unit: str, meant: str) -> Cause:
     """A number in one unit that is read as in another."""
-    return "{} instead of {}", unit, meant
+    return say("{} instead of {}"), unit, meant
 
 
 _EXCHANGES: Final[dict[str, dict[Cause, float]]] = {
@@ -24,7 +24,7 @@ _EXCHANGES: Final[dict[str, dict[Cause, float]]] = {
         instead_of("daN", "N"): 10.0,
         instead_of("lbf", "N"): 4.4482216,
         instead_of("kN", "N"): 1e3,
-        ("a gain of two",): 2.0,
+        (say("a gain of two"),): 2.0,
     },
     "wind": {
         instead_of("km/h", "m/s"): 3.6,

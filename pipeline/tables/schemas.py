@@ -7,6 +7,7 @@ physically is explained in the module that computes it; how tables are stored is
 """
 
 import re
+from inspect import cleandoc
 from types import ModuleType
 from typing import Final
 
@@ -44,6 +45,11 @@ TABLES: Final = _declared_in(
 
 ABOUT: Final = _declared_in(about)
 """Tables of the database about itself."""
+
+
+def summary_of(schema: type[dy.Schema]) -> str:
+    """What a table holds, in one sentence; its Dutch is among the texts."""
+    return cleandoc(schema.__doc__ or "").partition("\n")[0]
 
 
 def ordered(name: str, frame: pl.DataFrame) -> pl.DataFrame:

@@ -1,16 +1,11 @@
-"""Every text that people read, in Dutch and English.
+"""Moved to `pipeline.messages`."""
 
-Texts of pages and documents have a key (`catalogue`); sentences that are said where they arise,
-of faults and of the command line, go by their English text (`sentences`).
-"""
-
-from pipeline.words.sentences import (
+from pipeline.messages import (
     DECIMALS,
     LANGUAGE,
     LANGUAGES,
     Sentence,
     cause_of,
-    dutch,
     in_per_cent,
     innermost,
     number,
@@ -25,7 +20,6 @@ __all__ = [
     "LANGUAGES",
     "Sentence",
     "cause_of",
-    "dutch",
     "in_per_cent",
     "innermost",
     "number",

@@ -15,8 +15,8 @@ from tests.architecture.repository import ROOT, read, tracked_files
 
 SIZES = "tests/architecture/size.toml"
 MOST = tomllib.loads(read(SIZES))
-NOT_WRITTEN = ("tests/data/", "CHANGELOG.md", "LICENSE", SIZES)
-"""Data from outside, and what grows by its nature; locks besides."""
+NOT_WRITTEN = ("tests/data/", "pipeline/locale/", "CHANGELOG.md", "LICENSE", SIZES)
+"""Data from outside, translations, and what grows by its nature; locks besides."""
 
 
 def folder_of(name):

@@ -24,7 +24,7 @@ from assets.resources import Setup
 from assets.settings import read_settings
 from dashboards.report import Check, headlines
 from pipeline.errors import MissingKnowledgeError
-from pipeline.words.catalogue import both, speaker
+from pipeline.messages import speaker
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.test_faults import Archive, cells, line_of, times
@@ -76,8 +76,7 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
         (cause,) = json.loads(line["causes"])
         assert (cause["cause"], cause["factor"]) == ("input", pytest.approx(line["cw_ratio"]))
     page = (bench.data / "report" / "latest.html").read_text("utf-8").replace('"', "")
-    nl, _ = both("code.input")
-    assert f"{nl} +5," in page
+    assert "invoer +5," in page
 
     file.write_bytes(kept)
     report = bench.rebuild()
@@ -131,7 +130,7 @@ def test_a_second_rebuild_reports_that_nothing_changed(bench):
     assert report.headlines == ["Nothing changed since the last report."]
     assert latest(bench)["nothing_changed"]
     page = (bench.data / "report" / "latest.html").read_text("utf-8")
-    later = both("report_later")[0].format(made_at=report.made_at.replace("T", " ")[:16])
+    later = f"De herberekening van {report.made_at[:16].replace('T', ' ')} veranderde daarna niets."
     assert page.count(later) == 1
     assert "Eerste verslag" in page
     assert "GESIMULEERD" in page

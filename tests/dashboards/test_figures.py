@@ -12,10 +12,10 @@ from altair.utils.schemapi import debug_mode
 
 from dashboards import drawn
 from dashboards.figures import FIGURES, png, slides
+from dashboards.labels import code
 from dashboards.site.specifications import chart_specifications, specification
 from dashboards.site.still import still
-from pipeline.words import LANGUAGES
-from pipeline.words.catalogue import WORDS, both, speaker
+from pipeline.messages import LANGUAGES, speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})
 
@@ -176,9 +176,9 @@ def test_a_trace_says_why_it_was_cut():
     window = {"kind": "window", "run": 1, "window_start_s": 5.0, "window_end_s": 40.0}
     frame = pl.DataFrame([trace, window | {"cut_reason": "speed_drift,gust"}])
     picture = svg("traces", frame)
-    for code in ("speed_drift", "gust"):
-        assert code not in picture
-        assert f">{both(f'code.{code}')[0]}<" in picture
+    for reason in ("speed_drift", "gust"):
+        assert reason not in picture
+        assert f">{code(reason).spoken('nl')}<" in picture
 
 
 def test_a_figure_is_also_a_picture():
@@ -198,14 +198,8 @@ def test_a_picture_is_compiled_once_and_drawn_with_any_rows(language):
     assert picture.count("<path") == bare.count("<path")
 
 
-def test_every_text_is_there_in_every_language():
-    assert all(len(texts) == len(LANGUAGES) and all(texts) for texts in WORDS.values())
-
-
 def test_a_code_without_a_text_is_shown_as_it_is():
-    assert both("code.something_new") == ("something_new", "something_new")
-    with pytest.raises(KeyError):
-        both("nosuchtext")
+    assert code("something_new").spoken("nl") == "something_new"
 
 
 def test_an_archive_of_a_thousand_tows_can_be_drawn():

@@ -11,8 +11,7 @@ from dashboards import slides as files
 from dashboards.figures.slides import METHODS
 from dashboards.site.slides import sentences
 from pipeline.errors import MissingKnowledgeError
-from pipeline.words import LANGUAGES
-from pipeline.words.catalogue import speaker
+from pipeline.messages import LANGUAGES, speaker
 from warehouse.queries.views import Views
 
 

@@ -8,10 +8,10 @@ import duckdb
 import polars as pl
 from typer.testing import CliRunner
 
+from dashboards.labels import code
 from herijk.cli.arguments import as_json_text
 from herijk.cli.audit_text import audit as page_of
 from herijk.cli.main import app
-from pipeline.words.catalogue import code
 from warehouse.queries.audit import audit
 
 WIDTH = 100

@@ -1,6 +1,5 @@
 """Blocks give exactly the means over samples, whatever the rate and the length of the runs."""
 
-import hashlib
 import math
 import os
 import subprocess
@@ -183,25 +182,23 @@ def test_means_over_an_empty_window_are_zero_not_nan():
     assert WindowSums(blocks, nothing).mean("force").tolist() == [0.0]
 
 
-def digest_of_sums() -> str:
-    sums = block_sums(samples_of([900, 1234]), 333).select(SUM_NAMES)
-    return hashlib.sha256(sums.to_numpy().tobytes()).hexdigest()
+def sums_of_a_tow() -> np.ndarray:
+    return block_sums(samples_of([900, 1234]), 333).select(SUM_NAMES).to_numpy()
 
 
 @pytest.mark.slow
-def test_sums_are_the_same_bits_on_any_processor(tmp_path):
+def test_sums_are_the_same_on_any_processor_but_for_rounding(tmp_path):
     """Compiled for a processor that works on one or two numbers at a time."""
     plain = {
         "NUMBA_CPU_NAME": "generic",
         "NUMBA_CPU_FEATURES": "",
         "NUMBA_CACHE_DIR": str(tmp_path),
     }
-    code = "from tests.pipeline.test_blocks import digest_of_sums; print(digest_of_sums())"
-    elsewhere = subprocess.run(
-        [sys.executable, "-c", code],
-        env=os.environ | plain,
-        stdout=subprocess.PIPE,
-        check=True,
-        text=True,
+    file = tmp_path / "elsewhere.npy"
+    code = (
+        "import sys, numpy; from tests.pipeline.test_blocks import sums_of_a_tow; "
+        "numpy.save(sys.argv[1], sums_of_a_tow())"
     )
-    assert elsewhere.stdout.strip() == digest_of_sums()
+    subprocess.run([sys.executable, "-c", code, file], env=os.environ | plain, check=True)
+    elsewhere, here = np.load(file), sums_of_a_tow()
+    assert (np.abs(elsewhere - here) <= EXACT * np.abs(here).mean(axis=0)).all()

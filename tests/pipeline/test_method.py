@@ -7,13 +7,13 @@ import time
 import pytest
 
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import spoken
 from pipeline.method.definition import (
     MethodFileError,
     parse_method,
     shipped_method,
     shipped_methods,
 )
-from pipeline.words import spoken
 from tests.pipeline.methods import PLAIN, method_text
 
 LINE_OF = {step: number for number, step in enumerate(PLAIN, 4)}

@@ -1,7 +1,7 @@
 """Samples that were measured once and are in the archive twice.
 
 A file that was packed again, or saved with other line ends or in another format, has another hash
-and the same content: runs whose sums are equal to the last bit are one measurement. A file written
+and the same content: runs whose sums are equal but for rounding are one measurement. A file written
 with fewer decimals or in another unit has nearly the same sums. One such run may be chance; two
 runs of a tow that are both like runs of one other tow are not. Nobody can know whose samples they
 are, so tows of different boats or crews all lose them; of one boat and crew the first tow keeps
@@ -67,7 +67,7 @@ def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
     tow = runs["tow_id"].rank("dense").to_numpy().astype(np.int64)
     between = np.sort(np.column_stack([tow[one], tow[other]]), axis=1)
     _, pair, often = np.unique(between, axis=0, return_inverse=True, return_counts=True)
-    same = (sums[one] == sums[other]).all(axis=1) | (often[pair.reshape(-1)] > 1)
+    same = np.isclose(sums[one], sums[other], 1e-12, 0.0).all(1) | (often[pair.reshape(-1)] > 1)
     links = scipy.sparse.coo_array(
         (np.ones(same.sum()), (one[same], other[same])), shape=(runs.height, runs.height)
     )

@@ -32,8 +32,8 @@ def code_hash(*packages: str) -> str:
 
 
 _ROOT: Final = Path(__file__).parents[2]
-_DECLARED: Final = ("tables", "words")
-"""Rooms of `pipeline` that compute nothing: declared types are in fingerprints, texts in pages."""
+_DECLARED: Final = ("tables",)
+"""Rooms of `pipeline` that compute nothing: declared types are in fingerprints."""
 
 
 def _modules(package: str) -> list[Path]:

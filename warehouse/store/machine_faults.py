@@ -16,42 +16,44 @@ from pipeline.errors import HerijkError, UnavailableError
 from pipeline.words import say
 from warehouse.store.files import WINDOWS
 
-_FULL: Final = (
+_FULL: Final = say(
     "there is no room left to write in {root}. Free some, or move the data folder; "
     "lake/samples in it is the largest part and is made again when needed"
 )
-_FORBIDDEN: Final = (
+_FORBIDDEN: Final = say(
     "{root} cannot be written. Give the user who runs this the right to write in all of it, or "
     "name another folder with --data"
 )
-_ELSEWHERE: Final = (
+_ELSEWHERE: Final = say(
     "{path} cannot be read or written. Give the user who runs this the right to it, or name another"
 )
-_HANDLES: Final = (
+_HANDLES: Final = say(
     "this process may not open more files. Allow more (ulimit -n 1024; in systemd "
     "LimitNOFILE=1024) and run it again"
 )
-_BROKEN_DISK: Final = "the disk under {root} gives errors. Look in the system's log, and replace it"
-_LIMITED: Final = (
+_BROKEN_DISK: Final = say(
+    "the disk under {root} gives errors. Look in the system's log, and replace it"
+)
+_LIMITED: Final = say(
     "this process may not write files as large as it needs. Allow larger ones (ulimit -f "
     "unlimited; in systemd LimitFSIZE=infinity) and run it again"
 )
-_NO_MEMORY: Final = (
+_NO_MEMORY: Final = say(
     "there is not enough memory. Allow more (ulimit -v unlimited; in systemd MemoryMax=), close "
     "other programs, or read fewer seasons at a time with --seasons"
 )
 
-_DAMAGED_RECORDS: Final = (
+_DAMAGED_RECORDS: Final = say(
     "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no table, only "
     "the history of runs"
 )
 
-_CLOSED_RECORDS: Final = (
+_CLOSED_RECORDS: Final = say(
     "Dagster's records in {root}/dagster cannot be opened: this process may not open more files "
     "(allow more: ulimit -n 1024; in systemd LimitNOFILE=1024), or has no right to that folder"
 )
 
-_NO_DRAWING: Final = (
+_NO_DRAWING: Final = say(
     "a figure could not be drawn: the drawing library stopped, usually because this process may "
     "not open more files (allow more: ulimit -n 1024; in systemd LimitNOFILE=1024)"
 )

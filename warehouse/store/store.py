@@ -19,6 +19,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.messages import say
 from warehouse.store.files import file_sha256, written_beside
 from warehouse.store.machine_faults import is_machine_fault
 
@@ -151,8 +152,10 @@ class DamagedFileError(BrokenPromiseError):
 
     def __init__(self, path: Path) -> None:
         super().__init__(
-            "{} is damaged. It can be made again: run herijk rebuild; when that comes back, look "
-            "at the disk",
+            say(
+                "{} is damaged. It can be made again: run herijk rebuild; when that comes back, "
+                "look at the disk"
+            ),
             path,
         )
         self.path = path

@@ -5,6 +5,7 @@ from itertools import groupby
 from math import exp
 from typing import Final
 
+from dashboards.labels import code_in_words
 from herijk.cli.audit_text.words import (
     change,
     codes,
@@ -18,13 +19,12 @@ from herijk.cli.audit_text.words import (
     wrapped,
 )
 from herijk.cli.text import decimals, place, table, why_set_aside, window
+from pipeline.messages import headings, say, tell
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
-from pipeline.words import tell
-from pipeline.words.catalogue import code
 from warehouse.queries.audit import BoatAudit
 
-RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
+RUNS_ALONE_MEANS: Final = say("runs alone: spread of the runs alone: the log's error is not in it")
 LEAST_FELT: Final = 5e-4
 """Change of Cw below which a step or choice does nothing that is worth a word."""
 
@@ -194,7 +194,7 @@ def _options(effects: list[Row]) -> Iterator[str]:
 
 
 def _register(row: Row) -> str:
-    line = f"  {row['edition']}, {row['rowers']}{row['crew_class']}: {code(row['status'])}"
+    line = f"  {row['edition']}, {row['rowers']}{row['crew_class']}: {code_in_words(row['status'])}"
     if row["cw_kg_m"] is None:
         return line
     b = tell("B not determined") if row["b_m_s"] is None else tell("B {:.2f}", row["b_m_s"])
@@ -233,7 +233,7 @@ def _steps(steps: list[Row]) -> list[str]:
     for ends in dict.fromkeys((step["from_method"], step["to_method"]) for step in steps):
         own = [s for s in steps if (s["from_method"], s["to_method"]) == ends]
         felt = [
-            f"{code(s['step'])} {change(s['factor'])} %"
+            f"{code_in_words(s['step'])} {change(s['factor'])} %"
             for s in own
             if abs(s["factor"] - 1) > LEAST_FELT
         ]
@@ -252,7 +252,7 @@ def _steps(steps: list[Row]) -> list[str]:
 
 
 def _curve(curve: Row) -> str:
-    head = (
+    head = headings(
         "run",
         "window s",
         "cut because",
@@ -292,8 +292,8 @@ def _curve(curve: Row) -> str:
 def _budget(budget: list[Row]) -> str:
     """What makes Cw uncertain, the largest first; with whom it is shared where it is."""
     felt = [
-        f"{code(row['component'])} {share(row['u_ratio'], 2)}"
-        + ("" if row["shared"] == "single" else f" ({code(row['shared'])})")
+        f"{code_in_words(row['component'])} {share(row['u_ratio'], 2)}"
+        + ("" if row["shared"] == "single" else f" ({code_in_words(row['shared'])})")
         for row in budget
         if row["u_ratio"] and row["u_ratio"] >= LEAST_TOLD
     ]
@@ -303,7 +303,7 @@ def _budget(budget: list[Row]) -> str:
 def _result(curve: Row) -> str:
     flags = f" ({codes(curve['flags'])})" if curve["flags"] else ""
     if curve["cw_kg_m"] is None:
-        return tell("no curve, {}{}", code(curve["status"]), flags)
+        return tell("no curve, {}{}", code_in_words(curve["status"]), flags)
     b = tell("B not determined") if curve["b_m_s"] is None else tell("B {:.2f} m/s", curve["b_m_s"])
     numbers = tell(
         "A {:.2f} kg/m, {} ({}), Cw {:.2f} kg/m ({}: {:.2f} to {:.2f}), {:.1f} W per rower, {}{}",
@@ -315,7 +315,7 @@ def _result(curve: Row) -> str:
         curve["cw_lo_kg_m"],
         curve["cw_hi_kg_m"],
         curve["power_w"],
-        code(curve["status"]),
+        code_in_words(curve["status"]),
         flags,
     )
     left_out = [] if curve["interval"] == COMPLETE else [tell(RUNS_ALONE_MEANS)]

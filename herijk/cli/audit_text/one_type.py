@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 from typing import Final, TypeVar
 
+from dashboards.labels import code_in_words
 from herijk.cli.audit_text.words import (
     AGAINST,
     LETTERS,
@@ -29,9 +30,8 @@ from herijk.cli.audit_text.words import (
 from herijk.cli.text import decimals, table
 from pipeline.consistency.eras import ERAS
 from pipeline.consistency.tow_speed import SLOW_POWER_W
+from pipeline.messages import headings, tell
 from pipeline.tables.row import Row
-from pipeline.words import tell
-from pipeline.words.catalogue import code
 from warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
 
 T = TypeVar("T")
@@ -152,7 +152,7 @@ def _lines(under: Mapping[str, TypeStatistics]) -> list[str]:
     """The table of lines, what is not claimed, and which quantity lies closest together."""
     cells, silent = [], []
     for quantity, explaining, crews in LINES:
-        within = "" if crews == "all" else f", {code(crews)}"
+        within = "" if crews == "all" else f", {code_in_words(crews)}"
         letter, against = LETTERS[quantity], tell(AGAINST[explaining][0]) + within
         step = step_of(quantity, explaining)[1]
         label = f"  {letter}{within}" if within else tell("{} per {}", letter, step)
@@ -170,7 +170,7 @@ def _lines(under: Mapping[str, TypeStatistics]) -> list[str]:
             power = interval(line["slope"], line["slope_lo"], line["slope_hi"], digits=2)
             cells.append((label, method, power, *_line_figures(line)))
             label = ""
-    head = ("", "method", "slope", "explained", "spread", "noise", "n", "")
+    head = headings("", "method", "slope", "explained", "spread", "noise", "n", "")
     shown = [table(head, cells)] if cells else []
     return shown + _silent(silent) + (_each(under, _closest) if cells else [])
 
@@ -290,7 +290,9 @@ def _shared(under: Mapping[str, TypeStatistics]) -> list[str]:
         moves = [share(shared[f"most_{at}"], 1) for at in ("085", "100", "115")]
         place = tell("none") if b is None else tell("{:.2f} m/s", b)
         cells.append((method, place, *spreads, *moves, shared["most_fsn_no"], shared["n"]))
-    head = ("method", "shared B", "own B spread", "in part", "85 %", "100 %", "115 %", "boat", "n")
+    head = headings(
+        "method", "shared B", "own B spread", "in part", "85 %", "100 %", "115 %", "boat", "n"
+    )
     return ([table(head, cells)] if cells else []) + _silent(silent)
 
 
@@ -331,13 +333,13 @@ def _eras(under: Mapping[str, TypeStatistics], fleet: Mapping[str, Fleet]) -> li
             own, everyone = figures.eras[index], fleet[method].eras.get(era["era"], era)
             cells.append((label, method, *_shift(own), *_shift(everyone)))
             label = ""
-    head = ("towed in", "method", "new / old Cw, %", "", "n", "all types, %", "", "n")
+    head = headings("towed in", "method", "new / old Cw, %", "", "n", "all types, %", "", "n")
     return [table(head, cells), *_each(fleet, _ageing)]
 
 
 def _shift(era: Row) -> tuple[str, str, int]:
     if era["reason"]:
-        return code(era["reason"]), "-", era["n"]
+        return code_in_words(era["reason"]), "-", era["n"]
     shift, lo, hi = (change(era[end]) for end in ("shift_ratio", "lo", "hi"))
     return tell("{} ({} to {})", shift, lo, hi), apart(era), era["n"]
 
@@ -362,7 +364,7 @@ def _agreement(fleet: Mapping[str, Fleet]) -> list[str]:
     cells = [
         (
             method if row["scope"] == figures.reproducibility[0]["scope"] else "",
-            code(row["scope"]),
+            code_in_words(row["scope"]),
             share(row["within_sd_ratio"], 1),
             _between(row),
             *(share(row[f"share_{which}"]) for which in ("within_1pct", "within_2pct")),
@@ -373,7 +375,7 @@ def _agreement(fleet: Mapping[str, Fleet]) -> list[str]:
         for method, figures in fleet.items()
         for row in figures.reproducibility
     ]
-    head = (
+    head = headings(
         "all types",
         "older tow",
         "s_r",
@@ -427,8 +429,8 @@ def _causes(fleet: Fleet) -> list[str]:
     by_component = {row["component"]: row for row in fleet.components}
     if "boat" not in by_component or by_component["boat"]["reason"]:
         reason = by_component["boat"]["reason"] if "boat" in by_component else "no_curves"
-        return [tell("spread by cause: nothing claimed, {}.", code(reason))]
-    causes = ", ".join(f"{code(name)} {_cause(by_component[name])}" for name in CAUSES)
+        return [tell("spread by cause: nothing claimed, {}.", code_in_words(reason))]
+    causes = ", ".join(f"{code_in_words(name)} {_cause(by_component[name])}" for name in CAUSES)
     return [tell("within types, at one speed: {} (n {}).", causes, by_component["boat"]["n"])]
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+from dashboards.labels import code_in_words
 from herijk.cli.audit_text.words import (
     AGAINST,
     QUANTITIES,
@@ -17,9 +18,8 @@ from herijk.cli.audit_text.words import (
     wrapped,
 )
 from herijk.cli.text import table
+from pipeline.messages import say, tell
 from pipeline.tables.row import Row
-from pipeline.words import tell
-from pipeline.words.catalogue import code
 from warehouse.queries.audit_types import TypesAudit, TypeStatistics
 
 Cell = Callable[[TypeStatistics], str]
@@ -65,7 +65,7 @@ def _trend_seen(line: Row) -> str:
 
 
 def _nothing(row: Row) -> str:
-    return f"- {code(row['reason'])}, n {row['n']}"
+    return f"- {code_in_words(row['reason'])}, n {row['n']}"
 
 
 def _line(quantity: str, explaining: str) -> Cell:
@@ -156,6 +156,6 @@ def two_types(report: TypesAudit) -> list[str]:
     )
     return [
         "\n".join(wrapped(line, 0, 0) for line in intro),
-        table(("", "method", *names), cells),
+        table(("", say("method"), *names), cells),
         section(title, differing or [tell("  nothing")]),
     ]

@@ -10,17 +10,17 @@ from collections.abc import Iterable
 from math import exp
 from typing import Final
 
+from dashboards.labels import candidate, code_in_words
+from pipeline.messages import number, say, tell
 from pipeline.tables.row import Row
-from pipeline.words import LANGUAGE, number, tell
-from pipeline.words.catalogue import code, speaker
 from warehouse.queries.audit_types import TypeFacts, TypeStatistics
 
 QUANTITIES: Final = {"b_m_s": "B", "a_kg_m": "A", "cw_standard_kg_m": "Cw"}
 LETTERS: Final = QUANTITIES | {"q": "q"}
 """Quantities of which straight lines are told; of q that on weight, as its own test is on speed."""
 AGAINST: Final = {
-    "weight_kg": ("weight", 100.0, "100 kg"),
-    "declared_speed_m_s": ("tow speed", 0.1, "0.1 m/s"),
+    "weight_kg": (say("weight"), 100.0, "100 kg"),
+    "declared_speed_m_s": (say("tow speed"), 0.1, say("0.1 m/s")),
 }
 """Explaining variables: their name, and the step for which a slope is told."""
 
@@ -34,7 +34,7 @@ LINES: Final = (
 MOST_LISTED: Final = 4
 WIDTH: Final = 100
 
-_NOTE: Final = (
+_NOTE: Final = say(
     "two crews of one boat are not taken for two boats. Intervals are 95 %; a trend or shift is "
     "named where its interval leaves out zero: 'none seen' is no proof that there is none."
 )
@@ -78,7 +78,7 @@ def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:
 
 def codes(names: Iterable[str]) -> str:
     """Codes of the tables in words; an empty one says nothing."""
-    return ", ".join(code(name) for name in names if name)
+    return ", ".join(code_in_words(name) for name in names if name)
 
 
 def share(ratio: float | None, digits: int = 0) -> str:
@@ -95,7 +95,7 @@ def nothing(row: Row) -> str:
     """That nothing is claimed, why, and from how many boats."""
     n = row.get("n_boats", row["n"])
     counted = tell("{} boats", n) if "n_boats" in row else f"n {n}"
-    return tell("nothing claimed: {} ({})", code(row["reason"]), counted)
+    return tell("nothing claimed: {} ({})", code_in_words(row["reason"]), counted)
 
 
 def yes(verdict: bool | None) -> str:
@@ -159,8 +159,7 @@ def apart(era: Row) -> str:
 
 def explained(row: Row) -> str:
     """What could explain a boat's place."""
-    say = speaker(LANGUAGE.get())
-    return ", ".join(say(f"candidate.{name}") for name in row["candidates"])
+    return ", ".join(tell(candidate(name)) for name in row["candidates"])
 
 
 def outsider(row: Row) -> str:

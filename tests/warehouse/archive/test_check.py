@@ -8,7 +8,7 @@ import pytest
 
 from herijk.cli.archive import check_text
 from pipeline.errors import MissingKnowledgeError
-from pipeline.words import LANGUAGE, say
+from pipeline.messages import LANGUAGE, say
 from tests.warehouse.archive.conftest import BOATS, FIRST, TOWS, Archive, Scan
 from warehouse.archive.check.check import check_archive
 from warehouse.archive.check.report import check_report

@@ -119,7 +119,7 @@ def _find_files_of(entry: Entry, names: str, by_name: FilesByName) -> SamplesFil
 def _find_file(entry: Entry, name: str, by_name: FilesByName) -> SamplesFile:
     values = {"name": shorten(name), "folder": f"meetdata_{entry.season}/"}
     if "/" in name or "\\" in name or name.startswith(".."):
-        message = "'{name}' is a path; only the name of a file in {folder} can be given here."
+        message = say("'{name}' is a path; only the name of a file in {folder} can be given here.")
         raise entry.row.fault(say(message, **values), "path_outside_archive")
     candidates = files_meant(name, entry.season, by_name)
     if not candidates:

@@ -68,7 +68,7 @@ def idle_settings(profiles: Profiles, entries: list[Entry]) -> list[Fault]:
             if not any(first <= season <= last for season in seasons)
         ),
     ]
-    message = "[[{table}]] is for {what}, and no tow list has that: is it mistyped?"
+    message = say("[[{table}]] is for {what}, and no tow list has that: is it mistyped?")
     return [
         Fault(PROFILE_FILE, None, None, "idle_setting", say(message, table=table, what=what))
         for table, what in idle

@@ -49,7 +49,7 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
     """What lies in the archive and is not read; what it can be, where that can be told."""
-    message = "The name of '{name}' has letters that cannot be read; give it another name."
+    message = say("The name of '{name}' has letters that cannot be read; give it another name.")
     misnamed = [
         Fault(path, None, None, "unrecognised_file", say(message, name=path))
         for path in list_misnamed(root)
@@ -67,11 +67,11 @@ def _about_stranger(root: Path, path: str) -> str:
     if kind.suffix.lower() in PACKED:
         return say("'{path}' is not read: it is packed. Unpack it in its folder.", path=path)
     if kind.suffix.lower() in SPREADSHEETS and kind.parts[0].casefold().startswith(SAMPLES):
-        message = "'{path}' is not read: samples are read from text. Save the sheet as CSV."
+        message = say("'{path}' is not read: samples are read from text. Save the sheet as CSV.")
         return say(message, path=path)
     can_be = dict(recognised(root, path))
     if not can_be:
-        message = "'{path}' is not recognised. It may be put under ignore in archief.toml."
+        message = say("'{path}' is not recognised. It may be put under ignore in archief.toml.")
         return say(message, path=path)
     return say(
         "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; "

@@ -81,7 +81,7 @@ def _possible_result(row: ListRow, season: int) -> Row:
     speed = through_water_m / result["rowing_time_s"]
     lowest, highest = limits(TowFacts, "declared_speed_m_s")
     if not lowest <= speed <= highest:
-        message = (
+        message = say(
             "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
             "{high:g} can be right."
         )

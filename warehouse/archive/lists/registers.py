@@ -67,7 +67,7 @@ def _check_curve(row: ListRow) -> None:
     a, b, cw, speed = (row.number(key) for key in keys)
     printed = {key: row.text(key) for key in keys}
     if b <= speed:
-        message = "B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher."
+        message = say("B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher.")
         raise row.fault(say(message, **printed))
     half_a, half_b, half_cw, half_v = (_half_unit(printed[key]) for key in keys)
     slowest = (speed - half_v) / (b + half_b)
@@ -75,7 +75,7 @@ def _check_curve(row: ListRow) -> None:
     lowest = (a - half_a) / (1.0 - slowest**2) - half_cw
     highest = (a + half_a) / (1.0 - fastest**2) + half_cw
     if not lowest * (1.0 - CW_AS_PRINTED) <= cw <= highest * (1.0 + CW_AS_PRINTED):
-        message = (
+        message = say(
             "Cw is {cw_kg_m}, but A {a_kg_m} and B {b_m_s} give {given:.2f} at "
             "{declared_speed_m_s} m/s; one of them is wrong, or two are exchanged."
         )

@@ -127,7 +127,7 @@ def read_tow(
     row.check_whole()
     tow_id = row.text("tow_id")
     if not _TOW_ID.fullmatch(tow_id):
-        message = "'{tow}' cannot be a sleep_id: it is too long, or has a slash."
+        message = say("'{tow}' cannot be a sleep_id: it is too long, or has a slash.")
         raise row.fault(say(message, tow=shorten(tow_id)))
     values: Row = {}
     wrong: dict[str, DefectiveInputError] = {}
@@ -184,7 +184,7 @@ def fill_dimensions(tow: Row, boat: Row, row: ListRow, has_wind: bool) -> Row:
     needed = {*_DIMENSIONS} - (set() if has_wind else {"bow_height_m"})
     lacking = [c for key, c in _DIMENSIONS.items() if key in needed and filled[key] is None]
     if lacking:
-        message = "{names} must be there, here or in the boat list."
+        message = say("{names} must be there, here or in the boat list.")
         raise row.fault(say(message, names=", ".join(f"'{column.named}'" for column in lacking)))
     return filled
 

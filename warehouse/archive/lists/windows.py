@@ -47,7 +47,9 @@ def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
     """
     listed = windows.join(seconds, on=["tow_id", "run"], maintain_order="left")
     beyond = listed.filter(pl.col("end_s") > pl.col("seconds"))
-    message = "the window of run {run} of tow {tow} ends at {end} s, but the run lasts {seconds} s."
+    message = say(
+        "the window of run {run} of tow {tow} ends at {end} s, but the run lasts {seconds} s."
+    )
     return [
         _fault(
             window, "window_outside_run", message, end=window["end_s"], seconds=window["seconds"]
@@ -60,7 +62,7 @@ def check_order(row: ListRow, window: Row) -> None:
     """Raises where a window, or the time that a lamp burned, does not end after it begins."""
     start, end = window["start_s"], window["end_s"]
     if start >= end:
-        message = "'van' is {start} s and 'tot' {end} s; a window ends after it begins."
+        message = say("'van' is {start} s and 'tot' {end} s; a window ends after it begins.")
         raise row.fault(say(message, start=start, end=end))
 
 
@@ -79,7 +81,7 @@ def _window(runs_of: RunsOf, row: ListRow, season: int) -> Row:
 
 
 def _given_twice(window: Row) -> Fault:
-    message = "run {run} of tow {tow} has more than one window; none of them counts."
+    message = say("run {run} of tow {tow} has more than one window; none of them counts.")
     return _fault(window, "window_given_twice", message)
 
 

@@ -137,7 +137,7 @@ def check_mix_ups(runs: list[Run]) -> None:
     force = typical["force"].median
     turned = {**typical, "force": _Typical(-force, 0, 0)}
     if force < 0 and not _implausible(turned, intended):
-        message = "The force is {:.0f} N in a typical run; it must be positive."
+        message = say("The force is {:.0f} N in a typical run; it must be positive.")
         said = say(message, force, turned=True)
         raise DefectiveFileError("negative_force", said, runs[0].first_line, runs[0].path)
     follows = {key for key in SPARE if key in typical and _follows_log(runs, key)}

@@ -23,7 +23,7 @@ def _why(table: type[dy.Schema], row: Row, column: str, rule: str) -> Sentence:
     if rule not in {"min", "max"}:
         return say("column '{column}' is '{cell}', which cannot be right.", **named)
     low, high = limits(table, column)
-    message = "column '{column}' is {cell}; {low:g} to {high:g} can be right."
+    message = say("column '{column}' is {cell}; {low:g} to {high:g} can be right.")
     if column == "season":  # of the file's name, or of a date: no list has such a column
-        message = "the year is {cell}; {low:g} to {high:g} can be right."
+        message = say("the year is {cell}; {low:g} to {high:g} can be right.")
     return say(message, **named, low=low, high=high)

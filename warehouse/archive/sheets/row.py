@@ -131,7 +131,7 @@ class ListRow:
                 value = value if self._is_in_ones(key, digits, value) else thousands
         if not lowest <= value <= highest:
             low, high = (scale.from_si(limit) for limit in (lowest, highest))
-            message = "column '{column}' is {cell}; {low:g} to {high:g} can be right."
+            message = say("column '{column}' is {cell}; {low:g} to {high:g} can be right.")
             raise self.wrong(message, key, low=low, high=high)
         return value
 
@@ -146,7 +146,7 @@ class ListRow:
             digits = ungrouped(own[1] if own and scale else cell)
             parse_number(digits)
         except ValueError as error:
-            message = "column '{column}' is '{cell}', which is not an ordinary number."
+            message = say("column '{column}' is '{cell}', which is not an ordinary number.")
             raise self.wrong(message, key) from error
         return digits, scale or column.scale
 
@@ -196,10 +196,14 @@ class ListRow:
         try:
             return parse_date(cell, self.reading.date_order)
         except AmbiguousDateError as error:
-            message = "column '{column}' is '{cell}': is the first number the day or the month?"
+            message = say(
+                "column '{column}' is '{cell}': is the first number the day or the month?"
+            )
             raise self.wrong(message, key, "ambiguous_date") from error
         except ValueError as error:
-            message = "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014."
+            message = say(
+                "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014."
+            )
             raise self.wrong(message, key) from error
 
     def date(self, key: str) -> dt.date:
@@ -209,7 +213,7 @@ class ListRow:
     def check_year(self, day: dt.date, year: int, reason_code: str | None = None) -> None:
         """Raises where a day is not in the year of the list."""
         if day.year != year:
-            message = "the date {day} is not in {season}, the year of the list."
+            message = say("the date {day} is not in {season}, the year of the list.")
             raise self.fault(say(message, day=day, season=year), reason_code)
 
     def run(self, key: str) -> int:
@@ -221,7 +225,7 @@ class ListRow:
         cell = self.optional_text(key)
         value = CLASSES.get(fold_word(cell or ""))
         if cell is not None and value is None:
-            message = "column '{column}' is '{cell}'; H or D is expected."
+            message = say("column '{column}' is '{cell}'; H or D is expected.")
             raise self.wrong(message, key, expected="HD")
         return value
 

@@ -48,7 +48,9 @@ def unit_behind(name: str, dimension: str) -> str | None:
             return end.replace("_", " ")
     if not (unit or unread_unit(name) or (ends and name[-len(ends[-1]) - 1] == "_")):
         return None
-    message = "'{end}' at the end of '{name}' is no known unit of it; put the unit in brackets."
+    message = say(
+        "'{end}' at the end of '{name}' is no known unit of it; put the unit in brackets."
+    )
     raise DefectiveInputError("unknown_unit", say(message, end=ends[-1], name=name))
 
 

@@ -1,0 +1,211 @@
+"""Texts that people read: English in the source, Dutch in `locale/nl/LC_MESSAGES/herijk.po`.
+
+A text is marked where it stands, by `say`, `pgettext`, `ngettext` or `tell`, and looked up by
+gettext when it is shown. What `say` gives is a text like any other, in English, and can be said
+again in Dutch: tables keep it in English, and what shows it chooses the language. Any other text is
+data (the name of a boat, a method or an edition) and is never translated.
+"""
+
+from collections.abc import Mapping
+from contextvars import ContextVar
+from functools import cache, partial
+from gettext import NullTranslations, translation
+from numbers import Real
+from string import Formatter
+from types import MappingProxyType
+from typing import Any, Final, Protocol
+
+LANGUAGES: Final = ("nl", "en")
+DECIMALS: Final = {"nl": ",", "en": "."}
+
+LANGUAGE: Final = ContextVar("LANGUAGE", default="en")
+"""The language in which this command speaks: `nl` or `en`."""
+
+DOMAIN: Final = "herijk"
+CATALOGUES: Final = f"{__file__.removesuffix('messages.py')}locale"
+"""Where catalogues lie, by language, as gettext looks for them."""
+
+
+class Say(Protocol):
+    """Gives a text in one language, with values filled in."""
+
+    def __call__(self, text: str, *in_order: object, **named: object) -> str:
+        """The text, which is marked."""
+
+
+@cache
+def _catalogue(language: str) -> NullTranslations:
+    if language == "en":
+        return NullTranslations()
+    return translation(DOMAIN, CATALOGUES, [language])
+
+
+class _InWords(Formatter):
+    """Fills in values, numbers with the decimal mark of a language."""
+
+    def __init__(self, language: str) -> None:
+        self._decimal = DECIMALS[language]
+
+    def format_field(self, value: object, format_spec: str) -> str:
+        text = str(super().format_field(value, format_spec))
+        return text.replace(".", self._decimal) if isinstance(value, Real) else text
+
+
+class Sentence(str):
+    """A text in English that knows its template and what is filled in.
+
+    Attributes:
+        template: the English text with braces.
+        in_order: what is in the place of braces without a name.
+        values: what is in the place of names; may be sentences themselves.
+        context: tells it from an equal English text that is another in Dutch.
+        plural, number: the template for more than one, and how many there are.
+    """
+
+    __slots__ = ("context", "in_order", "number", "plural", "template", "values")
+
+    template: str
+    in_order: tuple[object, ...]
+    values: Mapping[str, Any]
+    context: str
+    plural: str
+    number: int
+
+    def spoken(self, language: str) -> str:
+        """The sentence in `en` or `nl`; in English where there is no Dutch."""
+        known = self.template, self.context, self.plural, self.number
+        return _filled(_looked_up(language, *known), language, self.in_order, self.values)
+
+
+def _looked_up(
+    language: str, template: str, context: str = "", plural: str = "", number: int = 1
+) -> str:
+    catalogue = _catalogue(language)
+    if plural:
+        return catalogue.ngettext(template, plural, number)
+    if context:
+        return catalogue.pgettext(context, template)
+    return catalogue.gettext(template) if template else ""  # the header goes by no text
+
+
+def _filled(
+    text: str, language: str, in_order: tuple[object, ...], values: Mapping[str, object]
+) -> str:
+    if not in_order and not values:
+        return text
+    shown = tuple(spoken(value, language) for value in in_order)
+    named = {name: spoken(value, language) for name, value in values.items()}
+    return _InWords(language).vformat(text, shown, named)
+
+
+def _sentence(
+    template: str,
+    in_order: tuple[object, ...] = (),
+    values: Mapping[str, object] = MappingProxyType({}),
+    context: str = "",
+    plural: str = "",
+    number: int = 1,
+) -> Sentence:
+    text = plural if plural and number != 1 else template
+    sentence = Sentence(_filled(text, "en", in_order, values))
+    sentence.template, sentence.in_order, sentence.values = str(template), in_order, values
+    sentence.context, sentence.plural, sentence.number = context, plural, number
+    return sentence
+
+
+def say(template: str, *in_order: object, **named: object) -> Sentence:
+    """The sentence that a template gives with the values filled in.
+
+    What comes from files and libraries is made printable: it goes to terminals and tables.
+    """
+    shown = tuple(_printable(value) for value in in_order)
+    context = template.context if isinstance(template, Sentence) else ""
+    by_name = {name: _printable(value) for name, value in named.items()}
+    return _sentence(template, shown, by_name, context)
+
+
+def headings(*texts: str) -> tuple[Sentence, ...]:
+    """The head of a table, each a text of its own."""
+    return tuple(map(say, texts))
+
+
+def pgettext(context: str, template: str) -> Sentence:
+    """A text of which the same English has another Dutch elsewhere."""
+    return _sentence(template, context=context)
+
+
+def ngettext(one: str, many: str, number: int) -> Sentence:
+    """A text about one or about several; `{n}` is how many."""
+    return _sentence(one, values={"n": number}, plural=many, number=number)
+
+
+def speaker(language: str) -> Say:
+    """Gives texts in one language."""
+    return partial(_said_in, language)
+
+
+def _said_in(language: str, text: str, *in_order: object, **named: object) -> str:
+    if isinstance(text, Sentence) and not in_order and not named:
+        return text.spoken(language)
+    context = text.context if isinstance(text, Sentence) else ""
+    return _filled(_looked_up(language, text, context), language, in_order, named)
+
+
+def tell(template: str, *in_order: object, **named: object) -> str:
+    """A text in the language of this command, with the values filled in, sentences in it too."""
+    return _said_in(LANGUAGE.get(), template, *in_order, **named)
+
+
+def number(value: float, form: str) -> str:
+    """A number as the language of this command writes it; `form` as in `format`."""
+    return format(value, form).replace(".", DECIMALS[LANGUAGE.get()])
+
+
+def in_per_cent(probability: float) -> str:
+    """A probability that was counted in draws, which never make it certain."""
+    if probability < 0.01:
+        return "<\u00a01\u00a0%"
+    return ">\u00a099\u00a0%" if probability > 0.99 else f"{100 * probability:.0f}\u00a0%"
+
+
+def _printable(value: object) -> object:
+    """Text or an error as one line without control characters; other values as they are."""
+    if isinstance(value, Exception) and value.args and isinstance(value.args[0], Sentence):
+        return value.args[0]
+    if isinstance(value, Sentence) or not isinstance(value, str | Exception):
+        return value
+    line = " ".join(str(value).split())
+    return "".join(letter if letter.isprintable() else "?" for letter in line)
+
+
+def spoken(text: Any, language: str) -> Any:
+    """A sentence or an error in the language asked for; any other text is data, and stays."""
+    if isinstance(text, Exception):
+        text = text.args[0] if text.args and isinstance(text.args[0], Sentence) else str(text)
+    return text.spoken(language) if isinstance(text, Sentence) else text
+
+
+def innermost(text: str) -> str:
+    """What a sentence says of its line: the sentence within `Line 3: ...`."""
+    while isinstance(text, Sentence) and isinstance(text.values.get("what"), Sentence):
+        text = text.values["what"]
+    return text
+
+
+def cause_of(text: str) -> str:
+    """What sentences of one cause share: the same words about the same column.
+
+    What differs from fault to fault is left open: `column 'klasse' is '…'; H or D is expected.`
+    """
+    what = innermost(text)
+    if not isinstance(what, Sentence):
+        return what
+    shared = {name: what.values[name] for name in _SHARED if name in what.values}
+    return "".join(
+        literal + ("" if name is None else str(shared.get(name, "…")))
+        for literal, name, _, _ in Formatter().parse(what.template)
+    )
+
+
+_SHARED: Final = ("column", "names", "unit", "found")
+"""Values that faults of one cause have in common."""

@@ -1,0 +1,133 @@
+"""Which texts the program says, and their Dutch: `make texts` brings the catalogue up to date.
+
+A text is marked by the call that says it, in Python and in templates. Of what the help of commands
+and the declarations of tables say, these themselves are asked.
+"""
+
+import ast
+import io
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from string import Formatter
+
+from babel.messages.catalog import Catalog
+from babel.messages.extract import extract
+from babel.messages.pofile import read_po, write_po
+from typer.main import get_command
+
+from herijk.cli.main import app
+from pipeline import errors
+from pipeline.messages import CATALOGUES, DOMAIN
+from pipeline.tables.schemas import ABOUT, TABLES, summary_of
+from tests.architecture.repository import ROOT, modules
+
+PO = Path(CATALOGUES) / "nl" / "LC_MESSAGES" / f"{DOMAIN}.po"
+TODO = f"Run `make texts`, and give what has none its Dutch in {PO.relative_to(ROOT)}."
+MARKS = {
+    *("say", "tell", "wrong", "fault", "headings", "NamedWorld", "BadParameter"),
+    *("MethodFileError", "ArchiveChangedError"),
+    *(name for name in dir(errors) if name.endswith("Error")),
+} - {"DefectiveInputError"}
+OF_LIBRARY = ("Arguments", "Options", "Commands", "Show this message and exit.")
+"""What the library of the command line says itself."""
+IN_TEMPLATES = {"_": None, "say": None, "both": None, "pgettext": ((1, "c"), 2)}
+WIDTH = 100
+CODE = re.compile("[a-z]+(_[a-z]+)+")
+
+Text = tuple[str | tuple[str, str], str | None]
+"""A text, or one about one and one about several; and its context."""
+
+
+def in_python(source: str) -> Iterator[Text]:
+    """The marked texts of a module."""
+    for node in ast.walk(ast.parse(source)):
+        if not isinstance(node, ast.Call) or not node.args:
+            continue
+        name = getattr(node.func, "attr", None) or getattr(node.func, "id", "")
+        if name == "headings":
+            yield from ((text, None) for argument in node.args for text in written(argument))
+        elif name in MARKS:
+            yield from ((text, None) for text in written(node.args[0]))
+        elif name in ("pgettext", "ngettext"):
+            for first, second in zip(*map(written, node.args[:2]), strict=True):
+                yield (second, first) if name == "pgettext" else ((first, second), None)
+
+
+def written(node: ast.expr) -> Iterator[str]:
+    """The texts that an expression can be, as far as they are written in it."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    elif isinstance(node, ast.IfExp):
+        yield from written(node.body)
+        yield from written(node.orelse)
+
+
+def in_template(source: bytes) -> Iterator[Text]:
+    """The marked texts of a template."""
+    found = extract("jinja2", io.BytesIO(source), IN_TEMPLATES)
+    yield from ((message, context) for _, message, _, context in found)
+
+
+def in_help(command) -> Iterator[Text]:
+    """What a command says of itself, of its options and of the commands below it."""
+    for text in (command.help, *(getattr(option, "help", None) for option in command.params)):
+        yield " ".join((text or "").split()), None
+    for inner in getattr(command, "commands", {}).values():
+        yield from in_help(inner)
+
+
+def has_words(text: Text) -> bool:
+    """Whether there is anything to translate: letters that are no code and not filled in."""
+    parts = text[0] if isinstance(text[0], tuple) else text[:1]
+    literals = [literal for part in parts for literal, *_ in Formatter().parse(part)]
+    return any(map(str.isalpha, "".join(literals))) and not CODE.fullmatch(parts[0])
+
+
+def said() -> Iterator[tuple[str, Text]]:
+    """Every text that is said, with the file in which it is."""
+    for file in modules():
+        name = file.relative_to(ROOT).as_posix()
+        yield from ((name, text) for text in in_python(file.read_text(encoding="utf-8")))
+    for file in sorted((ROOT / "dashboards").rglob("*.j2")):
+        name = file.relative_to(ROOT).as_posix()
+        yield from ((name, text) for text in in_template(file.read_bytes()))
+    yield from (("herijk/cli", text) for text in in_help(get_command(app)))
+    yield from (("herijk/cli", (text, None)) for text in OF_LIBRARY)
+    tables = (TABLES | ABOUT).values()
+    yield from (("pipeline/tables", (summary_of(table), None)) for table in tables)
+
+
+def catalogue() -> Catalog:
+    """The Dutch of all that is said, as far as it is known."""
+    with PO.open("rb") as file:
+        known = read_po(file, locale="nl", domain=DOMAIN)
+    wanted = Catalog(creation_date=known.creation_date)
+    for file, (text, context) in said():
+        if has_words((text, context)):
+            wanted.add(text, locations=[(file, 0)], context=context)
+    known.update(wanted, no_fuzzy_matching=True)
+    for message in known:
+        message.flags.discard("python-format")  # per cent signs
+    return known
+
+
+def as_file(texts: Catalog) -> bytes:
+    """The catalogue as it is kept."""
+    file = io.BytesIO()
+    write_po(file, texts, WIDTH, ignore_obsolete=True, sort_by_file=True, include_lineno=False)
+    return file.getvalue()
+
+
+def main(arguments: list[str]) -> None:
+    """Writes the catalogue; with `--check`, ends with 1 where that would change it."""
+    made = as_file(catalogue())
+    if "--check" not in arguments:
+        PO.write_bytes(made)
+    elif made != PO.read_bytes():
+        sys.exit(f"The texts have changed. {TODO}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
