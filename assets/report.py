@@ -23,13 +23,13 @@ from dashboards.report import (
 )
 from pipeline.messages import LANGUAGE, say, speaker
 from warehouse.derive.step import QUARANTINE
-from warehouse.derive.version import code_version
 from warehouse.queries.change_report import (
     ChangeSummary,
     change_report,
     remember,
     summary_of,
 )
+from warehouse.store.code import code_version
 from warehouse.store.files import written_beside
 from warehouse.store.store import Store
 from warehouse.store.unforeseen import UNFORESEEN, failures

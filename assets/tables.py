@@ -11,9 +11,9 @@ from assets.resources import Setup
 from assets.shown import preview
 from pipeline.tables.declare import dy
 from pipeline.tables.schemas import TABLES
-from warehouse.derive.graph import STEPS
+from warehouse.derive.graph import STEPS, catch_up
 from warehouse.derive.inputs import IN_DATABASE, Scope, read_table, state_of_table
-from warehouse.derive.mending import catch_up, mending
+from warehouse.derive.mending import mending
 from warehouse.derive.step import Step
 from warehouse.intake.seasons import SEASON_TABLES
 from warehouse.store.code import code_hash

@@ -359,7 +359,6 @@ CODES: Final[dict[str, Sentence]] = {
     "not told": say("not told"),
     "not determined": say("not determined"),
     "not settled": say("not settled"),
-    "other log": say("other log"),
     "gps": say("GPS"),
     "accepted": say("accepted"),
     "flagged": say("flagged"),

@@ -42,8 +42,7 @@ from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, truth_rows
 from warehouse.derive.plausible import with_doubts
-from warehouse.derive.version import code_version
-from warehouse.store.code import code_hash
+from warehouse.store.code import code_hash, code_version
 
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data")) / "accuracy"
 SIZE = {"seasons": tuple(range(2009, 2019)), "tows_per_season": 24}

@@ -263,9 +263,8 @@ def _corrections(views: Views, methods: list[str]) -> Page:
                     say("What a log factor rests on"),
                     say(
                         "Where a log was replaced within a season each part has its own factor; "
-                        "the chart above shows their mean. The other log has a line too: the "
-                        "method does not use it. Largest influence: how far the factor moves at "
-                        "most when one boat is left out."
+                        "the chart above shows their mean. Largest influence: how far the factor "
+                        "moves at most when one boat is left out."
                     ),
                 ),
                 "season_links",

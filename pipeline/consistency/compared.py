@@ -150,10 +150,7 @@ def _hull_row(tows: pl.DataFrame, boat_type: str) -> dict[str, object]:
     row: dict[str, object] = {
         "n": tows.height,
         "n_boats": tows["fsn_no"].n_unique(),
-        "n_with_b": with_b.height,
         "tow_ratio": ratio.median(),
-        "tow_ratio_lo": ratio.quantile(0.05, "linear"),
-        "tow_ratio_hi": ratio.quantile(0.95, "linear"),
         "tow_share_60_70": ratio.is_between(*ROWED_RATIO).mean(),
         "b_share_within_5pct": (with_b["b_hull_ratio"] - 1.0).abs().le(0.05).mean(),
     }

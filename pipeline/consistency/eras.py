@@ -57,7 +57,7 @@ def season_ranges(seasons: Iterable[int]) -> dict[str, tuple[int, int]]:
     return {f"{first}:{last}": (first, last) for first, last in ends}
 
 
-def era_shifts(pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShifts]:
+def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShifts]:
     """Shift of Cw from the tows of an era to the next tow of the same boat and crew, later.
 
     Per method, era but the last, and boat type; also over all types. The shift is a median with
@@ -65,13 +65,13 @@ def era_shifts(pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShif
     last era; where these are too few, none is taken out. Its uncertainty is in the interval.
 
     Args:
-        pairs: rows of `repeat_pairs`.
+        repeat_pairs: the table of that name.
         boats: `fsn_no` and `boat_type`, null without a type.
 
     Returns:
         Rows of the table `era_shifts`; where nothing is claimed, `reason` says why.
     """
-    typed = pairs.join(
+    typed = repeat_pairs.join(
         boats.select("fsn_no", pl.col("boat_type").fill_null(UNKNOWN_TYPE)),
         on="fsn_no",
         how="left",
@@ -79,7 +79,7 @@ def era_shifts(pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShif
     )
     types = sorted(typed["boat_type"].drop_nulls().unique())
     rows = []
-    for method in pairs["method"].unique().sort():
+    for method in repeat_pairs["method"].unique().sort():
         own = typed.filter(pl.col("method") == method)
         within = own.filter((pl.col("season_before") >= ERAS[-1].first) & (_years() > 0))
         yearly = within.select(pl.col("ln_ratio") / _years()).to_series().to_numpy()

@@ -109,11 +109,6 @@ def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
         {"method": method, "boat_type": boat_type} | _tested(boats, boat_type)
         for (method, boat_type), boats in groups
     ]
-    bent = [(row, boats) for row, (_, boats) in zip(rows, groups, strict=True) if "shared_q" in row]
-    priors = _bend_priors([(boats, row["run_sd_ratio"]) for row, boats in bent])
-    for (row, _), prior in zip(bent, priors, strict=True):
-        if prior is not None:
-            row["between_b_sd_ratio"] = prior[1] / (2.0 * row["shared_q"] * (1.0 + row["shared_q"]))
     return frame_of(TypeHomogeneity, rows)
 
 
@@ -247,7 +242,6 @@ def _spread(boats: Observed, shapes: _Shapes, sigma: float, f: float, dof: tuple
     facts: Row = {
         "standard_speed_m_s": speed,
         "noise_share": min(1.0, 1.0 / f) if f > 0 else 1.0,
-        "cw_noise_sd_ratio": sigma * float(np.sqrt(boats.column("c0_unit_variance").mean())),
     }
     if not 0.0 < r < 1.0:
         return facts
@@ -264,7 +258,6 @@ def _spread(boats: Observed, shapes: _Shapes, sigma: float, f: float, dof: tuple
         facts
         | powers
         | {
-            "shared_q": q,
             "shared_b_m_s": float(1.0 / np.sqrt(shared)),
             "b_sd_ratio": float(b.std(ddof=1) / b.mean()) if several else None,
             "b_noise_sd_ratio": noise,

@@ -133,7 +133,6 @@ def prediction_error(predicted: pl.DataFrame) -> dy.DataFrame[PredictionError]:
             "n_boats": group["fsn_no"].n_unique(),
             "rmse_ratio": float(np.sqrt((group["ln_ratio"].to_numpy() ** 2).mean())),
             "tow_sd_ratio": float(np.sqrt((group["cw_sd_ratio"].to_numpy() ** 2).mean())),
-            "share_disagreeing": float(group["disagrees"].to_numpy().mean()),
         }
         for (method,), group in known.sort("method").group_by("method", maintain_order=True)
     ]

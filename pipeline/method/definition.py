@@ -48,9 +48,8 @@ def _later(default: object, ge: float | None = None, le: float | None = None) ->
 
 
 class Speed(_Options):
-    """Which speed through the water, and what is known to be wrong with it."""
+    """What is known to be wrong with the speed through the water, which is that of log 1."""
 
-    source: Literal["log1", "log2", "mean"]
     correction: Literal["none", "prescribed", "estimated"]
     correction_ratio: float = Field(default=0.0, ge=-0.15, le=0.15)
     operation: Literal["multiply", "divide"] = "multiply"
@@ -59,7 +58,7 @@ class Speed(_Options):
 class Calibration(_Options):
     """The factor that brings the log to ground speed, and what a tow without GPS gets instead."""
 
-    rule: Literal["none", "gps_per_tow", "gps_per_season"]
+    rule: Literal["none", "gps_per_tow"]
     without_gps: Literal["no_curve", "estimated"] = _later("no_curve")
 
 
@@ -70,17 +69,13 @@ class Window(_Options):
     minimum_s: float = Field(default=30.0, ge=5.0, le=50.0)
     speed_drift_m_s: float = Field(default=0.1, gt=0.0, le=0.2)
     force_ends_ratio: float = Field(default=0.1, gt=0.0, le=0.2)
-    wind_ends_m_s: float = Field(default=1.0, gt=0.0, le=5.0)
-    ramp_m_s: float = Field(default=0.08, gt=0.0, le=0.2)
-    peak_sd: float = Field(default=3.0, ge=1.0, le=10.0)
-    gust_sd: float = Field(default=2.4, ge=1.0, le=10.0)
 
 
 class Wind(_Options):
     """How the resistance in air is taken off."""
 
-    model: Literal["none", "head", "oblique"]
-    coefficients: Literal["fixed", "per_run", "per_tow", "archive"] = "fixed"
+    model: Literal["head", "oblique"]
+    coefficients: Literal["fixed", "per_run", "archive"] = "fixed"
     ahead: float = Field(default=0.5, ge=0.0, le=2.0)
     behind: float = Field(default=0.5, ge=0.0, le=2.0)
     side: float = Field(default=0.2, ge=0.0, le=2.0)
@@ -95,7 +90,6 @@ class RunPoint(_Options):
 
     estimator: Literal["mean_of_ratios", "ratio_of_means"]
     inertia: Literal["none", "end_speeds"] = "none"
-    added_mass_ratio: float = Field(default=0.08, ge=0.0, le=0.5)
 
 
 class Temperature(_Options):

@@ -17,7 +17,7 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.recompute.outcome import Outcome
 from pipeline.season_log import SeasonFactors
-from pipeline.steps.speed import log_part
+from pipeline.steps.speed import LOG_OF_TOW
 from pipeline.uncertainty.misfit import Departure, departure_of_boats
 from pipeline.uncertainty.propagation import (
     Assumed,
@@ -115,8 +115,8 @@ def files_log_sd(o: Outcome) -> FloatArray:
 
 def run_point_ratio(o: Outcome) -> FloatArray:
     """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
-    season, source = _season(o)[o.batch.tow], o.steps.speed.source
-    return run_point_uncertainty(o.batch.blocks, o.prepared.windows.mask, season, source)
+    season = _season(o)[o.batch.tow]
+    return run_point_uncertainty(o.batch.blocks, o.prepared.windows.mask, season)
 
 
 def budget_of(
@@ -264,8 +264,7 @@ def _terms_of_tows(
     return batch.tows.select(
         "tow_id",
         "season",
-        log_part(o.steps.speed.source),
-        pl.lit(o.steps.speed.source).alias("log"),
+        *LOG_OF_TOW,
         pl.Series("random_dof", scatter.dof),
         pl.Series("bend", bend),
         pl.Series("calibrated", p.calibrated),

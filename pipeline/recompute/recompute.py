@@ -18,7 +18,6 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, StrArray
 from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.choice import first_largest
 from pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from pipeline.method.definition import Method, Steps
 from pipeline.recompute.anemometer import with_anemometer
@@ -44,7 +43,7 @@ from pipeline.steps.calibration import gps_factor_of_files
 from pipeline.steps.resistance import RunMeans, temperature_change_kg_m
 from pipeline.steps.speed import log_factor
 from pipeline.steps.target import above_target
-from pipeline.steps.wind import PER_TOW_BOUNDS, nearest_coefficients
+from pipeline.steps.wind import nearest_coefficients
 from pipeline.steps.window import Windows
 from pipeline.uncertainty.propagation import Assumed
 
@@ -64,7 +63,6 @@ class ArchiveCoefficient(NamedTuple):
     sd: float
 
 
-PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
 
 FEWEST_WINDS = 10
@@ -232,7 +230,6 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
     speed = means.speed_m_s * known[batch.tow] * y
     temperature, temperature_known = temperature_change_kg_m(batch, steps.temperature, speed)
     front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
-    has_wind = float(steps.wind.model != "none")
     return Prepared(
         batch,
         steps,
@@ -243,7 +240,7 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
         calibrated,
         estimated,
         reasons,
-        still_unit_kg_m=still_air_coefficient_kg_m(front, has_wind),
+        still_unit_kg_m=still_air_coefficient_kg_m(front, 1.0),
         temperature_kg_m=temperature,
         temperature_known=temperature_known,
         wind_ln_scale=np.zeros(batch.size),
@@ -276,22 +273,7 @@ def _calibrate(
         return np.ones(len(batch.tow)), np.ones(len(batch.tow), dtype=bool)
     log = means.speed_m_s * known_factor[batch.tow]
     y, determined = gps_factor_of_files(batch, means.gps_m_s, log, used, windows.exists & (log > 0))
-    if steps.calibration.rule == "gps_per_season":
-        y, determined = _mean_of_season(batch, y, determined)
     return y.ravel()[batch.file], determined.ravel()[batch.file]
-
-
-def _mean_of_season(
-    batch: Batch, y: FloatArray, determined: BoolArray
-) -> tuple[FloatArray, BoolArray]:
-    """The mean factor of each season's files, for all of its tows, shape (tows, 2)."""
-    _, season = np.unique(batch.of_tow("season"), return_inverse=True)
-    second = batch.in_second_file
-    counted = determined & np.stack([batch.any(~second), batch.any(second)], axis=1)
-    count = np.bincount(season, counted.sum(axis=1))
-    mean = np.bincount(season, np.where(counted, y, 0.0).sum(axis=1)) / np.maximum(count, 1)
-    y, determined = np.where(count > 0, mean, 1.0)[season], (count > 0)[season]
-    return np.repeat(y[:, None], 2, axis=1), np.repeat(determined[:, None], 2, axis=1)
 
 
 def _finish(prepared: Prepared, shared: ArchiveCoefficient | None) -> Outcome:
@@ -332,9 +314,6 @@ def _coefficients(
     if wind.coefficients == "archive" and shared is not None:
         one = np.full(runs, shared.value)
         return one, one, one
-    if wind.coefficients == "per_tow":
-        one = _best_per_tow(prepared)[prepared.batch.tow]
-        return one, one, one
     if wind.coefficients == "per_run":
         return *_best_per_run(prepared, *fixed), fixed[0]
     return *fixed, fixed[0]
@@ -372,12 +351,6 @@ def _misfits(prepared: Prepared, grid: FloatArray) -> FloatArray:
     sound = curves.converged & np.isfinite(scale) & (curves.n_points == runs)
     misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, np.inf)
     return misfit.reshape(len(grid), -1)
-
-
-def _best_per_tow(prepared: Prepared) -> FloatArray:
-    """One coefficient per tow within its bounds, by trying all of a fine grid, shape (tows,)."""
-    best = first_largest(-_misfits(prepared, PER_TOW_GRID))
-    return np.asarray(PER_TOW_GRID[best], dtype=np.float64)
 
 
 def _archive_coefficient(prepared: list[Prepared]) -> ArchiveCoefficient | None:

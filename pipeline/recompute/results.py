@@ -34,7 +34,7 @@ from pipeline.recompute.budget import (
 from pipeline.recompute.facts import with_expected_water
 from pipeline.recompute.outcome import Outcome
 from pipeline.recompute.season_factors import tow_instruments
-from pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
+from pipeline.season_log import SeasonFactors, retow_choice
 from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, NOT_SETTLED
 from pipeline.steps.speed import log_factor
 from pipeline.tables.frames import dtypes
@@ -131,7 +131,7 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     p = o.prepared
     means, has_window, tow = p.means, p.windows.exists, o.batch.tow
     on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], p.speed_m_s)
-    log1 = np.where(has_window, means.log1_m_s, 1.0)
+    log1 = np.where(has_window, means.speed_m_s, 1.0)
     has_limits = o.steps.window.rule != "all"
     wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
     log2_ratio = means.log2_m_s / log1
@@ -249,12 +249,12 @@ def _mean_factor(o: Outcome, season: int) -> FactorRow:
 def _factor_row(o: Outcome, season: int, estimated: SeasonFactors | None) -> FactorRow:
     speed = o.steps.speed
     if estimated is not None and speed.correction == "estimated":
-        known = estimated.of_season(season, speed.source)
+        known = estimated.of_season(season)
         if known is not None:
             return (season, *known)
     nothing = np.array([np.nan])
     factor = float(log_factor(speed, nothing, nothing)[0])
-    if estimated is not None and estimated.is_refused(season, speed.source):
+    if estimated is not None and estimated.is_refused(season):
         return season, factor, None, None, NOT_SETTLED
     return season, factor, None, None, "none" if factor == 1.0 else "prescribed"
 
@@ -264,10 +264,9 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
     schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
     if estimated is None:
         return {name: pl.DataFrame(schema=schema) for name, schema in schemas.items()}
-    links = pl.concat([estimated.factors, other_log_factors(estimated)], how="diagonal_relaxed")
-    of_links = schemas["season_links"].items()
+    of_links = schemas["season_links"]
     return {
-        "season_links": links.select(pl.col(column).cast(kind) for column, kind in of_links),
+        "season_links": estimated.factors.select(*of_links).cast(pl.Schema(of_links)),
         "retow_choice": retow_choice(estimated),
         "season_steps": estimated.steps,
         "tow_instruments": tow_instruments(estimated),

@@ -40,7 +40,7 @@ class RunCache:
     def means(self, batch: Batch, steps: Steps) -> RunMeans:
         """The means of every run of a batch over its window: coefficients are not in them yet."""
         of_wind = (steps.wind.model, steps.wind.averaging_s)
-        options = (_rule(steps), steps.speed.source, steps.run_point, *of_wind)
+        options = (_rule(steps), steps.run_point, *of_wind)
         return self._of_part(batch, options, lambda of: run_means(of, self._over(of, steps), steps))
 
     def _over(self, batch: Batch, steps: Steps) -> OverWindow:

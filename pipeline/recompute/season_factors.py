@@ -16,7 +16,7 @@ import polars as pl
 from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.blocks.batch import Batch
-from pipeline.method.definition import Calibration, Steps, Wind
+from pipeline.method.definition import Calibration, Steps
 from pipeline.recompute.budget import (
     files_log_sd,
     force_uncertainty,
@@ -26,11 +26,10 @@ from pipeline.recompute.outcome import Outcome, TowFactor
 from pipeline.season_log import (
     SeasonFactors,
     estimate_season_factors,
-    other_log_factors,
 )
 from pipeline.season_log.network import GROUP
 from pipeline.steps.calibration import gps_factor
-from pipeline.steps.speed import log_part
+from pipeline.steps.speed import LOG_OF_TOW
 from pipeline.tables.keys import LINE
 
 FEWEST_OF_TYPE: Final = 5
@@ -43,9 +42,6 @@ LOG_SCATTER: Final = 0.005
 """Standard deviation of ln y from tow to tow where too few are calibrated to show it (inferred)."""
 
 GPS: Final = "gps_per_tow"
-
-OTHER_LOG: Final = {"log1": "log2", "log2": "log1"}
-"""The log beside the one in use; none where their mean is used."""
 
 
 def is_estimated(steps: Steps) -> bool:
@@ -63,13 +59,7 @@ def without_gps(steps: Steps) -> Steps:
 
 
 def without_factor(steps: Steps) -> Steps:
-    """The steps from which log factors are estimated: with the log as it reads, without wind.
-
-    A method that leaves the wind on a season's coefficients would compare water and wind there
-    with water alone elsewhere, and call the difference an error of the log.
-    """
-    if steps.wind.model == "none":
-        steps = steps.model_copy(update={"wind": Wind(model="oblique")})
+    """The steps from which log factors are estimated: with the log as it reads."""
     if not is_estimated(steps):
         return steps
     speed = steps.speed.model_copy(update={"correction": "none"})
@@ -112,14 +102,14 @@ def _tow_rows(outcomes: Sequence[Outcome], ln_factor: Mapping[str, float]) -> pl
 
 @dataclass(frozen=True)
 class Instruments:
-    """What was estimated of the instruments of some tows, matched to each batch once per log.
+    """What was estimated of the instruments of some tows, matched to each batch once.
 
     Attributes:
         rows: of the table `tow_instruments`; None where nothing was estimated.
     """
 
     rows: pl.DataFrame | None = None
-    _known: dict[tuple[tuple[str, ...], str, bool], TowFactor] = field(default_factory=dict)
+    _known: dict[tuple[tuple[str, ...], bool], TowFactor] = field(default_factory=dict)
 
     @classmethod
     def of(cls, estimated: SeasonFactors | None) -> "Instruments":
@@ -128,7 +118,7 @@ class Instruments:
 
     def of_tows(self, batch: Batch, steps: Steps) -> TowFactor:
         """What was estimated of each tow of a batch, as far as its steps ask for it."""
-        key = (batch.key, steps.speed.source, is_estimated(steps))
+        key = (batch.key, is_estimated(steps))
         if key not in self._known:
             self._known[key] = _factor_of_tows(batch, steps, self.rows)
         return self._known[key]
@@ -138,8 +128,7 @@ def _factor_of_tows(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> To
     if rows is None:
         nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
         return TowFactor(nothing, nothing, nothing, one, none, nothing, nothing)
-    season, part, log = log_group(steps)
-    own = batch.tows.select("tow_id", season, part.alias("part"), log).join(
+    own = batch.tows.select("tow_id", "season", *LOG_OF_TOW).join(
         rows, on=["tow_id", "log"], how="left", maintain_order="left"
     )
     # A tow that takes no part in the estimate had the instruments of its season all the same.
@@ -155,36 +144,8 @@ def _factor_of_tows(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> To
 
 
 def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
-    """What was estimated of the instruments of each tow; of the other log, by the ratio of both.
-
-    Returns:
-        `tow_id, log`, and the fields of `TowFactor`.
-    """
-    other = (
-        estimated.tows.filter(~pl.col("anchored"))
-        .select("tow_id", "season", part="other_part", log="other_log")
-        .join(
-            other_log_factors(estimated).select(*GROUP, "factor", "ln_sd", "dof"),
-            on=GROUP,
-            maintain_order="left",
-        )
-    )
-    shared = estimated.instruments.select(
-        "tow_id", "force_factor", "force_zero_n", "bend", "askew_ratio"
-    )
-    return pl.concat(
-        [
-            estimated.instruments.drop("others_ln_ratio"),
-            other.drop("season", "part").join(shared, on="tow_id", maintain_order="left"),
-        ],
-        how="diagonal",
-    ).sort("tow_id", "log")
-
-
-def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
-    """What names the log of a tow: `GROUP`, from the columns of `tows`."""
-    source = steps.speed.source
-    return pl.col("season"), log_part(source), pl.lit(source).alias("log")
+    """What was estimated of each tow: `tow_id, log`, and the fields of `TowFactor`."""
+    return estimated.instruments.drop("others_ln_ratio").sort("tow_id", "log")
 
 
 def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -> pl.DataFrame:
@@ -218,7 +179,6 @@ def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -
         "q_sd": np.hypot(np.where(sure, np.sqrt(errors.q_variance), 1.0), by_log[1] * own_sd),
         "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
         + by_log[0] * by_log[1] * own_sd**2,
-        "other_ln_ratio": _other_ln_ratio(o),
         "own_calibration_ln": np.where(p.calibrated, np.log(p.known_factor * y), np.nan),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
         "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, own_sd), np.nan),
@@ -229,9 +189,8 @@ def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -
         pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
         _boat_type(batch.tows),
         pl.col("tow_date").dt.ordinal_day().cast(pl.Float64).alias("day"),
-        *log_group(steps),
-        pl.lit(OTHER_LOG.get(steps.speed.source)).alias("other_log"),
-        log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
+        "season",
+        *LOG_OF_TOW,
         pl.lit(calibrated).alias("anchored"),
         pl.Series("temperature_known", p.temperature_known),
         pl.Series("water_off_c", p.water_off_c),
@@ -252,21 +211,6 @@ def _water_points(o: Outcome) -> curve.Points:
     """Run points of the water alone: the still-air part does not scale with the log's error."""
     water = o.batch.by_tow(o.cw_kg_m - o.still_air_kg_m)
     return curve.Points(o.points.speed_m_s, water, o.points.used & (water > 0))
-
-
-def _other_ln_ratio(o: Outcome) -> FloatArray:
-    """Mean of ln(log in use / other log) over each tow's runs; NaN where there is none."""
-    p = o.prepared
-    source = o.steps.speed.source
-    if source not in OTHER_LOG:
-        return np.full(o.batch.size, np.nan)
-    mean = {"log1": p.means.log1_m_s, "log2": p.means.log2_m_s}
-    turning = p.used & (mean["log1"] > 0) & (mean["log2"] > 0)
-    turning &= o.batch.measured("log2")[o.batch.tow]
-    turning &= mean["log1"] != mean["log2"]  # a run without its log 2 has log 1 in its place
-    ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
-    ln_ratio = np.log(np.where(turning, ratio, 1.0))
-    return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)
 
 
 def _boat_type(tows: pl.DataFrame) -> pl.Expr:

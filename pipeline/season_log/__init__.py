@@ -11,8 +11,7 @@ Belongs here:
 - the density of a boat's tows (`likelihood`), and the posterior of everything (`posterior`);
 - what it says of tows (`tows`), seasons (`diagnosis`) and factors (`estimate`);
 - what it all rests on (`network`);
-- which boats to tow again (`retow_design`);
-- the factor of the log that is not in use (`other_log`).
+- which boats to tow again (`retow_design`).
 
 Does not belong here: how Cw of a tow is computed, prescribed corrections (never data here), and
 what is done with the factors.
@@ -31,7 +30,6 @@ about the factor at which ln Cw and q hold (`reference_ln`).
 """
 
 from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
-from pipeline.season_log.other_log import other_log_factors
 from pipeline.season_log.retow_design import retow_choice
 
-__all__ = ["SeasonFactors", "estimate_season_factors", "other_log_factors", "retow_choice"]
+__all__ = ["SeasonFactors", "estimate_season_factors", "retow_choice"]

@@ -71,13 +71,13 @@ class SeasonFactors:
             sd = np.where(season >= first, of_era, sd)
         return sd
 
-    def of_season(self, season: int, log: str) -> tuple[float, float, float, str] | None:
+    def of_season(self, season: int) -> tuple[float, float, float, str] | None:
         """Factor, bounds and source of a season; None where not determined.
 
         Where the log was replaced it is the mean over the tows of its determined parts.
         """
         known = self.factors.drop_nulls("factor")
-        mine = (known["season"] == season) & (known["log"] == log)
+        mine = known["season"] == season
         parts = known.filter(mine)
         if parts.height < 2:
             return next(parts.select("factor", "lo", "hi", "source").iter_rows(), None)
@@ -90,9 +90,9 @@ class SeasonFactors:
         sources = [source for source in parts["source"] if source != GPS]
         return factor, lo, hi, sources[0] if sources else GPS
 
-    def is_refused(self, season: int, log: str) -> bool:
+    def is_refused(self, season: int) -> bool:
         """Whether the season has a factor that is not used."""
-        own = self.factors.filter(pl.col("factor").is_null(), season=season, log=log)
+        own = self.factors.filter(pl.col("factor").is_null(), season=season)
         return NOT_SETTLED in own["source"]
 
 

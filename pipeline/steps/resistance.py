@@ -25,9 +25,8 @@ from pipeline.steps.wind import (
 )
 from pipeline.steps.window import END_SECONDS, end_masks
 
-LOG2_AGREES_RATIO: Final = 0.01
-"""Log 2 takes part in a mean of both only if its speed is within 1 % of log 1 (inferred from the
-0.01 m/s of Sleepproef 2017, "Log 1 en 2", which no pair of 2014 met)."""
+ADDED_MASS_RATIO: Final = 0.08
+"""Water that is accelerated with the boat, as a share of its mass (inferred; docs/method.md, 6)."""
 
 WETTED_SURFACE_RATIO: Final = 3.0
 """Wetted surface / sqrt(displaced volume x waterline length). Stated assumption: the Delft formula
@@ -39,13 +38,13 @@ class RunMeans:
     """Means over each run's window in log speed, shape (runs,).
 
     Attributes:
-        speed_m_s: mean speed.
+        speed_m_s: mean speed by log 1.
         gross_kg_m: F / v^2.
         sd_kg_m: standard deviation of the samples' F / v^2.
         inertia_kg_m: part of it that accelerated the boat.
         air: air resistance / v^2 for drag coefficients of 1.
         gps_m_s: mean ground speed, NaN without a fix.
-        log1_m_s, log2_m_s, wind_m_s: mean reading of each log and of the anemometer.
+        log2_m_s, wind_m_s: mean reading of the other log and of the anemometer.
         wind_angle_deg: circular mean of the vane.
     """
 
@@ -55,7 +54,6 @@ class RunMeans:
     inertia_kg_m: FloatArray
     air: AirParts
     gps_m_s: FloatArray
-    log1_m_s: FloatArray
     log2_m_s: FloatArray
     wind_m_s: FloatArray
     wind_angle_deg: FloatArray
@@ -107,32 +105,22 @@ def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
 
     Args:
         sums: of its blocks.
-        steps: speed source, estimator, wind model and inertia of the method.
+        steps: estimator, wind model and inertia of the method.
     """
     whole, windy = sums.whole, sums.with_wind(steps.wind.averaging_s)
-    source = steps.speed.source
-    both_logs = _both_logs_good(batch, whole) if source == "mean" else None
-
-    def by_log(over: WindowSums, quantity: str) -> FloatArray:
-        """A mean by the log in use: of both, log 1 alone where they do not agree."""
-        values = over.mean(f"{source}_{quantity}")
-        if both_logs is None:
-            return values
-        return np.where(both_logs, values, over.mean(f"log1_{quantity}"))
-
-    speed, ratio = by_log(whole, "v"), by_log(whole, "cw")
+    speed, ratio = whole.mean("log1_v"), whole.mean("log1_cw")
     square = _or_one(speed) ** 2
     of_ratios = steps.run_point.estimator == "mean_of_ratios"
 
     def air_term(name: str) -> FloatArray:
-        return by_log(windy, name) if of_ratios else windy.mean(name) / square
+        return windy.mean(f"log1_{name}") if of_ratios else windy.mean(name) / square
 
-    rise = by_log(sums.last, "v") - by_log(sums.first, "v")
+    rise = sums.last.mean("log1_v") - sums.first.mean("log1_v")
     seconds_apart = np.maximum(whole.window.sum(axis=1) - END_SECONDS, 1)
     return RunMeans(
         speed_m_s=speed,
         gross_kg_m=ratio if of_ratios else whole.mean("force") / square,
-        sd_kg_m=np.sqrt(np.maximum(by_log(whole, "cw2") - ratio**2, 0.0)),
+        sd_kg_m=np.sqrt(np.maximum(whole.mean("log1_cw2") - ratio**2, 0.0)),
         inertia_kg_m=_inertia(batch, steps.run_point, rise / seconds_apart, square),
         air=air_parts(
             steps.wind,
@@ -141,19 +129,10 @@ def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
             side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m")),
         ),
         gps_m_s=_gps_m_s(whole),
-        log1_m_s=whole.mean("log1_v"),
         log2_m_s=whole.mean("log2_v"),
         wind_m_s=whole.mean("wind_v"),
         wind_angle_deg=mean_wind_angle_deg(whole),
     )
-
-
-def _both_logs_good(batch: Batch, sums: WindowSums) -> BoolArray:
-    """Runs of tows in which log 2 agrees with log 1 over all runs together."""
-    log1, log2 = (sums.mean(f"{log}_v") for log in ("log1", "log2"))
-    seen = log1 > 0
-    ratio = batch.mean(log2, seen) / _or_one(batch.mean(log1, seen))
-    return ((np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO) & batch.measured("log2"))[batch.tow]
 
 
 def _gps_m_s(whole: WindowSums) -> FloatArray:
@@ -172,7 +151,7 @@ def _inertia(
     """
     if rule.inertia == "none":
         return np.zeros_like(square_m2_s2)
-    mass = (1.0 + rule.added_mass_ratio) * np.nan_to_num(displaced_mass_kg(batch))[batch.tow]
+    mass = (1.0 + ADDED_MASS_RATIO) * np.nan_to_num(displaced_mass_kg(batch))[batch.tow]
     return mass * acceleration_m_s2 / square_m2_s2
 
 

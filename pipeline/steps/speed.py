@@ -6,17 +6,20 @@ by 0.94 is written nowhere: both are options. A percentage in the tow list goes 
 season's prescribed one. How a season's factor is estimated instead is in `pipeline.season_log`.
 """
 
+from typing import Final
+
 import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
 from pipeline.method.definition import Speed
 
+LOG: Final = "log1"
+"""The log in use: "De berekeningen worden gebaseerd op log1" (Sleepproef, R. Pot 2017)."""
 
-def log_part(source: str) -> pl.Expr:
-    """Part of the season by the log that a method uses: a new one begins when it is replaced."""
-    parts = pl.col("log1_part"), pl.col("log2_part")
-    return {"log1": parts[0], "log2": parts[1], "mean": parts[0] + parts[1]}[source].alias("part")
+LOG_OF_TOW: Final = (pl.col("log1_part").alias("part"), pl.lit(LOG).alias("log"))
+"""What names the log of a tow beside its season, from the columns of `tows`: another part begins
+when it is replaced."""
 
 
 def log_factor(

@@ -21,9 +21,6 @@ PER_RUN_BOUNDS: Final = (0.0, 1.0)
 """Between which the old tool searched, run by run (presentation 2015, "Tegenwind en
 omstroom-coefficient")."""
 
-PER_TOW_BOUNDS: Final = (0.3, 0.7)
-"""Between which a value shared by all runs may lie (same source, "Omstroom-coefficient")."""
-
 
 @dataclass(frozen=True)
 class AirParts:
@@ -65,12 +62,9 @@ def air_parts(
         term: gives the mean over the window of a term of `AIR_SUMS` / v^2, shape (runs,).
         front_area_m2, side_area_m2: shape (runs,).
     """
-    nothing = np.zeros(len(front_area_m2))
-    if wind.model == "none":
-        return AirParts(nothing, nothing, nothing)
     front = 0.5 * AIR_DENSITY_KG_M3 * front_area_m2
     if wind.model == "head":
-        return AirParts(front * term("head_ahead"), front * term("head_behind"), nothing)
+        return AirParts(front * term("head_ahead"), front * term("head_behind"), 0.0 * front)
     side = 0.5 * AIR_DENSITY_KG_M3 * side_area_m2
     return AirParts(front * term("front_ahead"), front * term("front_behind"), side * term("side"))
 

@@ -37,6 +37,16 @@ NOT_WITHIN_S: Final = 1e3
 length, so that every window within the limits goes before, and else the one that exceeds them
 least."""
 
+WIND_ENDS_M_S: Final = 1.0
+"""Allowed difference of the wind between the ends (inferred; S2017: "about equal")."""
+
+LEAST_RAMP_M_S: Final = 0.08
+"""Smallest ramp of the speed that is cut (inferred; the text says 0.1 m/s)."""
+
+PEAK_SD: Final = 3.0
+GUST_SD: Final = 2.4
+"""A peak of the force and a gust, in robust standard deviations (inferred)."""
+
 LONGEST_RAMP_S: Final = 12
 RAMP_MARGIN_S: Final = 5
 """Cut beyond the end of the straight line that is fitted to a ramp, whose tail it misses."""
@@ -105,7 +115,7 @@ class Ends:
         """The largest of the three differences in limits of the rule: over 1 exceeds one."""
         speed = np.abs(self.speed_m_s) / rule.speed_drift_m_s
         force = np.abs(self.force_ratio) / rule.force_ends_ratio
-        return np.maximum(np.maximum(speed, force), np.abs(self.wind_m_s) / rule.wind_ends_m_s)
+        return np.maximum(np.maximum(speed, force), np.abs(self.wind_m_s) / WIND_ENDS_M_S)
 
 
 def end_masks(mask: BoolArray) -> tuple[BoolArray, BoolArray]:
@@ -124,7 +134,7 @@ def choose_windows(blocks: RunBlocks, rule: Window) -> Windows:
     present = blocks.inside
     if rule.rule == "all":
         return _windows(blocks, present, ("",) * present.shape[0])
-    judged = _Runs.of(blocks, rule)
+    judged = _Runs.of(blocks)
     start, length = _search(present, judged, rule)
     second = np.arange(blocks.seconds)
     mask = (second >= start[:, None]) & (second < (start + length)[:, None])
@@ -179,7 +189,7 @@ class _Runs:
     force_median: FloatArray
 
     @classmethod
-    def of(cls, blocks: RunBlocks, rule: Window) -> "_Runs":
+    def of(cls, blocks: RunBlocks) -> "_Runs":
         present = blocks.inside
         speed, force, wind = (blocks.block_means(name) for name in ("log1_v", "force", "wind_v"))
         force_median, force_sd = _robust(force, present)
@@ -190,9 +200,9 @@ class _Runs:
             _span(_running_sum(v), END_SECONDS) / END_SECONDS for v in (speed, force, wind)
         )
         return cls(
-            _ramps(speed, present, rule.ramp_m_s),
-            _widened(np.abs(force - force_median) / (rule.peak_sd * force_sd)),
-            _widened(_wind_change(blocks, present) / rule.gust_sd),
+            _ramps(speed, present),
+            _widened(np.abs(force - force_median) / (PEAK_SD * force_sd)),
+            _widened(_wind_change(blocks, present) / GUST_SD),
             _running_sum(centred),
             _running_sum(centred * np.arange(blocks.seconds, dtype=np.float64)),
             speed_ends,
@@ -216,7 +226,7 @@ class _Runs:
         speed = np.abs(_ends_difference(self.speed_ends, size)) / rule.speed_drift_m_s
         force_limit = rule.force_ends_ratio * np.abs(self.force_median)
         force = np.abs(_ends_difference(self.force_ends, size)) / np.maximum(force_limit, 1e-9)
-        wind = np.abs(_ends_difference(self.wind_ends, size)) / rule.wind_ends_m_s
+        wind = np.abs(_ends_difference(self.wind_ends, size)) / WIND_ENDS_M_S
         return np.maximum(drift, speed), np.maximum(force, wind)
 
     def _slope(self, size: int) -> FloatArray:
@@ -251,21 +261,21 @@ def _widened(values: FloatArray) -> FloatArray:
     )
 
 
-def _ramps(speed: FloatArray, present: BoolArray, least_m_s: float) -> BoolArray:
+def _ramps(speed: FloatArray, present: BoolArray) -> BoolArray:
     """Blocks at the start and the end of a run in which the speed still rises or falls."""
     length = present.sum(axis=1)
     second = np.arange(speed.shape[1])
     from_end = np.clip(length[:, None] - 1 - second, 0, None)
     backwards = np.take_along_axis(speed, from_end, axis=1)
-    at_start, at_end = (_ramp_length(v, present, least_m_s)[:, None] for v in (speed, backwards))
+    at_start, at_end = (_ramp_length(v, present)[:, None] for v in (speed, backwards))
     return np.asarray((second < at_start) | (second >= length[:, None] - at_end))
 
 
-def _ramp_length(speed: FloatArray, present: BoolArray, least_m_s: float) -> IntArray:
+def _ramp_length(speed: FloatArray, present: BoolArray) -> IntArray:
     """Length of the ramp with which each run begins, 0 where there is none, in blocks.
 
     Fitted by least squares: a straight line up (or down) to second p, level from there, for every
-    p up to `LONGEST_RAMP_S`; the best p, if the line spans at least `least_m_s`.
+    p up to `LONGEST_RAMP_S`; the best p, if the line spans at least `LEAST_RAMP_M_S`.
     """
     count = np.maximum(present.sum(axis=1), 1)
     mean = np.where(present, speed, 0.0).sum(axis=1) / count
@@ -281,7 +291,7 @@ def _ramp_length(speed: FloatArray, present: BoolArray, least_m_s: float) -> Int
         better = gain > best_gain
         best_gain = np.where(better, gain, best_gain)
         best_length, best_span = np.where(better, p, best_length), np.where(better, span, best_span)
-    return np.where(best_span >= least_m_s, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
+    return np.where(best_span >= LEAST_RAMP_M_S, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
 
 
 def _search(present: BoolArray, judged: _Runs, rule: Window) -> tuple[IntArray, IntArray]:

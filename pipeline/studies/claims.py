@@ -14,37 +14,33 @@ PROMISED: Final = {"1pct": 0.01, "2pct": 0.02}
 """Presentation 2015, "N.B.": within 2 % for the great majority; less than 1 % for all."""
 
 
-def promise(curves: pl.DataFrame, pairs: pl.DataFrame) -> pl.DataFrame:
+def promise(curves: pl.DataFrame, repeat_pairs: pl.DataFrame) -> pl.DataFrame:
     """Is Cw within 2 % for most and within 1 % for all, per method and season?
 
     Judged twice: by half the 95 % interval that a curve itself states, and by what repeat tows
     show: the difference of a tow from the boat's tow before it over root 2, since both are off.
 
     Args:
-        curves: the table of that name, of several methods.
-        pairs: rows of `repeat_pairs`.
+        curves, repeat_pairs: the tables of that name, of several methods.
 
     Returns:
-        Rows of the table `promise`; `outside_2pct` names the tows of which either is beyond 2 %.
+        Rows of the table `promise`.
     """
     key = ["method", "season"]
     stated = curves.drop_nulls("cw_kg_m").select(
         *key, "tow_id", half=(pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log() / 2.0
     )
-    seen = pairs.select(*key, "tow_id", off=pl.col("ln_ratio").abs() / 2.0**0.5)
+    seen = repeat_pairs.select(*key, "tow_id", off=pl.col("ln_ratio").abs() / 2.0**0.5)
     both = stated.join(
         seen.drop("season"), on=["method", "tow_id"], how="left", maintain_order="left"
     )
-    beyond = (pl.col("half") > PROMISED["2pct"]) | (pl.col("off") > PROMISED["2pct"])
     return (
         both.group_by(key, maintain_order=True)
         .agg(
             pl.len().cast(pl.Int32).alias("tows"),
-            pl.col("half").median().alias("half_interval_ratio"),
             *((pl.col("half") < m).mean().alias(f"share_stated_{n}") for n, m in PROMISED.items()),
             pl.col("off").count().cast(pl.Int32).alias("n_pairs"),
             *((pl.col("off") < m).mean().alias(f"share_seen_{n}") for n, m in PROMISED.items()),
-            pl.col("tow_id").filter(beyond).sort().alias("outside_2pct"),
         )
         .sort(key)
     )

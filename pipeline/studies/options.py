@@ -21,7 +21,6 @@ from pipeline.recompute.run_cache import RunCache
 from pipeline.recompute.season_factors import Instruments
 
 ALL_OPTIONS: Final = "all"
-NUMBERS: Final = ("cw_effect_ratio", "b_effect_ratio", "cw_sd_ratio", "b_sd_ratio")
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,7 @@ def option_effects(
     links: pl.DataFrame,
     cache: RunCache,
 ) -> pl.DataFrame:
-    """Spread of Cw and B over all combinations of `CHOICES`, and the effect of each choice.
+    """Spread of Cw over all combinations of `CHOICES`, and the effect of each choice.
 
     Args:
         method: the method whose other options hold.
@@ -72,55 +71,30 @@ def option_effects(
 
     Returns:
         Sorted rows per tow and option that can matter to it: `tow_id`, `option`, `cw_effect_ratio`
-        and `b_effect_ratio` (second value / first value, mean over all combinations of the others;
-        null where no combination gives the number), `cw_sd_ratio` and `b_sd_ratio` (standard
-        deviation over all combinations, relative; only in the row `all`).
+        (second value / first value, mean over all combinations of the others; null where one of
+        them gives no curve) and `cw_sd_ratio` (standard deviation over all combinations, relative;
+        only in the row `all`).
     """
     pairs = batches([method], tows, blocks)
     choices = [c for c in CHOICES if any(c.applies(steps) for _, (steps,) in pairs)]
     corners = list(itertools.product((0, 1), repeat=len(choices)))
     sides = [{c: c.values[s] for c, s in zip(choices, corner, strict=True)} for corner in corners]
     variants = ([(b, chosen(steps, side)) for b, (steps,) in pairs] for side in sides)
-    cw, slope = [], []
-    for outcomes in evaluate_each(variants, cache, Instruments(links)):
-        cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
-        slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
+    ln_cw = np.stack(
+        [
+            np.concatenate([np.log(o.cw_at_declared) for o in outcomes])
+            for outcomes in evaluate_each(variants, cache, Instruments(links))
+        ]
+    )
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
-    ln_cw, ln_b, signs = np.stack(cw), np.stack(slope), 2 * np.array(corners) - 1
-    spread = {"cw_sd_ratio": ln_cw.std(axis=0), "b_sd_ratio": ln_b.std(axis=0)}
-    frames = [_frame(tow_ids, ALL_OPTIONS, spread)]
+    signs = 2 * np.array(corners) - 1
+    frames = [_frame(tow_ids, ALL_OPTIONS, "cw_sd_ratio", ln_cw.std(axis=0))]
     for i, choice in enumerate(choices):
         can = np.concatenate([np.full(b.size, choice.applies(steps)) for b, (steps,) in pairs])
-        effect = {
-            "cw_effect_ratio": np.exp(_effect(ln_cw, signs[:, i])),
-            "b_effect_ratio": np.exp(_effect(ln_b, signs[:, i])),
-        }
-        frames.append(_frame(tow_ids, choice.name, effect).filter(can))
+        effect = np.exp((ln_cw * signs[:, i, None]).mean(axis=0) * 2.0)
+        frames.append(_frame(tow_ids, choice.name, "cw_effect_ratio", effect).filter(can))
     effects = pl.concat(frames, how="diagonal").sort("tow_id", "option")
-    return effects.select("tow_id", "option", *NUMBERS)
-
-
-def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
-    """Adds the uncertainty of each tow, to compare the spread over options with.
-
-    Args:
-        effects: rows of `option_effects`.
-        curves: the method's own rows of the table `curves`.
-
-    Returns:
-        The rows with `cw_interval_ratio` and `b_interval_ratio`, half the width of the 95 %
-        intervals on the logarithm; null where there is no (upper) bound.
-    """
-    half = {
-        f"{name}_interval_ratio": (pl.col(high) / pl.col(low)).log() / 2.0
-        for name, low, high in (
-            ("cw", "cw_lo_kg_m", "cw_hi_kg_m"),
-            ("b", "b_lo_m_s", "b_hi_m_s"),
-        )
-    }
-    return effects.join(
-        curves.select("tow_id", **half), on="tow_id", how="left", maintain_order="left"
-    )
+    return effects.select("tow_id", "option", "cw_effect_ratio", "cw_sd_ratio")
 
 
 def chosen(steps: Steps, sides: Mapping[Choice, object]) -> Steps:
@@ -131,17 +105,7 @@ def chosen(steps: Steps, sides: Mapping[Choice, object]) -> Steps:
     return steps
 
 
-def _ln_b(b_m_s: FloatArray) -> FloatArray:
-    finite = np.isfinite(b_m_s)
-    return np.where(finite, np.log(np.where(finite, b_m_s, 1.0)), np.nan)
-
-
-def _effect(ln_values: FloatArray, sign: FloatArray) -> FloatArray:
-    """Mean difference between the two sides of a choice; NaN unless every combination counts."""
-    return np.asarray((ln_values * sign[:, None]).mean(axis=0) * 2.0)
-
-
-def _frame(tow_ids: pl.Series, option: str, numbers: Mapping[str, FloatArray]) -> pl.DataFrame:
-    return pl.DataFrame({"tow_id": tow_ids, **numbers}).select(
-        "tow_id", pl.lit(option).alias("option"), pl.col(list(numbers)).fill_nan(None)
+def _frame(tow_ids: pl.Series, option: str, name: str, numbers: FloatArray) -> pl.DataFrame:
+    return pl.DataFrame({"tow_id": tow_ids, name: numbers}).select(
+        "tow_id", pl.lit(option).alias("option"), pl.col(name).fill_nan(None)
     )

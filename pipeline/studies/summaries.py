@@ -41,17 +41,18 @@ def season_changes(curves: pl.DataFrame, first: str) -> pl.DataFrame:
     )
 
 
-def season_ladder(steps: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+def season_ladder(correction_steps: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Factor on Cw of each step of a ladder, per season: the geometric mean, so steps multiply.
 
     Args:
-        steps: rows of `correction_steps`; their start (position 0) is left out.
+        correction_steps: their start (position 0) is left out.
         tows: `tow_id, season`.
 
     Returns:
         `from_method, to_method, season, position, step, tows, factor`.
     """
-    ordered = steps.filter(pl.col("position") > 0).sort("tow_id")  # sums in one order: same bytes
+    # In one order, so that sums have the same bytes.
+    ordered = correction_steps.filter(pl.col("position") > 0).sort("tow_id")
     return (
         ordered.join(tows.select("tow_id", "season"), on="tow_id", maintain_order="left")
         .group_by("from_method", "to_method", "season", "position", "step", maintain_order=True)
@@ -59,11 +60,11 @@ def season_ladder(steps: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def option_summary(effects: pl.DataFrame) -> pl.DataFrame:
+def option_summary(option_effects: pl.DataFrame) -> pl.DataFrame:
     """How much each option moves Cw: median and the middle 90 % of tows.
 
     Args:
-        effects: rows of `option_effects`.
+        option_effects: the table of that name.
 
     Returns:
         `method, study, option, tows, median_ratio, lo_ratio, hi_ratio`.
@@ -71,7 +72,7 @@ def option_summary(effects: pl.DataFrame) -> pl.DataFrame:
     ratio = pl.col("cw_effect_ratio")
     lo, hi = (ratio.quantile(q, "linear") for q in MIDDLE)
     return (
-        effects.drop_nulls("cw_effect_ratio")
+        option_effects.drop_nulls("cw_effect_ratio")
         .group_by("method", "study", "option", maintain_order=True)
         .agg(
             pl.len().alias("tows"),

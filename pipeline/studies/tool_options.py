@@ -6,7 +6,7 @@ wrong; this is what they did, not a vote (`options`).
 """
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -119,9 +119,7 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
         Rows as of `options.option_effects`, options named as in `TICKS` and `SPEEDS`; an effect is
         null unless every combination counts.
     """
-    logs = curves.with_columns(
-        cw=pl.col("cw_kg_m").log(), b=pl.col("b_m_s").log(), n=pl.len().over("tow_id", "speed")
-    )
+    logs = curves.with_columns(cw=pl.col("cw_kg_m").log(), n=pl.len().over("tow_id", "speed"))
     whole = logs.filter(pl.col("n") == 2 ** len(TICKS))
     ticks = [_effect(whole, name, pl.col(name)) for name in TICKS]
     pairs = [
@@ -129,25 +127,17 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
         for name, pair in SPEEDS.items()
     ]
     spread = whole.group_by("tow_id", maintain_order=True).agg(
-        pl.lit(ALL_OPTIONS).alias("option"),
-        *_of_both(lambda x: x.std(ddof=0), "sd_ratio"),
+        pl.lit(ALL_OPTIONS).alias("option"), pl.col("cw").std(ddof=0).alias("cw_sd_ratio")
     )
     return pl.concat([*ticks, *pairs, spread], how="diagonal").sort("tow_id", "option")
 
 
 def _effect(logs: pl.DataFrame, name: str, on: pl.Expr) -> pl.DataFrame:
-    """Second value / first value of Cw and B; tows without both are left out."""
+    """Second value / first value of Cw; tows without both are left out."""
+    cw = pl.col("cw")
     means = logs.group_by("tow_id", maintain_order=True).agg(
         pl.lit(name).alias("option"),
-        *_of_both(lambda x: (x.filter(on).mean() - x.filter(~on).mean()).exp(), "effect_ratio"),
+        (cw.filter(on).mean() - cw.filter(~on).mean()).exp().alias("cw_effect_ratio"),
         both=on.any() & (~on).any(),
     )
     return means.filter("both").drop("both")
-
-
-def _of_both(measure: Callable[[pl.Expr], pl.Expr], name: str) -> Iterable[pl.Expr]:
-    """A measure of ln Cw and ln B, null where a combination has none."""
-    for letter in ("cw", "b"):
-        value = pl.col(letter)
-        known = value.null_count() == 0
-        yield pl.when(known).then(measure(value)).alias(f"{letter}_{name}")

@@ -23,9 +23,7 @@ class SeasonLinks(PerPart):
     """What each estimated log factor rests on, per method, season, part of it and log."""
 
     log = column.text("speed source", primary_key=True)
-    source = column.text(
-        "estimated, gps, other log (by the ratio of both), not determined, or not settled"
-    )
+    source = column.text("estimated, gps, not determined, or not settled")
     n_tows = dy.Int32(description="tows of the season", min=0)
     n_links = dy.Int32(description="boats also towed in other seasons", min=0)
     component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)

@@ -55,11 +55,7 @@ class OptionEffects(PerMethod):
     tow_id = column.tow_id(primary_key=True)
     option = column.text("option of a step, or all", primary_key=True)
     cw_effect_ratio = column.number("1", "Cw with the second value / with the first", nullable=True)
-    b_effect_ratio = column.number("1", "the same for B", nullable=True)
     cw_sd_ratio = column.number("1", "spread of Cw over all combinations", nullable=True, min=0)
-    b_sd_ratio = column.number("1", "the same for B", nullable=True, min=0)
-    cw_interval_ratio = column.number("1", "half the 95 % interval of ln Cw", nullable=True, min=0)
-    b_interval_ratio = column.number("1", "the same for B; empty: no bound", nullable=True, min=0)
 
 
 class OptionCurves(PerTow):
@@ -114,9 +110,6 @@ class Promise(PerMethod):
 
     season = dy.Int32(primary_key=True, description="year of the tow list")
     tows = dy.Int32(description="tows with a curve", min=1)
-    half_interval_ratio = column.number(
-        "1", "half the 95 % interval of ln Cw, median", nullable=True
-    )
     share_stated_1pct = column.number("1", "share of tows that state less than 1 %", nullable=True)
     share_stated_2pct = column.number("1", "the same for 2 %", nullable=True)
     n_pairs = dy.Int32(description="of which a repeat of an unaltered boat", min=0)
@@ -124,7 +117,6 @@ class Promise(PerMethod):
         "1", "share of those off by less than 1 % (difference / root 2)", nullable=True
     )
     share_seen_2pct = column.number("1", "the same for 2 %", nullable=True)
-    outside_2pct = column.texts(description="tows beyond 2 %, stated or seen")
 
 
 class PrintReproduction(PerTow):

@@ -51,9 +51,7 @@ COMPONENTS: Final = (
 # Run points
 
 
-def run_point_uncertainty(
-    blocks: RunBlocks, window: BoolArray, season: IntArray, source: str = "log1"
-) -> FloatArray:
+def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: IntArray) -> FloatArray:
     """Relative standard uncertainty of the mean F/v^2 over each run's window.
 
     50,000 samples are not 50,000 measurements: the variance of a mean is that of the noise at
@@ -65,14 +63,13 @@ def run_point_uncertainty(
         blocks: the runs.
         window: blocks that count, shape (runs, seconds); one stretch per run.
         season: season of each run, shape (runs,).
-        source: speed source, as in `pipeline.blocks.run_blocks`.
 
     Returns:
         Shape (runs,); infinite where a window, or all windows of a season, are too short to tell.
     """
     present = window & (blocks.n > 0)
     length = present.sum(axis=1).astype(np.float64)
-    level = np.where(present, blocks.block_means(f"{source}_cw"), 0.0)
+    level = np.where(present, blocks.block_means("log1_cw"), 0.0)
     mean = level.sum(axis=1) / np.maximum(length, 1.0)
     deviation = np.where(present, level / np.where(mean > 0, mean, 1.0)[:, None] - 1.0, 0.0)
     _, group = np.unique(season, return_inverse=True)

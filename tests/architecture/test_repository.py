@@ -59,4 +59,4 @@ def test_the_locks_agree():
 def test_shipped_methods_parse_and_cover_every_season(name):
     method = shipped_method(name)
     assert method.name == name
-    assert [method.for_season(season).speed.source for season in range(2009, 2027)]
+    assert [method.for_season(season).speed.correction for season in range(2009, 2027)]

@@ -133,7 +133,7 @@ def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_r
         lambda bench: spoil(samples_files(bench, 2009)[3]),
         other_weight,
         other_race,
-        lambda _: own.write_text(own.read_text("utf-8").replace('"log1"', '"mean"'), "utf-8"),
+        lambda _: own.write_text(own.read_text("utf-8").replace('"oblique"', '"head"'), "utf-8"),
         new_code,
     ):
         change(bench)

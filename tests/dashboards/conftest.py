@@ -21,7 +21,7 @@ ACCENT = "Tréwes"
 FORMULA = "Foo;=1+1;bar"
 """A formula to a spreadsheet that separates by semicolons, wherever it is in the name."""
 EDITIONS = ("2015-1", "2026-1")
-LINKS = [("log1", 0, "estimated"), ("log1", 1, "estimated"), ("log2", 0, "other log")]
+LINKS = [("log1", 0, "estimated"), ("log1", 1, "estimated")]
 """Log, part and source of season factors: the methods of the small archive estimate none."""
 PUBLISHED_ON = dt.date(2026, 5, 9)
 

@@ -88,7 +88,7 @@ def test_the_ends_of_a_control_are_values_of_the_model(step, option):
 
 
 def test_kinds_of_options():
-    assert CONTROLS["speed", "source"]["values"] == ["log1", "log2", "mean"]
+    assert CONTROLS["wind", "model"]["values"] == ["head", "oblique"]
     ratio = CONTROLS["speed", "correction_ratio"]
     assert (ratio["least"], ratio["most"], ratio["by"], ratio["whole"]) == (
         -0.15, 0.15, pytest.approx(0.001), False,

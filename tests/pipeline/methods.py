@@ -3,10 +3,10 @@
 from pipeline.method.definition import Method, parse_method
 
 PLAIN = {
-    "speed": '{ source = "log1", correction = "none" }',
+    "speed": '{ correction = "none" }',
     "calibration": '{ rule = "none" }',
     "window": '{ rule = "all" }',
-    "wind": '{ model = "none" }',
+    "wind": '{ model = "oblique", ahead = 0.0, behind = 0.0, side = 0.0 }',
     "run_point": '{ estimator = "mean_of_ratios" }',
     "temperature": '{ rule = "none" }',
     "runs": "{ highest_target_ratio = 1.5 }",

@@ -58,20 +58,10 @@ def test_calibration_on_dgps(clean):
     assert error(found, clean).max() < EXACT
 
 
-def test_calibration_on_dgps_of_the_whole_season(clean):
-    worn = Defects(log_season_factor=(1.05, 1.05), gps_noise_m_s=0.05, gps_hold_s=1.0)
-    assert error(cw_of(worn), clean).min() > 0.08
-    per_tow = error(cw_of(worn, calibration='{ rule = "gps_per_tow" }'), clean)
-    per_season = error(cw_of(worn, calibration='{ rule = "gps_per_season" }'), clean)
-    assert np.sqrt(np.mean(per_season**2)) < np.sqrt(np.mean(per_tow**2)) < 0.005
-
-
 @pytest.mark.parametrize(("operation", "factor"), [("multiply", 1.06), ("divide", 1 / (1 - 0.06))])
 def test_prescribed_speed_correction(clean, operation, factor):
     worn = Defects(log_season_factor=(factor, factor))
-    prescribed = (
-        '{ source = "log1", correction = "prescribed", correction_ratio = 0.06, operation = "%s" }'
-    )
+    prescribed = '{ correction = "prescribed", correction_ratio = 0.06, operation = "%s" }'
     other = {"multiply": "divide", "divide": "multiply"}[operation]
     assert error(cw_of(worn), clean).min() > 0.12  # (2 + s) 6 %
     assert error(cw_of(worn, speed=prescribed % operation), clean).max() < EXACT
@@ -80,7 +70,7 @@ def test_prescribed_speed_correction(clean, operation, factor):
 
 def test_a_percentage_of_the_tow_list_goes_before_that_of_the_season(clean):
     worn = measure(world(Defects(log_season_factor=(1.04, 1.04))))
-    speed = '{ source = "log1", correction = "prescribed", correction_ratio = 0.06 }'
+    speed = '{ correction = "prescribed", correction_ratio = 0.06 }'
     tows = worn.tows.with_columns(pl.lit(0.04).alias("speed_correction_ratio"))
     found = recompute(method(speed=speed), tows, worn.blocks).curves["cw_kg_m"].to_numpy()
     assert error(found, clean).max() < EXACT

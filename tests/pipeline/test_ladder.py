@@ -9,7 +9,7 @@ from pipeline.method.definition import parse_method, shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies.ladder import START, STEP_ORDER, ladder
-from pipeline.studies.options import ALL_OPTIONS, CHOICES, beside_uncertainty, option_effects
+from pipeline.studies.options import ALL_OPTIONS, CHOICES, option_effects
 from tests.worlds import measure
 
 OLD, NEW = shipped_method("as-published"), shipped_method("rebased-2015")
@@ -84,13 +84,3 @@ def test_the_spread_covers_all_choices(effects):
     largest = single.group_by("tow_id").agg((pl.col("cw_effect_ratio").log().abs() / 2).max())
     both = largest.join(spread, on="tow_id", suffix="_all")
     assert (both["cw_sd_ratio"] >= both["cw_effect_ratio"] * (1 - 1e-9)).all()
-
-
-def test_the_spread_stands_beside_the_interval(world, effects):
-    curves = recompute(NEW, world.tows, world.blocks).curves
-    row = curves.drop_nulls("cw_lo_kg_m").row(0, named=True)
-    found = beside_uncertainty(effects, curves).filter(
-        (pl.col("tow_id") == row["tow_id"]) & (pl.col("option") == ALL_OPTIONS)
-    )
-    half = np.log(row["cw_hi_kg_m"] / row["cw_lo_kg_m"]) / 2
-    assert found["cw_interval_ratio"][0] == pytest.approx(half)

@@ -194,7 +194,7 @@ def test_seasons_are_batched_by_their_steps_and_not_otherwise(measured):
     """A method that says the same of every season in many overrides gives the same numbers."""
     once = recompute(method(), measured.tows, measured.blocks)
     blocks = "".join(
-        f'[[overrides]]\nrange = "{season}"\nwind = {{ averaging_s = {season - 2009} }}\n'
+        f'[[overrides]]\nrange = "{season}"\nwindow = {{ force_ends_ratio = 0.{season - 2000} }}\n'
         for season in SETTINGS.seasons
     )
     split = parse_method(method_text() + blocks, "split.toml")
@@ -275,18 +275,6 @@ def test_without_gps_nothing_is_calibrated_and_the_tow_says_so(measured):
     assert made.curves.filter(season=2015)["status"].is_in(["accepted", "flagged"]).all()
 
 
-def test_a_log_factor_does_not_depend_on_whether_the_wind_is_taken_off(measured):
-    """Left in, the air that 2010's coefficients hold would pass for a log that reads low."""
-    rebased = shipped_method("rebased")
-    text = 'name = "no-wind"\ntitle = "x"\nextends = "rebased"\n[[overrides]]\nrange = "2010"\n'
-    no_wind = parse_method(text + 'why = "x"\nwind = { model = "none" }\n', "no-wind.toml")
-    with_wind, without = (
-        recompute(m, measured.tows, measured.blocks).log_factors.filter(season=2010)["factor"][0]
-        for m in (rebased, no_wind)
-    )
-    assert without == pytest.approx(with_wind, abs=0.0015)
-
-
 def three_tows_without(*channels):
     """Tows and blocks of one season in which channels were not measured."""
     settings = WorldSettings((2015,), 3, 20, 11)
@@ -297,17 +285,6 @@ def three_tows_without(*channels):
         sums = block_sums(simulate_tow(world, tow)[0].with_columns(absent), settings.rate_hz)
         frames.append(sums.select(pl.lit(tow.tow_id).alias("tow_id"), pl.all()))
     return tows, stack_blocks(pl.concat(frames), run_rows(tows))
-
-
-def test_without_log_2_log_1_is_used_alone():
-    tows, blocks = three_tows_without("log2_m_s")
-    said = tows.with_columns(log2_measured=pl.lit(False))
-    alone, mean = (
-        recompute(method(speed=f'{{ source = "{source}", correction = "none" }}'), said, blocks)
-        for source in ("log1", "mean")
-    )
-    assert alone.curves["cw_kg_m"].null_count() == 0
-    assert mean.curves["cw_kg_m"].to_list() == pytest.approx(alone.curves["cw_kg_m"].to_list())
 
 
 def test_without_gps_a_method_that_calibrates_on_it_has_no_curve():

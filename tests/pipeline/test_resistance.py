@@ -26,24 +26,6 @@ def means(batch: Batch, **steps: str):
     return run_means(batch, sums, method(**steps).for_season(2015))
 
 
-MEAN_OF_LOGS = '{ source = "mean", correction = "none" }'
-LOG2 = '{ source = "log2", correction = "none" }'
-
-
-def test_log_2_takes_part_in_a_mean_only_when_it_agrees_with_log_1():
-    for ratio, expected in ((1.008, 1.004), (0.95, 1.0)):
-        batch = batch_of(Defects(log2_ratio=(ratio, ratio)))
-        found = means(batch, speed=MEAN_OF_LOGS).speed_m_s / means(batch).speed_m_s
-        assert found == pytest.approx(np.full(36, expected), rel=1e-6)
-
-
-def test_log_2_alone_is_taken_as_it_reads():
-    batch = batch_of(Defects(log2_ratio=(0.95, 0.95)))
-    one, two = means(batch), means(batch, speed=LOG2)
-    assert two.speed_m_s == pytest.approx(0.95 * one.speed_m_s, rel=1e-6)
-    assert two.gross_kg_m == pytest.approx(one.gross_kg_m / 0.95**2, rel=1e-6)
-
-
 def test_an_empty_window_gives_zero_not_nan():
     batch = batch_of(Defects(wind_m_s=4.0))
     nothing = np.zeros(batch.blocks.n.shape, dtype=bool)
@@ -77,16 +59,3 @@ def test_the_wetted_surface_is_near_that_of_the_simulated_hulls():
     length, beam = batch.of_tow("waterline_length_m"), batch.of_tow("beam_m")
     assert (surface > 0.5 * length * beam).all()
     assert (surface < 1.5 * length * beam).all()
-
-
-def test_a_mean_of_logs_is_decided_per_tow():
-    measured = measure(
-        WorldSettings((2015,), 6, 20, 5, defects=lambda s: Defects(log2_ratio=(0.97, 1.03)))
-    )
-    batch = Batch.of(measured.tows, measured.blocks)
-    ratio = measured.truth.sort("tow_id")["log2_ratio"].to_numpy()
-    agrees = np.abs(ratio - 1.0) <= 0.01
-    assert 0 < agrees.sum() < len(agrees)
-    found = means(batch, speed=MEAN_OF_LOGS).speed_m_s / means(batch).speed_m_s
-    expected = np.where(agrees, (1.0 + ratio) / 2, 1.0)[batch.tow]
-    assert found == pytest.approx(expected, rel=1e-6)

@@ -15,7 +15,6 @@ from pipeline.errors import BrokenPromiseError
 from pipeline.season_log import (
     estimate_season_factors,
     guard,
-    other_log_factors,
     posterior,
     retow_choice,
 )
@@ -171,8 +170,8 @@ def test_a_factor_over_ten_per_cent_is_not_used():
     found = estimate_season_factors(world.tows)
     of_2009 = found.factors.row(by_predicate=pl.col("season") == 2009, named=True)
     assert (of_2009["source"], of_2009["factor"]) == ("not settled", None)
-    assert found.is_refused(2009, "log1")
-    assert not found.is_refused(2010, "log1")
+    assert found.is_refused(2009)
+    assert not found.is_refused(2010)
     of_tows = found.instruments.join(world.tows.select("tow_id", "season"), on="tow_id")
     assert of_tows.filter(season=2009)["factor"].null_count() == of_tows.filter(season=2009).height
     doubted = found.diagnosis.filter(season=2009, instrument="log_scale")
@@ -358,7 +357,7 @@ def test_parts_of_a_season_have_factors_of_their_own():
     whole = estimate_season_factors(tows)
     found = whole.factors.filter(pl.col("season") == 2011)
     assert found["part"].to_list() == [0, 1]
-    factor, lo, hi, source = whole.of_season(2011, "log1")
+    factor, lo, hi, source = whole.of_season(2011)
     share = (found["n_tows"] / found["n_tows"].sum()).to_numpy()
     assert math.log(factor) == pytest.approx(share @ found["factor"].log().to_numpy())
     assert found["factor"][0] < factor < found["factor"][1]
@@ -487,7 +486,7 @@ def test_a_search_that_does_not_come_to_rest_says_so_of_every_season(limit, monk
     assert found.diagnosis["alarm"].all()
     assert set(found.steps["cause"]) == {"not told"}
     assert set(found.factors["source"]) == {"not settled"}
-    assert found.of_season(2010, found.factors["log"][0])[3] == "not settled"
+    assert found.of_season(2010)[3] == "not settled"
     assert set(found.diagnosis["season"]) == set(tows["season"])
 
 
@@ -516,25 +515,3 @@ def test_the_uncertainty_of_a_factor_is_that_of_the_covariance():
     _, found = estimated(HARD, 1000)
     sd = np.sqrt(np.diag(found.covariance))
     assert sd == pytest.approx(found.factors["ln_sd"].to_numpy())
-
-
-def test_the_other_log_follows_by_the_ratio_of_both():
-    """Planted: log 2 reads 3 % lower than log 1, give or take 0.5 % from tow to tow."""
-    rng = np.random.default_rng(3)
-    tows = simulate(CLEAN, 3).tows.with_columns(
-        pl.lit("log2").alias("other_log"),
-        pl.lit(0).alias("other_part"),
-        pl.lit(0.03).alias("other_ln_ratio"),
-    )
-    noise = pl.Series(0.005 * rng.standard_normal(tows.height))
-    found = estimate_season_factors(
-        tows.with_columns((pl.col("other_ln_ratio") + noise).alias("other_ln_ratio"))
-    )
-    both = found.factors.join(other_log_factors(found), on="season", suffix="_other")
-    assert both.height == 5
-    assert set(both["log_other"]) == {"log2"}
-    ratio = (both["factor_other"] / both["factor"]).log()
-    # Four standard errors of a mean over 24 tows.
-    assert (ratio - 0.03).abs().max() < 4 * 0.005 / math.sqrt(24)
-    assert (both["ln_sd_other"] > both["ln_sd"]).all()
-    assert both["hi_other"].is_between(both["factor_other"], 1.2).all()

@@ -4,8 +4,8 @@ import pytest
 
 from tests.architecture.repository import ROOT
 from warehouse.derive.graph import DATABASE, STEPS
-from warehouse.derive.version import code_version
 from warehouse.store import code
+from warehouse.store.code import code_version
 
 USED = {"samples": code.READING, "blocks": code.ADDING} | {s.name: s.code for s in STEPS}
 """The packages with which everything is computed that a rebuild keeps."""

@@ -12,14 +12,14 @@ from pipeline.tables.schemas import ABOUT, TABLES, ordered
 from tests.conftest import METHODS, Workbench
 from warehouse.derive.inputs import LAKE_ONLY, PER_METHOD
 from warehouse.store.files import file_sha256
-from warehouse.store.package import Origin, Rights, package_is_whole, write_package
+from warehouse.store.package import package_is_whole, write_package
 from warehouse.store.store import write_parquet
 
 ONCE = {*TABLES} - {*PER_METHOD}
 EACH = {*PER_METHOD} - {*LAKE_ONLY}
 NAMES = sorted([*ONCE, *(f"{name}.{method}" for name in EACH for method in METHODS)])
-RIGHTS = Rights("The federation", "https://example.org/licence")
-MEASURED = Origin("1", False, RIGHTS, (("a", "0" * 64),))
+MEASURED = {"simulated": "false", "code_version": "1"}
+OWNED = {"publisher": "The federation", "licence": "https://example.org/licence"}
 
 
 @pytest.fixture(scope="module")
@@ -70,17 +70,17 @@ def test_other_programs_read_what_the_database_holds(built: Workbench, folder: P
     assert duckdb.read_parquet(str(path)).fetchall() == pl.read_parquet(path).rows()
 
 
-def described(folder: Path, origin: Origin = MEASURED) -> dict:
+def described(folder: Path, **about: str) -> dict:
     """The description of a folder with the tables of a database about itself, empty."""
     files = {folder / f"{name}.parquet": schema for name, schema in ABOUT.items()}
     for path, schema in files.items():
         write_parquet(schema.create_empty(), path)
-    write_package(folder, files, origin)
+    write_package(folder, files, MEASURED | about, [("a", "0" * 64)])
     return _read(folder / "datapackage.json")
 
 
 def test_publisher_and_licence_are_those_of_the_archive(tmp_path):
-    package = described(tmp_path)
+    package = described(tmp_path, **OWNED)
     assert package["licenses"] == [{"path": "https://example.org/licence"}]
     assert package["contributors"] == [{"title": "The federation", "roles": ["publisher"]}]
 
@@ -101,6 +101,6 @@ def test_the_lake_holds_the_only_copy(built: Workbench):
 
 
 def test_without_a_declared_licence_none_is_given(tmp_path):
-    package = described(tmp_path, Origin("1", False, Rights(), ()))
+    package = described(tmp_path)
     assert "licenses" not in package
     assert "declares no licence" in package["description"]

@@ -2,7 +2,7 @@
 
 import polars as pl
 
-from pipeline.consistency import eras, repeats, tables, tow_speed
+from pipeline.consistency import repeats, tables, tow_speed
 from pipeline.consistency.components import variance_components
 from pipeline.consistency.observed import Observed, observe, of_trusted
 from pipeline.method.definition import Method
@@ -38,20 +38,15 @@ def slow_tows(
     tows: pl.DataFrame,
     boats: pl.DataFrame,
     listed_races: pl.DataFrame,
-) -> dict[str, pl.DataFrame]:
+) -> pl.DataFrame:
     """Tows that were towed more slowly than the boat is rowed."""
     observed = _observed(curves, run_points, tows, boats)
-    return {"slow_tows": tow_speed.slow_tows(observed, listed_races)}
+    return tow_speed.slow_tows(observed, listed_races)
 
 
-def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> dict[str, pl.DataFrame]:
+def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Boats and crews that were towed again."""
-    return {"repeat_pairs": repeats.repeat_pairs(of_trusted(curves, tows), tows)}
-
-
-def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dict[str, pl.DataFrame]:
-    """What boats that were towed again say of the time between."""
-    return {"era_shifts": eras.era_shifts(repeat_pairs, boats)}
+    return repeats.repeat_pairs(of_trusted(curves, tows), tows)
 
 
 def reproducibility(
@@ -61,10 +56,10 @@ def reproducibility(
     run_points: pl.DataFrame,
     tows: pl.DataFrame,
     boats: pl.DataFrame,
-) -> dict[str, pl.DataFrame]:
+) -> pl.DataFrame:
     """How far a measurement can be repeated."""
     spread = repeats.reproducibility(repeat_pairs, _observed(curves, run_points, tows, boats))
-    return {"reproducibility": repeats.told_apart(spread, variance_components)}
+    return repeats.told_apart(spread, variance_components)
 
 
 def _of(method: Method, frame: pl.DataFrame) -> pl.DataFrame:

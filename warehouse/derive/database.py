@@ -9,10 +9,10 @@ import polars as pl
 from pipeline.tables.declare import dy
 from pipeline.tables.schemas import ABOUT, TABLES, conform, ordered
 from pipeline.tables.views import VIEWS
-from warehouse.derive.version import code_version
+from warehouse.store.code import code_version
 from warehouse.store.database import build_database, left_wal
 from warehouse.store.files import file_sha256
-from warehouse.store.package import Origin, Rights, package_is_whole, write_package
+from warehouse.store.package import package_is_whole, write_package
 from warehouse.store.store import Store, fingerprint
 
 
@@ -32,15 +32,16 @@ MEANINGS: Final = str(
 
 def warehouse_database(
     all_tables: Mapping[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
-) -> dict[str, pl.DataFrame]:
+) -> pl.DataFrame:
     """All tables in one DuckDB file, swapped in whole; then those of the lake are described."""
     tables = {name: ordered(name, all_tables[name]) for name in all_tables}
     tables["about"] = _about(about_archive)
     tables["contents"] = _contents(tables)
     build_database(store.database, tables)
-    write_package(store.table_folder, _files(store, tables), _origin(tables))
+    about = dict(tables["about"].rows())
+    write_package(store.table_folder, _files(store, tables), about, _sources(tables))
     sha256 = pl.lit(file_sha256(store.database)).alias("sha256")
-    return {DATABASE_TABLE: tables["contents"].select("table", "rows", sha256)}
+    return tables["contents"].select("table", "rows", sha256)
 
 
 def _files(store: Store, tables: Mapping[str, pl.DataFrame]) -> dict[Path, type[dy.Schema]]:
@@ -71,20 +72,14 @@ def _about(about_archive: pl.DataFrame) -> pl.DataFrame:
     return pl.DataFrame({"key": list(about), "value": list(about.values())})
 
 
-def _origin(tables: Mapping[str, pl.DataFrame]) -> Origin:
-    """Where the tables come from: the archive's files, and the methods."""
-    about = dict(tables["about"].rows())
+def _sources(tables: Mapping[str, pl.DataFrame]) -> list[tuple[str, str]]:
+    """What the tables come from, each with a hash: the archive's files, and the methods."""
     tows = tables["tows"]
     hashes = sorted({*tows["samples_sha256"], *tows["second_sha256"].drop_nulls()})
     seasons = tows["season"].to_list()
     archive = f"samples of {tows.height} tows, {min(seasons)} to {max(seasons)}"
     methods = tables["methods"].select(pl.format("method {}", "method"), "content_hash").rows()
-    return Origin(
-        version=about["code_version"],
-        simulated=about["simulated"] == "true",
-        rights=Rights(about.get("publisher"), about.get("licence")),
-        sources=((archive, fingerprint(hashes)), *methods),
-    )
+    return [(archive, fingerprint(hashes)), *methods]
 
 
 def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:

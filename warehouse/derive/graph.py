@@ -1,7 +1,13 @@
 """The steps of a build, each declared once, in the order in which they are made."""
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Final
 
+from pipeline.consistency.eras import era_shifts
+from pipeline.method.definition import Method
+from pipeline.studies.claims import promise
+from pipeline.studies.summaries import check_counts, option_summary, quality_counts, season_ladder
 from warehouse.derive import consistency, database, registers, summaries
 from warehouse.derive.archive_tables import archive_tables
 from warehouse.derive.inputs import (
@@ -12,10 +18,11 @@ from warehouse.derive.inputs import (
     TYPE_TABLES,
 )
 from warehouse.derive.method_tables import method_tables
-from warehouse.derive.recordings import recording_tables
 from warehouse.derive.step import Step
 from warehouse.derive.studies import study_tables
+from warehouse.intake import seasons as intake
 from warehouse.store.code import COMPUTING
+from warehouse.store.store import Store
 
 ARCHIVE: Final = Step(
     "archive", "collecting boats, tows and what was set aside", archive_tables, ARCHIVE_TABLES
@@ -54,7 +61,7 @@ STEPS: Final = (
     Step(
         "recordings",
         "averaging what the instruments said",
-        recording_tables,
+        summaries.recording_tables,
         ("trace_seconds", "run_statistics"),
     ),
     *(METHOD, STUDIES, LINES, TYPES),
@@ -63,7 +70,7 @@ STEPS: Final = (
         for compute in (
             consistency.slow_tows,
             consistency.repeat_pairs,
-            consistency.era_shifts,
+            era_shifts,
             consistency.reproducibility,
         )
     ),
@@ -74,11 +81,11 @@ STEPS: Final = (
         for compute in (
             summaries.race_changes,
             summaries.season_changes,
-            summaries.season_ladder,
-            summaries.option_summary,
-            summaries.quality_counts,
-            summaries.check_counts,
-            summaries.promise,
+            season_ladder,
+            option_summary,
+            quality_counts,
+            check_counts,
+            promise,
         )
     ),
     Step(
@@ -87,3 +94,14 @@ STEPS: Final = (
     DATABASE,
 )
 """Every step comes after those whose tables it reads."""
+
+
+def catch_up(store: Store, archive: Path, methods: Sequence[Method], step: Step) -> None:
+    """Makes again what a step reads and what is not there as it should be."""
+    intake.index(store, archive)
+    for season in intake.damaged_seasons(store):
+        intake.read_season(store, archive, season)
+        intake.collect_blocks(store, season)
+    for before in STEPS[: STEPS.index(step)]:
+        for scope in before.stale(store, methods):
+            before.make(scope)

@@ -1,18 +1,24 @@
 """What a rebuild mends by itself: damaged files, tows we fail on, an archive that changed."""
 
+import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final, TypeVar
 
-from pipeline.method.definition import Method
-from warehouse.derive.graph import STEPS
-from warehouse.derive.step import Step
-from warehouse.intake import seasons as intake
 from warehouse.intake.lake import ArchiveChangedError
 from warehouse.store.store import DamagedFileError, Store
-from warehouse.store.unforeseen import FailedTowsError, set_aside
+from warehouse.store.unforeseen import (
+    FailedTowsError,
+    in_short,
+    is_unforeseen,
+    set_aside,
+    traced,
+)
 
 T = TypeVar("T")
+
+LARGEST_SHARE: Final = 0.1
+"""Where more of the tows fail, it is no tow that fails (inferred)."""
 
 ROUNDS: Final = 3
 """How often work begins at most, where the archive changes meanwhile."""
@@ -51,12 +57,49 @@ def mending(store: Store, work: Callable[[], T], again: Callable[[], object]) ->
         is_first = False
 
 
-def catch_up(store: Store, archive: Path, methods: Sequence[Method], step: Step) -> None:
-    """Makes again what a step reads and what is not there as it should be."""
-    intake.index(store, archive)
-    for season in intake.damaged_seasons(store):
-        intake.read_season(store, archive, season)
-        intake.collect_blocks(store, season)
-    for before in STEPS[: STEPS.index(step)]:
-        for scope in before.stale(store, methods):
-            before.make(scope)
+def failed_tows(
+    compute: Callable[[Sequence[str]], object], tows: Sequence[str], error: BaseException
+) -> FailedTowsError | None:
+    """The tows that make a step fail as it did, each by itself; None where it is no tow.
+
+    They are found by halving, as many are computed at once.
+
+    Args:
+        compute: does the work of the step for some tows.
+        tows: all of them.
+        error: with which the step failed.
+    """
+    most = max(1, int(LARGEST_SHARE * len(tows)))
+
+    def failing(chosen: Sequence[str], found: int) -> list[str]:
+        if not chosen or found > most or not _fails(compute, chosen, error):
+            return []
+        if len(chosen) == 1:
+            return list(chosen)
+        half = len(chosen) // 2
+        first = failing(chosen[:half], found)
+        return first + failing(chosen[half:], found + len(first))
+
+    alone = failing(tows, 0) if len(tows) > 1 else []
+    if not 0 < len(alone) <= most:
+        return None
+    return FailedTowsError(tuple(alone), in_short(error), traced(error))
+
+
+def _fails(
+    compute: Callable[[Sequence[str]], object], tows: Sequence[str], as_before: BaseException
+) -> bool:
+    """Whether a step fails in the same place."""
+    try:
+        compute(tows)
+    except BaseException as error:
+        if not is_unforeseen(error):
+            return False
+        return _place(error) == _place(as_before)
+    return False
+
+
+def _place(error: BaseException) -> tuple[type[BaseException], str, str]:
+    """Kind of error, and the module and function in which it arose."""
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    return type(error), last.filename, last.name

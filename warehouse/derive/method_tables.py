@@ -2,7 +2,6 @@
 
 import polars as pl
 
-from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.method.definition import Method
 from pipeline.recompute.facts import with_boats, with_hand_windows
 from pipeline.recompute.recompute import recompute
@@ -22,15 +21,8 @@ def method_tables(
     run_cache: RunCache,
 ) -> dict[str, pl.DataFrame]:
     """Run points, curves, log factors, assessments and members of all tows under one method."""
-    runs = runs_with_blocks(tow_runs, hand_windows, blocks)
+    runs = blocks.of_runs(with_hand_windows(tow_runs, hand_windows))
     made = recompute(method, with_boats(tows, boats), runs, run_cache)
     ruled = as_ruled(made.curves, method.validity)
     members = tow_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
     return {**vars(made), "ensemble": members}
-
-
-def runs_with_blocks(
-    tow_runs: pl.DataFrame, hand_windows: pl.DataFrame, blocks: Blocks
-) -> RunBlocks:
-    """The runs of all sound tows as arrays, with the windows given by hand."""
-    return blocks.of_runs(with_hand_windows(tow_runs, hand_windows))

@@ -19,7 +19,7 @@ from pipeline.tables.keys import SIZES
 from pipeline.tables.register import RegisterChanges
 from pipeline.tables.schemas import conform
 from warehouse.derive.published import history_rows, lineage_rows
-from warehouse.derive.version import code_version
+from warehouse.store.code import code_version
 
 
 def register_tables(
@@ -62,7 +62,7 @@ def due_list(
     listed_races: pl.DataFrame,
     decisions: pl.DataFrame,
     methods: Sequence[Method],
-) -> dict[str, pl.DataFrame]:
+) -> pl.DataFrame:
     """Who is due to be towed, under every method."""
     as_of = reference_day(tows, listed_races)
     parts = []
@@ -70,7 +70,7 @@ def due_list(
         lines = lines_on(method, curves, tows, listed_boats, decisions, as_of)
         rows = due.due_list(lines, boats, listed_races, as_of)
         parts.append(rows.select(pl.lit(method.name).alias("method"), pl.all()))
-    return {"due_list": pl.concat(parts)}
+    return pl.concat(parts)
 
 
 def lines_on(

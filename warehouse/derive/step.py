@@ -18,7 +18,6 @@ from pipeline.recompute.run_cache import RunCache
 from pipeline.tables.frames import dtypes
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.archive_tables import NothingSoundError
-from warehouse.derive.border import failed_tows
 from warehouse.derive.database import database_without_tows
 from warehouse.derive.inputs import (
     ARCHIVE_TABLES,
@@ -28,9 +27,12 @@ from warehouse.derive.inputs import (
     argument,
     state,
 )
+from warehouse.derive.mending import failed_tows
 from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.store import Store, fingerprint
 from warehouse.store.unforeseen import forget, is_unforeseen, note, traced
+
+Made = Mapping[str, pl.DataFrame] | pl.DataFrame
 
 QUARANTINE: Final = "quarantine"
 
@@ -42,7 +44,8 @@ class Step:
     Attributes:
         group: what it is about.
         says: what happens, for people who wait.
-        compute: makes the outputs; its docstring says what they are, its parameters what it reads.
+        compute: makes the outputs, by name, or the only one; its docstring says what they are, its
+            parameters what it reads.
         outputs: names of the tables it makes.
         code: packages with which it computes.
         also: what else the outputs follow from, beside inputs and code.
@@ -51,7 +54,7 @@ class Step:
 
     group: str
     says: str
-    compute: Callable[..., Mapping[str, pl.DataFrame]]
+    compute: Callable[..., Made]
     outputs: tuple[str, ...]
     code: tuple[str, ...] = COMPUTING
     also: str = ""
@@ -157,7 +160,8 @@ class Step:
     def _computed(self, scope: Scope) -> Mapping[str, pl.DataFrame]:
         arguments = {name: argument(scope, name) for name in self.inputs}
         try:
-            return self.compute(**arguments)
+            made = self.compute(**arguments)
+            return {self.outputs[0]: made} if isinstance(made, pl.DataFrame) else made
         finally:
             cache = arguments.get("run_cache")
             if isinstance(cache, RunCache):

@@ -6,14 +6,14 @@ from typing import Final
 import polars as pl
 
 from pipeline.method.definition import Method
+from pipeline.recompute.facts import with_hand_windows
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies.ladder import ladder
-from pipeline.studies.options import beside_uncertainty, option_effects
+from pipeline.studies.options import option_effects
 from pipeline.studies.tool_options import option_curves, tick_effects
 from pipeline.tables.declare import dy
 from pipeline.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
 from warehouse.derive.inputs import Blocks
-from warehouse.derive.method_tables import runs_with_blocks
 
 FIRST_PUBLISHED: Final = "as-published-2014"
 """Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
@@ -42,11 +42,10 @@ def study_tables(
     hand_windows: pl.DataFrame,
     blocks: Blocks,
     tow_instruments: pl.DataFrame,
-    curves: pl.DataFrame,
     run_cache: RunCache,
 ) -> dict[str, pl.DataFrame]:
     """The ladder from the first method to this one, and the studies of its options."""
-    runs = runs_with_blocks(tow_runs, hand_windows, blocks)
+    runs = blocks.of_runs(with_hand_windows(tow_runs, hand_windows))
     links, known = _of(method, tow_instruments), (tows, runs)
     effects, ticked = [], []
     if method.name in TICKED:
@@ -68,7 +67,7 @@ def study_tables(
         "option_effects": _together(
             OptionEffects,
             [
-                beside_uncertainty(frame, _of(method, curves)).with_columns(
+                frame.with_columns(
                     pl.lit(method.name).alias("method"), pl.lit(study).alias("study")
                 )
                 for study, frame in effects

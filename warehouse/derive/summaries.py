@@ -1,4 +1,4 @@
-"""Tables that sum up other tables: per season, per code, and races replayed.
+"""Tables that sum up: recordings per second and run, methods per season, print, and races replayed.
 
 What a page or command says of many tows together is in a table too. The sums are
 `pipeline.studies.summaries`, `pipeline.studies.claims` and `pipeline.register.replay`.
@@ -9,42 +9,31 @@ from typing import Final
 
 import polars as pl
 
+from pipeline.blocks.run_blocks import PLACE
 from pipeline.method.definition import Method
 from pipeline.register import replay
 from pipeline.studies import claims, summaries
 from pipeline.tables.register import RaceChanges
+from warehouse.derive.inputs import Blocks
 
 EDITIONS: Final = ("from_edition", "to_edition")
 
 
-def season_changes(curves: pl.DataFrame, methods: Sequence[Method]) -> dict[str, pl.DataFrame]:
+def recording_tables(tows: pl.DataFrame, blocks: Blocks) -> dict[str, pl.DataFrame]:
+    """The traces of all runs of sound tows, and the tool's figures of each of their channels."""
+    of_all = blocks.columns(
+        *dict.fromkeys(("tow_id", *PLACE, *summaries.SUMS, *claims.CHANNELS.values()))
+    )
+    sound = of_all.join(tows, on="tow_id", how="semi", maintain_order="left")
+    return {
+        "trace_seconds": summaries.second_means(sound),
+        "run_statistics": claims.run_statistics(sound),
+    }
+
+
+def season_changes(curves: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:
     """What each method changes in each season, compared with the first."""
-    return {"season_changes": summaries.season_changes(curves, methods[0].name)}
-
-
-def season_ladder(correction_steps: pl.DataFrame, tows: pl.DataFrame) -> dict[str, pl.DataFrame]:
-    """What each step of a method changes in each season."""
-    return {"season_ladder": summaries.season_ladder(correction_steps, tows)}
-
-
-def option_summary(option_effects: pl.DataFrame) -> dict[str, pl.DataFrame]:
-    """How much each option matters."""
-    return {"option_summary": summaries.option_summary(option_effects)}
-
-
-def quality_counts(curves: pl.DataFrame, run_points: pl.DataFrame) -> dict[str, pl.DataFrame]:
-    """How many curves and run points have each status."""
-    return {"quality_counts": summaries.quality_counts(curves, run_points)}
-
-
-def check_counts(assessments: pl.DataFrame) -> dict[str, pl.DataFrame]:
-    """How often each check found something."""
-    return {"check_counts": summaries.check_counts(assessments)}
-
-
-def promise(curves: pl.DataFrame, repeat_pairs: pl.DataFrame) -> dict[str, pl.DataFrame]:
-    """Whether repeat tows agree as their intervals promise."""
-    return {"promise": claims.promise(curves, repeat_pairs)}
+    return summaries.season_changes(curves, methods[0].name)
 
 
 def print_tables(
@@ -57,7 +46,7 @@ def print_tables(
 
 def race_changes(
     register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
-) -> dict[str, pl.DataFrame]:
+) -> pl.DataFrame:
     """All races in the archive under both editions of every pair that is compared."""
     pairs = register_changes.select(EDITIONS).unique().sort(EDITIONS)
     replayed = {
@@ -72,4 +61,4 @@ def race_changes(
         )
         for old, new in pairs.iter_rows()
     ]
-    return {"race_changes": pl.concat(frames) if frames else RaceChanges.create_empty()}
+    return pl.concat(frames) if frames else RaceChanges.create_empty()

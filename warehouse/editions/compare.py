@@ -29,8 +29,8 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.published import lines_in_time
-from warehouse.derive.version import code_version
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
+from warehouse.store.code import code_version
 from warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
 from warehouse.store.store import Store, archive_root
 

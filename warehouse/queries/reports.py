@@ -117,7 +117,7 @@ WITH own AS (
     SELECT method, season, sum(n_tows) AS n_tows, sum(n_links) AS n_links,
            max(component) AS component, CASE WHEN count(*) = 1 THEN max(influence) END AS influence,
            CASE WHEN count(*) = 1 THEN max(influence_boat) END AS influence_boat
-    FROM season_links WHERE source != 'other log' GROUP BY method, season
+    FROM season_links GROUP BY method, season
 ), step AS (
     SELECT method, season, string_agg(DISTINCT cause, ', ' ORDER BY cause) AS cause
     FROM season_steps GROUP BY method, season
@@ -131,8 +131,7 @@ WHERE f.method = ? ORDER BY f.season
 
 _LOG_PARTS = """
 SELECT season, part, log, source, n_tows, n_links, factor, lo, hi FROM season_links
-WHERE method = ? AND (source = 'other log' OR season IN (
-    SELECT season FROM season_links WHERE part > 0 AND source != 'other log'))
+WHERE method = ? AND season IN (SELECT season FROM season_links WHERE part > 0)
 ORDER BY season, log, part
 """
 

@@ -6,6 +6,7 @@ Words, pages and commands are in none of them; what a method or a list says is i
 
 import hashlib
 from functools import cache
+from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
@@ -29,6 +30,16 @@ def code_hash(*packages: str) -> str:
     for file in sorted(file for package in packages for file in _modules(package)):
         hashed.update(file.relative_to(_ROOT).as_posix().encode() + b"\0" + file.read_bytes())
     return hashed.hexdigest()[:HASH_LENGTH]
+
+
+@cache
+def code_version() -> str:
+    """Version of the package and a hash of what computes a register line from the archive's files.
+
+    The hash needs no git and is equal wherever the same source is installed. Two lines with equal
+    inputs, method and code version are equal.
+    """
+    return f"{metadata.version('herijk')}+{code_hash(*READING, *COMPUTING)}"
 
 
 _ROOT: Final = Path(__file__).parents[2]

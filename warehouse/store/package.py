@@ -7,10 +7,10 @@ sources and hashes. It is written last.
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Final, Self
 
 import polars as pl
 
@@ -55,35 +55,40 @@ class Rights:
         return fields
 
 
-@dataclass(frozen=True)
-class Origin:
-    """Where the tables come from.
-
-    Attributes:
-        version: of the code that made them.
-        simulated: the archive was made by a simulator.
-        rights: of the archive.
-        sources: title and hash of all that they were made from.
-    """
-
-    version: str
-    simulated: bool
-    rights: Rights
-    sources: tuple[tuple[str, str], ...]
-
-
-def write_package(folder: Path, files: "Mapping[Path, type[dy.Schema]]", origin: Origin) -> None:
+def write_package(
+    folder: Path,
+    files: "Mapping[Path, type[dy.Schema]]",
+    about: Mapping[str, str],
+    sources: Iterable[tuple[str, str]],
+) -> None:
     """Describes tables that lie there.
 
     Args:
         folder: holds the files, and their description.
         files: the declared table of each file.
-        origin: where they come from.
+        about: the table of that name, by key.
+        sources: title and hash of all that they were made from.
     """
     resources = [_resource(folder, path, schema) for path, schema in sorted(files.items())]
-    text = json.dumps(_package(resources, origin), indent=1, ensure_ascii=False)
+    rights = Rights(about.get("publisher"), about.get("licence"))
+    said = [_SIMULATED] if about["simulated"] == "true" else []
+    said += [] if rights.licence else [_NO_LICENCE]
+    hashes = "".join(str(resource["hash"]) for resource in resources)
+    package = {
+        "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
+        "name": "herijk",
+        "id": f"urn:sha256:{hashlib.sha256(hashes.encode()).hexdigest()}",
+        "title": "Tow tests, curves and registers of Dutch rowing sloops, recomputed by Herijk",
+        "description": " ".join(
+            [*said, "A file per table or method; SI units, named in each field."]
+        ),
+        "version": about["code_version"],
+        "sources": [{"title": title, "sha256": sha256} for title, sha256 in sources],
+        **rights.described,
+        "resources": resources,
+    }
     with written_beside(folder / DESCRIPTOR) as beside:
-        beside.write_text(text, encoding="utf-8")
+        beside.write_text(json.dumps(package, indent=1, ensure_ascii=False), encoding="utf-8")
 
 
 def package_is_whole(folder: Path) -> bool:
@@ -144,23 +149,3 @@ def _field_type(dtype: pl.DataType) -> str:
         return "integer"
     names = {pl.Float64: "number", pl.String: "string", pl.Boolean: "boolean", pl.Date: "date"}
     return "array" if isinstance(dtype, pl.List) else names[dtype.base_type()]
-
-
-def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
-    """The descriptor; its `id` is a hash of those of all files."""
-    hashes = "".join(resource["hash"] for resource in resources)
-    said = [_SIMULATED] if origin.simulated else []
-    said += [] if origin.rights.licence else [_NO_LICENCE]
-    return {
-        "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
-        "name": "herijk",
-        "id": f"urn:sha256:{hashlib.sha256(hashes.encode()).hexdigest()}",
-        "title": "Tow tests, curves and registers of Dutch rowing sloops, recomputed by Herijk",
-        "description": " ".join(
-            [*said, "A file per table or method; SI units, named in each field."]
-        ),
-        "version": origin.version,
-        "sources": [{"title": title, "sha256": sha256} for title, sha256 in origin.sources],
-        **origin.rights.described,
-        "resources": resources,
-    }
