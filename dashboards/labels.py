@@ -508,7 +508,7 @@ CODES: Final[dict[str, Sentence]] = {
     "printed_rebased": say("printed, re-based in closed form"),
     "as_printed": say("as printed"),
     "window.force_ends_ratio": say("window: force within 5 %, not 10 %"),
-    "speed.operation": say("divide instead of multiply"),
+    "speed.factor": say("divide instead of multiply"),
     "run_point.estimator": say("run point from means"),
     "wind.coefficients": say("air coefficient from archive"),
     "wind.averaging_s": say("wind averaged over 3 s"),

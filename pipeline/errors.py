@@ -6,7 +6,7 @@ says what, where, what was observed, what the limit is and the way out. Exit sta
 command, not here.
 """
 
-from pipeline.words import Sentence, say
+from pipeline.messages import Sentence, say
 
 
 class HerijkError(Exception):

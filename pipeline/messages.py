@@ -37,7 +37,10 @@ class Say(Protocol):
 def _catalogue(language: str) -> NullTranslations:
     if language == "en":
         return NullTranslations()
-    return translation(DOMAIN, CATALOGUES, [language])
+    try:
+        return translation(DOMAIN, CATALOGUES, [language])
+    except FileNotFoundError as error:
+        raise RuntimeError("texts are not compiled yet: run `make env`") from error
 
 
 class _InWords(Formatter):

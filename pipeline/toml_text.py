@@ -4,7 +4,7 @@ import re
 import tomllib
 from typing import TYPE_CHECKING, Final
 
-from pipeline.words import Sentence, say
+from pipeline.messages import Sentence, say
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails

@@ -1,9 +1,7 @@
 """The document of a meeting: what a method would change, for whom, and how uncertain that is."""
 
-import json
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from math import exp, log
+from math import log
 from typing import Any, Final
 
 import polars as pl
@@ -13,6 +11,7 @@ from dashboards.documents import pdf
 from dashboards.speech import Speech, stretched_fatigue
 from pipeline.messages import in_per_cent, pgettext, say
 from pipeline.register.register import draft_name
+from warehouse.editions.compare import causes_of, largest_first
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
@@ -131,7 +130,7 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
     yield _part(
         say("What changes: {method}", method=say(labels.method(method))),
         headlines.changes(lines)(speech),
-        head=[say(labels.column("step")), say("Mean effect on Cw"), say(labels.column("number"))],
+        head=[say(labels.column("step")), say("Median effect on Cw"), say(labels.column("number"))],
         rows=_steps(lines, speech),
     )
     yield _types(lines, speech)
@@ -160,15 +159,15 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
 
 
 def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
-    """The mean effect of each cause over all lines that have it, the largest first."""
-    factors: dict[str, list[float]] = defaultdict(list)
-    for causes in lines["causes"].to_list():
-        for cause in json.loads(causes):
-            factors[cause.get("step", cause["cause"])].append(log(cause["factor"]))
-    means = {name: sum(values) / len(values) for name, values in factors.items()}
+    """What each cause did, as the notice of an edition says it, the largest first."""
+    causes = sorted(causes_of(lines), key=lambda cause: -abs(log(cause.median_factor)))
     return [
-        [speech.say(labels.code(name)), speech.per_cent(exp(means[name])), str(len(factors[name]))]
-        for name in sorted(means, key=lambda name: -abs(means[name]))
+        [
+            speech.say(labels.code(cause.step or cause.cause)),
+            speech.per_cent(cause.median_factor),
+            str(cause.lines),
+        ]
+        for cause in causes
     ]
 
 
@@ -215,7 +214,8 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
 
 def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
     """The boats that change most, up or down."""
-    shown = largest_changes(lines).head(LARGEST)
+    moved = lines.drop_nulls("cw_ratio").filter(change="changed")
+    shown = largest_first(moved).head(LARGEST)
     heads = (
         say("Boat"),
         labels.column("old_cw_kg_m"),
@@ -228,12 +228,6 @@ def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
         head=[*map(speech.unbroken, heads)],
         rows=[_boat(line, speech) for line in shown.to_dicts()],
     )
-
-
-def largest_changes(lines: pl.DataFrame) -> pl.DataFrame:
-    """The lines that change, by the size of the change, whatever its sign."""
-    known = lines.drop_nulls("cw_ratio").filter(change="changed")
-    return known.sort(pl.col("cw_ratio").log().abs(), descending=True, maintain_order=True)
 
 
 def _boat(line: dict[str, Any], speech: Speech) -> list[str]:

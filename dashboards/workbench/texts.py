@@ -81,8 +81,7 @@ TEXTS: Final[dict[str, Sentence]] = {
     "step.assessment": say("Assessment"),
     # Options
     "speed.correction": say("Error of the log"),
-    "speed.correction_ratio": say("Prescribed correction (0.06 is 6 %)"),
-    "speed.operation": say("How the correction works"),
+    "speed.factor": say("Prescribed factor"),
     "calibration.rule": say("GPS factor"),
     "calibration.without_gps": say("Tow without GPS"),
     "window.rule": say("Which part of a run"),
@@ -113,8 +112,6 @@ TEXTS: Final[dict[str, Sentence]] = {
     "choice.prescribed": say("prescribed"),
     "choice.estimated": say("estimated"),
     "choice.no_curve": say("no curve"),
-    "choice.multiply": say("times 1 + p"),
-    "choice.divide": say("divided by 1 - p"),
     "choice.gps_per_tow": say("per tow"),
     "choice.all": pgettext("option", "all"),
     "choice.steady": say("the steady part"),

@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from pipeline.words import say
+from pipeline.messages import say
 
 TOLERANCE: Final = 0.12
 """How far a logarithm that is known exactly may lie from that of an exchange."""

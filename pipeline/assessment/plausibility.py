@@ -30,8 +30,8 @@ from pipeline.assessment.mean_shift import (
 )
 from pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
 from pipeline.blocks.batch import Batch
+from pipeline.messages import say
 from pipeline.tables.keys import LINE
-from pipeline.words import say
 
 LIMIT: Final = 4.5
 """Standard deviations from which a shift is not chance: one in 300,000, as thousands are tried."""

@@ -27,8 +27,8 @@ from pydantic import (
 
 from pipeline.assessment.checks import CODES
 from pipeline.errors import HerijkError, MissingKnowledgeError
+from pipeline.messages import Sentence, say
 from pipeline.toml_text import parse_toml, problem_in_words
-from pipeline.words import Sentence, say
 
 LAST_SEASON: Final = 9999
 """End of a range written as `2015:`, which holds until a later method says otherwise."""
@@ -51,8 +51,7 @@ class Speed(_Options):
     """What is known to be wrong with the speed through the water, which is that of log 1."""
 
     correction: Literal["none", "prescribed", "estimated"]
-    correction_ratio: float = Field(default=0.0, ge=-0.15, le=0.15)
-    operation: Literal["multiply", "divide"] = "multiply"
+    factor: float = Field(default=1.0, ge=0.85, le=1.2)
 
 
 class Calibration(_Options):

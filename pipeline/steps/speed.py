@@ -2,8 +2,8 @@
 
 In 2009-2011 the propeller logs were worn and read low; the correction found in 2013 was up to
 6 % (presentation 2015, "Meten van de sleepsnelheid"). Whether one multiplies by 1.06 or divides
-by 0.94 is written nowhere: both are options. A percentage in the tow list goes before the
-season's prescribed one. How a season's factor is estimated instead is in `pipeline.season_log`.
+by 0.94 is written nowhere: the factor is an option. A percentage in the tow list goes before it.
+How a season's factor is estimated instead is in `pipeline.season_log`.
 """
 
 from typing import Final
@@ -34,13 +34,12 @@ def log_factor(
             shape (tows,). Where it is used, the correction of the tow list does not count.
 
     Returns:
-        Factor of shape (tows,): `1 + ratio` when multiplying, `1 / (1 - ratio)` when dividing.
-        Where an estimate is asked for and there is none, the prescribed factor.
+        Factor of shape (tows,): 1 + the ratio of the tow list, or the prescribed factor. Where an
+        estimate is asked for and there is none, the same.
     """
     if speed.correction == "none":
         return np.ones(len(tow_list_ratio))
-    ratio = np.where(np.isnan(tow_list_ratio), speed.correction_ratio, tow_list_ratio)
-    prescribed = 1.0 + ratio if speed.operation == "multiply" else 1.0 / (1.0 - ratio)
+    prescribed = np.where(np.isnan(tow_list_ratio), speed.factor, 1.0 + tow_list_ratio)
     if speed.correction == "prescribed":
         return np.asarray(prescribed, dtype=np.float64)
     return np.where(np.isnan(estimated_factor), prescribed, estimated_factor)

@@ -37,15 +37,15 @@ class Choice:
         return f"{self.step}.{self.option}"
 
     def applies(self, steps: Steps) -> bool:
-        """Whether it can matter: multiply or divide asks for a percentage to do it with."""
-        return self.name != OPERATION or steps.speed.correction == "prescribed"
+        """Whether it can matter: a prescribed factor, where the log is corrected by it."""
+        return self.name != FACTOR or steps.speed.correction == "prescribed"
 
 
-OPERATION: Final = "speed.operation"
+FACTOR: Final = "speed.factor"
 
 CHOICES: Final = (
     Choice("window", "force_ends_ratio", (0.1, 0.05)),
-    Choice("speed", "operation", ("multiply", "divide")),
+    Choice("speed", "factor", (1.06, 1 / 0.94)),
     Choice("run_point", "estimator", ("mean_of_ratios", "ratio_of_means")),
     Choice("wind", "coefficients", ("fixed", "archive")),
     Choice("wind", "averaging_s", (0, 3)),

@@ -91,9 +91,11 @@ def speeds(steps: Steps) -> Iterator[tuple[str, Steps]]:
     if steps.speed.correction == "estimated":
         yield ESTIMATED, steps
     if steps.speed.correction == "prescribed":
-        operation = Choice("speed", "operation", (MULTIPLY, DIVIDE))
-        for way in operation.values:
-            yield way, chosen(steps, {gps: "none", operation: way})
+        # Multiply by 1 + p, or divide by 1 - p.
+        multiply = steps.speed.factor
+        factor = Choice("speed", "factor", (multiply, 1.0 / (2.0 - multiply)))
+        for way, value in zip((MULTIPLY, DIVIDE), factor.values, strict=True):
+            yield way, chosen(steps, {gps: "none", factor: value})
 
 
 def _curves(outcome: Outcome) -> pl.DataFrame:

@@ -11,6 +11,7 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.races.race import power_per_rower_w
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
+from warehouse.editions.compare import CauseSummary, largest_first
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
@@ -98,8 +99,16 @@ def test_an_expired_certificate_says_so(views, contents, monkeypatch):
 
 
 def test_the_largest_changes_come_first_whatever_their_sign():
-    lines = pl.DataFrame({"cw_ratio": [1.01, 0.9, 1.05, None, 1.2], "change": ["changed"] * 5})
-    assert proposal.largest_changes(lines)["cw_ratio"].to_list() == [1.2, 0.9, 1.05, 1.01]
+    lines = pl.DataFrame({"cw_ratio": [1.01, 0.9, 1.05, 1.2], "fsn_no": [*"abcd"]})
+    assert largest_first(lines)["cw_ratio"].to_list() == [1.2, 0.9, 1.05, 1.01]
+
+
+def test_a_proposal_takes_its_causes_from_where_the_notice_takes_them(views, contents, monkeypatch):
+    told = CauseSummary("method", "temperature", 7, 0.5, 0.4, 0.6)
+    monkeypatch.setattr(proposal, "causes_of", lambda _: [told])
+    proposed(views, [METHODS[1]], EDITIONS[0], "en")
+    rows = next(p["rows"] for p in contents[0]["parts"] if p["title"].startswith("What changes"))
+    assert rows == [["temperature", "\u221250.0\u00a0%", "7"]]
 
 
 def test_a_draft_is_no_certificate(views, contents):

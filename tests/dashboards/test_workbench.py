@@ -89,10 +89,8 @@ def test_the_ends_of_a_control_are_values_of_the_model(step, option):
 
 def test_kinds_of_options():
     assert CONTROLS["wind", "model"]["values"] == ["head", "oblique"]
-    ratio = CONTROLS["speed", "correction_ratio"]
-    assert (ratio["least"], ratio["most"], ratio["by"], ratio["whole"]) == (
-        -0.15, 0.15, pytest.approx(0.001), False,
-    )  # fmt: skip
+    factor = CONTROLS["speed", "factor"]
+    assert (factor["least"], factor["most"], factor["whole"]) == (0.85, 1.2, False)
     assert CONTROLS["window", "speed_drift_m_s"]["least"] == pytest.approx(0.001)
     assert CONTROLS["wind", "averaging_s"]["by"] == 1
     assert CONTROLS["window", "speed_drift_m_s"]["unit"] == "m/s"

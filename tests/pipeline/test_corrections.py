@@ -58,19 +58,17 @@ def test_calibration_on_dgps(clean):
     assert error(found, clean).max() < EXACT
 
 
-@pytest.mark.parametrize(("operation", "factor"), [("multiply", 1.06), ("divide", 1 / (1 - 0.06))])
-def test_prescribed_speed_correction(clean, operation, factor):
-    worn = Defects(log_season_factor=(factor, factor))
-    prescribed = '{ correction = "prescribed", correction_ratio = 0.06, operation = "%s" }'
-    other = {"multiply": "divide", "divide": "multiply"}[operation]
+def test_prescribed_speed_correction(clean):
+    worn = Defects(log_season_factor=(1.06, 1.06))
+    prescribed = '{ correction = "prescribed", factor = %s }'
     assert error(cw_of(worn), clean).min() > 0.12  # (2 + s) 6 %
-    assert error(cw_of(worn, speed=prescribed % operation), clean).max() < EXACT
-    assert error(cw_of(worn, speed=prescribed % other), clean).min() > 0.005
+    assert error(cw_of(worn, speed=prescribed % 1.06), clean).max() < EXACT
+    assert error(cw_of(worn, speed=prescribed % (1 / 0.94)), clean).min() > 0.005
 
 
 def test_a_percentage_of_the_tow_list_goes_before_that_of_the_season(clean):
     worn = measure(world(Defects(log_season_factor=(1.04, 1.04))))
-    speed = '{ correction = "prescribed", correction_ratio = 0.06 }'
+    speed = '{ correction = "prescribed", factor = 1.06 }'
     tows = worn.tows.with_columns(pl.lit(0.04).alias("speed_correction_ratio"))
     found = recompute(method(speed=speed), tows, worn.blocks).curves["cw_kg_m"].to_numpy()
     assert error(found, clean).max() < EXACT

@@ -66,7 +66,7 @@ def effects(world):
 
 
 def test_the_effect_of_a_choice_is_that_of_choosing_it(world, effects):
-    old = effects.filter(option="speed.operation")
+    old = effects.filter(option="speed.factor")
     prescribed = world.tows.filter(season=2010)["tow_id"]
     assert set(old["tow_id"]) == set(prescribed), "of other seasons it is no choice"
     # 1 / 0.94 against 1.06 is 0.36 % of speed, at the elasticities 2 to 5 of Cw.

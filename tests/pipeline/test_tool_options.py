@@ -42,8 +42,8 @@ def test_a_combination_is_the_method_with_those_options(world, curves):
     text = (
         'name = "x"\ntitle = "x"\nextends = "rebased-2015"\n[steps]\n'
         'window = { rule = "all" }\nwind = { coefficients = "per_run", averaging_s = 3 }\n'
-        'speed = { operation = "divide" }\ncurve = { b = "free" }\n'
-        '[[overrides]]\nrange = "2009:2011"\nspeed = { operation = "divide" }\n'
+        'speed = { factor = 1.0638297872340425 }\ncurve = { b = "free" }\n'
+        '[[overrides]]\nrange = "2009:2011"\nspeed = { factor = 1.0638297872340425 }\n'
     )
     own = recompute(parse_method(text, "x.toml"), world.tows, world.blocks).curves
     ticked = {"optimisation": True, "trimming": False, "vane": True, "b_from_length": False}

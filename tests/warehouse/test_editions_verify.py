@@ -35,9 +35,9 @@ def folder(bench, name="2014-1"):
 
 def found(bench, **wanted):
     report = verify(bench.store)
-    return [
-        f for f in report.findings if all(getattr(f, key) == value for key, value in wanted.items())
-    ], report.wrong
+    wanted = wanted.items()
+    findings = [f for f in report.findings if wanted <= vars(f).items()]
+    return findings, report.wrong
 
 
 @pytest.fixture
@@ -103,11 +103,6 @@ def test_a_damaged_description_does_not_stop_the_others(published_copy, content)
     report = verify(published_copy.store)
     assert report.wrong
     assert [e.edition for e in report.editions] == ["2014-2"]
-
-
-def test_a_damaged_table_is_told(published_copy):
-    (folder(published_copy) / "register.parquet").write_bytes(b"PAR1 nothing")
-    assert found(published_copy, edition="2014-1", where="register.parquet")[1]
 
 
 @FILES_ALONE
@@ -354,20 +349,12 @@ def doubled(path):
 
 
 TENTH_LESS = pl.col("cw_kg_m") * 0.9
-LINE = {
-    "valid_until": dt.date(2031, 12, 31),
-    "declared_speed_m_s": 9.9,
-    "weight_kg": 1.0,
-    "waterline_length_m": 99.0,
-    "name": "Andere Naam",
-    "boat_type": "ander",
-    "tow_date": dt.date(2014, 1, 1),
-}
 FORGERIES = {
     "Cw of all lines": lambda path: rewritten(path, "register", cw_kg_m=TENTH_LESS),
     "flags of all lines": lambda path: rewritten(path, "register", flags=pl.lit(["doubted"])),
-    "facts of all lines": lambda path: rewritten(
-        path, "register", **{name: pl.lit(value) for name, value in LINE.items()}
+    "weight of all lines": lambda path: rewritten(path, "register", weight_kg=pl.lit(1.0)),
+    "last day of all lines": lambda path: rewritten(
+        path, "register", valid_until=pl.lit(dt.date(2031, 12, 31))
     ),
     "a line twice": doubled,
     "another version of the code": lambda path: (
@@ -396,21 +383,21 @@ FORGERIES = {
 
 @pytest.mark.parametrize("what", FORGERIES)
 def test_what_is_forged_and_sealed_anew_comes_out_otherwise(published_copy, what):
-    minutes = chain_head(published_copy.store).seal
     path = folder(published_copy, "2014-2")
     FORGERIES[what](path)
     sealed_anew(path)
-    report = verify(published_copy.store)
-    assert report.wrong
-    assert {(f.edition, f.kind, f.wrong) for f in report.findings} == {("2014-2", "differs", True)}
-    assert not verify(published_copy.store, head=report.head).wrong
-    assert verify(published_copy.store, head=minutes).wrong
+    findings = verify(published_copy.store, afresh=False).findings
+    assert {(f.edition, f.kind, f.wrong) for f in findings} == {("2014-2", "differs", True)}
 
 
-def test_all_that_was_forged_in_a_line_is_named(published_copy):
-    FORGERIES["facts of all lines"](folder(published_copy, "2014-2"))
-    findings, _ = found(published_copy, kind="differs", edition="2014-2")
-    assert {name for name in LINE if f"{name} " in findings[0].message} == LINE.keys()
+def test_the_head_decides_whether_an_edition_was_forged(published_copy):
+    minutes = chain_head(published_copy.store).seal
+    path = folder(published_copy, "2014-2")
+    FORGERIES["Cw of all lines"](path)
+    sealed_anew(path)
+    forged = chain_head(published_copy.store).seal
+    wrong = [verify(published_copy.store, False, head).wrong for head in (forged, minutes)]
+    assert wrong == [False, True]
 
 
 def test_forged_inputs_of_an_edition_are_named(published_copy):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final, Literal
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import Sentence, cause_of, say, spoken
+from pipeline.messages import Sentence, cause_of, say, spoken
 from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, traced
 
 Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]

@@ -7,7 +7,7 @@ of it. Everything larger is set aside with `too_large`.
 from typing import Final
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 
 LIST_MAX_BYTES: Final = 20_000_000
 SAMPLES_MAX_BYTES: Final = 250_000_000

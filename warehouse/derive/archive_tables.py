@@ -8,10 +8,10 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import say
 from pipeline.recompute.facts import with_boat_types
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
-from pipeline.words import say
 from warehouse.archive.faults import OF_A_HEADER
 from warehouse.archive.lists.windows import outside_run
 from warehouse.derive.inputs import Blocks

@@ -18,10 +18,10 @@ import polars as pl
 from pipeline.assessment.plausibility import TURNED, Shift, plausibility
 from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
-from pipeline.words import say
 from warehouse.archive.faults import Fault
 
 _SINGLED_OUT: Final = ("tow", "day")

@@ -18,10 +18,10 @@ import scipy
 
 from pipeline.arrays import FloatArray, IntArray
 from pipeline.channels import SECOND_FILE_OFFSET
+from pipeline.messages import say
 from pipeline.tables.frames import frame_of
 from pipeline.tables.keys import LINE
 from pipeline.tables.lake import Faults
-from pipeline.words import say
 from warehouse.archive.faults import Fault
 
 CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")

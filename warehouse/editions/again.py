@@ -12,10 +12,10 @@ import polars as pl
 from pydantic import ValidationError
 
 from pipeline.errors import HerijkError, MissingKnowledgeError
+from pipeline.messages import say
 from pipeline.register.register import LINE
 from pipeline.tables.row import Row
 from pipeline.tables.schemas import TABLES
-from pipeline.words import say
 from warehouse.editions import sheets
 from warehouse.editions.chain import Finding
 from warehouse.editions.contents import contents_of

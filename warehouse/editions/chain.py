@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import duckdb
 
 from pipeline.errors import BrokenPromiseError, HerijkError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.store.database import open_database
 from warehouse.store.editions import Manifest, edition_names, read_manifest
 from warehouse.store.store import Store

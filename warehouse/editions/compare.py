@@ -83,20 +83,11 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     lines = (
         changes.join(side_by_side(old.register, new.register), on=LINE, maintain_order="left")
         .join(names.unique(LINE, keep="first"), on=LINE, how="left", maintain_order="left")
-        .join(
-            old.register.select(*LINE, old_status="status"),
-            on=LINE,
-            how="left",
-            maintain_order="left",
-        )
-        .join(
-            new.register.select(*LINE, new_status="status"),
-            on=LINE,
-            how="left",
-            maintain_order="left",
-        )
         .sort(LINE)
     )
+    for side, edition in (("old", old), ("new", new)):
+        status = edition.register.select(*LINE, pl.col("status").alias(f"{side}_status"))
+        lines = lines.join(status, on=LINE, how="left", maintain_order="left")
     return Comparison(old, new, lines)
 
 
@@ -317,8 +308,6 @@ def report(comparison: Comparison) -> DiffReport:
     moved = compared.filter(pl.col("change") == "changed")
     gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
     loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
-    size = pl.col("cw_ratio").log().abs()
-    by_size = moved.sort(size, "fsn_no", descending=[True, False])
     editions = (comparison.old, comparison.new)
     return DiffReport(
         from_edition=comparison.old.manifest.edition,
@@ -335,8 +324,8 @@ def report(comparison: Comparison) -> DiffReport:
             for edition in editions
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
-        causes=_causes(compared),
-        largest=_rows(by_size.head(LARGEST)),
+        causes=causes_of(compared),
+        largest=_rows(largest_first(moved).head(LARGEST)),
         rows=_rows(lines),
     )
 
@@ -376,8 +365,13 @@ def _median(values: pl.Series) -> float | None:
     return median if isinstance(median, float) else None
 
 
-def _causes(lines: pl.DataFrame) -> list[CauseSummary]:
-    """Per cause and step: the lines it moved, and its factors there."""
+def largest_first(moved: pl.DataFrame) -> pl.DataFrame:
+    """Lines that changed, by the size of the change, whatever its sign."""
+    return moved.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
+
+
+def causes_of(lines: pl.DataFrame) -> list[CauseSummary]:
+    """Per cause and step, the most lines first: the lines it moved, and its factors there."""
     moved = [
         {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
         for text in lines["causes"]

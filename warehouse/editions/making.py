@@ -79,7 +79,8 @@ def recomputed(
     tows, runs = today.values()
     if judged is not None:
         tows = tows.drop(JUDGED, strict=False).join(judged, on="tow_id", maintain_order="left")
-    made = recompute(method, tows, stack_blocks(intake.all_blocks(store), runs))
+    blocks = stack_blocks(intake.all_blocks(store), runs)
+    made = recompute(method, tows, blocks, with_bands=False)
     rule = method.validity
     lines = _with_facts(
         draft_register(made.curves, tows, never_towed, manifest.valid_from, rule, decisions), tows

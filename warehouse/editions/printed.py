@@ -12,10 +12,10 @@ import polars as pl
 
 from pipeline.curve import cw, rebase, s_of_b
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import say
 from pipeline.method.definition import Method
 from pipeline.register.register import LINE, valid_until
 from pipeline.steps.speed import log_factor
-from pipeline.words import say
 from warehouse.archive import Fault, read_published_registers
 from warehouse.editions.inputs import INPUTS_HASH
 from warehouse.store.editions import Edition

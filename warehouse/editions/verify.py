@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pipeline.errors import BrokenPromiseError, HerijkError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive import FileHashes
 from warehouse.archive.files.names import PARTS
 from warehouse.derive.graph import ARCHIVE

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from pipeline.words import DECIMALS, LANGUAGES
+from pipeline.messages import DECIMALS, LANGUAGES
 
 Words: TypeAlias = Mapping[str, tuple[str, str]]
 """Codes in Dutch and English."""

@@ -115,15 +115,14 @@ def reported_path(store: Store) -> Path:
 
 def change_report(store: Store) -> ChangeReport:
     """What changed in the database since the last report."""
-    if is_reported(store):
-        return _nothing()
     return _between(store, _reported_on(store), file_sha256(store.database))
 
 
 @lru_cache(maxsize=1)
-def _between(store: Store, *_: str | None) -> ChangeReport:
+def _between(store: Store, reported_on: str | None, database: str) -> ChangeReport:
     """What changed from one database to another; kept by their hashes, as several ask."""
-    now, was = _tables(store.database), _reported(store)
+    now = _tables(store.database)
+    was = now if reported_on == database else _reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
     return ChangeReport(
         first=was is None,
@@ -134,15 +133,6 @@ def _between(store: Store, *_: str | None) -> ChangeReport:
         factors=_factors(before["log_factors"], now["log_factors"]),
         lines=_lines(before, now),
     )
-
-
-def _nothing() -> ChangeReport:
-    """No changes."""
-    names = ("tows", "methods", "quarantine")
-    what = pl.lit(None, pl.String).alias("what")
-    tows, methods, faults = (TABLES[n].create_empty().with_columns(what) for n in names)
-    factor = TABLES["log_factors"].create_empty()
-    return ChangeReport(False, tows, [], methods, faults, _factors(factor, factor), _no_lines())
 
 
 def is_reported(store: Store) -> bool:
@@ -259,13 +249,10 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 def _lines(was: Tables, now: Tables) -> pl.DataFrame:
     inputs = _input_hashes(was), _input_hashes(now)
     drafts = [_draft_lines(was, now, method, inputs) for method in now["methods"]["method"]]
-    known = [draft for draft in drafts if draft is not None]
-    return pl.concat(known or [_no_lines()], how="diagonal_relaxed")
-
-
-def _no_lines() -> pl.DataFrame:
     unknown = pl.lit(None, pl.Boolean).alias("exceeds_interval")
-    return TABLES["register_changes"].create_empty().with_columns(unknown)
+    none = TABLES["register_changes"].create_empty().with_columns(unknown)
+    known = [draft for draft in drafts if draft is not None]
+    return pl.concat(known or [none], how="diagonal_relaxed")
 
 
 def _draft_lines(was: Tables, now: Tables, method: str, inputs: Inputs) -> pl.DataFrame | None:

@@ -8,10 +8,10 @@ import polars as pl
 
 from pipeline.curve import cw
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import say
 from pipeline.races.power import curve_of_lines
 from pipeline.races.race import power_per_rower_w
 from pipeline.tables.row import Row
-from pipeline.words import say
 from warehouse.queries.answers import log_known
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import no_such_edition

@@ -122,13 +122,16 @@ class Views:
 
     def compared_tows(self) -> pl.DataFrame:
         """Every tow next to its type under every method, with the boat's name."""
-        tows = self._named("compared_tows", "method, tow_id")
-        return tows.with_columns(pl.coalesce("name", "fsn_no"))
+        return self._tows("compared_tows")
 
     def slow_tows(self) -> pl.DataFrame:
         """Tows made with little power or raced off their curve, with the boat's name."""
-        tows = self._named("slow_tows", "method, tow_id")
-        return tows.with_columns(pl.coalesce("name", "fsn_no"))
+        return self._tows("slow_tows")
+
+    def _tows(self, table: str) -> pl.DataFrame:
+        """Rows of a table of tows with the boat's name, or else its number."""
+        named = self._named(table, "method, tow_id")
+        return named.with_columns(pl.coalesce("name", "fsn_no"))
 
     def curve_points_of(self, fsn_no: str) -> pl.DataFrame:
         """The curves of all tows of a boat under every method, with season and crew."""

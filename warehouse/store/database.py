@@ -14,9 +14,9 @@ import polars as pl
 import polars.selectors as cs
 
 from pipeline.errors import MissingKnowledgeError, UnavailableError
+from pipeline.messages import say
 from pipeline.tables.row import Row
 from pipeline.tables.views import VIEWS
-from pipeline.words import say
 from warehouse.store.files import written_beside
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ import polars as pl
 from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import say
 from pipeline.register.register import DECISION_SCHEMA, EXCLUDE, PREFER
-from pipeline.words import say
 from warehouse.store.settings_file import read_settings_file
 
 FILE_NAME: Final = "besluiten.toml"

@@ -24,12 +24,12 @@ from filelock import FileLock
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.messages import say
 from pipeline.method.definition import Method, parse_method
 from pipeline.register.register import with_empty_thwart
 from pipeline.tables.curves import Curves
 from pipeline.tables.declare import dy
 from pipeline.tables.register import Register
-from pipeline.words import say
 from warehouse.store.files import TEMPORARY_PREFIX, sync
 from warehouse.store.store import Store
 

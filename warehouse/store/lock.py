@@ -18,7 +18,7 @@ from typing import Final
 from filelock import FileLock, Timeout
 
 from pipeline.errors import UnavailableError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.store.files import TEMPORARY_PREFIX
 
 LOCK_FILE: Final = "rebuild.lock"

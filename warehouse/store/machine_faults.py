@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from pipeline.errors import HerijkError, UnavailableError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.store.files import WINDOWS
 
 _FULL: Final = say(

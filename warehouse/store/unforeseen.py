@@ -16,10 +16,10 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import BrokenPromiseError, HerijkError
+from pipeline.messages import Sentence, cause_of, say, spoken
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import FailedTows
 from pipeline.tables.row import Row
-from pipeline.words import Sentence, cause_of, say, spoken
 from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.files import written_beside
 from warehouse.store.machine_faults import is_machine_fault

@@ -8,8 +8,8 @@ import polars as pl
 
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
+from pipeline.messages import Sentence, innermost, say
 from pipeline.tables.row import Row
-from pipeline.words import Sentence, innermost, say
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, list_sample_files, path_inside
 from warehouse.archive.files.names import PARTS, as_one_run, kind_of

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from pipeline.words import Sentence, innermost
+from pipeline.messages import Sentence, innermost
 from warehouse.archive.faults import Fault
 from warehouse.archive.files.names import PARTS
 from warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from pipeline.messages import innermost, spoken
 from pipeline.tables.row import Row
-from pipeline.words import innermost, spoken
 from warehouse.archive.check.check import Cause, Checked
 
 SHOWN: Final = 3

@@ -7,7 +7,7 @@ from typing import IO, Final
 import pyarrow as pa  # type: ignore[import-untyped]
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.files.names import COMPRESSION, TEXT_SUFFIXES, kind_of
 from warehouse.archive.limits import MOST_ROWS, too_many_rows
 

@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import DefectiveFileError
 from warehouse.archive.files.list_kinds import LIST_KINDS, ListKind
 from warehouse.archive.files.names import (

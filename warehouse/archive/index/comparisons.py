@@ -8,9 +8,9 @@ from itertools import chain
 from typing import TypeVar
 
 from pipeline.errors import DefectiveInputError
+from pipeline.messages import say
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedTows
-from pipeline.words import say
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.index.entry import Entry
 from warehouse.archive.lists import tows as tow_list

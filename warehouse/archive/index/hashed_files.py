@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 from pipeline.errors import DefectiveInputError
+from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedFiles
-from pipeline.words import say
 from warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, list_files
 from warehouse.archive.files.hashes import hash_of_parts

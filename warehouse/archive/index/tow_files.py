@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, outside_archive
 from warehouse.archive.files.names import PARTS, SAMPLES, as_one_run, match_key

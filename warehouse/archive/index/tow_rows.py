@@ -4,7 +4,7 @@ import datetime as dt
 from pathlib import Path
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import list_files
 from warehouse.archive.files.list_kinds import TOWS

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import Fault
 from warehouse.archive.files.finding import (
     list_files,

@@ -8,10 +8,10 @@ from typing import Final
 
 import polars as pl
 
+from pipeline.messages import say
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedBoats
 from pipeline.tables.row import Row
-from pipeline.words import say
 from warehouse.archive.faults import Fault, fault_from, place
 from warehouse.archive.files.finding import list_files
 from warehouse.archive.files.list_kinds import BOATS

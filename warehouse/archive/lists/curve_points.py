@@ -6,9 +6,9 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import DefectiveInputError
+from pipeline.messages import say
 from pipeline.tables import column
 from pipeline.tables.declare import dy
-from pipeline.words import say
 from warehouse.archive.sheets.reading import read_rows
 from warehouse.archive.sheets.row import ListRow
 from warehouse.archive.spelling.columns import Column

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import polars as pl
 
+from pipeline.messages import say
 from pipeline.tables.row import Row
-from pipeline.words import say
 from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import LAMPS
 from warehouse.archive.lists.windows import check_order

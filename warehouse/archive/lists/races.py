@@ -6,10 +6,10 @@ from typing import Final
 
 import polars as pl
 
+from pipeline.messages import say
 from pipeline.tables.bases import TowFacts
 from pipeline.tables.frames import limits
 from pipeline.tables.row import Row
-from pipeline.words import say
 from warehouse.archive.faults import Fault, at_line
 from warehouse.archive.files.list_kinds import RACES
 from warehouse.archive.profile.reading import read_profiles

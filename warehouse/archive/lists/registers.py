@@ -6,9 +6,9 @@ from typing import Final
 
 import polars as pl
 
+from pipeline.messages import say
 from pipeline.register.register import NO_EMPTY_THWART
 from pipeline.tables.row import Row
-from pipeline.words import say
 from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import REGISTERS
 from warehouse.archive.profile.reading import read_profiles

@@ -11,8 +11,8 @@ from typing import Final
 
 from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
+from pipeline.messages import say
 from pipeline.tables.row import Row
-from pipeline.words import say
 from warehouse.archive.files.list_kinds import TOWS
 from warehouse.archive.files.names import PARTS
 from warehouse.archive.profile.plan import Plan

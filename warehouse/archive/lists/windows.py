@@ -10,8 +10,8 @@ from pathlib import Path
 
 import polars as pl
 
+from pipeline.messages import say
 from pipeline.tables.row import Row
-from pipeline.words import say
 from warehouse.archive.faults import Fault, at_line
 from warehouse.archive.files.list_kinds import WINDOWS
 from warehouse.archive.sheets.reading import read_lists

@@ -9,7 +9,7 @@ import scipy
 from numpy.typing import NDArray
 
 from pipeline.arrays import BoolArray
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import Fault, Lost
 from warehouse.archive.plausibility.run import (
     COLUMN_OF,

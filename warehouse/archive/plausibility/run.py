@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.arrays import BoolArray
 from pipeline.channels import SECOND_FILE_OFFSET
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import Fault, Lost
 from warehouse.archive.samples.frame import OUTPUT_NAMES
 

@@ -8,8 +8,8 @@ import numpy as np
 import polars as pl
 
 from pipeline.channels import SECOND_FILE_OFFSET
+from pipeline.messages import say
 from pipeline.tables.row import Row
-from pipeline.words import say
 from warehouse.archive.faults import Fault, Lost
 from warehouse.archive.plausibility.run import (
     CHANNELS,

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import DefectiveFileError, Fault
 from warehouse.archive.plausibility.run import (
     COLUMN_OF,

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrays import BoolArray
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import Fault
 from warehouse.archive.plausibility.run import (
     COLUMN_OF,

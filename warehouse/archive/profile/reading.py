@@ -6,8 +6,8 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from pipeline.errors import DefectiveInputError, MissingKnowledgeError
+from pipeline.messages import Sentence, say
 from pipeline.toml_text import decoded, parse_toml, problem_in_words
-from pipeline.words import Sentence, say
 from warehouse.archive.files.finding import path_inside
 from warehouse.archive.files.names import PROFILE_FILE
 from warehouse.archive.profile.definition import Profiles

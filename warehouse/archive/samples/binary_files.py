@@ -9,7 +9,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.files.contents import not_whole, too_large
 from warehouse.archive.files.names import kind_of
 from warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows

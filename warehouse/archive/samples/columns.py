@@ -6,7 +6,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.spelling.columns import FoundColumn, unknown_headers
 from warehouse.archive.spelling.headers import split_header

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.channels import MOST_RUNS, SAMPLE_SCHEMA
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.faults import at_line
 
 OUTPUT_NAMES: Final = {

@@ -13,7 +13,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.files.contents import not_whole, too_large
 from warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
 

@@ -14,7 +14,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.samples.columns import check_nothing_misspelt, seconds_of_clock, to_si
 from warehouse.archive.samples.labview import is_labview, labview_as_table

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import polars as pl
 
+from pipeline.messages import Sentence, say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import limits
 from pipeline.tables.row import Row
-from pipeline.words import Sentence, say
 
 
 def misfits(table: type[dy.Schema], frame: pl.DataFrame) -> Iterator[tuple[Row, Sentence]]:

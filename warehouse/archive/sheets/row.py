@@ -11,9 +11,9 @@ import polars as pl
 
 from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
+from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import column_of, limits
-from pipeline.words import say
 from warehouse.archive.faults import at_line
 from warehouse.archive.spelling.columns import Column, FoundColumn
 from warehouse.archive.spelling.dates import AmbiguousDateError, parse_date

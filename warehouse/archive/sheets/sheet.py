@@ -13,7 +13,7 @@ from typing import Any, Final
 from zipfile import BadZipFile
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.files.names import SPREADSHEETS
 from warehouse.archive.limits import check_extent
 from warehouse.archive.sheets.extent import check_workbook

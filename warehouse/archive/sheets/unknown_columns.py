@@ -9,8 +9,8 @@ from functools import partial
 from typing import Final
 
 from pipeline.errors import DefectiveInputError
+from pipeline.messages import say
 from pipeline.tables.declare import dy
-from pipeline.words import say
 from warehouse.archive.sheets.cell_contents import FITS, can_stand
 from warehouse.archive.sheets.sheet import Sheet
 from warehouse.archive.spelling.columns import Column

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Final
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.spelling.headers import split_header
 from warehouse.archive.spelling.text import (
     fold,

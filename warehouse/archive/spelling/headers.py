@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.spelling.text import fold
 from warehouse.archive.spelling.units import find_scale, is_any_unit, is_unit
 

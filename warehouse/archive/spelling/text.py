@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Final
 
 from pipeline.errors import DefectiveInputError
-from pipeline.words import say
+from pipeline.messages import say
 from warehouse.archive.limits import check_header
 
 DELIMITERS: Final = (";", "\t", ",", "|")
