@@ -15,7 +15,7 @@ from herijk.simulate import (
     simulate_world,
     true_cw_kg_m,
 )
-from pipeline.blocks.run_blocks import SPEED_SOURCES, RunBlocks, stack_blocks
+from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import (
     BACK,
@@ -80,10 +80,7 @@ def nearest_hyperbola(hull, declared_speed_m_s, temperature_c, air):
 
 def with_force_error(world: Measured, season: int, ratio: float) -> Measured:
     """The same world with a load cell that reads so many times too much in one season."""
-    power = {"force": 1}
-    power |= {
-        f"{source}_{name}": n for source in SPEED_SOURCES for name, n in (("cw", 1), ("cw2", 2))
-    }
+    power = {"force": 1, "log1_cw": 1, "log1_cw2": 2}
     mine = world.blocks.runs.join(
         world.tows.select("tow_id", "season"), on="tow_id", maintain_order="left"
     )

@@ -21,7 +21,7 @@ import polars as pl
 
 from benchmarks.accuracy.score import score, table
 from benchmarks.accuracy.worlds import FIRST_SEED, recomputed, simulated
-from pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES
+from pipeline.blocks.run_blocks import AIR_SUMS
 from tests.worlds import Measured
 
 CLEAN = "clean"
@@ -47,7 +47,7 @@ def reading(
     sums = {}
     for name, values in world.blocks.sums.items():
         source, _, quantity = name.partition("_")
-        if source in SPEED_SOURCES:
+        if source in ("log1", "log2"):
             powers = POWERS.get(quantity, (0, -2, 2))
         else:
             air = 2 if name in AIR_SUMS else int(name in ("wind_v", "wind_x", "wind_y"))

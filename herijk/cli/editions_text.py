@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 from dashboards.labels import code_in_words
 from herijk.cli.text import SIMULATED, boat, decimals, page, table, window
-from pipeline.messages import LANGUAGE, headings, in_per_cent, say, tell
+from pipeline.messages import LANGUAGE, headings, in_per_cent, ngettext, say, tell
 from pipeline.tables.row import Row
 from warehouse.editions.words import CHANGES, CREWS, STATUSES, Language
 
@@ -354,7 +354,7 @@ def _verdict(findings: list["Finding"]) -> str:
             wrong,
         )
     if wrong:
-        return tell("{} {} wrong.", wrong, tell("thing is") if wrong == 1 else tell("things are"))
+        return tell(ngettext("{n} thing is wrong.", "{n} things are wrong.", wrong))
     otherwise = sum(f.kind == "differs" for f in findings)
     if otherwise:
         return tell(

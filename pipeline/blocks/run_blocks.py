@@ -3,18 +3,18 @@
 Every formula of every method is linear in a few sums over samples, so a tow's samples are read
 once and added up per second (decision 1). Means over any window that starts on a second are
 then exactly those over the samples. What belongs here: which sums there are and how they are
-stacked. What does not: making them (`pipeline.blocks.sums`), nor any choice of a method (which log,
-which window, which coefficient).
+stacked. What does not: making them (`pipeline.blocks.sums`), nor any choice of a method (which
+window, which coefficient).
 
-The sums of one block, over its `n` samples, with F the tow force, v a speed source
-(`log1`, `log2`, or `mean`, the mean of both), w and a the apparent wind:
+The sums of one block, over its `n` samples, with F the tow force, v the speed by log 1, and w and a
+the apparent wind:
 
 - `force`: F [N]
-- `<source>_v`, `<source>_inv_v2`: v, 1/v^2
-- `<source>_cw`, `<source>_cw2`: F/v^2 [kg/m] and its square
+- `log1_v`, `log1_inv_v2`: v, 1/v^2; `log2_v`: the speed by log 2
+- `log1_cw`, `log1_cw2`: F/v^2 [kg/m] and its square
 - `<air>`: the terms of `pipeline.steps.wind` [m2/s2]: `head` and `front`, each for wind from
   `ahead` and from `behind`, and `side`
-- `<source>_<air>`: the same divided by v^2
+- `log1_<air>`: the same divided by v^2
 - `wind_v`: w; `wind_cos`, `wind_sin`: cos a, sin a; `wind_x`, `wind_y`: w cos a, w sin a
 - `gps`, `gps_n`: ground speed, and how many samples have one
 """
@@ -30,11 +30,11 @@ import polars as pl
 from pipeline.arrays import BoolArray, FloatArray, OnDemand
 from pipeline.errors import BrokenPromiseError
 
-SPEED_SOURCES: Final = ("log1", "log2", "mean")
 AIR_SUMS: Final = ("head_ahead", "head_behind", "front_ahead", "front_behind", "side")
 SUM_NAMES: Final = (
     "force",
-    *(f"{s}_{q}" for s in SPEED_SOURCES for q in ("v", "inv_v2", "cw", "cw2", *AIR_SUMS)),
+    *(f"log1_{quantity}" for quantity in ("v", "inv_v2", "cw", "cw2", *AIR_SUMS)),
+    "log2_v",
     *AIR_SUMS,
     *("wind_v", "wind_cos", "wind_sin", "wind_x", "wind_y"),
     *("gps", "gps_n"),

@@ -216,22 +216,21 @@ def _add_up(
     for block in range(len(ends)):
         start, end = end, ends[block]
         f, w = force[start:end].astype(np.float64), wind[start:end].astype(np.float64)
-        v1, v2 = log1[start:end].astype(np.float64), log2[start:end].astype(np.float64)
+        v, v2 = log1[start:end].astype(np.float64), log2[start:end].astype(np.float64)
         cos, sin = _cos_sin(angle_deg[start:end].astype(np.float64))
         along = w * cos
         air = _air(along, cos, sin)
+        inverse = 1.0 / (v * v)
+        cw = f * inverse
         totals[0, block] = _total(f)
-        row = 1
-        for v in (v1, v2, 0.5 * (v1 + v2)):
-            inverse = 1.0 / (v * v)
-            cw = f * inverse
-            totals[row, block] = _total(v)
-            totals[row + 1, block] = _total(inverse)
-            totals[row + 2, block] = _total(cw)
-            totals[row + 3, block] = _dot(cw, cw)
-            for k in range(5):
-                totals[row + 4 + k, block] = _dot(air[k], inverse)
-            row += 9
+        totals[1, block] = _total(v)
+        totals[2, block] = _total(inverse)
+        totals[3, block] = _total(cw)
+        totals[4, block] = _dot(cw, cw)
+        for k in range(5):
+            totals[5 + k, block] = _dot(air[k], inverse)
+        totals[10, block] = _total(v2)
+        row = 11
         for values in (*air, w, cos, sin, along, w * sin):
             totals[row, block] = _total(values)
             row += 1

@@ -61,12 +61,10 @@ def quantities(row: dict[str, float]) -> dict[str, float]:
         "gps_n": float(gps is not None),
         **air,
     }
-    logs = row["log1_m_s"], row["log2_m_s"]
-    for source, v in (("log1", logs[0]), ("log2", logs[1]), ("mean", sum(logs) / 2)):
-        found |= {f"{source}_v": v, f"{source}_inv_v2": v**-2}
-        found |= {f"{source}_cw": force / v**2, f"{source}_cw2": (force / v**2) ** 2}
-        found |= {f"{source}_{name}": value / v**2 for name, value in air.items()}
-    return found
+    v = row["log1_m_s"]
+    found |= {"log1_v": v, "log1_inv_v2": v**-2, "log2_v": row["log2_m_s"]}
+    found |= {"log1_cw": force / v**2, "log1_cw2": (force / v**2) ** 2}
+    return found | {f"log1_{name}": value / v**2 for name, value in air.items()}
 
 
 def stacked(samples: pl.DataFrame, rate_hz: float):

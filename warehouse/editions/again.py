@@ -5,8 +5,9 @@ head of the chain knows (see `verify`).
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 import polars as pl
 from pydantic import ValidationError
@@ -44,32 +45,43 @@ MOST_CELLS: Final = 20
 """Cells of a sheet that are named one by one."""
 
 
-class Counts(NamedTuple):
-    """Lines of an edition, those made again and those of them that came out equal."""
+@dataclass(frozen=True)
+class CheckedEdition:
+    """An edition that was checked.
 
-    lines: int | None = None
-    made_again: int | None = None
-    equal: int | None = None
+    Attributes:
+        edition: its name.
+        kind: `recomputed` or `as_printed`.
+        lines: its lines; with the next two None where it cannot be read.
+        made_again: how many of them were made again.
+        equal: how many of those came out equal.
+    """
+
+    edition: str
+    kind: str
+    lines: int | None
+    made_again: int | None
+    equal: int | None
 
 
-def differing(store: Store, name: str) -> tuple[Counts, list[Finding]]:
+def differing(store: Store, checked: CheckedEdition) -> tuple[CheckedEdition, list[Finding]]:
     """Makes an edition again: how many lines it has and come out equal, and what does not.
 
     Args:
         store: the editions, and the archive as tables of today.
-        name: the edition.
+        checked: which, not counted yet.
     """
+    name = checked.edition
     try:
         edition = read_edition(store, name)
     except MissingKnowledgeError as error:
-        message = say("it was made by other code: {}", str(error).splitlines()[0])
-        return Counts(), [Finding(name, "differs", METHOD, message)]
+        return checked, [_by_other_code(name, str(error).splitlines()[0])]
     except CANNOT as error:
-        return Counts(), [_not_made(name, error)]
+        return checked, [_not_made(name, error)]
     if edition.method is not None and edition.method.content_hash != edition.manifest.method_hash:
-        gone = say("its method has options that there are no longer")
-        message = say("it was made by other code: {}", gone)
-        return Counts(), [Finding(name, "differs", METHOD, message)]
+        return checked, [
+            _by_other_code(name, say("its method has options that there are no longer"))
+        ]
     height = edition.register.height
     try:
         again = made_again(store, edition)
@@ -77,8 +89,13 @@ def differing(store: Store, name: str) -> tuple[Counts, list[Finding]]:
         lines = list(_lines(edition, again))
         others = [] if inputs or lines else [*_tables(edition, again), *_files(store, edition)]
     except CANNOT as error:
-        return Counts(height, 0, 0), [_not_made(name, error)]
-    return Counts(height, height, height - len(lines)), [*inputs, *lines, *others]
+        return replace(checked, lines=height, made_again=0, equal=0), [_not_made(name, error)]
+    counted = replace(checked, lines=height, made_again=height, equal=height - len(lines))
+    return counted, [*inputs, *lines, *others]
+
+
+def _by_other_code(name: str, reason: str) -> Finding:
+    return Finding(name, "differs", METHOD, say("it was made by other code: {}", reason))
 
 
 def _not_made(name: str, error: Exception) -> Finding:
@@ -112,16 +129,15 @@ def _inputs(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
 def _lines(edition: Edition, again: Edition) -> Iterator[Finding]:
     """Lines of the register that come out otherwise."""
     why = say("either the code changed since, or the edition did")
-    if "tows" in edition.tables:
-        same = same_tows(edition.tables, again.tables)
-        if len(same) < edition.tables["tows"].height:
-            why = say("tows that went into it changed")
+    was, now = edition.tables, again.tables
+    if "tows" in was and len(same_tows(was, now)) < was["tows"].height:
+        why = say("tows that went into it changed")
     for one, other, unequal in _differences(edition.register, again.register, LINE):
         if one is None:
             message = say("made again, there is a line that the edition has not: {}", why)
         else:
-            now = other or {}
-            what = ", ".join(f"{n} {_text(one.get(n))} > {_text(now.get(n))}" for n in unequal)
+            made = other or {}
+            what = ", ".join(f"{n} {_text(one.get(n))} > {_text(made.get(n))}" for n in unequal)
             message = say("made again, {}: {}", what, why)
         row = one or other or {}
         where = f"{row['fsn_no']} {row['rowers']}{row['crew_class']}"
@@ -171,13 +187,14 @@ def _unlike(file: str, was: bytes, now: bytes) -> list[tuple[str, str]]:
     if was == now:
         return []
     read = {".csv": sheets.read_csv_cells, ".xlsx": sheets.read_xlsx_cells}.get(Path(file).suffix)
+    otherwise: list[tuple[str, str]] = [
+        (file, say("{} does not say what the tables of the edition say", file))
+    ]
     if read is None or not was or not now:
-        return [(file, say("{} does not say what the tables of the edition say", file))]
+        return otherwise
     one, other = read(was), read(now)
-    if one == other and file == XLSX:  # packed by another version of its library
-        return []
-    if one == other:
-        return [(file, say("{} does not say what the tables of the edition say", file))]
+    if one == other:  # a workbook packed by another version of its library is none
+        return [] if file == XLSX else otherwise
     places = [place for place in one.keys() | other.keys() if one.get(place) != other.get(place)]
     named: list[tuple[str, str]] = [
         (

@@ -97,8 +97,10 @@ def recomputed(
     )
     tables = {
         **today,
-        **{name: getattr(made, name) for name in MADE},
-        "ensemble": members.join(lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"),
+        **{name: conform(name, getattr(made, name)) for name in MADE},
+        "ensemble": conform("ensemble", members).join(
+            lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
+        ),
         "register": _completed(store, lines, manifest, method),
     }
     return Edition(manifest, tables, method)

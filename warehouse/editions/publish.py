@@ -98,7 +98,7 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Path:
     path = printed_path(store, season)
     files = store.read("listed_files").filter(pl.col("path") == path)
     files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
-    return _write(store, as_printed(store, _manifest(store, terms, None), path), files)
+    return _write(store, as_printed(store, _manifest(store, terms, None, None), path), files)
 
 
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
@@ -160,9 +160,7 @@ def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
         )
 
 
-def _manifest(
-    store: Store, terms: Terms, method: Method | None, carry: str | None = None
-) -> Manifest:
+def _manifest(store: Store, terms: Terms, method: Method | None, carry: str | None) -> Manifest:
     return Manifest(
         edition=terms.edition,
         kind="as_printed" if method is None else "recomputed",

@@ -8,7 +8,7 @@ edition did; the head decides. Nothing is ever mended here.
 
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,7 +20,7 @@ from warehouse.archive.files.names import PARTS
 from warehouse.derive.graph import ARCHIVE
 from warehouse.derive.inputs import Scope
 from warehouse.editions import sheets
-from warehouse.editions.again import Counts, differing
+from warehouse.editions.again import CheckedEdition, differing
 from warehouse.editions.chain import Finding, chain_findings, chain_head
 from warehouse.editions.inputs import LIST
 from warehouse.intake import seasons as intake
@@ -34,25 +34,6 @@ from warehouse.store.editions import (
 )
 from warehouse.store.files import file_sha256
 from warehouse.store.store import Store, archive_root
-
-
-@dataclass(frozen=True)
-class CheckedEdition:
-    """An edition that was checked.
-
-    Attributes:
-        edition: its name.
-        kind: `recomputed` or `as_printed`.
-        lines: its lines; with the next two None where it cannot be read.
-        made_again: how many of them were made again.
-        equal: how many of those came out equal.
-    """
-
-    edition: str
-    kind: str
-    lines: int | None
-    made_again: int | None
-    equal: int | None
 
 
 @dataclass(frozen=True)
@@ -100,9 +81,8 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
     for name, manifest in manifests.items():
         path = store.editions / name
         findings += [*_altered(path, manifest), *_swapped(path, archive, hashes)]
-    counts, reproduced = _made_again(store, archive if afresh else None, list(manifests))
+    checked, reproduced = _made_again(store, archive if afresh else None, manifests)
     findings += [replace(f, wrong=f.kind != "differs" or head != found) for f in reproduced]
-    checked = [CheckedEdition(name, m.kind, *counts[name]) for name, m in manifests.items()]
     return Verification(checked, found, findings, any(f.wrong for f in findings))
 
 
@@ -156,19 +136,21 @@ def _swapped(path: Path, archive: Path | None, hashes: FileHashes) -> Iterator[F
 
 
 def _made_again(
-    store: Store, archive: Path | None, names: list[str]
-) -> tuple[dict[str, Counts], list[Finding]]:
+    store: Store, archive: Path | None, manifests: Mapping[str, Manifest]
+) -> tuple[list[CheckedEdition], list[Finding]]:
     """The editions made again: from the files of an archive, or else from the lake as it lies."""
-    counts: dict[str, Counts] = {}
+    unread = [CheckedEdition(name, m.kind, None, None, None) for name, m in manifests.items()]
+    checked: list[CheckedEdition] = []
     findings: list[Finding] = []
     try:
         with _read_again(store, archive) as again:
-            for name in names:
-                counts[name], differ = differing(again, name)
+            for edition in unread:
+                counted, differ = differing(again, edition)
+                checked.append(counted)
                 findings += differ
     except HerijkError as error:
-        return dict.fromkeys(names, Counts()), [Finding("", "unchecked", "archive", str(error))]
-    return counts, findings
+        return unread, [Finding("", "unchecked", "archive", str(error))]
+    return checked, findings
 
 
 @contextmanager
