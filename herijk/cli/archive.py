@@ -1,6 +1,5 @@
 """The commands about an archive that come before a rebuild: `check` and `init`."""
 
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,26 +19,13 @@ def check(
         Path,
         typer.Argument(metavar="ARCHIVE", envvar="HERIJK_ARCHIVE", help="The archive folder."),
     ],
-    write_profile: Annotated[
-        bool, typer.Option("--write-profile", help="Write what is proposed to archief.toml.")
-    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Every fault of lists, headers and a sample of the data, by cause, before any rebuild."""
     from warehouse.archive.check import check_archive, check_report
-    from warehouse.archive.files.names import PROFILE_FILE
 
     checked = check_archive(archive)
     show(check_report(archive, checked, LANGUAGE.get()), check_text, as_json)
-    if write_profile and checked.profile is not None:
-        from warehouse.store.files import written_beside
-
-        path = archive / PROFILE_FILE
-        with written_beside(path) as beside:
-            beside.write_text(checked.profile, encoding="utf-8")
-        typer.echo(
-            tell("What is proposed is in {}; read it, also the lines behind a #.", path), err=True
-        )
     if checked.causes:
         raise typer.Exit(1)
 
@@ -68,20 +54,12 @@ def check_text(report: "CheckReport") -> str:
     if not causes:
         return tell("Nothing is wrong in the lists and headers of {} tows.", report.tows)
     head = tell(
-        "Causes: {}; places: {}. With what is proposed {} tows are left for a rebuild to judge.",
+        "Causes: {}; places: {}. As it is, {} tows are left for a rebuild to judge.",
         len(causes),
         sum(cause.number for cause in causes),
         report.tows,
     )
-    parts = [head, *(_cause(cause) for cause in causes)]
-    if report.profile is not None:
-        parts.append(
-            tell(
-                "Write what is proposed with: herijk check {} --write-profile",
-                shlex.quote(report.archive),
-            )
-        )
-    return "\n\n".join(parts)
+    return "\n\n".join([head, *(_cause(cause) for cause in causes)])
 
 
 def _cause(cause: "CauseReport") -> str:
@@ -92,11 +70,5 @@ def _cause(cause: "CauseReport") -> str:
     lines += [f"    {place(vars(one))}" for one in cause.places]
     if cause.number > len(cause.places):
         lines.append(f"    {tell('and {} more', cause.number - len(cause.places))}")
-    for proposal in cause.proposals:
-        how = (
-            tell("Put into archief.toml")
-            if proposal["is_active"]
-            else tell("Choose, and put into archief.toml")
-        )
-        lines.append(f"  > {how}: {proposal['line']}")
+    lines += [f"  > archief.toml: {line}" for line in cause.settings]
     return "\n".join(lines)

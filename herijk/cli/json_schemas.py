@@ -28,7 +28,7 @@ from pipeline.register.register import LINE as NAMES_LINE
 from pipeline.tables.declare import dy
 from pipeline.tables.row import Row
 from pipeline.tables.schemas import TABLES
-from warehouse.archive.check import CheckReport, Proposal
+from warehouse.archive.check import CheckReport
 from warehouse.editions.compare import DiffReport
 from warehouse.editions.lineage import Lineage
 from warehouse.editions.publish import Published
@@ -354,8 +354,7 @@ def _methods_diff() -> Schema:
 
 
 def _check() -> Schema:
-    line = {"line": text("the line to put into the file")}
-    return of(CheckReport, causes={"proposals": of(Proposal)["properties"] | line})
+    return of(CheckReport)
 
 
 def _audit() -> Schema:

@@ -334,7 +334,7 @@ MANY_CASES: dict[str, tuple[Spoil, list[tuple[str, str, str | None, int | None]]
         [("unreadable_file", TOWS, None, None)], ALL,
     ),
     "tow list without boats": (
-        text("fsn_nr", "boot"), [("missing_column", TOWS, None, 1)], ALL,
+        text("fsn_nr", "lege doft"), [("missing_column", TOWS, None, 1)], ALL,
     ),
     "header lost": (
         text("gebruik runs", ""), [("unknown_column", TOWS, None, 1)], ALL,

@@ -1,7 +1,6 @@
-"""Looking through an archive before a rebuild, and proposing what would mend it."""
+"""Looking through an archive before a rebuild: what is wrong, and what would settle it."""
 
 from warehouse.archive.check.check import check_archive
-from warehouse.archive.check.proposals import Proposal
 from warehouse.archive.check.report import CauseReport, CheckReport, check_report
 
-__all__ = ["CauseReport", "CheckReport", "Proposal", "check_archive", "check_report"]
+__all__ = ["CauseReport", "CheckReport", "check_archive", "check_report"]

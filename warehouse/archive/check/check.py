@@ -1,37 +1,32 @@
-"""Looking through an archive before a rebuild: every fault, by cause, with what would mend it.
+"""Looking through an archive before a rebuild: every fault, by cause, with what would settle it.
 
-What a profile can settle is tried on the way: a proposed word or column is taken as given, so that
-the faults behind it come out in the same round. Nothing is written. Judging every sample is the
-rebuild's; here every header is read, and one tow of each season whole.
+Nothing is written. Judging every sample is the rebuild's; here every header is read, and one tow of
+each season whole.
 """
 
 import hashlib
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-import polars as pl
-
-from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import innermost
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.check.headers_and_samples import faults_in_headers, faults_in_samples
-from warehouse.archive.check.merged_profile import merged
-from warehouse.archive.check.proposals import Proposal, propose
-from warehouse.archive.faults import Fault
+from warehouse.archive.check.settings import settings_for
+from warehouse.archive.faults import OF_A_HEADER, Fault
+from warehouse.archive.files.finding import list_sample_files
 from warehouse.archive.files.names import PARTS
 from warehouse.archive.index.index import ArchiveIndex, index_archive
 from warehouse.archive.index.unread_files import missing_lists, strangers
 from warehouse.archive.lists.races import read_races
 from warehouse.archive.lists.registers import read_published_registers
 from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.profile.reading import parse_profiles, profile_text
-from warehouse.archive.spelling.headers import split_header
+from warehouse.archive.profile.reading import read_profiles
 
-ROUNDS: Final = 8
-"""How often what was proposed is tried, at most."""
+MOST_SETTINGS: Final = 20
+"""Lines to fill in for one cause."""
 _PIECE: Final = 1 << 16
 
 
@@ -42,12 +37,12 @@ class Cause:
     Attributes:
         reason_code: short stable code.
         faults: where, in order.
-        proposals: what in `archief.toml` would settle it; empty where only a person can.
+        settings: the lines of `archief.toml` that answer it; empty where only a person can mend it.
     """
 
     reason_code: str
     faults: tuple[Fault, ...]
-    proposals: tuple[Proposal, ...]
+    settings: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -55,105 +50,62 @@ class Checked:
     """What a check found.
 
     Attributes:
-        tows: tows in which nothing was found that would cost them, as the archive is or with the
-            proposals; most samples are judged by the rebuild only.
+        tows: tows in which nothing was found that costs them; most samples are judged by the
+            rebuild only.
         causes: what is wrong, the most frequent first.
-        profile: `archief.toml` with the proposals; None where there are none.
     """
 
     tows: int
     causes: tuple[Cause, ...]
-    profile: str | None
 
 
 def check_archive(root: Path) -> Checked:
     """Looks through an archive.
 
+    A list with a column that nobody knows is looked at again without that column, so that what is
+    wrong in its rows comes out in the same round.
+
     Raises:
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
-    written = profile_text(root)
-    text = written
-    seen: dict[Fault, tuple[Proposal, ...]] = {}
-    tried: set[Proposal] = set()
-    for _ in range(ROUNDS):
-        profiles = parse_profiles(text)
-        index, faults = _faults(root, profiles)
-        new: dict[Proposal, None] = {}
-        for fault in faults:
-            offered = propose(fault, profiles.wording.files, index.seasons if index else {})
-            seen[fault] = tuple(p for p in offered if p not in tried)  # else it settled nothing
-            new |= dict.fromkeys(seen[fault])
-        if not new:
-            break
-        tried |= new.keys()
-        text, valid = _applied(text, tuple(new))
-        seen |= {fault: tuple(p for p in seen[fault] if p in valid) for fault in faults}
-    tows = index.tows if index else frame_of(ListedTows, [])
-    proposals = dict.fromkeys(p for offered in seen.values() for p in offered)
-    profile = merged(written, _doubted(proposals, seen.values(), tows)) if proposals else None
-    return Checked(_readable(tows, faults), _grouped(seen), profile)
+    profiles = read_profiles(root)
+    index, faults = _faults(root, profiles)
+    unknown = _unknown_columns(faults)
+    tows = _readable(index, faults)
+    if unknown:
+        told = {fault.path for fault in faults if fault.reason_code in OF_A_HEADER}
+        index, again = _faults(root, profiles.ignoring(unknown))
+        faults += (f for f in again if f.reason_code not in OF_A_HEADER or f.path not in told)
+    seasons = _seasons(root, profiles, index)
+    boats = index.boats["name"].to_list() if index else []
+    return Checked(tows, _by_cause(dict.fromkeys(faults), seasons, boats))
 
 
-def _applied(text: str, proposals: Sequence[Proposal]) -> tuple[str, Sequence[Proposal]]:
-    """A profile with those of some proposals that leave it valid, and these."""
-    together = merged(text, (replace(p, is_active=True) for p in proposals))
-    try:
-        parse_profiles(together)
-    except MissingKnowledgeError:
-        half = len(proposals) // 2
-        if not half:
-            return text, ()
-        text, first = _applied(text, proposals[:half])
-        text, second = _applied(text, proposals[half:])
-        return text, (*first, *second)
-    return together, proposals
+def _unknown_columns(faults: Iterable[Fault]) -> list[str]:
+    """The headers of lists that nobody knows."""
+    values = (getattr(innermost(fault.message), "values", {}) for fault in faults)
+    return [header for found in values for header, _ in found.get("near", ())]
 
 
-def _readable(tows: pl.DataFrame, faults: Iterable[Fault]) -> int:
+def _readable(index: ArchiveIndex | None, faults: Iterable[Fault]) -> int:
     """How many listed tows have no fault that costs the tow."""
     costly = [fault for fault in faults if fault.lost is None]
     lost = {f.tow_id for f in costly} | {f.path for f in costly}
+    tows = index.tows if index else frame_of(ListedTows, [])
     files = tows.select("tow_id", "samples_path", "second_path").iter_rows()
     return sum(
         lost.isdisjoint(f"{tow}{PARTS}{one}{PARTS}{two}".split(PARTS)) for tow, one, two in files
     )
 
 
-def _doubted(
-    proposals: Mapping[Proposal, None],
-    seen: Iterable[Sequence[Proposal]],
-    listed: pl.DataFrame,
-) -> Iterator[Proposal]:
-    """Gives the proposals; what only some files of a season lack is not to be declared absent.
-
-    A rate that the files say themselves leaves no question about it.
-    """
-    lacking = Counter(p for offered in seen for p in offered if p.section == "absent")
-    named = {split_header(p.key)[0] for p in proposals if p.section == "headers"}
-    known = {p.season for p in proposals if p.section == "sample_rate_hz" and p.is_active}
-    for proposal in proposals:
-        is_rate = proposal.section == "sample_rate_hz"
-        if is_rate and not proposal.is_active and proposal.season in known:
-            continue
-        if proposal.section == "ignore" and split_header(proposal.value)[0] in named:
-            continue  # another list has it
-        tows = listed.filter(season=proposal.season).height
-        is_sure = proposal.section != "absent" or lacking[proposal] >= tows
-        yield replace(proposal, is_active=proposal.is_active and is_sure)
-
-
 def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[Fault]]:
     """The lists, and what is wrong in them, in headers and in a tow of each season.
 
-    Files that nobody reads come first, and alone: they can be the lists.
+    Where a list is missing that all others need, it can be among the files that nobody reads.
     """
-    unread = strangers(root, profiles)
-    if any(propose(fault, profiles.wording.files, {}) for fault in unread):
-        return None, unread
     lacking = missing_lists(root, profiles)
     if lacking:
-        return None, lacking
+        return None, [*strangers(root, profiles), *lacking]
     index = index_archive(root, quick_hash, profiles)
     _, in_races = read_races(root, profiles.wording)
     _, in_registers = read_published_registers(root, profiles.wording)
@@ -165,6 +117,12 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
     return index, [*in_lists, *in_races, *in_registers, *in_headers, *in_samples]
 
 
+def _seasons(root: Path, profiles: Profiles, index: ArchiveIndex | None) -> dict[str, int]:
+    """The season of each samples file: of its folder, or of the row that names it."""
+    files = list_sample_files(root, profiles.wording.files)
+    return {file.path: file.season for file in files} | (index.seasons if index else {})
+
+
 def quick_hash(path: Path) -> str:
     """A hash of a file's size and ends: enough to find copies, and read in no time."""
     with path.open("rb") as file:
@@ -174,13 +132,29 @@ def quick_hash(path: Path) -> str:
         return hashlib.sha256(start + file.read(_PIECE) + str(size).encode()).hexdigest()
 
 
-def _grouped(seen: Mapping[Fault, Sequence[Proposal]]) -> tuple[Cause, ...]:
+def _by_cause(
+    faults: Iterable[Fault], seasons: Mapping[str, int], boats: Sequence[str]
+) -> tuple[Cause, ...]:
     """The faults by cause, those with most first."""
     by_cause: dict[tuple[str, str], list[Fault]] = {}
-    for fault in seen:
+    for fault in faults:
         by_cause.setdefault((fault.reason_code, fault.cause), []).append(fault)
-    causes = (
-        Cause(code, tuple(faults), tuple(dict.fromkeys(p for f in faults for p in seen[f])))
-        for (code, _), faults in by_cause.items()
-    )
+    causes = [
+        Cause(code, tuple(same), _settings(same, seasons, boats))
+        for (code, _), same in by_cause.items()
+    ]
     return tuple(sorted(causes, key=lambda cause: -len(cause.faults)))
+
+
+def _settings(
+    faults: Iterable[Fault], seasons: Mapping[str, int], boats: Sequence[str]
+) -> tuple[str, ...]:
+    """The first lines that settle faults of one cause, each once."""
+    said = {(fault.path, innermost(fault.message)): fault for fault in faults}
+    settings: dict[str, None] = {}
+    for fault in said.values():
+        season = seasons.get(fault.path.split(PARTS)[0], 0)
+        settings |= dict.fromkeys(settings_for(fault, season, boats))
+        if len(settings) >= MOST_SETTINGS:
+            break
+    return tuple(settings)

@@ -1,14 +1,13 @@
 """What a look into the samples files shows: every header, and one tow of each season whole."""
 
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import polars as pl
 
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
-from pipeline.messages import Sentence, innermost, say
+from pipeline.messages import say
 from pipeline.tables.row import Row
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, list_sample_files, path_inside
@@ -16,10 +15,8 @@ from warehouse.archive.files.names import PARTS, as_one_run, kind_of
 from warehouse.archive.index.index import ArchiveIndex
 from warehouse.archive.plausibility.judge import judge_in_files
 from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.samples.file import (
     check_header,
-    columns_of_runs,
     rate_in_times,
     read_samples,
 )
@@ -69,8 +66,7 @@ def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Itera
             of_all = [fault for fault in others if fault is not None]
             yield from of_all or judge_in_files(samples, tow, index.runs, root, profile).faults
         except DefectiveInputError as error:
-            fault = fault_from(error, tow["samples_path"], tow["tow_id"])
-            yield _with_columns_of_runs(fault, root, profile)
+            yield fault_from(error, tow["samples_path"], tow["tow_id"])
     for file in list_sample_files(root, index.profiles.wording.files):
         season = index.seasons.get(file.path, file.season)
         key = (season, kind_of(file.full_path))
@@ -95,7 +91,7 @@ def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> 
             run=named[1] if named else None,
         )
     except DefectiveInputError as error:
-        yield _with_columns_of_runs(fault_from(error, file.path), root, profile)
+        yield fault_from(error, file.path)
         return
     planned = list(profiles.plan_of("", season).runs)
     if season and named is None and samples["run"].unique().sort().to_list() != planned:
@@ -114,15 +110,6 @@ def _rate_of_its_own(tow: Row, rate: float) -> Fault:
         own=rate,
     )
     return Fault(tow["samples_path"], tow["tow_id"], None, "bad_time", said)
-
-
-def _with_columns_of_runs(fault: Fault, root: Path, profile: SeasonProfile) -> Fault:
-    """A fault with the columns that can be that of the runs, where only that is missing."""
-    what = innermost(fault.message)
-    if not isinstance(what, Sentence) or what.values.get("keys") != ("run",):
-        return fault
-    columns = columns_of_runs(path_inside(root, fault.path), profile)
-    return replace(fault, message=say(what.template, **{**what.values, "header": columns}))
 
 
 def _other_rate(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault | None:

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Final
 
 from pipeline.messages import innermost, spoken
-from pipeline.tables.row import Row
 from warehouse.archive.check.check import Cause, Checked
 
 SHOWN: Final = 3
@@ -30,7 +29,7 @@ class CauseReport:
         sentence: of the first of them.
         cells: what the cells say that have it.
         places: the first of them.
-        proposals: the fields of each `Proposal`, with its `line`.
+        settings: lines of `archief.toml` to fill in, with the choices behind a `#`.
     """
 
     reason_code: str
@@ -38,7 +37,7 @@ class CauseReport:
     sentence: str
     cells: list[str]
     places: list[Place]
-    proposals: list[Row]
+    settings: list[str]
 
 
 @dataclass(frozen=True)
@@ -48,13 +47,12 @@ class CheckReport:
     archive: str
     tows: int
     causes: list[CauseReport]
-    profile: str | None
 
 
 def check_report(root: Path, checked: Checked, language: str) -> CheckReport:
     """A check of an archive with its sentences in `en` or `nl`."""
     causes = [_cause_report(cause, language) for cause in checked.causes]
-    return CheckReport(str(root), checked.tows, causes, checked.profile)
+    return CheckReport(str(root), checked.tows, causes)
 
 
 def _cause_report(cause: Cause, language: str) -> CauseReport:
@@ -66,5 +64,5 @@ def _cause_report(cause: Cause, language: str) -> CauseReport:
         sentence=spoken(first, language),
         cells=[str(cell) for cell in dict.fromkeys(cells) if cell is not None],
         places=[Place(f.path, f.line, f.tow_id) for f in cause.faults[:SHOWN]],
-        proposals=[vars(p) | {"line": p.line} for p in cause.proposals],
+        settings=list(cause.settings),
     )

@@ -24,8 +24,8 @@ README: Final = """\
 
        herijk check MAP
 
-   Wat met een regel in `archief.toml` op te lossen is, schrijft
-   `herijk check MAP --write-profile` daar voor u in. Lees het na.
+   Wat met een regel in `archief.toml` op te lossen is, staat erbij. Zet die regel daarin, en op de
+   plaats van een `?` wat het is.
 5. Reken alles uit: `herijk rebuild --archive MAP`.
 
 De rijen met VOORBEELD in de lijsten zijn een voorbeeld: haal ze weg. Excel en LibreOffice openen de

@@ -70,7 +70,7 @@ TOWS: Final = ListKind(
     (
         Column("tow_id", "sleep_id", required=False),
         Column("tow_date", "datum"),
-        Column("fsn_no", "fsn_nr"),
+        Column("fsn_no", "fsn_nr", or_else="name"),
         Column("name", "sloep", required=False),
         Column("file", "meetfile"),
         Column("second_file", "meetfile2", required=False),

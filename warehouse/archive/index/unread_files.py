@@ -17,7 +17,6 @@ from warehouse.archive.files.names import (
     SAMPLES,
     SPREADSHEETS,
 )
-from warehouse.archive.index.recognise import recognised
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.spelling.text import fold
 
@@ -48,7 +47,7 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
 
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
-    """What lies in the archive and is not read; what it can be, where that can be told."""
+    """What lies in the archive and is not read."""
     message = say("The name of '{name}' has letters that cannot be read; give it another name.")
     misnamed = [
         Fault(path, None, None, "unrecognised_file", say(message, name=path))
@@ -69,14 +68,15 @@ def _about_stranger(root: Path, path: str) -> str:
     if kind.suffix.lower() in SPREADSHEETS and kind.parts[0].casefold().startswith(SAMPLES):
         message = say("'{path}' is not read: samples are read from text. Save the sheet as CSV.")
         return say(message, path=path)
-    can_be = dict(recognised(root, path))
-    if not can_be:
-        message = say("'{path}' is not recognised. It may be put under ignore in archief.toml.")
-        return say(message, path=path)
     return say(
-        "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; "
-        "say so under [files] in archief.toml.",
+        "'{path}' is not read: it has another name than the archive's files. Say what it is under "
+        "[files] in archief.toml, or put it under ignore.",
         path=path,
-        kinds=", ".join(sorted(set(can_be.values()))),
-        can_be=tuple(sorted(can_be.items())),
+        inside=_lists_inside(root, path),
     )
+
+
+def _lists_inside(root: Path, path: str) -> list[str]:
+    """The first files in a folder, each of which can be a list."""
+    inner = sorted(file for file in (root / path).rglob("*") if not file.is_dir())
+    return [file.relative_to(root).as_posix() for file in inner[:3]]

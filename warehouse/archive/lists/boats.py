@@ -18,7 +18,7 @@ from warehouse.archive.files.list_kinds import BOATS
 from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.sheets.row import ListRow, others_of
 from warehouse.archive.spelling.synonyms import NO_TYPE
-from warehouse.archive.spelling.text import fold_word
+from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.wording import Wording
 
 OF_THE_BOAT: Final = (
@@ -53,19 +53,27 @@ class Boats:
         return frame_of(ListedBoats, rows).unique(maintain_order=True)
 
     def find(self, fsn_no: str) -> Row | None:
-        """A boat by its number; leading zeros do not matter where that leaves one boat."""
+        """A boat by its number or a name; leading zeros do not matter where one boat is left."""
         if fsn_no in self.good:
             return self.good[fsn_no]
-        alike = self._by_bare_number.get(_bare(fsn_no), [])
-        return alike[0] if len(alike) == 1 else None
+        alike = self._by_bare_number.get(_bare(fsn_no)) or sorted(self._by_name.get(fold(fsn_no), ()))
+        return self.good[alike[0]] if len(alike) == 1 else None
 
     @cached_property
-    def _by_bare_number(self) -> Mapping[str, Sequence[Row]]:
-        """The good boats by their number without leading zeros."""
-        boats: dict[str, list[Row]] = {}
-        for number, boat in self.good.items():
-            boats.setdefault(_bare(number), []).append(boat)
+    def _by_name(self) -> Mapping[str, set[str]]:
+        """The numbers of the boats that have or had a name, by that name folded."""
+        boats: dict[str, set[str]] = {}
+        for boat in self.crews:
+            boats.setdefault(fold(boat["name"]), set()).add(boat["fsn_no"])
         return boats
+
+    @cached_property
+    def _by_bare_number(self) -> Mapping[str, Sequence[str]]:
+        """The numbers of the good boats, by the number without leading zeros."""
+        numbers: dict[str, list[str]] = {}
+        for number in self.good:
+            numbers.setdefault(_bare(number), []).append(number)
+        return numbers
 
 
 def _bare(fsn_no: str) -> str:

@@ -5,6 +5,8 @@ the runs, days to set aside.
 """
 
 import datetime as dt
+import re
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
@@ -33,7 +35,17 @@ from warehouse.archive.spelling.wording import Wording
 Channel = Literal["run", "log1", "log2", "gps", "force", "wind_speed", "wind_angle", "time"]
 Absent = Literal["log2", "gps", "wind"]
 _DIMENSIONS: Final = {column.key: column.dimension for column in SAMPLE_COLUMNS}
-_WITH_UNIT: Final = {fold(c.header) for kind in LIST_KINDS for c in kind.columns if c.unit}
+_WITH_UNIT: Final = {
+    fold(c.header): c.dimension for kind in LIST_KINDS for c in kind.columns if c.unit
+}
+
+
+def _lines(value: object) -> object:
+    """Reads `"3:5"` or `"3"` as (first, last)."""
+    if not isinstance(value, str) or not re.fullmatch(r"[1-9][0-9]?(:[1-9][0-9]?)?", value):
+        raise ValueError('lines are text, e.g. "3:5" or "3", up to 99')
+    first, _, last = value.partition(":")
+    return int(first), max(int(first), int(last or first))
 
 
 def _season_range(value: object) -> object:
@@ -81,6 +93,9 @@ def _ways(directions: list[Literal["out", "back"]]) -> tuple[int, ...]:
     return tuple(OUT if way == "out" else BACK for way in directions)
 
 
+_HeaderLines = Annotated[tuple[int, int], BeforeValidator(_lines)]
+
+
 class _ProfileTable(_Strict):
     """One `[[profile]]` of `archief.toml`."""
 
@@ -92,6 +107,7 @@ class _ProfileTable(_Strict):
     reversed: list[Literal["force"]] = []
     wind_zero_deg: Annotated[float, Field(ge=-360, le=360, strict=False)] = 0.0
     header: Annotated[str, Field(min_length=1)] | None = None
+    header_lines: _HeaderLines | None = None
     ignore: list[str] = []
     directions: _Directions | None = None
 
@@ -150,7 +166,8 @@ class Profiles(_Strict):
         publication: publisher and licence of what is made from it.
         profile: the season ranges that differ.
         plan: the runs of seasons and tows that differ from the standard.
-        words, headers, ignore, dates, decimals, files: see `Wording`, here as they are written.
+        words, headers, ignore, dates, decimals, header_lines, files: see `Wording`, here as they
+            are written.
         set_aside: days whose tows are not used.
         log_replaced: days from which another log was on board.
     """
@@ -164,6 +181,7 @@ class Profiles(_Strict):
     ignore: list[str] = []
     dates: dict[str, Literal["dmy", "mdy"]] = {}
     decimals: dict[str, Literal[".", ","]] = {}
+    header_lines: dict[str, _HeaderLines] = {}
     files: dict[str, Annotated[str, Field(pattern=f"^{STANDS_FOR.pattern}$")]] = {}
     set_aside: list[SetAside] = []
     log_replaced: list[LogReplaced] = []
@@ -179,7 +197,8 @@ class Profiles(_Strict):
     @model_validator(mode="after")
     def _headers_hide_no_unit(self) -> Self:
         for name, meant in self.headers.items():
-            if fold(meant) in _WITH_UNIT and unread_unit(name):
+            dimension = _WITH_UNIT.get(fold(meant), "none")
+            if unread_unit(name) and find_scale(dimension, re.split(r"[\s_,]+", name)[-1]):
                 raise ValueError(f"headers: '{name}' has a unit; put it in brackets in the list")
         return self
 
@@ -192,8 +211,13 @@ class Profiles(_Strict):
             ignore=tuple(fold(name) for name in self.ignore),
             dates=self.dates,
             decimals=self.decimals,
+            header_lines=self.header_lines,
             files=self.files,
         )
+
+    def ignoring(self, headers: Iterable[str]) -> "Profiles":
+        """The same, with more columns that are not used."""
+        return Profiles.model_construct(**dict(self) | {"ignore": [*self.ignore, *headers]})
 
     def for_season(self, season: int) -> SeasonProfile:
         """The profile of a season; the project's default where none is given."""
@@ -214,6 +238,7 @@ class Profiles(_Strict):
             absent=tuple(sorted(table.absent)),
             wind_zero_deg=table.wind_zero_deg,
             header=table.header,
+            header_lines=table.header_lines,
             ignore=(*self.wording.ignore, *(fold(name) for name in table.ignore)),
         )
 

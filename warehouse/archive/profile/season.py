@@ -38,6 +38,7 @@ class SeasonProfile:
         absent: what was not on board, or is not to be used: `wind`, `log2`, `gps`.
         wind_zero_deg: what the vane reads when the wind comes from straight ahead.
         header: the names of the columns of files that have none.
+        header_lines: the first and the last line of the header; found when None.
         ignore: names of columns that are known and not used.
     """
 
@@ -47,4 +48,5 @@ class SeasonProfile:
     absent: tuple[str, ...] = ()
     wind_zero_deg: float = 0.0
     header: str | None = None
+    header_lines: tuple[int, int] | None = None
     ignore: tuple[str, ...] = ()

@@ -8,9 +8,12 @@ import polars as pl
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from warehouse.archive.profile.season import SeasonProfile
-from warehouse.archive.spelling.columns import FoundColumn, unknown_headers
+from warehouse.archive.spelling.columns import (
+    FoundColumn,
+    nearest_columns,
+    unknown_headers,
+)
 from warehouse.archive.spelling.headers import split_header
-from warehouse.archive.spelling.likeness import nearest_column
 from warehouse.archive.spelling.text import fold, shorten
 from warehouse.archive.spelling.units import Scale, find_scale
 
@@ -30,7 +33,7 @@ def check_nothing_misspelt(
     for cell in unknown_headers(header, columns):
         name, unit = split_header(cell)
         is_speed = unit is not None and find_scale("speed", unit) is not None
-        if name not in map(fold, profile.ignore) and (is_speed or nearest_column(cell, gps)):
+        if name not in map(fold, profile.ignore) and (is_speed or nearest_columns(cell, gps)):
             said = say(
                 "Column '{name}' is not known, and there is no 'gps'. Name it under columns of the "
                 "season's profile in archief.toml, or put it there under ignore.",

@@ -10,7 +10,6 @@ import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
-from pipeline.channels import FEWEST_RUNS
 from pipeline.errors import DefectiveInputError
 from warehouse.archive.files.contents import not_whole, read_bytes, read_start
 from warehouse.archive.files.names import kind_of
@@ -28,7 +27,7 @@ from warehouse.archive.samples.frame import (
 )
 from warehouse.archive.samples.labview import read_tdms
 from warehouse.archive.samples.text_files import HEAD_BYTES, find_body, read_text
-from warehouse.archive.spelling.columns import find_columns, unknown_headers
+from warehouse.archive.spelling.columns import find_columns
 
 _FOR_A_RATE: Final = 500
 """Samples from which the rate is seen."""
@@ -111,22 +110,3 @@ def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
         return None
     step = float(np.nanmedian(np.diff(frame["time"].to_numpy()[:_FOR_A_RATE])))
     return 1.0 / step if step > 0 else None
-
-
-def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[tuple[str, str], ...]:
-    """`run` or `time` with a column nobody knows as which it tells the runs of a file."""
-    header = _header_of(path, profile)
-    unknown = unknown_headers(header, find_columns(header, profile.columns))
-    pairs = [(key, name) for key in ("run", "time") for name in unknown]
-    return tuple(pair for pair in pairs if _tells_runs(path, profile, *pair))
-
-
-def _tells_runs(path: Path, profile: SeasonProfile, key: str, name: str) -> bool:
-    columns = tuple(
-        replace(column, header=name) if column.key == key else column for column in profile.columns
-    )
-    try:
-        runs = read_samples(path, replace(profile, columns=columns))["run"]
-    except DefectiveInputError:
-        return False
-    return runs.n_unique() >= FEWEST_RUNS

@@ -24,7 +24,7 @@ from warehouse.archive.spelling.columns import (
     find_header,
     score_of,
 )
-from warehouse.archive.spelling.headers import with_units
+from warehouse.archive.spelling.headers import header_of_rows, with_units
 from warehouse.archive.spelling.numbers import NUMBER_PATTERN
 from warehouse.archive.spelling.text import decode, find_delimiter, split_line
 from warehouse.archive.spelling.units import Scale
@@ -91,7 +91,8 @@ def find_body(data: bytes, profile: SeasonProfile) -> Body:
         table, places = labview_as_table(data.decode())
         data = table.encode()
     lines = data[:HEAD_BYTES].decode(errors="ignore").split("\n")
-    place = find_header(lines, profile.columns)
+    told = profile.header_lines
+    place = min(told[1], len(lines)) - 1 if told else find_header(lines, profile.columns)
     header_line, below = lines[place].rstrip("\r"), place + 1
     if profile.header is not None and not score_of(
         split_line(header_line, find_delimiter(header_line)), profile.columns
@@ -99,7 +100,9 @@ def find_body(data: bytes, profile: SeasonProfile) -> Body:
         header_line, below = profile.header, place
     delimiter = find_delimiter(lines[place])
     header = split_line(header_line, find_delimiter(header_line))
-    if units := with_units(header, _cells_of_line(lines, below, delimiter)):
+    if told:
+        header = header_of_rows([split_line(x, delimiter) for x in lines[told[0] - 1 : told[1]]])
+    elif units := with_units(header, _cells_of_line(lines, below, delimiter)):
         header, below = units, below + 1
     line = places[0] if places else place + 1
     columns = find_columns(header, profile.columns, line)

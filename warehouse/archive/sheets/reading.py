@@ -1,9 +1,11 @@
 """Reading a list: a small table with one header, and the values in its rows."""
 
+import re
 import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Final
 
 import polars as pl
 
@@ -17,11 +19,10 @@ from warehouse.archive.files.finding import list_files, path_inside
 from warehouse.archive.files.list_kinds import ListKind
 from warehouse.archive.files.names import split_sheet
 from warehouse.archive.limits import LIST_MAX_BYTES
-from warehouse.archive.sheets.crews import CREW, with_crews_apart
 from warehouse.archive.sheets.outside_limits import misfits
 from warehouse.archive.sheets.row import ListRow, Reading
 from warehouse.archive.sheets.sheet import Sheet, read_sheets
-from warehouse.archive.sheets.unknown_columns import about_unknown, check_named, meanings_in
+from warehouse.archive.sheets.unknown_columns import about_unknown, check_named
 from warehouse.archive.spelling.columns import (
     Column,
     FoundColumn,
@@ -30,9 +31,13 @@ from warehouse.archive.spelling.columns import (
 )
 from warehouse.archive.spelling.dates import date_order
 from warehouse.archive.spelling.numbers import decimal_mark
-from warehouse.archive.spelling.synonyms import NOTHING
+from warehouse.archive.spelling.synonyms import CLASSES, NOTHING
 from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.wording import Wording
+
+CREW: Final = ("rowers", "crew_class")
+_CREW: Final = re.compile(r"([0-9]{1,2})\s*([^\W\d_]+)")
+"""Rowers and class in one cell: `8H`."""
 
 
 def read_rows(
@@ -74,7 +79,7 @@ def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[L
     wanted = wording.with_names(kind.columns)
     file, sheet = split_sheet(path)
     suffix = file[file.rfind(".") :].casefold()
-    sheets = [with_crews_apart(s, wanted) for s in read_sheets(data, wanted, suffix, sheet)]
+    sheets = read_sheets(data, wanted, suffix, sheet, wording.header_lines.get(path))
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
     told = wording.decimals.get(path, wording.decimals.get("*", ""))
@@ -84,7 +89,7 @@ def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[L
         for row in _rows(
             sheet,
             Reading(
-                _columns_of(sheet, wanted, wording, kind.table),
+                _columns_of(sheet, wanted, wording),
                 kind.reason_code,
                 wording.words,
                 order,
@@ -134,24 +139,31 @@ def read_lists(
     return kind.table.filter(frame).result, tuple(faults)
 
 
-def _columns_of(
-    sheet: Sheet, wanted: Sequence[Column], wording: Wording, table: type[dy.Schema]
-) -> dict[str, FoundColumn]:
+def _columns_of(sheet: Sheet, wanted: Sequence[Column], wording: Wording) -> dict[str, FoundColumn]:
     """The columns of a list; one that nobody knows is a fault."""
     optional = [replace(column, required=False) for column in wanted]
     places = find_columns(sheet.header, optional, sheet.line)
     strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
-    free = [column for column in wanted if column.key not in places]
     check_named(sheet, {column.index for column in places.values()})
     if strange:
-        raise DefectiveInputError(
-            "unknown_column", about_unknown(meanings_in(strange, free, sheet, table)), sheet.line
-        )
-    columns = find_columns(sheet.header, wanted, sheet.line)
-    if not sheet.crews:
-        return columns
-    of_crews = {key: replace(columns[key], header=sheet.crews) for key in CREW if key in columns}
-    return columns | of_crews
+        free = [column for column in wanted if column.key not in places]
+        raise DefectiveInputError("unknown_column", about_unknown(strange, free), sheet.line)
+    serving = {c.key: places[c.or_else] for c in wanted if c.or_else in places}
+    of_both = [places[k] for k in CREW if k in places and _has_crews(sheet, places[k].index)]
+    serving |= dict.fromkeys(CREW, of_both[0]) if of_both else {}
+    wanted = [replace(c, required=c.required and c.key not in serving) for c in wanted]
+    return serving | find_columns(sheet.header, wanted, sheet.line)
+
+
+def _has_crews(sheet: Sheet, place: int) -> bool:
+    cells = (row.fields[place] for row in sheet.rows if place < len(row.fields))
+    return any(_crew_in(cell) for cell in cells)
+
+
+def _crew_in(cell: str) -> tuple[str, str] | None:
+    """Rowers and class of `8H`; None of another cell."""
+    match = _CREW.fullmatch(cell.strip())
+    return (match[1], match[2]) if match and fold_word(match[2]) in CLASSES else None
 
 
 def _rows(sheet: Sheet, reading: Reading) -> list[ListRow]:
@@ -168,7 +180,18 @@ def _cells(fields: Sequence[str], reading: Reading) -> dict[str, str]:
     }
     if "tow_id" in cells:  # 2014/17 would be a folder in names of pages and files
         cells["tow_id"] = cells["tow_id"].replace("/", "-")
-    return cells
+    return cells | _crew_apart(cells)
+
+
+def _crew_apart(cells: Mapping[str, str]) -> dict[str, str]:
+    """Rowers and class of a cell with both, where the class is empty or the same."""
+    rowers, crew_class = (cells.get(key, "") for key in CREW)
+    crew = _crew_in(rowers)
+    if crew is None:
+        return {}
+    said = CLASSES.get(fold_word(crew_class))
+    is_its_own = crew_class in {"", rowers} or said == CLASSES[fold_word(crew[1])]
+    return dict(zip(CREW, crew, strict=True)) if is_its_own else {}
 
 
 def _meant(cell: str, words: Mapping[str, str]) -> str:

@@ -226,7 +226,7 @@ class ListRow:
         value = CLASSES.get(fold_word(cell or ""))
         if cell is not None and value is None:
             message = say("column '{column}' is '{cell}'; H or D is expected.")
-            raise self.wrong(message, key, expected="HD")
+            raise self.wrong(message, key, choices="H, D")
         return value
 
     def yes_or_no(self, key: str) -> bool:
@@ -234,7 +234,9 @@ class ListRow:
         cell = fold_word(self.optional_text(key) or "nee")
         if cell in YES or cell in NO:
             return cell in YES
-        raise self.wrong("column '{column}' is '{cell}', not ja, nee or empty.", key, choice="ja")
+        raise self.wrong(
+            "column '{column}' is '{cell}', not ja, nee or empty.", key, choices="ja, nee"
+        )
 
     def boat(self, key: str) -> str:
         """The number of a boat: `FSN 101`, `fsn nr 101` and `101` are FSN101."""

@@ -24,7 +24,13 @@ from warehouse.archive.spelling.columns import (
     header_among,
     score_of,
 )
-from warehouse.archive.spelling.headers import is_rest_of_header, split_header, with_units
+from warehouse.archive.spelling.headers import (
+    header_of_rows,
+    is_rest_of_header,
+    joined_rows,
+    split_header,
+    with_units,
+)
 from warehouse.archive.spelling.text import (
     decode,
     find_delimiter,
@@ -54,20 +60,20 @@ class Row:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table: the cells of its header, the header's line, the rows below it, and its name.
-
-    `crews` is the heading of the column that held rowers and class, where that was split.
-    """
+    """A table: the cells of its header, the header's line, the rows below it, and its name."""
 
     header: list[str]
     line: int
     rows: list[Row]
     name: str = ""
-    crews: str = ""
 
 
 def read_sheets(
-    data: bytes, columns: Sequence[Column], suffix: str = ".csv", only: str = ""
+    data: bytes,
+    columns: Sequence[Column],
+    suffix: str = ".csv",
+    only: str = "",
+    header_lines: tuple[int, int] | None = None,
 ) -> list[Sheet]:
     """The tables in a file: of a workbook the sheets that name the columns.
 
@@ -79,20 +85,21 @@ def read_sheets(
         columns: the columns that are looked for; the header is the line that names most of them.
         suffix: kind of file, in lower case.
         only: name of the sheet to read; empty for all.
+        header_lines: the first and the last line of the header; found when None.
 
     Raises:
         DefectiveInputError: the file cannot be read, it has no such sheet, or a quotation mark in
             its header is open.
     """
     if suffix in SPREADSHEETS:
-        sheets = list(sheets_of_workbook(data, columns))
+        sheets = list(sheets_of_workbook(data, columns, header_lines))
         return _named(sheets, only) if only else _alike(sheets, columns)
     lines = decode(data).removeprefix("\ufeff").split("\n")
     lines = [line.rstrip("\r") for line in lines]
-    place = find_header(lines, columns)
-    delimiter = find_delimiter(lines[place])
+    place = header_lines[1] - 1 if header_lines else find_header(lines, columns)
+    delimiter = find_delimiter(lines[min(place, len(lines) - 1)])
     above = [split_or_nothing(line, delimiter) for line in lines[: place + 3]]
-    header, place = _whole_header(above, place, columns)
+    header, place = _whole_header(above, place, columns, header_lines)
     rows = [
         _text_row(number, line, delimiter, len(header))
         for number, line in enumerate(lines[place + 1 :], start=place + 2)
@@ -117,7 +124,10 @@ def _alike(sheets: Sequence[Sheet], columns: Sequence[Column]) -> list[Sheet]:
 
 
 def _whole_header(
-    rows: Sequence[list[str]], place: int, columns: Sequence[Column]
+    rows: Sequence[list[str]],
+    place: int,
+    columns: Sequence[Column],
+    lines: tuple[int, int] | None,
 ) -> tuple[list[str], int]:
     """The header, with what belongs to it in the rows next to it, and its last row.
 
@@ -125,15 +135,18 @@ def _whole_header(
         rows: the first rows of the table.
         place: the row that names most columns.
         columns: the columns that are looked for.
+        lines: the lines of the header where these are given, from 1.
     """
+    if lines is not None:
+        return header_of_rows(rows[lines[0] - 1 : lines[1]]), place
     header = rows[place]
-    if place > 0 and (upper := _joined_rows(rows[place - 1], header)):
+    if place > 0 and (upper := joined_rows(rows[place - 1], header)):
         header = max((header, upper), key=lambda cells: score_of(cells, columns))
     if place + 1 < len(rows):
         below = rows[place + 1]
         if units := with_units(header, below):
             return units, place + 1
-        lower = _joined_rows(header, below)
+        lower = joined_rows(header, below)
         if lower and (is_rest_of_header(header, below) or _names_more(lower, header, columns)):
             return lower, place + 1
     return header, place
@@ -141,18 +154,6 @@ def _whole_header(
 
 def _names_more(one: Sequence[str], other: Sequence[str], columns: Sequence[Column]) -> bool:
     return score_of(one, columns) > score_of(other, columns)
-
-
-def _joined_rows(upper: Sequence[str], lower: Sequence[str]) -> list[str] | None:
-    """Two rows of one header as one: `Gewicht` over `voor` and `na` goes for both."""
-    if len(lower) > len(upper) or not any(map(str.strip, upper)):
-        return None
-    joined, last = [], ""
-    for above, below in zip(upper, [*lower, *[""] * (len(upper) - len(lower))], strict=True):
-        last = above.strip() or last
-        name = last if below.strip() else above.strip()
-        joined.append(f"{name} {below.strip()}".strip())
-    return joined
 
 
 def _only_rows(rows: Iterable[Row], header: Sequence[str]) -> list[Row]:
@@ -205,7 +206,9 @@ def _text_row(number: int, line: str, delimiter: str, width: int) -> Row:
     return Row(number, fields)
 
 
-def sheets_of_workbook(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet]:
+def sheets_of_workbook(
+    data: bytes, columns: Sequence[Column], header_lines: tuple[int, int] | None = None
+) -> Iterator[Sheet]:
     """Gives the sheets of a workbook, each from its header on."""
     import python_calamine  # noqa: PLC0415 - only where there is a spreadsheet
 
@@ -219,7 +222,7 @@ def sheets_of_workbook(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet
     for grid in grids:
         check_extent(grid.total_height, grid.total_width)
     for grid in grids:
-        yield replace(_sheet(_cells_of(grid), columns, grid.start), name=grid.name)
+        yield replace(_sheet(_cells_of(grid), columns, grid.start, header_lines), name=grid.name)
 
 
 def _cells_of(grid: Any) -> list[list[str]]:
@@ -237,12 +240,17 @@ def _cells_of(grid: Any) -> list[list[str]]:
 
 
 def _sheet(
-    rows: list[list[str]], columns: Sequence[Column], start: tuple[int, int] | None
+    rows: list[list[str]],
+    columns: Sequence[Column],
+    start: tuple[int, int] | None,
+    header_lines: tuple[int, int] | None,
 ) -> Sheet:
     above = start[0] if start else 0
     if not rows:
         return Sheet([], above + 1, [])
-    header, place = _whole_header(rows, header_among(rows[:HEADER_WITHIN], columns), columns)
+    lines = (max(1, header_lines[0] - above), header_lines[1] - above) if header_lines else None
+    place = lines[1] - 1 if lines else header_among(rows[:HEADER_WITHIN], columns)
+    header, place = _whole_header(rows, place, columns, lines)
     below = (Row(above + i + 1, row) for i, row in enumerate(rows) if i > place)
     return Sheet(header, above + place + 1, _only_rows(below, header))
 

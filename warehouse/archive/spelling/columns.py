@@ -3,6 +3,7 @@
 Which line the header is, is told by the names in it.
 """
 
+import difflib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -37,6 +38,7 @@ class Column:
         required: whether a file without it is defective.
         also: other names for it.
         reversed: what is in it has the other sign.
+        or_else: key of the column that serves where a list does not have this one.
     """
 
     key: str
@@ -46,6 +48,7 @@ class Column:
     required: bool = True
     also: tuple[str, ...] = ()
     reversed: bool = False
+    or_else: str = ""
 
     @property
     def named(self) -> str:
@@ -125,6 +128,13 @@ def unknown_headers(header: Sequence[str], places: Mapping[str, FoundColumn]) ->
     return [cell.strip() for i, cell in enumerate(header) if i not in taken and fold(cell)]
 
 
+def nearest_columns(cell: str, columns: Iterable[Column], least_alike: float = 0.6) -> list[Column]:
+    """The columns with a name that is like a header, at most three, the nearest first."""
+    names = {fold(name): column for column in columns for name in (column.header, *column.also)}
+    near = difflib.get_close_matches(split_header(cell)[0], names, n=9, cutoff=least_alike)
+    return list(dict.fromkeys(names[name] for name in near))[:3]
+
+
 def _choose(
     namesakes: list[Column], unit: str | None, cell: str, places: dict[str, FoundColumn], line: int
 ) -> Column:
@@ -160,6 +170,7 @@ def _choose(
             "Column '{header}' can be more than one thing; write its unit behind it: {known}.",
             header=cell.strip(),
             known=_in_brackets(column.unit for column in free),
+            can_be=tuple(column.key for column in free),
         )
         raise DefectiveInputError("unknown_unit", said, line)
     return free[0]

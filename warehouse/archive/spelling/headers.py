@@ -92,3 +92,23 @@ def is_rest_of_header(header: Sequence[str], below: Sequence[str]) -> bool:
     names = [cell.strip() for cell in header if cell.strip()]
     has_units = any(is_unit(cell.strip("[]() ")) or split_header(cell)[1] for cell in below)
     return has_units or len(set(names)) < len(names)
+
+
+def joined_rows(upper: Sequence[str], lower: Sequence[str]) -> list[str] | None:
+    """Two rows of one header as one: `Gewicht` over `voor` and `na` goes for both."""
+    if len(lower) > len(upper) or not any(map(str.strip, upper)):
+        return None
+    joined, last = [], ""
+    for above, below in zip(upper, [*lower, *[""] * (len(upper) - len(lower))], strict=True):
+        last = above.strip() or last
+        name = last if below.strip() else above.strip()
+        joined.append(f"{name} {below.strip()}".strip())
+    return joined
+
+
+def header_of_rows(rows: Sequence[list[str]]) -> list[str]:
+    """The header that several rows make: each goes on with the names above, or has the units."""
+    header = rows[0] if rows else []
+    for row in rows[1:]:
+        header = with_units(header, row) or joined_rows(header, row) or header
+    return header

@@ -80,8 +80,8 @@ HEADERS: Final[Mapping[str, tuple[str, ...]]] = {
                "comments", "notes", "bemerkung", "bemerkungen", "remarques", "remarque",
                "commentaires"),
     # samples
-    "run": ("runnr", "run nr", "run nummer", "run no", "run number", "vaart", "lauf", "passage",
-            "parcours"),
+    "run": ("runnr", "run nr", "run nummer", "run no", "run number", "vaart", "vaart nr", "vaartnr",
+            "lauf", "passage", "parcours"),
     "log1": ("log 1", "log a", "snelheid log1", "snelheid log 1", "speed log 1", "log",
              "speed through water", "speed through water 1", "stw", "stw1", "water speed 1",
              "boat speed 1", "log port", "snelheid water", "snelheid door water", "vitesse eau",

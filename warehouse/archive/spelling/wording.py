@@ -18,6 +18,7 @@ class Wording:
         ignore: folded names of columns that are known and not used.
         dates: `dmy` or `mdy` by the path of a list, or `*` for all: how 1/3/2015 is meant.
         decimals: the mark before decimals, `.` or `,`, by the path of a list, or `*` for all.
+        header_lines: the first and the last line of the header, by the path of a list.
         files: what a file or folder stands for, by its path in the archive: `sleeplijst_2014`.
     """
 
@@ -26,6 +27,7 @@ class Wording:
     ignore: tuple[str, ...] = ()
     dates: Mapping[str, str] = field(default_factory=dict)
     decimals: Mapping[str, str] = field(default_factory=dict)
+    header_lines: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
 
     def with_names(self, columns: Iterable[Column]) -> tuple[Column, ...]:
