@@ -56,7 +56,8 @@ class Boats:
         """A boat by its number or a name; leading zeros do not matter where one boat is left."""
         if fsn_no in self.good:
             return self.good[fsn_no]
-        alike = self._by_bare_number.get(_bare(fsn_no)) or sorted(self._by_name.get(fold(fsn_no), ()))
+        numbers = self._by_bare_number.get(_bare(fsn_no))
+        alike = numbers or sorted(self._by_name.get(fold(fsn_no), ()))
         return self.good[alike[0]] if len(alike) == 1 else None
 
     @cached_property
