@@ -4,6 +4,7 @@ import io
 import subprocess
 import sys
 import zipfile
+from contextlib import nullcontext
 
 import pytest
 import xlsxwriter
@@ -119,6 +120,18 @@ def test_a_workbook_that_hides_how_much_it_holds_is_damaged() -> None:
     assert size in book
     with pytest.raises(zipfile.BadZipFile):
         check_workbook(book.replace(size, (1000).to_bytes(4, "little")))
+
+
+@pytest.mark.parametrize(
+    ("part", "is_read"), [("xl/worksheets/sheet1.xml", True), ("docProps/app.xml", False)]
+)
+def test_only_damage_in_a_part_that_is_read_costs_the_workbook(part: str, is_read: bool) -> None:
+    book = packed(part, b"<a>" * 1000)
+    place = 30 + len(part)
+    damaged = book[:place] + b"\xff" * 10 + book[place + 10 :]
+    expected = pytest.raises(zipfile.BadZipFile) if is_read else nullcontext()
+    with expected:
+        check_workbook(damaged)
 
 
 def test_a_workbook_that_unpacks_to_too_much_is_not_read() -> None:
