@@ -3,7 +3,6 @@
 import datetime as dt
 from collections.abc import Iterator, Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any, Final
 
 import dagster as dg
@@ -11,7 +10,7 @@ import polars as pl
 
 from assets.progress import Progress
 from assets.resources import Setup
-from assets.shown import columns_of
+from assets.workers import read_season
 from pipeline.blocks.run_blocks import BLOCK_SCHEMA
 from pipeline.channels import SAMPLE_SCHEMA
 from warehouse.derive.inputs import OTHERS, state_of_table
@@ -122,11 +121,16 @@ def _seen(setup: Setup) -> Iterator[tuple[str, str | None, str]]:
         yield name, None, fingerprint(OTHERS[parameter].state(scope))
 
 
+def _columns(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
+    columns = [dg.TableColumn(name, str(kind)) for name, kind in schema.items()]
+    return {"dagster/column_schema": dg.TableSchema(columns)}
+
+
 @dg.asset(
     deps=["tow_lists"],
     code_version=code_hash(*READING, *ADDING),
     check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
-    metadata=columns_of(SAMPLE_SCHEMA),
+    metadata=_columns(SAMPLE_SCHEMA),
     partitions_def=SEASONS,
     group_name="archive",
     kinds={"parquet"},
@@ -143,8 +147,8 @@ def samples(
     def work() -> None:
         stale = intake.stale_seasons(store, root, asked)
         progress.expect(intake.count_listed(store, stale))
-        reading = partial(_read_season, store.root, root)
-        if len(stale) == 1 and setup.dask is None:
+        reading = partial(read_season, store.root, root)
+        if len(stale) == 1 and setup.settings.dask is None:
             intake.read_season(store, root, stale[0], progress.tow_read)
             read.update(stale)
             return
@@ -169,12 +173,6 @@ def samples(
         _record(context, season, contents, metadata)
 
 
-def _read_season(data: Path, archive: Path, season: int) -> list[tuple[str, bool]]:
-    """Reads a season; gives its tows, and whether each is set aside."""
-    index = intake.read_season(Store(data), archive, season)
-    return index.select("tow_id", pl.col("reason_code").is_not_null()).rows()
-
-
 def _most_tows_sound(store: Store) -> dg.AssetCheckResult:
     """Of all seasons, not those of this run: a check's result is that of the whole asset."""
     index = store.read_all("season_index")
@@ -189,7 +187,7 @@ def _most_tows_sound(store: Store) -> dg.AssetCheckResult:
 @dg.asset(
     deps=[samples],
     code_version=code_hash(*ADDING),
-    metadata=columns_of(BLOCK_SCHEMA),
+    metadata=_columns(BLOCK_SCHEMA),
     partitions_def=SEASONS,
     group_name="archive",
     kinds={"parquet"},

@@ -59,17 +59,18 @@ def steps_multiply_to_the_total(setup: Setup) -> dg.AssetCheckResult:
 def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
     """No more of the listed tows are set aside than the settings allow."""
     aside, listed = integrity.set_aside_tows(setup.store)
+    limit = setup.settings.set_aside_share
     return dg.AssetCheckResult(
-        passed=aside <= setup.set_aside_share * listed,
+        passed=aside <= limit * listed,
         severity=WARN,
-        metadata={"set_aside": aside, "listed": listed, "limit": setup.set_aside_share},
+        metadata={"set_aside": aside, "listed": listed, "limit": limit},
     )
 
 
 def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:
     """No season's log factor jumped since the last report."""
     moved = change_report(setup.store).factors
-    jumps = moved.filter((moved["ratio"] - 1.0).abs() > setup.factor_jump)
+    jumps = moved.filter((moved["ratio"] - 1.0).abs() > setup.settings.factor_jump)
     return _result(jumps.rows(), WARN)
 
 

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import sqlite3
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +11,8 @@ from unittest import mock
 
 import dagster as dg
 import yaml  # type: ignore[import-untyped]
+from sqlalchemy import event
+from sqlalchemy.engine import Engine
 
 from assets.archive import SEASONS, observe
 from assets.location import assets_of
@@ -28,6 +31,13 @@ INSTANCE_SETTINGS = Path(__file__).with_name("dagster.yaml")
 
 OF_A_COMMAND: Final = {"herijk/by": "rebuild"}
 """Marks runs that live and die with the process of a rebuild."""
+
+
+@event.listens_for(Engine, "connect")
+def _without_waiting_for_the_disk(connection: object, _: object) -> None:
+    """Dagster commits 500 times in a run. Its records survive a kill, and can be made again."""
+    if isinstance(connection, sqlite3.Connection):
+        connection.execute("PRAGMA synchronous = OFF")
 
 
 def run_assets(
@@ -61,8 +71,8 @@ def run_assets(
             tags=OF_A_COMMAND
             | {f"dagster/asset_partition_range_{end}": season for end, season in ends.items()},
         )
-    for event in result.get_asset_materialization_events():
-        _note(done, event.materialization, setup.methods)
+    for made in result.get_asset_materialization_events():
+        _note(done, made.materialization, setup.methods)
     return result.get_asset_check_evaluations()
 
 

@@ -8,7 +8,6 @@ import dagster as dg
 from assets import archive, checks
 from assets.progress import Progress
 from assets.resources import Setup, progress_in_log
-from assets.shown import with_site
 from assets.site import site
 from assets.tables import STEP_ASSETS
 
@@ -23,17 +22,16 @@ ASSETS: Final[Sequence[dg.AssetsDefinition | dg.AssetSpec]] = [
 
 
 def assets_of(
-    setup: Setup, progress: Progress | dg.ResourceDefinition = progress_in_log, address: str = ""
+    setup: Setup, progress: Progress | dg.ResourceDefinition = progress_in_log
 ) -> dg.Definitions:
     """Assets and checks, made one after the other in one process: it holds the lock.
 
     Args:
         setup: the folders and the methods.
         progress: is told how far it is.
-        address: where the site is served, if it is: assets link to their pages.
     """
     return dg.Definitions(
-        assets=with_site(ASSETS, address) if address else ASSETS,
+        assets=ASSETS,
         asset_checks=[checks.of_the_whole],
         resources={"setup": setup, "progress": progress},
         executor=dg.in_process_executor,

@@ -6,6 +6,7 @@ that there is none takes a second, importing it two.
 
 import datetime as dt
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,28 +62,32 @@ def rebuild(
             progress.step(say("looking at what the archive holds"))
             stale = look(archive, store, known, seasons)
             if stale.assets:
-                checks[:] = make_assets((archive, data), methods, seasons, progress, stale, done)
+                asked = Asked(str(archive), str(data), list(methods), sorted(seasons or ()))
+                checks[:] = make_assets(asked, progress, stale, done)
 
         mending(store, work, again=lambda: None)
         return write_report(store, done, checks, dt.datetime.now().astimezone())
 
 
+@dataclass(frozen=True)
+class Asked:
+    """What a rebuild is asked for: folders, names of methods, and seasons, none for all."""
+
+    archive: str
+    data: str
+    methods: list[str]
+    seasons: list[int]
+
+
 def make_assets(
-    folders: tuple[Path, Path],
-    methods: Sequence[str],
-    seasons: Collection[int] | None,
-    progress: Progress,
-    stale: Stale,
-    done: Done,
+    asked: Asked, progress: Progress, stale: Stale, done: Done
 ) -> "Sequence[dg.AssetCheckEvaluation]":
     """Has Dagster make assets, and notes what was done; gives what the checks said."""
-    settings = read_settings(folders[1])
-    workers.get_ready(settings.dask)
+    workers.get_ready(read_settings(Path(asked.data)).dask)
     from assets.instance import run_assets  # noqa: PLC0415 - see above
     from assets.resources import Setup  # noqa: PLC0415
 
-    setup = Setup.of(*folders, methods, settings, seasons or ())
-    return run_assets(setup, progress, stale, done)
+    return run_assets(Setup(**vars(asked)), progress, stale, done)
 
 
 def check_apart(archive: Path, data: Path) -> None:

@@ -1,7 +1,7 @@
 """What assets are given: the folders and the methods to apply, and who is told how far it is."""
 
 import os
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final, TypeVar
@@ -9,7 +9,7 @@ from typing import Final, TypeVar
 import dagster as dg
 from pydantic import Field
 
-from assets.settings import Settings
+from assets.settings import Settings, read_settings
 from assets.workers import in_parallel
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import Method
@@ -39,29 +39,6 @@ class Setup(dg.ConfigurableResource["Setup"]):
         description="methods to apply; the others are compared with the first",
     )
     seasons: list[int] = Field(default_factory=list, description="to read; none: all asked for")
-    set_aside_share: float = Settings().set_aside_share
-    factor_jump: float = Settings().factor_jump
-    dask: str | None = Field(default=None, description="scheduler of a Dask cluster")
-
-    @classmethod
-    def of(
-        cls,
-        archive: Path,
-        data: Path,
-        methods: Sequence[str],
-        settings: Settings,
-        seasons: Collection[int] = (),
-    ) -> "Setup":
-        """The setup of a data folder with its settings."""
-        return cls(
-            archive=str(archive),
-            data=str(data),
-            methods=list(methods),
-            seasons=list(seasons),
-            set_aside_share=settings.set_aside_share,
-            factor_jump=settings.factor_jump,
-            dask=settings.dask,
-        )
 
     @contextmanager
     def yield_for_execution(self, context: dg.InitResourceContext) -> Iterator["Setup"]:  # noqa: ARG002 - Dagster's signature
@@ -80,6 +57,11 @@ class Setup(dg.ConfigurableResource["Setup"]):
     def archive_root(self) -> Path:
         """The archive."""
         return Path(self.archive)
+
+    @property
+    def settings(self) -> Settings:
+        """What `beheer.toml` says."""
+        return read_settings(Path(self.data))
 
     @property
     def store(self) -> Store:
@@ -103,7 +85,7 @@ class Setup(dg.ConfigurableResource["Setup"]):
 
     def map(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R]]:
         """Each task with what came of it, done side by side."""
-        return in_parallel(work, tasks, self.dask)
+        return in_parallel(work, tasks, self.settings.dask)
 
 
 class LogProgress:

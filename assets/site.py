@@ -6,7 +6,7 @@ import polars as pl
 from assets import workers
 from assets.progress import Progress
 from assets.resources import Setup
-from assets.site_state import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
+from assets.stale import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
 from pipeline.messages import say
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.store.code import code_hash
@@ -27,7 +27,7 @@ def site(setup: Setup, progress: dg.ResourceParam[Progress]) -> dg.MaterializeRe
         progress.step(say("making the site"))
         from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
 
-        build_site(store, workers.workers(setup.dask))
+        build_site(store, workers.workers(setup.settings.dask))
         store.write(SITE_TABLE, pl.DataFrame(), site_made_from(store))
     index = store.root / "site" / "index.html"
     return dg.MaterializeResult(

@@ -3,15 +3,27 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
-from assets.site_state import SITE_TABLE, site_is_stale
+from dashboards.guides import GUIDES, guide_file
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import CATALOGUES, LANGUAGES
 from pipeline.method.definition import Method
+from warehouse.derive.database import DATABASE_TABLE
 from warehouse.derive.graph import DATABASE, STEPS
 from warehouse.derive.inputs import forget_other_methods
 from warehouse.intake import seasons as intake
 from warehouse.queries.change_report import is_reported
-from warehouse.store.store import Store
+from warehouse.store.code import COMPUTING, code_hash
+from warehouse.store.files import file_sha256
+from warehouse.store.store import Store, fingerprint
+
+SITE_CODE: Final = (
+    *("dashboards", "warehouse.queries", "warehouse.editions"),
+    *COMPUTING,
+)
+SITE_TABLE: Final = "site"
+"""An empty table that remembers what the site was made from."""
 
 
 @dataclass(frozen=True)
@@ -72,3 +84,22 @@ def _check_listed(wanted: Collection[int] | None, listed: Sequence[int]) -> None
             "the archive lists no tow in the seasons asked for; it has tows of {}",
             ", ".join(map(str, listed)),
         )
+
+
+def site_made_from(store: Store) -> str:
+    """The database, and the code and files that make pages of it."""
+    folder = Path(__file__).parents[1] / "dashboards"
+    files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates", "guides"}]
+    files += Path(CATALOGUES).rglob("*.mo")
+    files += [guide_file(name, language) for name in GUIDES for language in LANGUAGES]
+    return fingerprint(
+        store.contents(DATABASE_TABLE),
+        code_hash(*SITE_CODE),
+        [file_sha256(file) for file in sorted(files)],
+    )
+
+
+def site_is_stale(store: Store) -> bool:
+    """Whether the pages have to be made again."""
+    there = (store.root / "site" / "index.html").exists()
+    return not there or store.made_from(SITE_TABLE) != site_made_from(store)

@@ -8,11 +8,11 @@ import dagster as dg
 
 from assets.progress import Progress
 from assets.resources import Setup
-from assets.shown import preview
+from assets.workers import make_step
 from pipeline.tables.declare import dy
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.graph import STEPS, catch_up
-from warehouse.derive.inputs import IN_DATABASE, Scope, read_table, state_of_table
+from warehouse.derive.inputs import IN_DATABASE, Scope, state_of_table
 from warehouse.derive.mending import mending
 from warehouse.derive.step import Step
 from warehouse.intake.seasons import SEASON_TABLES
@@ -61,7 +61,7 @@ def make(step: Step, setup: Setup, progress: Progress) -> Iterator[dg.Materializ
         stale = step.stale(store, methods)
         if stale:
             progress.step(step.says)
-        for scope, _ in setup.map(partial(_make, step.name), stale):
+        for scope, _ in setup.map(partial(make_step, step.name), stale):
             new.append(scope.at_hand.name)
 
     mending(store, work, again=partial(catch_up, store, setup.archive_root, methods, step))
@@ -74,14 +74,8 @@ def make(step: Step, setup: Setup, progress: Progress) -> Iterator[dg.Materializ
             metadata={
                 "dagster/row_count": sum(store.count_rows(table, p) for p in partitions),
                 "new": list(dict.fromkeys(new)),
-                **preview(table, partial(read_table, scope, table)),
             },
         )
-
-
-def _make(name: str, scope: Scope) -> None:
-    """Makes a step by its name: another process has steps of its own."""
-    next(step for step in STEPS if step.name == name).make(scope)
 
 
 def _spec(step: Step, table: str) -> dg.AssetSpec:

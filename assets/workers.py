@@ -1,4 +1,4 @@
-"""Who helps with the heavy work: a process of this machine, or a Dask cluster that is named."""
+"""Who helps with the heavy work, without importing Dagster: a process here, or a Dask cluster."""
 
 import atexit
 import multiprocessing
@@ -8,9 +8,16 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from functools import cache
+from pathlib import Path
 from typing import TypeVar
 
+import polars as pl
+
 from pipeline.errors import MissingKnowledgeError, UnavailableError
+from warehouse.derive.graph import STEPS
+from warehouse.derive.inputs import Scope
+from warehouse.intake import seasons
+from warehouse.store.store import Store
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -82,12 +89,22 @@ def in_parallel(
         wait([future for _, future in asked if not future.cancel()])
 
 
+def read_season(data: Path, archive: Path, season: int) -> list[tuple[str, bool]]:
+    """Reads a season; gives its tows, and whether each is set aside."""
+    index = seasons.read_season(Store(data), archive, season)
+    return index.select("tow_id", pl.col("reason_code").is_not_null()).rows()
+
+
+def make_step(name: str, scope: Scope) -> None:
+    """Makes a step by its name: another process has steps of its own."""
+    next(step for step in STEPS if step.name == name).make(scope)
+
+
 def begin() -> None:
-    """Imports what is worked with, and ends with the process that is helped."""
+    """Ends with the process that is helped; what is worked with was imported with this module."""
     threading.Thread(target=_end_with_parent, daemon=True).start()
     # At once: taken apart around that thread, DuckDB's binding writes that it leaks.
     atexit.register(os._exit, 0)
-    import warehouse.derive.graph  # noqa: F401, PLC0415
 
 
 def _end_with_parent() -> None:

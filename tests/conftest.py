@@ -23,6 +23,7 @@ import assets.stale
 import assets.workers
 import dashboards.report_page
 from assets.progress import Progress
+from assets.rebuild import Asked
 from assets.report import Done, Report
 from assets.stale import Stale
 from hatch_build import compile_catalogues
@@ -49,27 +50,14 @@ SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=20, rate_hz=20, seed
 """Season 2009 is written as plain CSV, 2014 as .csv.gz."""
 
 
-@contextmanager
-def _dagster_in_memory(store: Store) -> Iterator[dg.DagsterInstance]:
-    with dg.DagsterInstance.ephemeral() as instance:
-        yield instance
-
-
 LEFT_OUT: Final = ("studies", "lines", "consistency")
 """Groups of steps that take two thirds of the time of a small rebuild."""
 
 
-def _make_directly(
-    folders: tuple[Path, Path],
-    methods: Sequence[str],
-    seasons: Collection[int] | None,
-    progress: Progress,
-    stale: Stale,
-    done: Done,
-) -> list[object]:
+def _make_directly(asked: Asked, _: Progress, stale: Stale, done: Done) -> list[object]:
     """What a rebuild makes without Dagster, and with empty tables where they are left out."""
-    archive, store = folders[0], Store(folders[1])
-    known = [KnownMethods.of(store).get(name) for name in methods]
+    archive, store = Path(asked.archive), Store(Path(asked.data))
+    known = [KnownMethods.of(store).get(name) for name in asked.methods]
     for season in stale.seasons:
         intake.read_season(store, archive, season)
         intake.collect_blocks(store, season)
@@ -85,7 +73,7 @@ def _make_directly(
                 step.make(scope)
             if step is METHOD:
                 applied = {*done.methods, scope.at_hand.name}
-                done.methods = [name for name in methods if name in applied]
+                done.methods = [name for name in asked.methods if name in applied]
             done.database |= step is DATABASE
     return []
 
@@ -139,7 +127,8 @@ class Workbench:
     @staticmethod
     def records_in_memory() -> AbstractContextManager[object]:
         """Inside, rebuilds keep no records of Dagster's on disk."""
-        return mock.patch.object(assets.instance, "instance_of", _dagster_in_memory)
+        in_memory = dg.DagsterInstance.ephemeral
+        return mock.patch.object(assets.instance, "instance_of", side_effect=lambda _: in_memory())
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""

@@ -1,13 +1,10 @@
 """The Dagster code location loads, and nobody adds or loses an asset without noticing."""
 
 import dagster as dg
-import polars as pl
 
 from assets.archive import OUTSIDE
 from assets.definitions import build_defs, defs
-from assets.location import ASSETS as DEFINED
 from assets.settings import Settings
-from assets.shown import PAGES, preview, with_site
 from warehouse.intake.seasons import INDEXED
 
 ASSETS = [
@@ -141,21 +138,7 @@ def test_an_edge_is_a_table_that_is_read():
 
 
 def test_nothing_begins_by_itself_unless_it_is_served():
-    served = build_defs("archive", "data", Settings(), "http://127.0.0.1:3001/site")
+    served = build_defs("archive", "data", Settings(), is_served=True)
     for location, status in ((defs, "STOPPED"), (served, "RUNNING")):
         begins = [*location.schedules, *location.sensors]
         assert {one.default_status.value for one in begins} == {status}
-
-
-def test_assets_link_to_their_page_where_the_site_is_served():
-    assets = with_site(DEFINED, "http://127.0.0.1:3001/site")
-    specs = [s for a in assets for s in getattr(a, "specs", [a])]
-    pages = {s.key.to_user_string(): s.metadata["page"].url for s in specs if "page" in s.metadata}
-    assert pages.keys() == PAGES.keys()
-    assert pages["register"] == "http://127.0.0.1:3001/site/register.html"
-
-
-def test_a_table_that_people_look_for_is_seen_in_dagster():
-    seen = preview("log_factors", lambda: pl.DataFrame({"season": [2009], "factor": [1.04259]}))
-    assert "| 2009   | 1.0426 |" in seen["preview"].md_str
-    assert preview("run_points", lambda: pl.DataFrame({"run": [1]})) == {}

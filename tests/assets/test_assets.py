@@ -4,26 +4,31 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import dagster as dg
 import pytest
-from dagster._core.definitions.data_version import CachingStaleStatusResolver
-from dagster._core.loader import LoadingContextForTest
 from polars.testing import assert_frame_equal
 
 import assets.instance
 import assets.location
 import assets.tables
 import warehouse.derive.step
-import warehouse.intake.lake
 from assets.archive import OUTSIDE_SPECS
 from assets.location import assets_of
 from assets.resources import QUIET_LOG, Setup
-from assets.settings import Settings
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import shipped_text
-from tests.assets.test_rebuild import TOWS_2009, assert_same_tables, samples_files, spoil
+from pipeline.tables.schemas import TABLES
+from tests.assets.page import page
+from tests.assets.test_rebuild import (
+    TOWS_2009,
+    assert_same_tables,
+    mended_while_read,
+    samples_files,
+    spoil,
+)
 from tests.conftest import METHODS, SMALL, Workbench, in_one_process
 from tests.elsewhere import dask_cluster
 from warehouse.derive.graph import STEPS
@@ -31,31 +36,23 @@ from warehouse.intake import seasons as intake
 from warehouse.store.methods import KnownMethods
 
 ROOT = Path(__file__).parents[2]
+PAGE = ("dagster_webserver", "--python-file")
 OWN = "ours"
 
 
 @pytest.fixture
-def instance(monkeypatch):
-    """Records of Dagster that last as long as the test, in memory."""
-    with dg.DagsterInstance.ephemeral() as instance:
-
-        @assets.instance.contextmanager
-        def known(_):
-            yield instance
-
-        monkeypatch.setattr(Workbench, "records_in_memory", staticmethod(_nothing))
-        monkeypatch.setattr(assets.instance, "instance_of", known)
+def instance(monkeypatch, tmp_path):
+    """Records of Dagster that last as long as the test."""
+    (tmp_path / "records").mkdir()
+    with dg.DagsterInstance.local_temp(str(tmp_path / "records")) as instance:
+        monkeypatch.setattr(Workbench, "records_in_memory", staticmethod(nullcontext))
+        monkeypatch.setattr(assets.instance, "instance_of", lambda _: nullcontext(instance))
         yield instance
-
-
-@assets.instance.contextmanager
-def _nothing():
-    yield
 
 
 def materialise(bench, instance, *assets, season=None, methods=METHODS):
     """What a person does from Dagster's page."""
-    setup = Setup.of(bench.archive, bench.data, methods, Settings())
+    setup = Setup(archive=str(bench.archive), data=str(bench.data), methods=list(methods))
     instance.add_dynamic_partitions("season", list(map(str, SMALL.seasons)))
     job = assets_of(setup).resolve_implicit_global_asset_job_def()
     with in_one_process():
@@ -67,20 +64,30 @@ def materialise(bench, instance, *assets, season=None, methods=METHODS):
         )
 
 
-def stale_in_dagster(instance, bench, methods=METHODS):
-    """Assets, or seasons of them, that Dagster calls stale."""
-    setup = Setup.of(bench.archive, bench.data, methods, Settings())
-    graph = assets_of(setup).resolve_asset_graph()
-    resolver = CachingStaleStatusResolver(instance, graph, LoadingContextForTest(instance))
-    found = set()
-    for key in graph.materializable_asset_keys:
-        seasons = map(str, SMALL.seasons) if graph.get(key).is_partitioned else (None,)
-        for season in seasons:
-            status = resolver.get_status(key, season)
-            assert status.value != "MISSING", (key, season)
-            if status.value == "STALE":
-                found.add((key.to_user_string(), season))
-    return found
+STALENESS = """query ($seasons: [String!]!) {
+  whole: assetNodes { assetKey { path } isMaterializable isPartitioned staleStatus }
+  bySeason: assetNodes(assetKeys: [{path: "samples"}, {path: "blocks"}]) {
+    assetKey { path }
+    staleStatusByPartition(partitions: $seasons)
+  }
+}"""
+
+
+def stale_in_dagster(ask):
+    """Assets, or seasons of them, that Dagster's page calls stale."""
+    seasons = list(map(str, SMALL.seasons))
+    answer = ask(STALENESS, seasons=seasons)
+    said = {
+        (*node["assetKey"]["path"], None): node["staleStatus"]
+        for node in answer["whole"]
+        if node["isMaterializable"] and not node["isPartitioned"]
+    }
+    for node in answer["bySeason"]:
+        by_season = zip(seasons, node["staleStatusByPartition"], strict=True)
+        said |= {(*node["assetKey"]["path"], season): status for season, status in by_season}
+    assert len(said) > len(TABLES)
+    assert "MISSING" not in said.values()
+    return {of for of, status in said.items() if status == "STALE"}
 
 
 def stale_to_us(bench, methods=METHODS):
@@ -109,15 +116,14 @@ def other_race(bench):
 
 
 @pytest.mark.slow
-def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_rebuild(
-    bench, instance, monkeypatch
-):
+def test_dagster_and_we_call_the_same_stale_after_a_change(bench, instance, monkeypatch):
+    home = instance.root_directory
     own = bench.data / "methods" / f"{OWN}.toml"
     own.parent.mkdir(exist_ok=True)
     own.write_text(shipped_text("rebased-2015").replace("rebased-2015", OWN), "utf-8")
     methods = (METHODS[0], OWN)
 
-    def new_code(bench):
+    def new_code(_):
         for module in (warehouse.derive.step, assets.tables):
             monkeypatch.setattr(module, "code_hash", lambda *_: "other")
         steps = [assets.tables.step_asset(step) for step in STEPS]
@@ -125,36 +131,32 @@ def test_after_a_change_dagster_and_we_call_the_same_stale_and_nothing_after_a_r
         kept = [a for a in others if a not in assets.tables.STEP_ASSETS]
         monkeypatch.setattr(assets.location, "ASSETS", [*OUTSIDE_SPECS, *kept, *steps])
 
-    bench.store.database.unlink()
-    shutil.rmtree(bench.data / "lake")
-    bench.rebuild(methods, whole=True)
-    assert stale_in_dagster(instance, bench, methods) == set()
-    for change in (
-        lambda bench: spoil(samples_files(bench, 2009)[3]),
-        other_weight,
-        other_race,
-        lambda _: own.write_text(own.read_text("utf-8").replace('"oblique"', '"head"'), "utf-8"),
-        new_code,
-    ):
+    def agrees_after(change, ask):
         change(bench)
         materialise(bench, instance, *intake.INDEXED, methods=methods)
         ours = stale_to_us(bench, methods)
         assert ours
-        assert stale_in_dagster(instance, bench, methods) == ours
+        assert stale_in_dagster(ask) == ours
         bench.rebuild(methods, whole=True)
-        assert stale_in_dagster(instance, bench, methods) == set()
+        assert stale_in_dagster(ask) == set()
         assert stale_to_us(bench, methods) == set()
 
-
-def test_a_season_is_made_from_dagsters_page_and_what_follows_too(bench, built, instance, tmp_path):
-    fresh = Workbench(bench.archive, tmp_path / "fresh")
-    materialise(fresh, instance, *intake.INDEXED)
-    assert materialise(fresh, instance, "samples", "blocks", season=2009).success
-    assert fresh.store.partitions("blocks") == ["2009"]
-    following = [name for step in STEPS[:3] for name in step.outputs]
-    assert materialise(fresh, instance, *following).success
-    of_2009 = built.store.read("tows").filter(season=2009)["tow_id"]
-    assert fresh.store.read("tows")["tow_id"].equals(of_2009)
+    bench.store.database.unlink()
+    shutil.rmtree(bench.data / "lake")
+    bench.rebuild(methods, whole=True)
+    with page(*PAGE, "assets/definitions.py", home=home) as ask:
+        assert stale_in_dagster(ask) == set()
+        for change in (
+            lambda bench: spoil(samples_files(bench, 2009)[3]),
+            other_weight,
+            other_race,
+            lambda _: own.write_text(
+                own.read_text("utf-8").replace('"oblique"', '"head"'), "utf-8"
+            ),
+        ):
+            agrees_after(change, ask)
+    with page(*PAGE, "tests/assets/other_code.py", home=home) as ask:
+        agrees_after(new_code, ask)
 
 
 def test_a_damaged_table_that_an_asset_reads_is_made_again(bench, built, instance):
@@ -175,22 +177,10 @@ def test_damaged_blocks_of_a_tow_are_made_again(bench, built, instance):
     assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
 
 
-def test_an_archive_that_changes_while_a_season_is_made_is_read_again(
-    bench, built, instance, monkeypatch
-):
-    file = samples_files(bench, 2009)[3]
-    kept = spoil(file)
-    original, changes = warehouse.intake.lake.read_tow_samples, []
-
-    def changing(root, tow, profile):
-        if not changes:
-            changes.append(tow["tow_id"])
-            file.write_bytes(kept)
-        return original(root, tow, profile)
-
-    monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", changing)
+def test_a_season_of_an_archive_that_changes_is_read_again(bench, built, instance, monkeypatch):
+    read = mended_while_read(bench, monkeypatch)
     assert materialise(bench, instance, "samples", "blocks", season=2009).success
-    assert changes
+    assert read
     assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
 
 

@@ -1,18 +1,12 @@
-"""What starts a rebuild by itself: schedules and sensor, on a real instance and a daemon's tick."""
+"""What starts a rebuild by itself: schedules and sensor; with real processes: `test_served`."""
 
 import datetime as dt
-import itertools
-import logging
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import dagster as dg
 import pytest
-from dagster._core.test_utils import create_test_daemon_workspace_context, freeze_time
-from dagster._core.workspace.load_target import ModuleTarget
-from dagster._daemon.sensor import execute_sensor_iteration
 
 from assets.automation import (
     ASK_AGAIN_S,
@@ -22,12 +16,10 @@ from assets.automation import (
     schedules,
 )
 from assets.definitions import build_defs, defs
-from assets.instance import INSTANCE_SETTINGS
 from assets.settings import Settings
 from tests.conftest import METHODS
 
 ROOT = Path(__file__).parents[2]
-LOG = logging.getLogger("sensors")
 
 
 @pytest.fixture
@@ -140,44 +132,6 @@ def test_hidden_files_and_links_are_not_followed(ticks, archive, tmp_path):
     (archive / ".lock").write_text("")
     assert ticks.tick() == 0
     assert ticks.said == "no file of the archive changed"
-
-
-def test_the_daemon_queues_a_run_for_each_change(archive, tmp_path, monkeypatch):
-    """A real instance on disk, the code location in its own process, and ticks by the minute."""
-    (tmp_path / "home").mkdir()
-    shutil.copyfile(INSTANCE_SETTINGS, tmp_path / "home" / "dagster.yaml")
-    for name, value in (
-        ("DAGSTER_HOME", tmp_path / "home"),
-        ("HERIJK_ARCHIVE", archive),
-        ("HERIJK_DATA", tmp_path / "data"),
-        ("HERIJK_SITE", "http://127.0.0.1:3001/site"),
-    ):
-        monkeypatch.setenv(name, str(value))
-    target = ModuleTarget("assets.definitions", None, str(ROOT), None)
-    begin = dt.datetime(2026, 11, 21, 3, tzinfo=dt.UTC)
-    with (
-        dg.DagsterInstance.from_config(str(tmp_path / "home")) as instance,
-        create_test_daemon_workspace_context(target, instance) as workspace,
-    ):
-        minutes = itertools.count()
-
-        def ticks():
-            """Two ticks; how many runs are in the queue."""
-            for _ in range(2):
-                with freeze_time(begin + dt.timedelta(minutes=next(minutes))):
-                    list(execute_sensor_iteration(workspace, LOG, None, None))
-            return instance.get_runs_count()
-
-        assert ticks() == 1
-        assert ticks() == 1
-        (archive / "meetdata_2009/c.csv").write_text("new")
-        assert ticks() == 2
-        (archive / "meetdata_2009/c.csv").write_text("mended")
-        assert ticks() == 3
-        (archive / "meetdata_2009/c.csv").unlink()
-        assert ticks() == 4
-        queued = {run.status for run in instance.get_runs()}
-        assert queued == {dg.DagsterRunStatus.QUEUED}
 
 
 def test_a_night_without_a_change_does_no_work_and_says_so(bench):

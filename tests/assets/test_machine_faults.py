@@ -10,10 +10,16 @@ from pathlib import Path
 import duckdb
 import pytest
 
-import warehouse.intake.lake
 from assets.instance import instance_of
 from pipeline.errors import MissingKnowledgeError, UnavailableError
-from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil, without_studies
+from tests.assets.test_rebuild import (
+    assert_same_tables,
+    mended_while_read,
+    samples_files,
+    spoil,
+    when_read,
+    without_studies,
+)
 from tests.conftest import METHODS
 from warehouse.intake.lake import ArchiveChangedError
 from warehouse.store.machine_faults import machine_faults_explained
@@ -213,43 +219,18 @@ def test_a_damaged_database_is_made_again_by_the_next_run(bench, built):
 
 def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypatch):
     """The file is another than the one that was hashed: its samples would be kept as that one's."""
-    file = samples_files(bench, 2009)[3]
-    kept = spoil(file)
-    original, changes = warehouse.intake.lake.read_tow_samples, []
-
-    def changing(root, tow, profile):
-        if not changes:
-            changes.append(tow["tow_id"])
-            file.write_bytes(kept)
-        return original(root, tow, profile)
-
-    monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", changing)
+    read = mended_while_read(bench, monkeypatch)
     bench.rebuild()
-    assert changes
+    assert read
     assert_same_tables(bench.tables(), built.tables())
 
 
 def test_an_archive_that_never_stops_changing_is_left_alone(bench, built, monkeypatch):
     file = samples_files(bench, 2009)[3]
     spoil(file)
-    original = warehouse.intake.lake.read_tow_samples
-
-    def changing(root, tow, profile):
-        file.write_bytes(file.read_bytes() + b" ")
-        return original(root, tow, profile)
-
-    monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", changing)
+    when_read(monkeypatch, lambda _: file.write_bytes(file.read_bytes() + b" "))
     with pytest.raises(ArchiveChangedError, match="Try again when nobody is copying"):
         bench.rebuild()
-    assert_same_tables(bench.tables(), built.tables())
-
-
-@pytest.mark.parametrize("year", [1971, 2199])
-def test_a_clock_that_jumps_changes_no_table(bench, built, year):
-    """File times of another century: only content says what changed."""
-    for file in (f for f in bench.archive.rglob("*") if f.is_file()):
-        os.utime(file, ((year - 1970) * 31_556_952,) * 2)
-    assert bench.rebuild().done.seasons == []
     assert_same_tables(bench.tables(), built.tables())
 
 
@@ -274,24 +255,6 @@ def test_a_full_disk_that_sqlite_calls_an_error_of_the_disk_is_called_full(tmp_p
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
     with pytest.raises(UnavailableError, match="no room left"), machine_faults_explained(tmp_path):
         raise OSError("disk I/O error")
-
-
-LIMITED_FILES = """
-import resource, sys
-from pathlib import Path
-from warehouse.store.machine_faults import machine_faults_explained
-resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
-with machine_faults_explained(Path(sys.argv[1])):
-    raise RuntimeError("disk I/O error")  # what SQLite calls it
-"""
-
-
-def test_a_limit_to_files_is_no_broken_disk(tmp_path):
-    run = subprocess.run(
-        [sys.executable, "-c", LIMITED_FILES, tmp_path],
-        cwd=ROOT, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert "ulimit -f unlimited" in run.stderr.splitlines()[-1]
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """A rebuild does what changed and nothing else, and loses no tow without saying so."""
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from unittest import mock
 
@@ -54,18 +55,33 @@ def without_studies(tables: dict[str, pl.DataFrame]) -> dict[str, pl.DataFrame]:
     return {name: frame for name, frame in tables.items() if name not in left_out}
 
 
-@pytest.fixture
-def files_read(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Tows whose archive files were opened."""
+def when_read(
+    monkeypatch: pytest.MonkeyPatch, change: Callable[[list[str]], object] = len
+) -> list[str]:
+    """Tows whose archive files are opened from now on; before each a change is made."""
     read: list[str] = []
     original = warehouse.intake.lake.read_tow_samples
 
     def noted(root, tow, profile):
         read.append(tow["tow_id"])
+        change(read)
         return original(root, tow, profile)
 
     monkeypatch.setattr(warehouse.intake.lake, "read_tow_samples", noted)
     return read
+
+
+@pytest.fixture
+def files_read(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Tows whose archive files were opened."""
+    return when_read(monkeypatch)
+
+
+def mended_while_read(bench: Workbench, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """A spoilt file becomes sound when it is first read; gives the tows that are read."""
+    file = samples_files(bench, 2009)[3]
+    kept = spoil(file)
+    return when_read(monkeypatch, lambda read: len(read) > 1 or file.write_bytes(kept))
 
 
 def test_every_listed_tow_is_a_row_of_tows_and_of_every_method(built):

@@ -4,6 +4,7 @@ What comes out otherwise does not say whether the code changed or the edition di
 head of the chain knows (see `verify`).
 """
 
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -243,7 +244,20 @@ def _largest(numbers: pl.Series) -> float:
 def _same(was: object, now: object, limit: float) -> bool:
     if isinstance(was, float) and isinstance(now, float):
         return abs(now - was) <= limit
-    return was == now
+    return was == now or _same_factors(was, now)
+
+
+def _same_factors(was: object, now: object) -> bool:
+    """Whether two texts list the same causes, with factors up to the last digits."""
+    try:
+        before, after = json.loads(str(was)), json.loads(str(now))
+        return type(before) is type(after) is list and all(
+            one.keys() == other.keys()
+            and all(_same(one[name], other[name], SAME_NUMBER) for name in one)
+            for one, other in zip(before, after, strict=True)
+        )
+    except (ValueError, TypeError, AttributeError):  # not a list of causes
+        return False
 
 
 def _text(value: object) -> str:
