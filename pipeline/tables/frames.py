@@ -17,10 +17,16 @@ def dtypes(schema: type[dy.Schema], without: Collection[str] = ()) -> pl.Schema:
     return pl.Schema({name: column.dtype for name, column in columns if name not in without})
 
 
-@cache  # asked for per cell of a list
+@cache  # asked for per cell of a list; dataframely makes all columns anew each time
+def column_of(schema: type[dy.Schema], name: str) -> dy.Column:
+    """A declared column."""
+    return schema.columns()[name]
+
+
+@cache
 def limits(schema: type[dy.Schema], name: str) -> tuple[Any, Any]:
     """The lowest and highest value that a column declares."""
-    column = schema.columns()[name]
+    column = column_of(schema, name)
     if not isinstance(column, dy.Float64 | dy.Int8 | dy.Int16 | dy.Int32 | dy.Int64):
         raise TypeError(f"{schema.__name__}.{name} has no limits")
     return column.min, column.max

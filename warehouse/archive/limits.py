@@ -19,6 +19,9 @@ MOST_ROWS: Final = 3_000_000
 MOST_LISTED_ROWS: Final = 100_000
 """Rows of a list; a spreadsheet that claims more is not a list."""
 
+MOST_CELLS: Final = 5_000_000
+"""Rows times columns of a sheet: a reader makes room for all of them."""
+
 WORKBOOK_MAX_BYTES: Final = 100_000_000
 """Size of a workbook, unpacked; a list of 1,000 tows is 2 MB."""
 
@@ -81,14 +84,15 @@ def check_extent(rows: int, columns: int) -> None:
     Raises:
         DefectiveInputError: `too_large`.
     """
-    if rows > MOST_LISTED_ROWS or columns > MOST_COLUMNS:
+    if rows > MOST_LISTED_ROWS or columns > MOST_COLUMNS or rows * columns > MOST_CELLS:
         said = say(
-            "A sheet of the workbook reaches to row {} and column {}; a list has at most {} rows "
-            "and {} columns. Delete what is far below or beside the list, or copy the list alone "
-            "into a new workbook.",
+            "A sheet of the workbook reaches to row {} and column {}; a list has at most {} rows, "
+            "{} columns and {} cells. Delete what is far below or beside the list, or copy the "
+            "list alone into a new workbook.",
             rows,
             columns,
             MOST_LISTED_ROWS,
             MOST_COLUMNS,
+            MOST_CELLS,
         )
         raise DefectiveInputError("too_large", said)

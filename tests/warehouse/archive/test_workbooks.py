@@ -4,12 +4,14 @@ import io
 import subprocess
 import sys
 import zipfile
+from contextlib import nullcontext
 
 import pytest
 import xlsxwriter
 
 from pipeline.errors import DefectiveInputError
 from tests.warehouse.archive.conftest import TOWS, Archive
+from warehouse.archive.sheets.extent import check_workbook
 from warehouse.archive.sheets.sheet import sheets_of_workbook
 
 LAST = 1_048_575, 16_383
@@ -47,6 +49,89 @@ def test_the_file_is_set_aside_by_name(archive: Archive) -> None:
 def test_a_colour_far_outside_is_no_cell_of_a_list() -> None:
     (sheet,) = sheets_of_workbook(workbook(None), ())
     assert sheet.header == ["sleep_id"]
+
+
+def packed(name: str, *parts: bytes) -> bytes:
+    """A workbook, as far as its directory and this part of it go."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as book, book.open(name, "w") as part:
+        for piece in parts:
+            part.write(piece)
+    return file.getvalue()
+
+
+def of_ods(rows: bytes) -> bytes:
+    return packed("content.xml", b"<table:table>", rows, b"</table:table>")
+
+
+def of_xlsx(rows: bytes) -> bytes:
+    return packed("xl/worksheets/sheet1.xml", b"<sheetData>", rows, b"</sheetData>")
+
+
+CELL = b"<c><v>1</v></c>"
+ODS_CELL = b"<table:table-cell><text:p>1</text:p></table:table-cell>"
+EMPTY_ROWS = (
+    b'<table:table-row table:number-rows-repeated="1048570"><table:table-cell/></table:table-row>'
+)
+
+
+@pytest.mark.parametrize(
+    "book",
+    [
+        of_xlsx(b'<row r="1048576">' + CELL + b"</row>"),
+        of_xlsx(b'<row r="7"><c r="XFC7"/>' + CELL + b"</row>"),
+        of_xlsx(b"<row/>" * 1_048_575 + b"<row>" + CELL + b"</row>"),
+        of_xlsx(b'<row><c r="CV60000"><v>1</v></c></row>'),
+        of_ods(EMPTY_ROWS + b"<table:table-row>" + ODS_CELL + b"</table:table-row>"),
+        of_ods(
+            b'<table:table-row><table:table-cell table:number-columns-repeated="16383"/>'
+            + ODS_CELL
+            + b"</table:table-row>"
+        ),
+        of_ods(
+            b'<table:table-row table:number-rows-repeated="40000000">'
+            b'<table:table-cell office:value="1"/></table:table-row>'
+        ),
+    ],
+    ids=["row", "column", "no places", "area", "ODS row", "ODS column", "40 million rows"],
+)
+def test_a_sheet_that_reaches_too_far_is_not_read(book: bytes) -> None:
+    with pytest.raises(DefectiveInputError, match="reaches") as raised:
+        check_workbook(book)
+    assert raised.value.reason_code == "too_large"
+
+
+@pytest.mark.parametrize(
+    "book",
+    [
+        of_xlsx(b'<row r="2"><c r="B2"><v>1</v></c></row><row r="1048576" ht="12"/>'),
+        of_ods(ODS_CELL + EMPTY_ROWS),
+        of_ods((b"<table:table-row>" + ODS_CELL + b"</table:table-row>") * 50_000),
+    ],
+)
+def test_empty_rows_to_the_last_one_are_no_list(book: bytes) -> None:
+    check_workbook(book)
+
+
+def test_a_workbook_that_hides_how_much_it_holds_is_damaged() -> None:
+    content = bytes(1 << 24)
+    book = packed("xl/sharedStrings.xml", content)
+    size = len(content).to_bytes(4, "little")
+    assert size in book
+    with pytest.raises(zipfile.BadZipFile):
+        check_workbook(book.replace(size, (1000).to_bytes(4, "little")))
+
+
+@pytest.mark.parametrize(
+    ("part", "is_read"), [("xl/worksheets/sheet1.xml", True), ("docProps/app.xml", False)]
+)
+def test_only_damage_in_a_part_that_is_read_costs_the_workbook(part: str, is_read: bool) -> None:
+    book = packed(part, b"<a>" * 1000)
+    place = 30 + len(part)
+    damaged = book[:place] + b"\xff" * 10 + book[place + 10 :]
+    expected = pytest.raises(zipfile.BadZipFile) if is_read else nullcontext()
+    with expected:
+        check_workbook(damaged)
 
 
 def test_a_workbook_that_unpacks_to_too_much_is_not_read() -> None:

@@ -1,9 +1,11 @@
 """Rows, boats and files compared with each other, one check after the other."""
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import chain
+from typing import TypeVar
 
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
@@ -23,6 +25,8 @@ from warehouse.archive.sheets.row import (
     others_of,
 )
 from warehouse.archive.spelling.text import shorten
+
+T = TypeVar("T")
 
 
 def keep(
@@ -51,15 +55,19 @@ def unique_ids(entries: Iterable[Entry]) -> Callable[[Entry], None]:
     for entry in entries:
         if entry.tow_id is not None:
             by_id[entry.tow_id].append(entry)
+    is_equal = {
+        tow_id: all(other.row.cells == same[0].row.cells for other in same)
+        for tow_id, same in by_id.items()
+    }
 
     def check(entry: Entry) -> None:
-        same = by_id[entry.tow_id] if entry.tow_id is not None else [entry]
-        if len(same) == 1:
+        if entry.tow_id is None:
             return
-        identical = all(other.row.cells == entry.row.cells for other in same)
-        if identical and entry is same[0]:
+        same, identical = by_id[entry.tow_id], is_equal[entry.tow_id]
+        is_first = entry is same[0]
+        if len(same) == 1 or (identical and is_first):
             return
-        other = next(other for other in same if other is not entry)
+        other = same[1] if is_first else same[0]
         message = say(
             "sleep_id {tow} is also on {where}; {ending}",
             tow=shorten(entry.tow_id or ""),
@@ -113,28 +121,26 @@ def unique_samples(entries: Iterable[Entry]) -> Callable[[Entry], None]:
     A first file may be the second file of another tow of the same boat: that is how two tows are
     combined.
     """
-    first: dict[str, list[Entry]] = defaultdict(list)
-    users: dict[str, list[Entry]] = defaultdict(list)
+    crews: dict[str, dict[tuple[int, str], Entry]] = defaultdict(dict)
+    boats: dict[str, dict[str, Entry]] = defaultdict(dict)
     for entry in entries:
-        first[entry.tow["samples_sha256"]].append(entry)
+        crews[entry.tow["samples_sha256"]].setdefault(_crew(entry), entry)
         for sha256 in _contents(entry):
-            users[sha256].append(entry)
+            boats[sha256].setdefault(entry.tow["fsn_no"], entry)
 
     def check(entry: Entry) -> None:
         sha256 = entry.tow["samples_sha256"]
         if sha256 == entry.tow["second_sha256"]:
             message = say("meetfile and meetfile2 hold the same samples.")
             raise entry.row.fault(message, "samples_listed_twice")
-        boat, crew = entry.tow["fsn_no"], _crew(entry)
-        strangers = [
-            other
-            for used in _contents(entry)
-            for other in users[used]
-            if other.tow["fsn_no"] != boat
-        ] + [other for other in first[sha256] if _crew(other) != crew]
-        if strangers:
-            raise _listed_twice(entry, strangers[0])
-        earliest = first[sha256][0]
+        boat = entry.tow["fsn_no"]
+        strangers = chain(
+            *(_of_others(boats[used], boat) for used in _contents(entry)),
+            _of_others(crews[sha256], _crew(entry)),
+        )
+        if (stranger := next(strangers, None)) is not None:
+            raise _listed_twice(entry, stranger)
+        earliest = crews[sha256][_crew(entry)]
         if entry is not earliest:
             message = say(
                 "'{path}' holds the samples that {where} uses already for {boat}.",
@@ -145,6 +151,11 @@ def unique_samples(entries: Iterable[Entry]) -> Callable[[Entry], None]:
             raise entry.row.fault(message, "duplicate_tow")
 
     return check
+
+
+def _of_others(users: Mapping[T, Entry], own: T) -> Iterator[Entry]:
+    """Gives the users of samples that are not this boat or crew."""
+    return (user for key, user in users.items() if key != own)
 
 
 def _contents(entry: Entry) -> list[str]:

@@ -56,7 +56,7 @@ class Boats:
         """A boat by its number or a name; leading zeros do not matter where one boat is left."""
         if fsn_no in self.good:
             return self.good[fsn_no]
-        numbers = [number for number in self.good if _bare(number) == _bare(fsn_no)]
+        numbers = self._by_bare_number.get(_bare(fsn_no))
         alike = numbers or sorted(self._by_name.get(fold(fsn_no), ()))
         return self.good[alike[0]] if len(alike) == 1 else None
 
@@ -67,6 +67,14 @@ class Boats:
         for boat in self.crews:
             boats.setdefault(fold(boat["name"]), set()).add(boat["fsn_no"])
         return boats
+
+    @cached_property
+    def _by_bare_number(self) -> Mapping[str, Sequence[str]]:
+        """The numbers of the good boats, by the number without leading zeros."""
+        numbers: dict[str, list[str]] = {}
+        for number in self.good:
+            numbers.setdefault(_bare(number), []).append(number)
+        return numbers
 
 
 def _bare(fsn_no: str) -> str:

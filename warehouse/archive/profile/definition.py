@@ -221,6 +221,15 @@ class Profiles(_Strict):
 
     def for_season(self, season: int) -> SeasonProfile:
         """The profile of a season; the project's default where none is given."""
+        if season not in self._made:  # asked for per row of a list
+            self._made[season] = self._season_profile(season)
+        return self._made[season]
+
+    @cached_property
+    def _made(self) -> dict[int, SeasonProfile]:
+        return {}
+
+    def _season_profile(self, season: int) -> SeasonProfile:
         table = self._table(season)
         return SeasonProfile(
             season=season,

@@ -3,21 +3,26 @@
 import io
 import re
 import zipfile
+import zlib
 from typing import Final
 
 from warehouse.archive.limits import check_extent, check_unpacked
 
-_FILLED_CELL: Final = re.compile(
-    rb"""<(?:\w+:)?c\s(?:[^<>]*\s)?r\s*=\s*["']([A-Za-z]{1,3})([0-9]{1,9})["'][^<>]*(?<!/)>\s*<[^/]"""
+_READ: Final = ("xl/worksheets/", "xl/sharedStrings.xml", "content.xml")
+"""The parts that grow with what a workbook holds; damage in another is the reader's business."""
+_MARK: Final = re.compile(
+    rb"<(?:\w+:)?(table|row|c|table-row|(?:covered-)?table-cell)((?:[\s/][^<>]*)?)>(?=(\s*<[^/])?)"
 )
-"""The place of a cell that holds something; people format empty ones by the million."""
+"""A table, row or cell of XLSX or ODS, and whether anything is in it."""
+_PLACE: Final = re.compile(rb"""\sr\s*=\s*["']([A-Za-z]{0,9})([0-9]{1,30})["']""")
+_REPEATED: Final = re.compile(rb"""number-(?:rows|columns)-repeated\s*=\s*["']([0-9]{1,30})["']""")
 
 
 def check_workbook(data: bytes) -> None:
     """Refuses a workbook whose cells lie too far apart, or that unpacks to too much.
 
-    One cell in the last row makes a reader ask for the memory of every cell above it. The
-    `dimension` of a sheet may be absent or wrong, so the references of its cells count.
+    One cell in the last row makes a reader ask for the memory of every cell above it. What a sheet
+    says of its own size may be absent or wrong, so the places of its cells count.
 
     Args:
         data: content of the file; what is no zip file has no more cells than bytes.
@@ -32,15 +37,40 @@ def check_workbook(data: bytes) -> None:
         members = book.infolist()
         check_unpacked(sum(member.file_size for member in members))
         for member in members:
-            if member.filename.startswith("xl/worksheets/"):
-                _check_sheet(book.read(member))
+            if member.filename.startswith(_READ):
+                _check_sheet(_content(book, member))
+
+
+def _content(book: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
+    """A part of the workbook; unpacking finds a size that is not true."""
+    try:
+        return book.read(member)
+    except zlib.error as error:
+        raise zipfile.BadZipFile(str(error)) from error
 
 
 def _check_sheet(xml: bytes) -> None:
-    rows = columns = 0
-    for cell in _FILLED_CELL.finditer(xml):
-        rows, columns = max(rows, int(cell[2])), max(columns, _column(cell[1]))
-    check_extent(rows, columns)
+    """Follows the cells of a sheet; empty ones do not count, as people format them by the million.
+
+    A row or cell that does not say its place follows the one before it.
+    """
+    row = column = rows = columns = 0
+    for mark in _MARK.finditer(xml):
+        kind, attributes, child = mark.groups()
+        if kind == b"table":
+            row = rows = columns = 0
+            continue
+        place, repeated = _PLACE.search(attributes), _REPEATED.search(attributes)
+        further = int(repeated[1]) if repeated else 1
+        if kind in (b"row", b"table-row"):
+            row, column = int(place[2]) if place else row + further, 0
+            continue
+        column += further
+        if place:
+            row, column = int(place[2]), _column(place[1])
+        if (child and not attributes.endswith(b"/")) or b"value=" in attributes:
+            rows, columns = max(rows, row), max(columns, column)
+            check_extent(rows, columns)
 
 
 def _column(letters: bytes) -> int:

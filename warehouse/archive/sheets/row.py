@@ -13,7 +13,7 @@ from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import limits
+from pipeline.tables.frames import column_of, limits
 from warehouse.archive.faults import at_line
 from warehouse.archive.spelling.columns import Column, FoundColumn
 from warehouse.archive.spelling.dates import AmbiguousDateError, parse_date
@@ -250,7 +250,7 @@ class ListRow:
         It is None where the cell is empty, which it may be if the table or the header can do
         without the column.
         """
-        declared = self.reading.table.columns()[column.key]
+        declared = column_of(self.reading.table, column.key)
         read = _READERS_BY_KEY.get(column.key) or _READERS[declared.dtype.base_type()]
         value = read(self, column.key)
         may_be_empty = declared.nullable or not column.required
