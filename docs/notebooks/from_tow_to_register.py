@@ -46,7 +46,7 @@ def _(data, tow):
     samples = data.samples(tow["tow_id"])
     rate_hz = tow["sample_rate_hz"]
     seconds = samples.with_columns(second=pl.int_range(pl.len()).over("run") // rate_hz)
-    means = seconds.group_by("run", "second", maintain_order=True).mean()
+    means = seconds.group_by("run", "second", maintain_order=True).agg(pl.col(pl.Float32).mean())
     trace = (
         alt.Chart(means.select("run", "second", "log1_m_s"))
         .mark_line()
