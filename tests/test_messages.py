@@ -11,7 +11,7 @@ from herijk.cli.overview import language_of
 from herijk.cli.text import table
 from pipeline import errors
 from pipeline.messages import LANGUAGE, headings, ngettext, pgettext, say, speaker, spoken
-from tests.texts import PO, TODO, as_file, catalogue, in_python
+from tests.texts import PO, WHAT_TO_DO, as_file, catalogue, in_python
 
 NL = speaker("nl")
 
@@ -28,13 +28,13 @@ def forms(text):
 
 
 def test_the_catalogue_holds_what_is_said():
-    assert as_file(catalogue()) == PO.read_bytes(), f"The texts have changed. {TODO}"
+    assert as_file(catalogue()) == PO.read_bytes(), f"The texts have changed. {WHAT_TO_DO}"
 
 
 def test_every_text_has_its_dutch_with_the_same_values():
     with PO.open("rb") as file:
         texts = [m for m in read_po(file, locale="nl") if m.id]
-    assert [m.id for m in texts if not m.string or not all(m.string)] == [], TODO
+    assert [m.id for m in texts if not m.string or not all(m.string)] == [], WHAT_TO_DO
     pairs = [pair for m in texts for pair in zip(forms(m.id), forms(m.string), strict=True)]
     assert [english for english, dutch in pairs if values(english) != values(dutch)] == []
 

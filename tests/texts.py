@@ -24,7 +24,7 @@ from pipeline.tables.schemas import ABOUT, TABLES, summary_of
 from tests.architecture.repository import ROOT, modules
 
 PO = Path(CATALOGUES) / "nl" / "LC_MESSAGES" / f"{DOMAIN}.po"
-TODO = f"Run `make texts`, and give what has none its Dutch in {PO.relative_to(ROOT)}."
+WHAT_TO_DO = f"Run `make texts`, and give what has none its Dutch in {PO.relative_to(ROOT)}."
 MARKS = {
     *("say", "tell", "wrong", "fault", "headings", "NamedWorld", "BadParameter"),
     *("MethodFileError", "ArchiveChangedError"),
@@ -126,7 +126,7 @@ def main(arguments: list[str]) -> None:
     if "--check" not in arguments:
         PO.write_bytes(made)
     elif made != PO.read_bytes():
-        sys.exit(f"The texts have changed. {TODO}")
+        sys.exit(f"The texts have changed. {WHAT_TO_DO}")
 
 
 if __name__ == "__main__":

@@ -159,6 +159,17 @@ def test_dagster_and_we_call_the_same_stale_after_a_change(bench, instance, monk
         agrees_after(new_code, ask)
 
 
+def test_a_season_is_made_from_dagsters_page_and_what_follows_too(bench, built, instance, tmp_path):
+    fresh = Workbench(bench.archive, tmp_path / "fresh")
+    materialise(fresh, instance, *intake.INDEXED)
+    assert materialise(fresh, instance, "samples", "blocks", season=2009).success
+    assert fresh.store.partitions("blocks") == ["2009"]
+    following = [name for step in STEPS[:3] for name in step.outputs]
+    assert materialise(fresh, instance, *following).success
+    of_2009 = built.store.read("tows").filter(season=2009)["tow_id"]
+    assert fresh.store.read("tows")["tow_id"].equals(of_2009)
+
+
 def test_a_damaged_table_that_an_asset_reads_is_made_again(bench, built, instance):
     path = bench.store.table_path("tows")
     content = path.read_bytes()

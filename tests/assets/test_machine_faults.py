@@ -257,6 +257,24 @@ def test_a_full_disk_that_sqlite_calls_an_error_of_the_disk_is_called_full(tmp_p
         raise OSError("disk I/O error")
 
 
+LIMITED_FILES = """
+import resource, sys
+from pathlib import Path
+from warehouse.store.machine_faults import machine_faults_explained
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+with machine_faults_explained(Path(sys.argv[1])):
+    raise RuntimeError("disk I/O error")  # what SQLite calls it
+"""
+
+
+def test_a_limit_to_files_is_no_broken_disk(tmp_path):
+    run = subprocess.run(
+        [sys.executable, "-c", LIMITED_FILES, tmp_path],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert "ulimit -n 1024 -f unlimited" in run.stderr.splitlines()[-1]
+
+
 @pytest.mark.parametrize(
     "error", [MemoryError(), ImportError("x.so: failed to map segment from shared object")]
 )

@@ -4,6 +4,7 @@ Libraries wrap the system's errors in their own. What tells them is the system's
 anywhere in the chain of causes, or the few words by which SQLite, DuckDB and Polars pass one on.
 """
 
+import importlib
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +14,7 @@ from typing import Final, NamedTuple
 
 from pipeline.errors import HerijkError, UnavailableError
 from pipeline.messages import Sentence, say
+from warehouse.store.files import WINDOWS
 
 
 class _Fault(NamedTuple):
@@ -94,11 +96,19 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
         fault = _machine_fault(error)
         if fault is None:
             raise
-        if fault is _BROKEN_DISK and _is_full(root):  # SQLite calls both an error of the disk
-            fault = _FULL
+        if fault is _BROKEN_DISK:  # what SQLite calls a full disk and a limit to files, too
+            fault = _FULL if _is_full(root) else _LIMITED if _is_limited() else fault
         named = (e.filename for e in _causes(error) if isinstance(e, OSError) and e.filename)
         said = say(fault.sentence, root=root, path=next(named, root))
         raise UnavailableError("{}. {}", said, REASSURANCE) from error
+
+
+def _is_limited() -> bool:
+    """Whether the system lets this process write files of some size only."""
+    if WINDOWS:
+        return False
+    resource = importlib.import_module("resource")  # not every system has it
+    return bool(resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY)
 
 
 def is_machine_fault(error: BaseException) -> bool:
