@@ -79,7 +79,7 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
 
 def sensitivity_study(frame: pl.DataFrame, say: Say) -> Drawing:
     """What other choices of judgement do to Cw; `frame` is `option_summary`."""
-    label = named([c.name for c in CHOICES], say)
+    label = named(list(CHOICES), say)
     base = alt.Chart(frame).encode(
         alt.Y(
             "option:N",

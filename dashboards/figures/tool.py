@@ -10,8 +10,7 @@ from dashboards.figures.slides import SIDE, in_words, panels, small
 from dashboards.figures.style import GREY, OKABE_ITO, Drawing, number, tips
 from pipeline.messages import Say
 from pipeline.studies.claims import CHANNELS
-from pipeline.studies.options import CHOICES
-from pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
+from pipeline.studies.options import CHOICES, SPEED_NAMES, SPEEDS, TICKS
 
 MOST_SCATTER: Final = 0.10
 """Sleepproef 2017: "standaard-deviatie < 10% van de meetwaarde"."""
@@ -78,7 +77,7 @@ def tick_effects(frame: pl.DataFrame, say: Say) -> Drawing:
 
     `frame` holds rows of `option_summary`; of a single tow without the bar.
     """
-    order = [*TICKS, *SPEEDS, *(choice.name for choice in CHOICES)]
+    order = [*TICKS, *SPEEDS, *CHOICES]
     base = alt.Chart().encode(
         alt.Y(
             "option:N",

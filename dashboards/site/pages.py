@@ -211,11 +211,11 @@ PART = pl.col("part") + 1
 """Parts of a season as people count them."""
 
 LINK_COLUMNS = (
-    *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
+    *("method", "season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat"),
 )
 STEP_COLUMNS = (
-    *("method", "season", "part", "log", "n_boats", "level_step_percent"),
+    *("method", "season", "part", "n_boats", "level_step_percent"),
     *("level_sd_percent", "force_step_percent", "force_sd_percent", "cause"),
 )
 

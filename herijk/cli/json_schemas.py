@@ -201,7 +201,7 @@ def _log_error() -> Schema:
     return of(
         LogErrorReport,
         factors=factor | links | {"cause": text("step is of", maybe=True)},
-        parts=factor | columns("season_links", "part", "log", "n_tows", "n_links"),
+        parts=factor | columns("season_links", "part", "n_tows", "n_links"),
         diagnosis=columns("season_diagnosis"),
     )
 

@@ -11,7 +11,7 @@ from dashboards.labels import code_in_words
 from dashboards.workbench.form import unit_of
 from dashboards.workbench.texts import text
 from pipeline.messages import LANGUAGE, number, tell
-from pipeline.method.definition import LAST_SEASON, Method, SeasonSteps
+from pipeline.method.definition import LAST_SEASON, Method, SeasonSteps, basis_of
 
 DIFFERS = "*"
 WIDTH = 100
@@ -42,6 +42,7 @@ def _step(step: str, options: BaseModel, before: BaseModel) -> str:
     said = "; ".join(
         f"{_text(f'{step}.{option}')}: {_value(option, value)}"
         f"{'' if value == getattr(before, option) else f' {DIFFERS}'}"
+        f" ({_text(f'status.{basis_of(step, option).status}')})"
         for option, value in options
     )
     return textwrap.fill(

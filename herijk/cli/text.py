@@ -266,8 +266,8 @@ def _size(value: float, unit: str) -> str:
 
 
 def _parts(parts: list[Row]) -> str:
-    head = headings("season", "log", "part", "factor", "from", "to", "source", "tows", "links")
-    return table(head, [(r["season"], r["log"], r["part"] + 1, *_factor(r)) for r in parts])
+    head = headings("season", "part", "factor", "from", "to", "source", "tows", "links")
+    return table(head, [(r["season"], r["part"] + 1, *_factor(r)) for r in parts])
 
 
 def _plot(row: Row) -> str:

@@ -45,7 +45,7 @@ def test_every_tow_has_every_step_in_order(rungs):
 
 
 def test_a_step_that_both_methods_share_changes_nothing(rungs):
-    shared = rungs.filter(pl.col("step").is_in(["run_point", "temperature"]))
+    shared = rungs.filter(pl.col("step").is_in(["run_point", "temperature", "unrecorded"]))
     assert set(shared["factor"]) == {1.0}
 
 
@@ -75,8 +75,7 @@ def test_the_effect_of_a_choice_is_that_of_choosing_it(world, effects):
 
 
 def test_the_spread_covers_all_choices(effects):
-    names = {choice.name for choice in CHOICES}
-    assert set(effects["option"]) == names | {ALL_OPTIONS}
+    assert set(effects["option"]) == {*CHOICES, ALL_OPTIONS}
     spread = effects.filter(pl.col("option") == ALL_OPTIONS)
     assert (spread["cw_sd_ratio"] > 0).all()
     single = effects.filter(pl.col("option") != ALL_OPTIONS)

@@ -64,8 +64,8 @@ WRONG = {
         ["own.toml", "curve.b", "missing", "2009"],
     ),
     "unknown key": (
-        changed("window", '{ rule = "all", minimal_s = 30 }'),
-        [f"line {LINE_OF['window']}", "window.minimal_s", "unknown key", "minimum_s", "rule"],
+        changed("wind", '{ model = "head", sides = 0.2 }'),
+        [f"line {LINE_OF['wind']}", "wind.sides", "unknown key", "averaging_s", "side"],
     ),
     "unknown option": (
         changed("wind", '{ model = "sideways" }'),
@@ -219,7 +219,7 @@ SAME_RESULT = {
     "description": lambda t: t.replace("title =", 'description = "long"\ntitle ='),
     "comment": lambda t: "# why\n" + t,
     "order": lambda t: t.replace('model = "oblique", ahead = 0.0', 'ahead = 0.0, model = "oblique"'),
-    "default written out": lambda t: t.replace('{ b = "free" }', '{ b = "free", cap_hull_speeds = 3 }'),
+    "default written out": lambda t: t.replace('"mean_of_ratios" }', '"mean_of_ratios", inertia = "none" }'),
     "override that changes nothing": lambda t: t + '[[overrides]]\nrange = "2012:"\nwind = { ahead = 0.0 }\n',
     "why": lambda t: t + '[[overrides]]\nrange = "2012:"\nwhy = "x"\nwind = { ahead = 0.0 }\n',
 }  # fmt: skip
@@ -241,11 +241,12 @@ def test_extending_gives_the_hash_of_the_same_written_out():
 OTHER_RESULT = {
     "speed": '{ correction = "prescribed" }',
     "calibration": '{ rule = "gps_per_tow" }',
-    "window": '{ rule = "all", minimum_s = 25 }',
+    "window": '{ rule = "steady" }',
     "wind": '{ model = "head", ahead = 0.50001 }',
     "run_point": '{ estimator = "ratio_of_means" }',
-    "temperature": '{ rule = "none", reference_c = 12 }',
-    "runs": "{ highest_target_ratio = 1.5, minimum = 5 }",
+    "temperature": '{ rule = "ittc57" }',
+    "runs": "{ highest_target_ratio = 1.4 }",
+    "unrecorded": '{ rule = "expected" }',
     "curve": '{ b = "capped" }',
 }
 

@@ -194,7 +194,7 @@ def test_seasons_are_batched_by_their_steps_and_not_otherwise(measured):
     """A method that says the same of every season in many overrides gives the same numbers."""
     once = recompute(method(), measured.tows, measured.blocks)
     blocks = "".join(
-        f'[[overrides]]\nrange = "{season}"\nwindow = {{ force_ends_ratio = 0.{season - 2000} }}\n'
+        f'[[overrides]]\nrange = "{season}"\ncalibration = {{ rule = "none" }}\n'
         for season in SETTINGS.seasons
     )
     split = parse_method(method_text() + blocks, "split.toml")
@@ -314,7 +314,7 @@ def test_a_tow_without_gps_gets_the_factor_of_its_log_from_the_other_tows(measur
 
 def test_a_season_without_gps_rests_on_boats_towed_in_others(measured):
     text = 'name = "by-gps"\ntitle = "x"\nextends = "rebased"\n[[overrides]]\nrange = "2012"\n'
-    rule = 'why = "x"\ncalibration = { rule = "gps_per_tow", without_gps = "estimated" }\n'
+    rule = 'why = "x"\ncalibration = { rule = "gps_per_tow" }\n'
     world = without_gps(measured, (measured.tows["season"] == 2012).to_numpy())
     by_gps = recompute(parse_method(text + rule, "by-gps.toml"), world.tows, world.blocks)
     estimated = recompute(shipped_method("rebased"), world.tows, world.blocks)

@@ -44,7 +44,7 @@ def test_what_is_not_known_is_not_corrected_and_said(missing):
     cold = Defects(water_temperature_c=(4.0, 4.0))
     unknown = pl.when(pl.col("tow_id") == "2015-002").then(None).otherwise(missing)
     batch = batch_of(cold, **{missing: unknown})
-    rule = method(temperature='{ rule = "ittc57" }').for_season(2015).temperature
+    rule = method(temperature='{ rule = "ittc57" }').for_season(2015)
     change, known = temperature_change_kg_m(batch, rule, np.full(36, 2.5))
     assert known.tolist() == [True, False, True, True, True, True]
     assert (change[batch.tow == 1] == 0.0).all()

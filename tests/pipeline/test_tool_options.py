@@ -11,7 +11,7 @@ from pipeline.hull import hull_speed_m_s
 from pipeline.method.definition import parse_method, shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
-from pipeline.studies.tool_options import TICKS, option_curves, tick_effects
+from pipeline.studies.options import TICKS, option_curves, tick_effects
 from tests.worlds import measure
 
 SPEEDS = {2010: {"as_read", "multiply", "divide"}, 2013: {"as_read"}, 2016: {"as_read", "dgps"}}

@@ -20,7 +20,7 @@ from tests.pipeline.season_worlds import as_blocks, run_noise, run_point_ratios
 
 def tows(**changed):
     usual = {
-        "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0, "log": "log1",
+        "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0,
         "kappa": 2.86,
         "misfit_ratio": 0.0, "wind_ln_sd": None,
         "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,

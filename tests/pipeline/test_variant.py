@@ -36,10 +36,10 @@ def test_ranges_are_cut_where_a_season_or_a_range_begins():
 
 def test_a_change_of_all_seasons_is_one_line():
     base = shipped_method("rebased")
-    made = variant(base, "own", "Mijn", "omdat", changed(base, "curve", "cap_hull_speeds", 2.0))
+    made = variant(base, "own", "Mijn", "omdat", changed(base, "runs", "highest_target_ratio", 1.3))
     assert variant_text(made) == (
         'name = "own"\ntitle = "Mijn"\ndescription = "omdat"\nextends = "rebased"\n'
-        'seasons = "2009:"\n\n[steps]\ncurve = { cap_hull_speeds = 2.0 }\n'
+        'seasons = "2009:"\n\n[steps]\nruns = { highest_target_ratio = 1.3 }\n'
     )
 
 

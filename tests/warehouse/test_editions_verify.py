@@ -13,7 +13,7 @@ import pytest
 import pipeline.recompute.recompute
 import warehouse.editions.verify
 from pipeline.errors import MissingKnowledgeError
-from pipeline.method.definition import parse_method, shipped_method
+from pipeline.method.definition import shipped_method
 from tests.warehouse.edition_bench import terms
 from warehouse.derive.graph import METHOD
 from warehouse.derive.inputs import Scope
@@ -150,19 +150,9 @@ def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
     ]
 
 
-BY_HAND = """
-name = "by-hand"
-title = "proef"
-extends = "rebased-2015"
-
-[steps]
-window = { rule = "by_hand" }
-"""
-
-
 def test_a_window_given_by_hand_afterwards_is_named(bench_of_editions):
     bench = bench_of_editions
-    method = parse_method(BY_HAND, "by-hand.toml")
+    method = shipped_method("rebased-2015")
     bench.rebuild((method,))
     bench.publish("x", method)
     tow = bench.tow(2014)["tow_id"]

@@ -11,6 +11,7 @@ from unittest import mock
 
 import polars as pl
 import pytest
+from pipeline.recompute.outcome import Outcome
 from polars.testing import assert_frame_equal
 
 import pipeline
@@ -18,7 +19,6 @@ import warehouse.archive
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.blocks.batch import Batch
-from pipeline.recompute.outcome import Outcome
 from tests.architecture.repository import PACKAGES
 from tests.conftest import METHODS, Workbench, shared
 from warehouse.archive.plausibility.run import Run

@@ -29,7 +29,7 @@ from herijk.cli.audit_text.words import (
 )
 from herijk.cli.text import decimals, table
 from pipeline.consistency.eras import ERAS
-from pipeline.consistency.tow_speed import SLOW_POWER_W
+from pipeline.history import SLOW_POWER_W
 from pipeline.messages import headings, tell
 from pipeline.tables.row import Row
 from warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
