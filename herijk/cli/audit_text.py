@@ -328,5 +328,5 @@ def _type_steps(report: TypesAudit) -> Iterator[str]:
         for method, known in report.fleet.items()
         for row in known.reproducibility
     ]
-    columns = ("method", "scope", "within_sd_ratio", "sd_ratio", "lo", "hi", "n_pairs")
-    yield section(tell("How well repeat tows of all types agree"), table(fleet, columns))
+    shown = ("method", "scope", "within_sd_ratio", "sd_ratio", "lo", "hi", "n_pairs")
+    yield section(tell("How well repeat tows of all types agree"), table(fleet, shown))

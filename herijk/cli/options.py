@@ -80,7 +80,7 @@ data_option = folder_option("data", default="data", help="Folder with everything
 json_option = flag("--json", "as_json", help="Print the result as JSON.")
 
 
-class Day(click.ParamType):
+class Day(click.ParamType[dt.date]):
     """A day, written as 2026-05-08."""
 
     name = "date"
@@ -95,7 +95,7 @@ class Day(click.ParamType):
             self.fail(tell("write a day as 2026-05-08"), param, ctx)
 
 
-class Seasons(click.ParamType):
+class Seasons(click.ParamType[range]):
     """A season, written as 2014, or a range of them, 2009:2018."""
 
     name = "seasons"

@@ -6,7 +6,6 @@ Click looks its own texts up by gettext, in the same catalogue as ours. The lang
 
 import gettext
 import os
-import sys
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import pairwise
@@ -117,11 +116,17 @@ class Group(Command, click.Group):
         super().__init__(*given, **settings)
         self.sections = sections
 
-    def main(self, args: Sequence[str] | None = None, **settings: Any) -> Any:
-        """Runs the command in the language that is asked for."""
-        given = sys.argv[1:] if args is None else list(args)
-        speak(language_of(given, os.environ))
-        return super().main(given, **settings)
+    def make_context(
+        self,
+        info_name: str | None,
+        args: list[str],
+        parent: click.Context | None = None,
+        **extra: Any,
+    ) -> click.Context:
+        """Reads the arguments, from here on in the language that they ask for."""
+        if parent is None:
+            speak(language_of(args, os.environ))
+        return super().make_context(info_name, args, parent, **extra)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Writes the sections of the overview."""
