@@ -95,9 +95,10 @@ def _within_bulk(chart: Drawing, *fields: str) -> Drawing:
     for field in fields:
         reach = f"{BULK} * (datum.{field}_q3 - datum.{field}_q1)"
         low, high = f"datum.{field}_q1 - {reach}", f"datum.{field}_q3 + {reach}"
+        quartiles: dict[str, Any] = {f"{field}_{q}": f"{q}({field})" for q in ("q1", "q3")}
         chart = (
             chart.transform_filter(f"isValid(datum.{field})")
-            .transform_joinaggregate(**{f"{field}_{q}": f"{q}({field})" for q in ("q1", "q3")})
+            .transform_joinaggregate(**quartiles)
             .transform_calculate(
                 **{
                     f"{field}_seen": f"datum.{field}_q3 > datum.{field}_q1"

@@ -20,7 +20,7 @@ GREY: Final = "#666666"
 WIDTH: Final = 620
 HEIGHT: Final = 320
 
-Drawing = alt.Chart | alt.LayerChart | alt.FacetChart
+Drawing = alt.Chart | alt.LayerChart | alt.FacetChart | alt.VConcatChart
 """What a figure returns; Altair itself does not say which of them."""
 
 Look = Callable[[Say], Sequence[Any]]
@@ -46,9 +46,9 @@ def _both(field: str, inks: alt.Scale, shapes: alt.Scale, **more: Any) -> Sequen
     )
 
 
-def _pair(field: str, names: dict[object, str], title: str) -> Sequence[Any]:
+def _pair(field: str, names: dict[str | int, str], title: str) -> Sequence[Any]:
     """The same of two values that always look alike."""
-    domain = list(names)
+    domain: list[Any] = list(names)
     known = {str(value): text for value, text in names.items()}
     return _both(
         field,
@@ -66,7 +66,7 @@ def crews(say: Say) -> Sequence[Any]:
 
 def directions(say: Say) -> Sequence[Any]:
     """Out and back apart."""
-    names: dict[object, str] = {d: say(labels.code(f"direction.{d}")) for d in (1, -1)}
+    names: dict[str | int, str] = {d: say(labels.code(f"direction.{d}")) for d in (1, -1)}
     return _pair("direction", names, say(labels.column("direction")))
 
 
