@@ -2,7 +2,7 @@
 
 Per sample the gross coefficient is `Cw = F / (v y)^2` (Sleepproef, R. Pot 2017, "IJking
 snelheid"). Everything here is in the speed that the log reads; a factor k that turns it into true
-speed divides every coefficient by k^2, and is applied last (`pipeline.recompute.outcome`). Which
+speed divides every coefficient by k^2, and is applied last (`pipeline.recompute.computed`). Which
 runs count and which factor holds is decided elsewhere.
 """
 

@@ -11,7 +11,6 @@ from unittest import mock
 
 import polars as pl
 import pytest
-from pipeline.recompute.outcome import Outcome
 from polars.testing import assert_frame_equal
 
 import pipeline
@@ -19,6 +18,7 @@ import warehouse.archive
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.blocks.batch import Batch
+from pipeline.recompute.computed import Computed
 from tests.architecture.repository import PACKAGES
 from tests.conftest import METHODS, Workbench, shared
 from warehouse.archive.plausibility.run import Run
@@ -34,7 +34,7 @@ def tows_in(value, path):
     """Whether a value that a function is given is about the tow."""
     if isinstance(value, pl.DataFrame):
         return "tow_id" in value.columns and TOW in value["tow_id"]
-    if isinstance(value, Outcome):
+    if isinstance(value, Computed):
         return tows_in(value.batch, path)
     if isinstance(value, Batch):
         return tows_in(value.tows, path)
@@ -148,7 +148,7 @@ def check_without(bench, expected):
 @pytest.mark.parametrize(
     ("module", "name"),
     [
-        ("warehouse.archive.plausibility.whole_columns", "check_mix_ups"),
+        ("warehouse.archive.plausibility.mix_ups", "check_mix_ups"),
         ("pipeline.assessment.plausibility", "plausibility"),
         ("pipeline.recompute.season_factors", "_rows"),
         ("pipeline.season_log.estimate", "estimate_season_factors"),
@@ -168,17 +168,6 @@ def test_a_failing_tow_is_set_aside_and_the_rest_goes_on(
     assert faults["reason_code"].to_list() == ["unforeseen"]
     assert (TOW in bench.table("curves")["tow_id"]) is False
     assert [c.severity for c in report.checks if c.check == "nothing_unforeseen"] == ["WARN"]
-
-
-def test_a_log_that_stood_still_fails_no_check():
-    from warehouse.archive.plausibility.whole_columns import _follows_log  # noqa: PLC0415
-
-    class Still:
-        channels = {"log1": mock.Mock(), "log2": mock.Mock()}  # noqa: RUF012
-
-    median = "warehouse.archive.plausibility.whole_columns.median_of"
-    with mock.patch(median, return_value=0.0):
-        assert not _follows_log([Still()], "log2")
 
 
 def test_a_failing_method_costs_its_rows_alone(tiny, tmp_path):
