@@ -320,7 +320,6 @@ CODES: Final[dict[str, Sentence]] = {
     "unseparated": say("method and input"),
     "unexplained": say("unexplained"),
     "tables_fit_their_schemas": say("tables fit their schemas"),
-    "counts_agree": say("counts agree"),
     "few_tows_set_aside": say("few tows set aside"),
     "log_factors_stayed": say("log factors stayed"),
     "boats_stayed_within_their_intervals": say("boats stayed within their intervals"),

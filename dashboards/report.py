@@ -104,7 +104,6 @@ _LATER: Final = re.compile(f"{LATER}.*")
 
 FAILED: Final = {
     "tables_fit_their_schemas": say("tables do not fit their schemas"),
-    "counts_agree": say("counts do not agree"),
     "few_tows_set_aside": say("many tows are set aside"),
     "nothing_unforeseen": say(
         "Herijk itself failed; report this to whoever maintains it, with the folder unforeseen"

@@ -172,47 +172,27 @@ def rebuild(
     as_json: AsJson = False,
 ) -> None:
     """From the archive to registers and tables; only what changed is done again."""
-    from assets.notify import notifier_of
     from assets.rebuild import rebuild as run
-    from assets.report import failed_checks, tell
-    from assets.settings import applied, read_settings
+    from assets.report import failed_checks
+    from assets.settings import applied
     from dashboards.report import headlines
-    from herijk.cli.progress import TerminalProgress
+    from herijk.cli.progress import log_shown
     from pipeline.messages import speaker
     from warehouse.queries import reports
     from warehouse.store.store import Store
 
     known = methods.known_methods(data)
     chosen = applied(data, [known.kept(name) for name in method or ()])
-    try:
-        with TerminalProgress() as progress:
-            news = run(archive, data, chosen, progress, seasons)
-    except Exception as error:
-        _tell_failure(data, error)
-        raise
+    with log_shown():
+        news = run(archive, data, chosen, seasons)
     report = reports.rebuild_report(Store(data))
     if as_json:
         typer.echo(as_json_text({**vars(report), "done": news.done, "since": news}))
     else:
         lines = headlines(news, news.checks, speaker(LANGUAGE.get()))
         typer.echo(text.rebuild(report, news.done, lines))
-    notifier = notifier_of(str(data), read_settings(data))
-    for problem in tell(notifier, news):
-        typer.echo(f"herijk: {problem}", err=True)
     if failed := failed_checks(news.checks):
         raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
-
-
-def _tell_failure(data: Path, error: Exception) -> None:
-    """Tells those who asked to be told that a rebuild failed, as under `serve`."""
-    from assets.notify import notifier_of
-    from assets.report import tell_failure
-    from assets.settings import read_settings
-
-    what = str(error) if isinstance(error, HerijkError) else unexpected(error)
-    with suppress(HerijkError):  # settings that cannot be read are what failed
-        for problem in tell_failure(notifier_of(str(data), read_settings(data)), what):
-            typer.echo(f"herijk: {problem}", err=True)
 
 
 @app.command()
@@ -229,24 +209,21 @@ def serve(
     ] = False,
 ) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from assets.instance import prepare_home, taking_over
+    from assets.instance import end_lost_runs, instance_of, prepare_home
     from assets.rebuild import check_apart
     from assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
     from warehouse.store.lock import only_server
     from warehouse.store.store import Store
 
-    def tell(line: str) -> None:
-        typer.echo(line, err=True)
-
     check_apart(archive, data)
     read_settings(data)
     store = Store(data)
     with machine_faults_explained(data), only_server(data):
-        for line in taking_over(store):
-            tell(line)
+        with instance_of(store) as instance:
+            end_lost_runs(instance, {})
         served = Served(archive, data, host, port, may_start)
-        serve_until_stopped(served, prepare_home(store), tell)
+        serve_until_stopped(served, prepare_home(store), lambda line: typer.echo(line, err=True))
 
 
 @app.command()
@@ -421,7 +398,7 @@ def simulate(
     as_json: AsJson = False,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
-    from herijk.cli.progress import TerminalProgress
+    from herijk.cli.progress import tows_counted
     from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
 
@@ -433,11 +410,8 @@ def simulate(
     settings = world_settings(
         world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    with machine_faults_explained(directory), TerminalProgress() as progress:
-        progress.expect(len(seasons) * tows_per_season)
-        truth = write_simulated_archive(
-            directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
-        )
+    with machine_faults_explained(directory), tows_counted() as counted:
+        truth = write_simulated_archive(directory, simulate_world(settings), counted)
     made = {"archive": str(directory), "truth": str(truth)}
     show(made, lambda m: tell("Simulated archive: {archive}\nIts truth: {truth}", **m), as_json)
 
