@@ -1,8 +1,7 @@
 """What a rebuild leaves to be read: a page and JSON.
 
 They are under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
-about the last that changed something, with the day of the last one after it that changed nothing;
-and a dated JSON for each that changed something.
+about the last that changed something, and a dated JSON for each that did.
 """
 
 import datetime as dt
@@ -13,11 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from dashboards.report import (
-    PAGES,
     Check,
     found_in_words,
     headlines,
-    with_later_rebuild,
 )
 from pipeline.messages import LANGUAGE, speaker
 from warehouse.derive.step import QUARANTINE
@@ -73,10 +70,7 @@ class Report(ChangeSummary):
 def write_report(
     store: Store, done: Done, evaluated: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
 ) -> Report:
-    """Finds out what changed, and writes page and JSON.
-
-    Where nothing changed, the page about the last change stays, and says so.
-    """
+    """Finds out what changed, and writes page and JSON; the page about the last change stays."""
     changes = change_report(store)
     about, summary = store.read("about_archive"), summary_of(changes)
     checks = [*(_check(one) for one in evaluated), *_unforeseen(store)]
@@ -98,12 +92,6 @@ def write_report(
         for name, page in report_pages(store, changes, checks, report.made_at).items():
             _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
-    else:
-        for language, name in PAGES.items():
-            path = folder / name
-            if path.exists():
-                shown = path.read_text(encoding="utf-8")
-                _write(path, with_later_rebuild(shown, report.made_at, speaker(language)))
     _write(folder / "latest.json", text)
     remember(store)
     return report

@@ -213,13 +213,12 @@ def serve(
     from assets.rebuild import check_apart
     from assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
-    from warehouse.store.lock import only_server
     from warehouse.store.store import Store
 
     check_apart(archive, data)
     read_settings(data)
     store = Store(data)
-    with machine_faults_explained(data), only_server(data):
+    with machine_faults_explained(data):
         with instance_of(store) as instance:
             end_lost_runs(instance, {})
         served = Served(archive, data, host, port, may_start)

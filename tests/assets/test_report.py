@@ -113,8 +113,6 @@ def test_a_second_rebuild_reports_that_nothing_changed(bench):
     assert report.headlines == ["Nothing changed since the last report."]
     assert latest(bench)["nothing_changed"]
     page = (bench.data / "report" / "latest.html").read_text("utf-8")
-    later = f"De herberekening van {report.made_at[:16].replace('T', ' ')} veranderde daarna niets."
-    assert page.count(later) == 1
     assert "Eerste verslag" in page
     assert "GESIMULEERD" in page
 
