@@ -28,8 +28,6 @@ SEASONS: Final = dg.DynamicPartitionsDefinition(name="season")
 VERSION_TAG: Final = "dagster/data_version"
 
 GROUP: Final = "archive"
-OWNERS: Final = ["team:archive"]
-SUBJECT: Final = {"herijk/subject": "archive"}
 LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
     warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
 )
@@ -44,9 +42,6 @@ LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
             description=f"{name}: of the lists of the archive",
             freshness_policy=LOOKED_AT if name == "listed_files" else None,
             group_name=GROUP,
-            kinds={"parquet"},
-            owners=OWNERS,
-            tags=SUBJECT,
         )
         for name in intake.INDEXED
     ]
@@ -83,13 +78,9 @@ def _columns(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
 @dg.asset(
     deps=["listed_tows", "listed_runs"],
     code_version=code_hash(*READING, *ADDING),
-    check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
     metadata=_columns(SAMPLE_SCHEMA),
     partitions_def=SEASONS,
     group_name=GROUP,
-    kinds={"parquet"},
-    owners=OWNERS,
-    tags=SUBJECT,
 )
 def samples(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """The samples of the tows of seasons, in Parquet; faulty tows are set aside."""
@@ -105,7 +96,7 @@ def samples(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.Mate
 
     intake.index(store, root)
     mending(store, work, again=partial(intake.index, store, root))
-    yield dg.MaterializeResult(check_results=[_most_tows_sound(store)])
+    yield dg.MaterializeResult()
     for season in asked:
         index = store.read("season_index", str(season))
         faulty = index.drop_nulls("reason_code")
@@ -119,26 +110,12 @@ def samples(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.Mate
         _record(context, season, contents, metadata)
 
 
-def _most_tows_sound(store: Store) -> dg.AssetCheckResult:
-    """Of all seasons, not those of this run: a check's result is that of the whole asset."""
-    index = store.read_all("season_index")
-    faulty = index["reason_code"].count()
-    return dg.AssetCheckResult(
-        passed=2 * faulty <= index.height,
-        severity=dg.AssetCheckSeverity.WARN,
-        metadata={"set_aside": faulty, "listed": index.height},
-    )
-
-
 @dg.asset(
     deps=[samples],
     code_version=code_hash(*ADDING),
     metadata=_columns(BLOCK_SCHEMA),
     partitions_def=SEASONS,
     group_name=GROUP,
-    kinds={"parquet"},
-    owners=OWNERS,
-    tags=SUBJECT,
 )
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """Sums over each second of each run of seasons."""

@@ -16,9 +16,6 @@ from warehouse.store.code import code_hash
 @dg.asset(
     deps=[DATABASE_TABLE],
     group_name="site",
-    kinds={"html"},
-    owners=["team:register"],
-    tags={"herijk/subject": "site"},
     code_version=code_hash(*SITE_CODE),
 )
 def site(setup: Setup) -> dg.MaterializeResult:

@@ -19,13 +19,6 @@ from warehouse.intake.seasons import SEASON_TABLES
 from warehouse.store.code import code_hash
 from warehouse.store.store import fingerprint
 
-KINDS = {"warehouse_database": "duckdb"}
-"""What an asset is stored as, where that is not Parquet."""
-
-ARCHIVE, METHOD, PUBLISHER = "team:archive", "team:method", "team:register"
-"""Who answers for a table."""
-OWNERS = {"archive": ARCHIVE} | dict.fromkeys(("method", "studies", "lines", "consistency"), METHOD)
-
 READ_AS: Final[Mapping[str, Sequence[str]]] = {
     **dict.fromkeys(SEASON_TABLES, ("samples",)),
     **dict.fromkeys(OTHERS, ()),
@@ -87,9 +80,6 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
         description=(schema or step.compute).__doc__,
         metadata=None if schema is None else {"dagster/column_schema": _columns(schema)},
         group_name=step.group,
-        kinds={KINDS.get(table, "parquet"), "polars"},
-        owners=[OWNERS.get(step.group, PUBLISHER)],
-        tags={} if schema is None else {"herijk/subject": schema.__module__.rpartition(".")[2]},
         code_version=code_hash(*step.code),
     )
 

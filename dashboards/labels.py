@@ -328,7 +328,6 @@ CODES: Final[dict[str, Sentence]] = {
     "every_tow_has_a_curve_row": say(
         "every tow has a row among the curves, even one without a curve"
     ),
-    "most_tows_sound": say("most tows are sound"),
     "steps_multiply_to_the_total": say("steps multiply to the total"),
     "nothing_unforeseen": say("nothing unforeseen"),
     "in_range": say("as declared"),
