@@ -15,7 +15,7 @@ from pipeline.method.definition import parse_method, shipped_method
 from pipeline.register.replay import RaceRules
 from pipeline.tables.keys import LINE
 from tests.warehouse.edition_bench import terms
-from warehouse.editions.compare import compare, diff, report, report_with_races
+from warehouse.editions.compare import diff, report, report_with_races
 from warehouse.editions.publish import publish_printed
 from warehouse.intake import seasons as intake
 from warehouse.store.decisions import FILE_NAME

@@ -148,7 +148,7 @@ def check_without(bench, expected):
 @pytest.mark.parametrize(
     ("module", "name"),
     [
-        ("warehouse.archive.plausibility.whole_columns", "check_mix_ups"),
+        ("warehouse.archive.plausibility.mix_ups", "check_mix_ups"),
         ("pipeline.assessment.plausibility", "plausibility"),
         ("pipeline.recompute.season_factors", "_rows"),
         ("pipeline.season_log.estimate", "estimate_season_factors"),
