@@ -1,35 +1,14 @@
 """The Dagster code location: what `dg`, `dagster dev` and `herijk serve` load."""
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
 
 import dagster as dg
 
-from assets import archive, automation, checks
+from assets import automation
+from assets.location import assets_of
 from assets.resources import Setup
 from assets.settings import Settings, read_settings
-from assets.site import site
-from assets.tables import STEP_ASSETS
-
-ASSETS: Final[Sequence[dg.AssetsDefinition]] = [
-    archive.archive_index,
-    archive.samples,
-    archive.blocks,
-    *STEP_ASSETS,
-    site,
-]
-
-
-def assets_of(setup: Setup) -> dg.Definitions:
-    """Assets and checks, made one after the other in one process: it holds the lock."""
-    return dg.Definitions(
-        assets=ASSETS,
-        asset_checks=[checks.of_the_whole],
-        resources={"setup": setup},
-        executor=dg.in_process_executor,
-    )
 
 
 def build_defs(

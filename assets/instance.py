@@ -15,7 +15,7 @@ from sqlalchemy import event
 from sqlalchemy.engine import Engine
 
 from assets.archive import know_seasons
-from assets.definitions import assets_of
+from assets.location import assets_of
 from assets.report import Done
 from assets.resources import Setup
 from pipeline.errors import MissingKnowledgeError

@@ -11,12 +11,12 @@ import dagster as dg
 import pytest
 from polars.testing import assert_frame_equal
 
-import assets.definitions
 import assets.instance
+import assets.location
 import assets.tables
 import warehouse.derive.step
-from assets.definitions import assets_of
 from assets.instance import QUIET_LOG
+from assets.location import assets_of
 from assets.resources import Setup
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.schemas import TABLES
@@ -111,8 +111,8 @@ def test_what_dagster_calls_stale_has_all_that_is_and_nothing_after_a_rebuild(
         for module in (warehouse.derive.step, assets.tables):
             monkeypatch.setattr(module, "code_hash", lambda *_: "other")
         steps = [assets.tables.step_asset(step) for step in STEPS]
-        kept = [a for a in assets.definitions.ASSETS if a not in assets.tables.STEP_ASSETS]
-        monkeypatch.setattr(assets.definitions, "ASSETS", [*kept, *steps])
+        kept = [a for a in assets.location.ASSETS if a not in assets.tables.STEP_ASSETS]
+        monkeypatch.setattr(assets.location, "ASSETS", [*kept, *steps])
 
     def agrees_after(change, ask):
         change(bench)
