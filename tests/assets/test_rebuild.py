@@ -212,16 +212,6 @@ def test_one_method_gives_one_methods_rows(bench, built, files_read):
     assert found["register_changes"].height == 0
 
 
-def test_leftovers_of_a_killed_rebuild_are_ignored(bench, built):
-    folders = {f.parent for f in (bench.data / "lake").rglob("*.parquet")} | {bench.data}
-    for folder in folders:
-        (folder / ".herijk-killed.parquet").write_bytes(b"half")
-        (folder / ".herijk-killed.duckdb").write_bytes(b"half")
-    spoil(samples_files(bench, 2009)[3])
-    assert bench.rebuild(ONE).done.seasons == [2009]
-    assert bench.table("tows").height == built.table("tows").height - 1
-
-
 def test_lost_lake_files_are_made_again_when_their_season_is_read(bench, built):
     """Of one tow the samples are lost, of the next the blocks."""
     before = bench.lake_files().keys()
