@@ -101,14 +101,20 @@ def rebuild_failed(settings: Settings, is_served: bool) -> dg.SensorDefinition:
         name="rebuild_failed", monitored_jobs=[rebuild_job], default_status=_status(is_served)
     )
     def tell(context: dg.RunFailureSensorContext) -> None:
-        steps = [event.step_failure_data for event in context.get_step_failure_events()]
-        errors = [step.user_failure_data or step.error for step in steps]
-        causes = [getattr(error, "cause", None) or error for error in errors if error]
-        said = [getattr(c, "description", None) or getattr(c, "message", "") for c in causes]
-        text = "\n".join(map(str, said)) or context.failure_event.message
-        send_mail(settings, speaker("nl")(say("The rebuild failed")), f"{text}\n")
+        why = "\n".join(map(_why, context.get_step_failure_events()))
+        why = why or str(context.failure_event.message)
+        send_mail(settings, speaker("nl")(say("The rebuild failed")), f"{why}\n")
 
     return tell
+
+
+def _why(event: dg.DagsterEvent) -> str:
+    """What a failed step said: of a check its own words, else the error behind Dagster's."""
+    failure = event.step_failure_data
+    if failure.user_failure_data is not None:
+        return failure.user_failure_data.description or ""
+    error = failure.error
+    return "" if error is None else (error.cause or error).message
 
 
 def _status(is_served: bool) -> dg.DefaultSensorStatus:
