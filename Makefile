@@ -121,13 +121,13 @@ REPEATS ?= 5
 
 bench: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.speed --tows-per-season $(TOWS) --repeats $(REPEATS) \
-	  --write $(if $(filter 60,$(TOWS)),docs/performance.md,benchmarks/data/performance.md)
+	  --write $(if $(filter 60,$(TOWS)),benchmarks/results/speed.md,benchmarks/data/performance.md)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.commands benchmarks/data/$(TOWS)/archive \
-	  --write $(if $(filter 60,$(TOWS)),docs/commands.md,benchmarks/data/commands.md)
+	  --write $(if $(filter 60,$(TOWS)),benchmarks/results/commands.md,benchmarks/data/commands.md)
 
 # An hour.
 growth: $(DEVELOP)
-	@PYTHONPATH=. $(BIN)/python -m benchmarks.commands --growth 60 180 --write docs/growth.md
+	@PYTHONPATH=. $(BIN)/python -m benchmarks.commands --growth 60 180 --write benchmarks/results/growth.md
 
 # Every named world: two hours on two cores for 20 archives each. A first look: make accuracy SEEDS=2
 SEEDS ?= 20

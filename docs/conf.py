@@ -1,13 +1,20 @@
 """The documents and the reference of the library as pages: `make docs`. No network is needed."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import astuple
 from importlib.metadata import version as installed_version
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
 
 import typer.main
+from pydantic.fields import FieldInfo
 from typer.testing import CliRunner
 
 from herijk.cli.main import app
+from pipeline.assessment.checks import CHECK, Check
+from pipeline.method.definition import Steps
+from pipeline.tables.schemas import STUDY, TABLES, summary_of
+from pipeline.tables.views import VIEWS
 
 project = "Herijk"
 author = "The Herijk authors"
@@ -26,6 +33,17 @@ autodoc_type_aliases = {"ArrayLike": "ArrayLike", "FloatArray": "FloatArray"}
 html_theme = "alabaster"
 html_theme_options = {"description": "the register of rowing sloops, recomputed"}
 
+OPTIONS = {
+    f"{step}.{option}": field
+    for step, options in Steps.model_fields.items()
+    for option, field in options.annotation.model_fields.items()
+}
+
+HEADS = {
+    "| check | what is observed | source of the limit |": "asks | limit |",
+    "| option | meaning | source |": "values | default |",
+}
+
 CONTENTS = """
 ```{toctree}
 :hidden:
@@ -39,11 +57,66 @@ decisions/*
 
 
 def _add_contents(_app: Any, name: str, text: list[str]) -> None:
-    """Lists all pages beside each; in the source it would show as code on a forge."""
+    """Adds what the program knows: pages, helps, tables, limits of checks, values of options."""
     if name == root_doc:
         text[0] += CONTENTS
     if name == "command-line":
         text[0] += "".join(_helps())
+    if name == "results":
+        text[0] += "".join(_tables())
+    if name == "method-details":
+        for head, added in HEADS.items():
+            text[0] = text[0].replace(f"{head}\n| --- |", f"{head} {added}\n| --- | --- | --- |")
+        text[0] = re.sub(r"^\| .*\|$", lambda row: _with_columns(row[0]), text[0], flags=re.M)
+
+
+def _tables() -> Iterator[str]:
+    """Every table and view with the first sentence of its meaning."""
+    yield "\n## All tables\n\n| table | a row is |\n| --- | --- |\n"
+    for name, schema in TABLES.items():
+        yield f"| `{'study.' * (name in STUDY)}{name}` | {summary_of(schema)} |\n"
+    for name, view in VIEWS.items():
+        yield f"| `{name}` | {view.meaning} |\n"
+
+
+def _with_columns(row: str) -> str:
+    """A row of a table of checks or options, with the columns that the program knows."""
+    names = re.findall(r"`([\w.]+)`", row.partition(" | ")[0])
+    if names and set(names) <= set(CHECK):
+        checks = [CHECK[name] for name in names]
+        return f"{row} {_one(c.severity for c in checks)} | {_one(map(_limit, checks))} |"
+    if names and set(names) <= set(OPTIONS):
+        fields = [OPTIONS[name] for name in names]
+        return f"{row} {_one(map(_values, fields))} | {_one(map(_default, fields))} |"
+    return row
+
+
+def _one(texts: Iterable[str]) -> str:
+    """The texts, each once."""
+    return "; ".join(dict.fromkeys(texts))
+
+
+def _limit(check: Check) -> str:
+    def of_class(crew_class: str) -> str:
+        low, high = check.limits(crew_class)
+        if low is None:
+            return f"at most {high:g}"
+        return f"at least {low:g}" if high is None else f"{low:g} to {high:g}"
+
+    men, women = map(of_class, "HD")
+    limit = men if men == women else f"H {men}, D {women}"
+    return limit if check.unit == "1" else f"{limit} {check.unit}"
+
+
+def _values(field: FieldInfo) -> str:
+    if get_origin(field.annotation) is Literal:
+        return ", ".join(f"`{value}`" for value in get_args(field.annotation))
+    bounds = [f"{number:g}" for bound in field.metadata for number in astuple(bound)]
+    return " to ".join(bounds) or "codes of checks"
+
+
+def _default(field: FieldInfo) -> str:
+    return "must be given" if field.is_required() else f"`{field.default}`"
 
 
 def _helps() -> Iterator[str]:

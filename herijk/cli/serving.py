@@ -33,7 +33,7 @@ SHOWN: Final = ("site", "report")
 
 EXPOSED: Final = say(
     "WARNING: everybody who can reach {host} can read the site and Dagster's page: there is no "
-    "password. Put a proxy with one in front (docs/security.md), or serve on 127.0.0.1"
+    "password. Put a proxy with one in front (docs/operations.md), or serve on 127.0.0.1"
 )
 
 PATIENCE_S: Final = 20.0

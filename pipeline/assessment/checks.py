@@ -1,6 +1,6 @@
 """The checks of the assessment as data: code, limits, unit and severity.
 
-What each observes, and where its limit comes from, is in the table of docs/method.md, section 10;
+What each observes, and where its limit comes from, is in the table of docs/method-details.md, 10;
 how it is observed, in `pipeline.assessment.assess`.
 
 Severity says what a check asks of people. `refuse`: the tow gives nothing to register. `look`:

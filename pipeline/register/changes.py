@@ -25,7 +25,7 @@ from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 
 SAME_RATIO: Final = 5e-4
-"""A difference up to 0.05 % counts as the same (docs/method.md, 11; inferred)."""
+"""A difference up to 0.05 % counts as the same (docs/method-details.md, 11; inferred)."""
 
 NO_FACTOR: Final = SAME_SHARE
 """A factor this near to 1 is rounding and is not listed as a cause."""

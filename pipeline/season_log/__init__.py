@@ -2,7 +2,7 @@
 
 A boat that was not altered must come out the same in two seasons; what is left between them is the
 speed log. A speed error acts on Cw at a fixed speed with the elasticity kappa = 2 / (1 - r), so
-repeat tows determine it well (docs/method.md, 4). It is the ubercalibration of astronomy:
+repeat tows determine it well (docs/method-details.md, 4). It is the ubercalibration of astronomy:
 boats are the stars, seasons the nights, tows calibrated on dGPS the absolute anchor.
 
 Belongs here:

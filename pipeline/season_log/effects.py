@@ -12,7 +12,7 @@ if they are taken where the log reads that speed over y0: the nearer y0 comes to
 bend matters.
 
 A load cell that reads exp(phi) times the force adds phi to ln Cw and leaves q. One whose zero is
-off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (docs/method.md, 4).
+off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (method-details, 4).
 """
 
 from collections.abc import Iterator

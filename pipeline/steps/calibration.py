@@ -3,7 +3,7 @@
 `y = mean(v_dGPS) / mean(v_log)` over the steady parts of all runs together, as many out as back,
 so that the current drops out (Sleepproef, R. Pot 2017, "IJking snelheid"). Every run weighs the
 same, whatever the length of its window: with unequal windows and 5 cm/s of current a ratio over
-samples is wrong by 0.5 % (docs/method.md, 4).
+samples is wrong by 0.5 % (docs/method-details.md, 4).
 """
 
 import numpy as np

@@ -26,7 +26,7 @@ from pipeline.steps.wind import (
 from pipeline.steps.window import END_SECONDS, end_masks
 
 ADDED_MASS_RATIO: Final = 0.08
-"""Water that is accelerated with the boat, as a share of its mass (inferred; docs/method.md, 6)."""
+"""Water that is accelerated with the boat, as a share of its mass (inferred; method-details, 6)."""
 
 WETTED_SURFACE_RATIO: Final = 3.0
 """Wetted surface / sqrt(displaced volume x waterline length). Stated assumption: the Delft formula
@@ -146,7 +146,7 @@ def _inertia(
 ) -> FloatArray:
     """Part of F / v^2 that accelerates boat, crew and water: m_eff a / v^2.
 
-    m_eff = (boat + crew) (1 + added mass); source: docs/method.md, 6. 0 where no weight is
+    m_eff = (boat + crew) (1 + added mass); source: docs/method-details.md, 6. 0 where no weight is
     known.
     """
     if rule.inertia == "none":

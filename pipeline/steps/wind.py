@@ -73,7 +73,7 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
     """Air terms of each block from the mean wind of some seconds around it.
 
     The vane jitters, and the square of a jittering wind is not the square of its mean: per
-    sample the force comes out -17 to +12 % wrong (docs/method.md, 5). Mean wind is the mean
+    sample the force comes out -17 to +12 % wrong (docs/method-details.md, 5). Mean wind is the mean
     speed in the circular mean direction: a mean vector would be too short, by 3 % at 13 degrees of
     jitter.
 

@@ -26,7 +26,7 @@ WORTH_DECIMALS: Final = 6
 summing cost the same."""
 
 END_SECONDS: Final = 5
-"""Length of the two ends that are compared, s (docs/method.md, 2)."""
+"""Length of the two ends that are compared, s (docs/method-details.md, 2)."""
 
 BLOCK_PRICE_S: Final = 10.0
 """What a peak or gust inside a window costs, in seconds of its length, for each block and each

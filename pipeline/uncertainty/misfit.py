@@ -15,7 +15,7 @@ import numpy as np
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 
 USUAL_RATIO: Final = 0.002
-"""Misfit of a hull of which nothing is known: median of the Delft series (docs/method.md, 9)."""
+"""Misfit of a hull of which nothing is known: median of the Delft series (method-details, 9)."""
 
 USUAL_TOWS: Final = 20.0
 """How many tows `USUAL_RATIO` counts for."""

@@ -57,7 +57,7 @@ def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: IntArray
     50,000 samples are not 50,000 measurements: the variance of a mean is that of the noise at
     frequency zero over its length. One run is too short for its own autocovariance, so that of
     its 1-s blocks is pooled over the season's runs, with the bias by each run's own mean taken
-    out (docs/method.md, 9).
+    out (docs/method-details.md, 9).
 
     Args:
         blocks: the runs.
@@ -113,7 +113,7 @@ def residual_scatter(
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
-    Four degrees of freedom per tow are too few for its own (docs/method.md, 9). This is the
+    Four degrees of freedom per tow are too few for its own (docs/method-details.md, 9). This is the
     check on `run_point_uncertainty`: it also has in it what differs from run to run.
 
     Args:
@@ -144,7 +144,7 @@ towed early in the year. The season log assumes the same (`season_log.assumed`).
 
 @dataclass(frozen=True)
 class Assumed:
-    """Standard uncertainties that the archive itself cannot show (docs/method.md, 9).
+    """Standard uncertainties that the archive itself cannot show (docs/method-details.md, 9).
 
     Attributes:
         calibration_speed_ratio: dGPS calibration of the speed of a tow: 0.2 % by dGPS, 0.3 % by a

@@ -2,26 +2,21 @@
 
 import ast
 import re
-from collections import Counter
-from typing import Literal, get_args, get_origin
 
 import pytest
 import typer.main
 
-from dashboards.guides import GUIDES
 from herijk.cli.main import app
-from pipeline.assessment.checks import CHECKS
+from pipeline.assessment.checks import CODES
 from pipeline.method.definition import Steps, shipped_methods
-from pipeline.tables.schemas import STUDY, TABLES
-from pipeline.tables.views import VIEWS
 from tests.architecture.repository import ROOT, modules, read, tracked_files
 from tests.reason_codes import REASON_CODES
 
-OPTIONS = [
-    (step, option)
+OPTIONS = {
+    f"{step}.{option}"
     for step, options in Steps.model_fields.items()
     for option in options.annotation.model_fields
-]
+}
 
 LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
 
@@ -31,103 +26,20 @@ def commands():
     return sorted(typer.main.get_command(app).commands)
 
 
-def option_row(step, option):
-    """The line of method.md that explains an option."""
-    start = f"| `{step}.{option}` |"
-    return next((r for r in read("docs/method.md").splitlines() if r.startswith(start)), "")
+def rows_named(page, known):
+    """What the first cells of a page's tables name, of what is known."""
+    cells = re.findall(r"^\| (`[^|]+`) \|", read(page), re.MULTILINE)
+    return {name for cell in cells for name in re.findall(r"`([\w.]+)`", cell)} & known
 
 
-@pytest.mark.parametrize(("step", "option"), OPTIONS)
-def test_every_option_of_a_method_is_documented(step, option):
-    row = option_row(step, option)
-    field = Steps.model_fields[step].annotation.model_fields[option]
-    values = get_args(field.annotation) if get_origin(field.annotation) is Literal else ()
-    default = [] if field.is_required() else [field.default]
-    assert row, f"docs/method.md has no row `{step}.{option}`"
-    for value in (*values, *default):
-        assert f"`{value}`" in row
-
-
-def test_no_option_is_documented_that_is_not_there():
-    found = set(re.findall(r"^\| `(\w+)\.(\w+)` \|", read("docs/method.md"), re.MULTILINE))
-    assert found == set(OPTIONS)
-
-
-def limit_text(check):
-    """The limits of a check as method.md writes them."""
-
-    def of_class(crew_class):
-        low, high = check.limits(crew_class)
-        if low is None:
-            return f"at most {high:g}"
-        return f"at least {low:g}" if high is None else f"{low:g} to {high:g}"
-
-    men, women = map(of_class, "HD")
-    limit = men if men == women else f"H {men}, D {women}"
-    limit += "" if check.unit == "1" else f" {check.unit}"
-    return f"{limit}; to {check.last_season}" if check.last_season else limit
-
-
-DUTCH = {
-    "refuse": "afwijzen",
-    "look": "nakijken",
-    "note": "opmerking",
-    "at most": "hoogstens",
-    "at least": "minstens",
-    " to ": " tot ",
-    ".": ",",
-}
-
-
-def test_the_checks_of_a_tow_are_documented_with_their_limits():
-    row = re.compile(r"^\| `(\w+)` \| (\w+) \| [^|]+ \| ([^|]+) \| [^|]+ \|$", re.MULTILINE)
-    stated = [(check.code, check.severity, limit_text(check)) for check in CHECKS]
-    assert row.findall(read("docs/method.md")) == stated
-    for english, dutch in DUTCH.items():
-        stated = [(code, *(x.replace(english, dutch) for x in rest)) for code, *rest in stated]
-    assert row.findall(read("docs/nl/method.md")) == stated
+def test_options_and_checks_are_documented():
+    assert rows_named("docs/method-details.md", OPTIONS) == OPTIONS
+    assert rows_named("docs/method-details.md", set(CODES)) == set(CODES)
 
 
 @pytest.mark.parametrize("name", shipped_methods())
 def test_every_shipped_method_is_documented(name):
-    assert f"\n| `{name}` |" in read("docs/method.md")
-
-
-def sections(path):
-    """The sections of a document, without its diagrams and commands."""
-    text = re.sub(r"```.*?```", "", read(path), flags=re.DOTALL)
-    return re.split(r"^(?=#)", text, flags=re.MULTILINE)[1:]
-
-
-WORDS_IN_CODE = re.compile(r"[A-Za-zë]{4,} [a-zë]{3,}|[a-zë]{4,} [-+/(=]|[-+/(=] [a-zë]{4,}")
-
-
-def names_and_formulas(section):
-    """What is set as code, as often as it is; one that holds words only counts."""
-    found = re.findall(r"`([^`]+)`", section)
-    return Counter("words" if WORDS_IN_CODE.search(code) else code for code in found)
-
-
-def numbers(section, comma):
-    """The numbers of a text, as often as they are there, with what a comma in them stands for."""
-    text = re.sub(r"`[^`]*`|\]\([^)]*\)", "", section)
-    return Counter(re.findall(r"\d+(?:\.\d+)?", re.sub(r"(?<=\d),(?=\d)", comma, text)))
-
-
-def shape(section):
-    """Level of the heading, and the columns of every row of a table."""
-    lines = section.splitlines()
-    return [lines[0].count("#"), *(row.count(" | ") for row in lines if row.startswith("|"))]
-
-
-@pytest.mark.parametrize("name", GUIDES)
-def test_the_dutch_text_of_a_guide_has_what_the_english_has(name):
-    """Section by section the same tables, names, formulas and numbers."""
-    english, dutch = sections(f"docs/{name}.md"), sections(f"docs/nl/{name}.md")
-    assert [shape(s) for s in dutch] == [shape(s) for s in english]
-    for nl, en in zip(dutch, english, strict=True):
-        assert names_and_formulas(nl) == names_and_formulas(en), nl.splitlines()[0]
-        assert numbers(nl, ".") == numbers(en, ""), nl.splitlines()[0]
+    assert f"`{name}`" in read("docs/method.md")
 
 
 def reason_codes_given():
@@ -152,11 +64,6 @@ def test_reason_codes_are_documented_and_no_others():
     assert REASON_CODES - texts == set()
 
 
-def test_every_table_is_documented():
-    found = set(re.findall(r"^\| `([\w.]+)` \|", read("docs/tables.md"), re.MULTILINE))
-    assert found == {f"study.{name}" if name in STUDY else name for name in (*TABLES, *VIEWS)}
-
-
 def test_readme_names_no_command_that_is_not_there():
     named = set(re.findall(r"herijk ([a-z][a-z-]+)", read("README.md")))
     assert named - set(commands()) == set()
@@ -173,7 +80,8 @@ def test_every_link_leads_somewhere():
     assert broken == []
 
 
-def test_every_page_is_reached_from_the_map():
-    linked = {(ROOT / "docs" / target).resolve() for target in LINK.findall(read("docs/index.md"))}
+def test_every_page_is_reached_from_the_map_or_the_page_on_development():
+    maps = [read("docs/index.md"), read("docs/development.md")]
+    linked = {(ROOT / "docs" / target).resolve() for page in maps for target in LINK.findall(page)}
     pages = set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs" / "index.md"}
     assert {p.relative_to(ROOT) for p in pages if p.resolve() not in linked} == set()

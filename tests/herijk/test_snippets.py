@@ -103,18 +103,6 @@ def test_no_block_is_left_out_in_silence():
         assert named - {""} <= targets, page
 
 
-def test_worked_examples_print_what_the_page_says(reader, herijk):
-    (code,) = blocks("docs/fitting.md", "python")
-    (reader / "points.py").write_text(code, "utf-8")
-    runpy.run_path("points.py")
-    said = blocks("docs/fitting.md", "text")
-    for words, expected in zip(shell_lines("docs/fitting.md"), said, strict=True):
-        status, out, _ = herijk(*words)
-        assert status == 0
-        assert out.startswith(expected)
-    assert (reader / "delft.svg").exists()
-
-
 def test_settings_are_understood():
     for page in PAGES:
         for text in blocks(page, "toml"):
