@@ -168,7 +168,8 @@ class Boats:
             covariance: of the unknowns, (problems, k, k).
         """
         squares = np.swapaxes(self.weight[..., None] * self.pull, 1, 2) @ self.pull
-        known = self.weighed @ covariance[self.problem] @ np.swapaxes(self.weighed, 1, 2)
+        of_boats = covariance if len(covariance) == 1 else covariance[self.problem]
+        known = self.weighed @ of_boats @ np.swapaxes(self.weighed, 1, 2)
         return np.asarray(squares - self.precision + known)
 
 

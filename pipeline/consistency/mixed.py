@@ -15,7 +15,6 @@ from typing import Final, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import elementwise
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.model import Boats, Likelihood, LikelihoodOf, leave_boats_out, most_likely, total
@@ -386,6 +385,8 @@ class _Profile:
 
     def roots(self, low: FloatArray, high: FloatArray, ends: IntArray) -> FloatArray:
         """Where the excess of some ends is 0, between these sds."""
+        from scipy.optimize import elementwise  # noqa: PLC0415 - much, and seldom needed
+
         found = elementwise.find_root(
             self.excess, (low, high), args=(ends,), tolerances={"xatol": self._precision}
         )
