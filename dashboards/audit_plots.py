@@ -7,7 +7,7 @@ They draw what the tables say. Does not belong here: what a figure looks like
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import altair as alt
 import polars as pl
@@ -28,15 +28,11 @@ SCATTERS: Final = ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "cw_
 
 
 class Plot(NamedTuple):
-    """A figure with its rows, and which method or type they are of, if they are of one.
-
-    Axes have room for all rows of `beside`: those of the plots that it is compared with.
-    """
+    """A figure with its rows, and which type they are of, if they are of one."""
 
     figure: str
     rows: pl.DataFrame
     of: str = ""
-    beside: pl.DataFrame | None = None
 
 
 def write_audit_plots(
@@ -74,7 +70,7 @@ def _about(report: BoatAudit | TypesAudit) -> list[str]:
 
 
 def _of_types(views: Views, report: TypesAudit) -> Iterator[Plot]:
-    """Eras and repeats under all methods; the rest before and after correction."""
+    """Eras and repeats under all methods; the rest side by side before and after correction."""
     methods, types = report.methods, _types(report)
     own = pl.col("boat_type").is_in(types) & pl.col("method").is_in(methods)
     shifts = views.table("era_shifts").filter(own, pl.col("shift_ratio").is_not_null())
@@ -88,11 +84,10 @@ def _of_types(views: Views, report: TypesAudit) -> Iterator[Plot]:
         .sort("method", "fsn_no")
         .join(views.repeat_pairs(), on=["method", "fsn_no"], maintain_order="left"),
     )
-    predicted, bends = views.predicted().filter(own), views.shared_bends().filter(own)
-    for method in dict.fromkeys((methods[0], default_method(methods))):
-        yield from _scatters(boats, method)
-        yield Plot("shared_bend", bends.filter(method=method), method)
-        yield Plot("predicted", predicted.filter(method=method), method)
+    compared = pl.col("method").is_in([methods[0], default_method(methods)])
+    for name in SCATTERS:
+        yield Plot(name, boats.filter(compared))
+    yield Plot("predicted", views.predicted().filter(own, method=default_method(methods)))
 
 
 def _of_boat(views: Views, report: BoatAudit) -> Iterator[Plot]:
@@ -105,22 +100,15 @@ def _of_boat(views: Views, report: BoatAudit) -> Iterator[Plot]:
     like = views.type_tows().filter(
         rows_of(report.statistics_over), pl.col("boat_type") == (boat["boat_type"] or "")
     )
-    yield from _scatters(like, default_method(methods))
-
-
-def _scatters(boats: pl.DataFrame, method: str) -> Iterator[Plot]:
     for name in SCATTERS:
-        yield Plot(name, boats.filter(method=method), method, boats)
+        yield Plot(name, like.filter(method=default_method(methods)))
 
 
 def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: str) -> Path:
     """One SVG, its title saying of what and whether it was simulated; a boat stands out."""
     say = speaker(language)
     about = _about(report)
-    if plot.of in about:
-        of = [plot.of]
-    else:
-        of = [*about, *([say(labels.method(plot.of))] if plot.of else [])]
+    of = [plot.of] if plot.of else about
     caption = say(labels.FIGURES[plot.figure])
     title = alt.Title(
         f"{caption} · {', '.join(of)}",
@@ -128,8 +116,6 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: s
     )
     spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
     drop(spec, "href")
-    if plot.beside is not None:
-        _widen(spec, plot.beside)
     for parameter in spec.get("params", []):
         if parameter["name"] == "chosen":
             parameter["value"] = about[0]
@@ -137,23 +123,6 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: s
     with written_beside(path) as beside:
         beside.write_text(drawn.svg(spec, language), encoding="utf-8")
     return path
-
-
-def _widen(scatters: dict[str, Any], rows: pl.DataFrame) -> None:
-    """Gives both axes room for all these rows, so that plots of several methods compare."""
-    encoding = scatters["spec"]["encoding"]
-    for axis in (encoding["x"], encoding["y"]):
-        values = rows[axis["field"]].drop_nulls()
-        if values.is_empty():
-            continue
-        low, high = values.min(), values.max()
-        room = ROOM * (high - low)
-        scale = {"domain": [low - room, high + room], "nice": False}
-        axis["scale"] = axis.get("scale", {}) | scale
-
-
-ROOM: Final = 0.04
-"""Share of an axis that is left beyond its outermost points."""
 
 
 def _types(report: TypesAudit) -> list[str]:

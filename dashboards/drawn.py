@@ -42,7 +42,15 @@ with _only_our_fonts():
     vl_convert.register_font_directory(str(fonts.FOLDER))
 
 
-CONFIG: Final = {"font": fonts.FAMILY, "legend": {"titleLimit": 400}}
+CONFIG: Final = {
+    "font": fonts.FAMILY,
+    "legend": {"orient": "top", "columns": 3, "offset": 26, "labelLimit": 0, "titleLimit": 0},
+    "axis": {"labelFontSize": 12, "titleFontSize": 12, "titleFontWeight": "normal"},
+    "axisY": {"titleAngle": 0, "titleAlign": "left", "titleX": -30, "titleY": -8},
+    "header": {"labelFontSize": 12, "titleFontSize": 12, "labelPadding": 24},
+    "view": {"stroke": None},
+}
+"""What all charts look like: the title of an axis at the side lies above it."""
 
 
 def svg(spec: dict[str, object], language: str) -> str:

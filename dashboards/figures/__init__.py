@@ -6,77 +6,219 @@ Okabe and Ito's, which colour-blind people tell apart, and a shape or dash says 
 Does not belong here: reading tables, pages, and texts (`words`).
 """
 
-from collections.abc import Callable
-from typing import Final
+from collections.abc import Sequence
+from typing import Any, Final
 
 import altair as alt
 import polars as pl
-import vl_convert
 
-from dashboards import drawn
-from dashboards.figures import (
-    boat,
-    compared,
-    corrections,
-    quality,
-    reproducibility,
-    slides,
-    tool,
-    types,
+from dashboards import labels
+from dashboards.figures import boat, slides, style, tool
+from dashboards.figures.charts import (
+    CHANGE,
+    CW,
+    SPEED,
+    SPREAD,
+    Figure,
+    bars,
+    by_group,
+    curves,
+    scatter,
 )
-from pipeline.messages import Say, speaker
+from dashboards.figures.style import OKABE_ITO, WIDTH, Column, Drawing, named, tips
+from pipeline.messages import Say, say
+from pipeline.studies.ladder import STEP_ORDER
+from pipeline.studies.options import CHOICES
+from pipeline.studies.tool_options import SPEEDS, TICKS
+from pipeline.uncertainty.propagation import COMPONENTS
 
 alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
 
-Figure = Callable[[pl.DataFrame, Say], alt.TopLevelMixin]
+STATUSES: Final = ("accepted", "flagged", "rejected")
+CAUSES: Final = ("boat", "season", "boat_season", "run")
+
+WEIGHT: Final = ("weight_kg", labels.column("weight_kg"))
+DECLARED: Final = ("declared_speed_m_s", say("Declared speed [m/s]"))
+A: Final = ("a_kg_m", labels.column("a_kg_m"))
+B: Final = ("b_m_s", labels.column("b_m_s"))
+STANDARD: Final = ("cw_standard_kg_m", say("Cw at the standard speed [kg/m]"))
+
+
+def _against(quantity: Column, explaining: Column) -> Figure:
+    """A quantity of every tow of a type, a panel per method, where dragging chooses."""
+    tip = ("name:N", "fsn_no:N", "boat_type:N", "season:O")
+    own = (f"{explaining[0]}:Q", f"{quantity[0]}:Q")
+    facet = ("method", style.methods_named)
+    return scatter(explaining, quantity, style.types, (*tip, *own), facet=facet, brush=True)
+
+
+def _black(_: Say) -> Sequence[Any]:
+    """A curve that stands alone."""
+    return (alt.ColorValue("black"),)
+
+
+def _of_crew(say: Say) -> Sequence[Any]:
+    ink = style.colour("crew", say("Boat"), sort=None)
+    return ink, alt.StrokeDash("crew:N", title=say("Boat"), sort=None)
+
+
+def _of_method(_: Say) -> Sequence[Any]:
+    """Two methods, the older one dashed; the legend is that of the points."""
+    ink = alt.Scale(range=[OKABE_ITO[0], OKABE_ITO[4]])
+    dashes = alt.Scale(range=[[5, 4], [1, 0]])
+    return (
+        alt.Color("method:N", scale=ink, sort=None, legend=None),
+        alt.StrokeDash("method:N", scale=dashes, sort=None, legend=None),
+    )
+
+
+def _points_of_method(say: Say) -> Sequence[Any]:
+    look: dict[str, Any] = {
+        "title": say("Method"),
+        "sort": None,
+        "legend": alt.Legend(labelExpr=style.methods_named(say)),
+    }
+    inks = alt.Scale(range=[OKABE_ITO[0], OKABE_ITO[4]])
+    shapes = alt.Scale(range=[style.SHAPES[0], style.SHAPES[4]])
+    ink = alt.Color("method:N", scale=inks, **look)
+    return ink, alt.Shape("method:N", scale=shapes, **look)
+
+
+def _ladder(frame: pl.DataFrame, say: Say) -> Drawing:
+    """Factor on Cw of each step in each season, as a coloured table with its numbers."""
+    axis = alt.Axis(labelExpr=named(STEP_ORDER, say), labelAngle=-45, orient="top")
+    order = alt.EncodingSortField("position", order="ascending")
+    base = alt.Chart(frame).encode(
+        alt.X("step:N", title=None, sort=order, axis=axis),
+        alt.Y("season:O", title=None),
+    )
+    shades = alt.Scale(
+        domain=[0.8, 1.0, 1.2], range=[OKABE_ITO[5], "#ffffff", OKABE_ITO[4]], clamp=True,
+        interpolate="rgb",
+    )  # fmt: skip
+    ink = alt.Color("factor:Q", scale=shades, legend=None)
+    return alt.layer(
+        base.mark_rect(stroke="#dddddd").encode(
+            ink, tooltip=tips(say, "season:O", "step:N", "factor:Q")
+        ),
+        base.mark_text(color="black").encode(alt.Text("factor:Q", format=".3f")),
+    ).properties(width=WIDTH, height=alt.Step(22))
+
+
+def _statuses(frame: pl.DataFrame, say: Say) -> Drawing:
+    """Curves per season by status, of one method."""
+    shades = alt.Scale(
+        domain=list(STATUSES), range=[OKABE_ITO[5], OKABE_ITO[1], OKABE_ITO[6]]
+    )  # apart in grey print too
+    legend = alt.Legend(labelExpr=named(STATUSES, say))
+    ink = alt.Color("status:N", title=None, scale=shades, legend=legend)
+    number = alt.Y("number:Q", title=say(labels.column("number")))
+    return (
+        alt.Chart(frame)
+        .mark_bar(stroke="black", strokeWidth=0.5)
+        .encode(alt.X("season:O", title=None), number, ink)
+        .encode(tooltip=tips(say, "season:O", "status:N", "number:Q"))
+        .properties(width=WIDTH, height=240)
+    )
+
+
+def _gains(frame: pl.DataFrame, say: Say) -> Drawing:
+    """How many crews gain or lose how much time in a race of two hours, in steps of 15 s."""
+    gain = "datum.gain_in_two_hours_s"
+    inks = alt.condition(f"{gain} < 0", alt.value(OKABE_ITO[1]), alt.value(OKABE_ITO[0]))
+    return (
+        alt.Chart(frame)
+        .transform_calculate(gain_in_two_hours_s=f"15 * round({gain} / 15)")
+        .mark_bar(stroke="white", size=12)
+        .encode(
+            alt.X("gain_in_two_hours_s:Q", title=say(labels.column("gain_in_two_hours_s"))),
+            alt.Y("count():Q", title=say("Boats"), axis=alt.Axis(tickMinStep=1)),
+            color=inks,
+        )
+        .properties(width=WIDTH, height=220)
+    )
+
+
+JUDGED: Final = tuple(choice.name for choice in CHOICES)
+RUN_TIPS: Final = ("run:O", "speed_m_s:Q", "cw_kg_m:Q")
+STAGES: Final = ("gross", "net")
+SCOPES: Final = ("fleet", "within_type")
+PREDICTED: Final = (
+    ("cw_kg_m", say("Cw of the tow [kg/m]")),
+    ("predicted_cw_kg_m", say("Predicted Cw [kg/m]")),
+)
+WIND: Final = (
+    ("wind_angle_deg", say("Wind angle, 0 from ahead [deg]")),
+    ("wind_m_s", say("Apparent wind [m/s]")),
+)
 
 FIGURES: Final[dict[str, Figure]] = {
-    "resistance_curve": boat.resistance_curve,
-    "curves_compared": compared.curves_compared,
-    "history": boat.history,
+    "resistance_curve": curves(_black, style.directions),
+    "curves_compared": curves(_of_method, _points_of_method),
+    "boats_compared": curves(_of_crew, _of_crew),
     "traces": boat.traces,
-    "out_and_back": boat.out_and_back,
-    "wind": boat.wind,
-    "budget": boat.budget,
-    "b_weight": types.against("b", "weight"),
-    "b_speed": types.against("b", "speed"),
-    "a_weight": types.against("a", "weight"),
-    "cw_standard_weight": types.against("cw_standard", "weight"),
-    "cw_standard_speed": types.against("cw_standard", "speed"),
-    "boats_compared": compared.boats_compared,
-    "shared_bend": types.shared_bend,
-    "log_factors": corrections.log_factors,
-    "ladder": corrections.season_ladder,
-    "season_change": corrections.season_change,
-    "options": corrections.sensitivity_study,
-    "reproducibility": reproducibility.spread,
-    "eras": reproducibility.era_shifts,
-    "repeats": reproducibility.repeat_pairs,
-    "components": reproducibility.components,
-    "predicted": reproducibility.predicted,
-    "changes": reproducibility.register_changes,
-    "race_ranks": reproducibility.race_ranks,
-    "statuses": quality.statuses,
+    "out_and_back": scatter(
+        ("speed_m_s", SPEED), ("cw_kg_m", CW), style.directions, RUN_TIPS,
+        facet=("stage", lambda say: named(STAGES, say)),
+    ),
+    "wind": scatter(*WIND, style.directions, ("run:O", "wind_m_s:Q")),
+    "b_weight": _against(B, WEIGHT),
+    "b_speed": _against(B, DECLARED),
+    "a_weight": _against(A, WEIGHT),
+    "cw_standard_weight": _against(STANDARD, WEIGHT),
+    "cw_standard_speed": _against(STANDARD, DECLARED),
+    "predicted": scatter(*PREDICTED, style.types, ("name:N", "fsn_no:N"), line="same", height=360),
+    "history": by_group(
+        "tow", ("cw_kg_m", say("Cw at the declared speed [kg/m]")), ("cw_lo_kg_m", "cw_hi_kg_m"),
+        tip=("tow:N",), dashed=True,
+    ),
+    "log_factors": by_group(
+        "season", ("factor", labels.column("factor")), ("lo", "hi"), tip=("season:O",), one=True
+    ),
+    "season_change": by_group(
+        "season", ("median_ratio", CHANGE), ("lowest_ratio", "highest_ratio"),
+        tip=("season:O", "tows:Q"), one=True,
+    ),
+    "reproducibility": by_group(
+        "scope", ("sd_ratio", SPREAD), ("lo", "hi"), tip=("n_pairs:Q",), codes=["all"], zero=True
+    ),
+    "eras": by_group(
+        "era", ("shift_ratio", say("Cw new / old without ageing, median")), ("lo", "hi"),
+        tip=("n:Q",), one=True,
+    ),
+    "repeats": by_group(
+        "season", ("cw_ratio", labels.column("cw_ratio")), one=True,
+        tip=("name:N", "fsn_no:N", "season_before:O", "e_n:Q"),
+    ),
+    "components": by_group(
+        "component", ("sd_ratio", SPREAD), ("lo", "hi"), codes=CAUSES, zero=True,
+        facet=("scope", lambda say: named(SCOPES, say)),
+    ),
+    "budget": bars(
+        "component", ("u_ratio", say("Standard uncertainty / Cw")), COMPONENTS, None
+    ),
+    "options": bars(
+        "option", ("median_ratio", CHANGE), JUDGED, ("lo_ratio", "hi_ratio")
+    ),
+    "ladder": _ladder,
+    "changes": _gains,
+    "statuses": _statuses,
     "slide_hull_speed": slides.b_and_hull_speed,
     "slide_towed_at": slides.towed_at,
     "slide_raced_beyond": slides.raced_beyond,
     "slide_boat_years": slides.boat_years,
     "slide_ticks": tool.ticks,
-    "slide_tick_effects": tool.tick_effects,
-    "run_statistics": tool.run_statistics,
+    "slide_tick_effects": bars(
+        "option", ("median_ratio", CHANGE), (*TICKS, *SPEEDS, *JUDGED), ("lo_ratio", "hi_ratio"),
+        facet=("method", style.methods_named),
+    ),
     **{
         f"slide_{quantity}_{explaining}": slides.against(quantity, explaining)
         for quantity in slides.QUANTITIES
         for explaining in slides.EXPLAINING
     },
-}
+}  # fmt: skip
 """Every figure by name."""
-
-
-def png(name: str, frame: pl.DataFrame, language: str) -> bytes:
-    """A figure as a picture, for places that show no Vega."""
-    svg = drawn.svg(FIGURES[name](frame, speaker(language)).to_dict(), language)
-    return bytes(vl_convert.svg_to_png(svg, scale=2.0))
 
 
 def drop(part: object, *keys: str) -> None:

@@ -1,20 +1,13 @@
-"""What the screen of the tool of 2015 showed: its ticks, and the figures of each run."""
-
-from typing import Final
+"""What the ticks on the screen of the tool of 2015 did to a curve."""
 
 import altair as alt
 import polars as pl
 
 from dashboards import labels
-from dashboards.figures.slides import SIDE, in_words, panels, small
-from dashboards.figures.style import GREY, OKABE_ITO, Drawing, number, tips
+from dashboards.figures.slides import SIDE, in_words, small
+from dashboards.figures.style import OKABE_ITO, Drawing, number
 from pipeline.messages import Say
-from pipeline.studies.claims import CHANNELS
-from pipeline.studies.options import CHOICES
-from pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
-
-MOST_SCATTER: Final = 0.10
-"""Sleepproef 2017: "standaard-deviatie < 10% van de meetwaarde"."""
+from pipeline.studies.tool_options import SPEED_NAMES, TICKS
 
 
 def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -71,53 +64,3 @@ def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
         ),
         columns=len(TICKS),
     )
-
-
-def tick_effects(frame: pl.DataFrame, say: Say) -> Drawing:
-    """What each choice does to Cw: median and middle 90 % of tows.
-
-    `frame` holds rows of `option_summary`; of a single tow without the bar.
-    """
-    order = [*TICKS, *SPEEDS, *(choice.name for choice in CHOICES)]
-    base = alt.Chart().encode(
-        alt.Y(
-            "option:N",
-            title=say(labels.column("option")),
-            sort=order,
-            axis=alt.Axis(labelExpr=in_words("datum.value", say), labelLimit=260),
-        )
-    )
-    ratio = say("Cw after / Cw before")
-    bar = base.mark_rule(strokeWidth=3, color=OKABE_ITO[0]).encode(
-        small("lo_ratio", ratio), alt.X2("hi_ratio:Q")
-    )
-    point = base.mark_point(filled=True, size=70, color="black", opacity=1).encode(
-        small("median_ratio", ratio),
-        tooltip=tips(say, "option:N", "median_ratio:Q", "tows:Q"),
-    )
-    one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
-    drawing = alt.layer(one, bar, point, data=frame)
-    return panels(drawing, say, columns=2, width=260, height=alt.Step(24))
-
-
-def run_statistics(frame: pl.DataFrame, say: Say) -> Drawing:
-    """Spread of each channel within each run, as part of its mean; `frame` is `run_statistics`."""
-    point = (
-        alt.Chart()
-        .mark_point(filled=True, size=60, color=OKABE_ITO[0])
-        .encode(
-            alt.X("run:O", title=say(labels.column("run"))),
-            number(alt.Y, "sd_ratio", say("Standard deviation / mean"), zero=True),
-            tooltip=tips(
-                say,
-                *("run:O", "mean:Q", "sd:Q", "median:Q"),
-                *(("median_ratio:Q", say("Median / mean")), "log1_ratio:Q"),
-            ),
-        )
-    )
-    limit = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3])
-    drawing = alt.layer(limit.encode(y=alt.datum(MOST_SCATTER)), point, data=frame)
-    label = in_words("'channel.' + datum.value", say)
-    header = alt.Header(labelExpr=label, labelLimit=260)
-    panel = alt.Facet("channel:N", title=None, sort=list(CHANNELS), header=header)
-    return drawing.properties(width=SIDE, height=120).facet(panel, columns=3)

@@ -9,7 +9,6 @@ from typing import Final, NamedTuple
 import polars as pl
 
 from dashboards.answer import Answer
-from dashboards.figures.slides import METHODS
 from dashboards.site.columns import json_by, json_of
 from dashboards.site.parts import (
     Chart,
@@ -209,36 +208,11 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
         .join(boat_of, on="tow_id", maintain_order="left"),
     }
-    statistics = views.table("run_statistics").join(boat_of, on="tow_id", maintain_order="left")
-    frames |= {
-        "statistics": statistics,
-        "ticks": _ticks(views).drop("method", "b_m_s"),
-        "choices": _choices(views, boat_of),
-    }
     for name in EXTRA:
         if views.has(name):
             rows = views.flagged() if name == "assessments" else views.table(name)
             frames[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
     return frames
-
-
-def _ticks(views: Views) -> pl.DataFrame:
-    """Curves under the ticks of the tool of 2015, by the last method under which they are drawn."""
-    curves = views.option_curves()
-    last = [name for name in METHODS if name in curves["method"].unique()]
-    return curves.filter(pl.col("method") == (last or [""])[-1])
-
-
-def _choices(views: Views, boat_of: pl.DataFrame) -> pl.DataFrame:
-    """What each choice does to a tow, as the fleet's chart draws it, without a middle 90 %."""
-    effects = views.table("option_effects").drop_nulls("cw_effect_ratio")
-    none = pl.lit(None, pl.Float64)
-    return effects.select(
-        *("method", "tow_id", "option"),
-        median_ratio="cw_effect_ratio",
-        lo_ratio=none,
-        hi_ratio=none,
-    ).join(boat_of, on="tow_id", maintain_order="left")
 
 
 POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
@@ -345,9 +319,6 @@ DRAWN = {
     "runs": ("wind",),
     "curves": ("history",),
     "budget": ("budget",),
-    "statistics": ("statistics",),
-    "ticks": ("ticks",),
-    "choices": ("choices",),
 }
 """What the charts draw, by name; rows of several kinds stand one below the other."""
 
@@ -362,14 +333,6 @@ def _sections(own: dict[str, _Own]) -> list[Section]:
         Chart("out_and_back", "stages", say("Out against back, and the wind"), OF_THE_CURVE),
         Chart("wind", "runs", say("Apparent wind [m/s]"), OF_THE_CURVE),
     ]
-    of_tow = {"tow_id": "tow_id"}
-    ticks = [
-        Chart("slide_ticks", "ticks", say("Curves under all combinations of the options"), of_tow),
-        Chart("slide_tick_effects", "choices", say("What each option does to Cw"), of_tow),
-    ]
-    statistics = Chart(
-        "run_statistics", "statistics", say("Spread within each run; dashed: 10 %"), of_tow
-    )
     curves = own["curves"].table("curves", CURVE_COLUMNS, say("Through the years"), exact=False)
     runs = own["runs"].table("run_points", RUN_COLUMNS, say("Runs"), FOLLOWS, exact=False)
     lines = own["register"].table("register", LINE_COLUMNS, say("In the register"))
@@ -433,25 +396,6 @@ def _sections(own: dict[str, _Own]) -> list[Section]:
                 "Relative standard uncertainty of Cw by cause; the table says which tows share it."
             ),
             [budget],
-        ),
-        Section(
-            "boat_ticks",
-            say("What other choices do to the curve"),
-            say(
-                "Optimisation, trimming, wind-vane correction and B from length: all sixteen "
-                "combinations overlaid, with the log's speed and after correction. Each panel "
-                "colours one option."
-            ),
-            ticks,
-        ),
-        Section(
-            "boat_statistics",
-            say("The measurements per run"),
-            say(
-                "What the tool of 2014 showed of each run: mean, spread, median and their "
-                "ratios, here of means per second. The numbers are in the table below it."
-            ),
-            [statistics],
         ),
     ]
     for name, columns in EXTRA.items():

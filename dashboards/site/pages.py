@@ -457,8 +457,11 @@ def _changes(methods: Sequence[str], changes: pl.DataFrame) -> Page:
         "changes", changed, CHANGE_COLUMNS, say("Changed lines"), ["to_edition"], search=True,
         cards=CHANGE_CARDS,
     )  # fmt: skip
-    chart = Chart("changes", "changes", say("Changed lines"), {"to_edition": "to_edition"})
-    drawn = with_page(changed.select(*DRAWN_CHANGES)).drop_nulls("cw_ratio")
+    chart = Chart(
+        "changes", "changes", say("Time that crews gain or lose in two hours"),
+        {"to_edition": "to_edition"},
+    )  # fmt: skip
+    drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
     headline = headlines.changes(changes.filter(to_edition=chosen))
     return Page(
         "changes.html",
@@ -499,10 +502,7 @@ CHANGE_CARDS = (
     *("name", "fsn_no", "rowers", "crew_class", "old_cw_kg_m", "new_cw_kg_m"),
     *("gain_in_two_hours_s", "exceeds_interval"),
 )
-DRAWN_CHANGES = (
-    *("from_edition", "to_edition", "fsn_no", "name", "rowers", "crew_class", "cw_ratio"),
-    "time_ratio",
-)
+DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_in_two_hours_s")
 
 
 def _compare(views: Views, methods: Sequence[str]) -> Page:
@@ -513,7 +513,7 @@ def _compare(views: Views, methods: Sequence[str]) -> Page:
     curves = (
         lines.select("tow_id", crew=called)
         .join(views.table("curve_points").filter(method=method), on="tow_id", maintain_order="left")
-        .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+        .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", kind=pl.lit("line"))
         .sort("crew", "speed_m_s")
     )
     crews = curves["crew"].unique().sort().to_list()

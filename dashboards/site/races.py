@@ -7,14 +7,12 @@ import polars as pl
 
 from dashboards import labels
 from dashboards.site.parts import (
-    Chart,
     Page,
     Section,
     Table,
     draft_of,
     editions_select,
     race_path,
-    with_page,
 )
 from dashboards.speech import Headline, Speech, stretched_fatigue
 from pipeline.messages import in_per_cent, say
@@ -79,9 +77,6 @@ def _race(
     table = Table(
         "race_changes", rows, COLUMNS, say("Races"), ["to_edition"], search=True, cards=CARDS
     )
-    chart = Chart(
-        "race_ranks", "races", say("Place before and after"), {"to_edition": "to_edition"}
-    )
     return Page(
         path,
         say("Races"),
@@ -91,17 +86,14 @@ def _race(
                 say("Results by both editions"),
                 say(
                     "Power per rower in this race, and the place by it, by class: among the crews "
-                    "that have a valid line on that day in both editions. On the line the place "
-                    "stays the same."
+                    "that have a valid line on that day in both editions."
                 ),
-                [chart],
-                [table],
+                tables=[table],
                 headline=_winners(now, chances),
             )
         ],
         name=name,
         selects=[editions_select("to_edition", editions, chosen)],
-        data={"races": [with_page(rows.drop_nulls("new_rank"), "../")]},
     )
 
 

@@ -52,16 +52,6 @@ def _where(key):
     return pl.all_horizontal(*(pl.col(name) == value for name, value in key.items()))
 
 
-def test_a_line_follows_only_where_its_interval_leaves_out_zero(built):
-    seen = set()
-    for boat_type in types_of(built):
-        for line in under(built, boat_type).lines:
-            expected = None if line["reason"] else line["slope_lo"] > 0 or line["slope_hi"] < 0
-            assert line["follows"] is expected
-            seen.add(line["follows"])
-    assert seen == {None, True, False}
-
-
 @pytest.mark.parametrize(
     ("p_value", "power", "verdict"),
     [(0.3, 0.9, True), (0.3, 0.5, None), (0.01, 0.9, False), (0.01, 0.5, False), (0.3, None, None)],
@@ -150,27 +140,9 @@ def test_cw_lies_closest_only_where_chance_would_not_make_it(n_boats, b, a, cw, 
     assert closest(missing) == Closest(n_boats, None, "few_boats")
 
 
-def test_eras_are_those_of_the_table(built):
-    shifts = built.table("era_shifts")
-    for boat_type in [*types_of(built), "unknown"]:
-        for era in under(built, boat_type).eras:
-            row = shifts.filter(method="rebased-2015", boat_type=boat_type, era=era["era"])
-            if row.height:
-                assert era == row.row(0, named=True)
-            else:
-                assert (era["n"], era["apart"], era["reason"]) == (0, None, "few_pairs")
-    everyone = audit(built.store, ["Vlet"]).fleet["rebased-2015"].eras
-    assert everyone.keys() == {"2009-2011", "2012-2013"}
-
-
 @pytest.mark.parametrize("name", ["Kuikensloep", "kuikensloep", " KUIKEN SLOEP "])
 def test_a_type_is_found_whatever_its_case_and_blanks(built, name):
     assert audit(built.store, [name]).types[0].boat_type == "Kuikensloep"
-
-
-def test_a_boat_is_found_whatever_its_case_and_blanks(built):
-    fsn_no = built.table("tows")["fsn_no"][0]
-    assert audit(built.store, [f" fsn {fsn_no[3:]}"]).boat["fsn_no"] == fsn_no
 
 
 def test_boats_without_a_type_have_a_page_without_claims(built):
@@ -187,22 +159,9 @@ def test_an_unknown_name_lists_the_types_and_a_boat(built):
         assert expected in str(error.value)
 
 
-def test_a_boat_next_to_a_type_is_refused(built):
-    boat = built.table("tows")["fsn_no"][0]
-    with pytest.raises(MissingKnowledgeError, match="a page of its own"):
-        audit(built.store, [boat, "Kuikensloep"])
-
-
 def test_a_method_that_the_tables_do_not_hold_is_named_with_those_they_do(built):
     with pytest.raises(MissingKnowledgeError, match=r"'rebased'.*as-published, rebased-2015"):
         audit(built.store, ["Kuikensloep"], "rebased")
-
-
-def test_a_type_whose_tows_gave_no_curve_has_a_page(bench):
-    change(bench, "UPDATE boats SET boat_type = 'Punter' WHERE fsn_no = 'FSN100'")
-    found = under(bench, "punter")
-    assert found.lines == []
-    assert found.bends["reason"] == found.speed_trend["reason"] == "no_curves"
 
 
 def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
@@ -222,15 +181,6 @@ def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
     for tow in report.tows:
         assert {curve["method"] for curve in tow["curves"]} == set(METHODS)
         assert tow["steps"][0]["step"] == "start"
-
-
-def test_one_method_leaves_out_the_others(built):
-    fsn_no = built.table("repeat_pairs")["fsn_no"][0]
-    report = audit(built.store, [fsn_no], "rebased-2015")
-    parts = ("in_type", "pooled", "repeat_pairs", "predicted", "register")
-    methods = {row["method"] for part in parts for row in getattr(report, part)}
-    curves = {curve["method"] for tow in report.tows for curve in tow["curves"]}
-    assert methods == curves == {"rebased-2015"}
 
 
 def test_set_aside_tows_of_a_boat_are_found_by_number_or_file_and_no_others(bench):
@@ -265,15 +215,6 @@ def test_statistics_of_a_season_rest_on_its_tows_alone(built):
     assert {row["season"] for row in figures.outside} <= {2014}
     again = audit(built.store, [boat_type], "rebased-2015")
     assert again.types[0].n_tows > own.height, "the database is as it was"
-
-
-def test_lines_over_all_tows_are_those_of_the_table(built):
-    boat_type = types_of(built)[0]
-    report = audit(built.store, [boat_type], "rebased-2015", tows="all")
-    lines = report.types[0].under["rebased-2015"].lines
-    table = built.table("type_lines").filter(boat_type=boat_type, method="rebased-2015", tows="all")
-    table = table.sort("quantity", "explaining", "within")
-    assert [line["n"] for line in lines] == table["n"].to_list()
 
 
 def test_a_boat_is_found_by_its_name_as_people_write_it(built):

@@ -151,14 +151,6 @@ class Views:
             tow_id,
         )
 
-    def shared_bends(self) -> pl.DataFrame:
-        """B of every boat as it is, shared in part, and shared wholly with its type."""
-        return self.frame(
-            "SELECT p.*, b.name, p.fsn_no || ' ' || p.rowers || p.crew_class AS crew "
-            "FROM pooled_curves AS p LEFT JOIN boats AS b USING (fsn_no) "
-            "WHERE p.boat_type != 'unknown' ORDER BY method, tow_id, pooling"
-        )
-
     def repeat_pairs(self) -> pl.DataFrame:
         """Repeat tows with the boat's name."""
         return self._named("repeat_pairs", "method, tow_id", columns="t.* EXCLUDE ln_ratio")
