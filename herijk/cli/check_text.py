@@ -2,7 +2,7 @@
 
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
@@ -70,8 +70,9 @@ def _findings(data: Path) -> Iterator[Finding]:
     yield Finding("Herijk", True, f"{version('herijk')}, Python {sys.version.split()[0]}")
     yield _space(data)
     known = KnownMethods.of(Store(data))
-    looks = {say("settings"): lambda: tell("applies {}", ", ".join(applied(data)))}
-    looks |= {tell("method {}", name): partial(_title, known, name) for name in known.own}
+    looks: dict[str, Callable[[], str]] = {say("settings"): partial(_applied, data)}
+    for name in known.own:
+        looks[tell("method {}", name)] = partial(_title, known, name)
     if data.is_dir():
         looks |= {say("lock"): partial(_free, data), say("tables"): partial(_tows, data)}
     for what, look in looks.items():
@@ -87,6 +88,10 @@ def _space(data: Path) -> Finding:
     free = shutil.disk_usage(nearest).free
     said = tell("{:.1f} GB free at {}", free / 2**30, nearest)
     return Finding(say("disk"), free >= LEAST_FREE, said)
+
+
+def _applied(data: Path) -> str:
+    return tell("applies {}", ", ".join(applied(data)))
 
 
 def _title(known: KnownMethods, name: str) -> str:
