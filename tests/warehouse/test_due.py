@@ -6,7 +6,7 @@ import polars as pl
 import pytest
 
 from dashboards.labels import CODES
-from herijk.cli.due_text import URGENCIES
+from herijk.cli.registers_text import URGENCIES
 from pipeline.register.due import NOT_RACED
 from pipeline.register.register import draft_name
 from warehouse.queries.due import due_report

@@ -13,7 +13,9 @@ from pipeline.register.changes import register_changes
 from pipeline.register.register import LINE
 from pipeline.studies.ladder import START, ladder
 from pipeline.tables.row import Row
-from warehouse.queries.history import History
+from warehouse.editions.compare import NO_STEPS
+from warehouse.queries.history import Draft, History
+from warehouse.store.editions import Edition
 from warehouse.store.store import Store
 
 MOST_AFFECTED = 15
@@ -51,11 +53,26 @@ def rebase(store: Store, method: Method, against: Method) -> RebaseReport:
     links = old.made.tow_instruments, new.made.tow_instruments
     rungs = ladder(against, method, history.tows, history.blocks, links, history.cache)
     rungs = rungs.filter(pl.col("step") != START)
-    changes = register_changes(old.register, new.register)
+    return _report(new, old.register, against.name, rungs)
+
+
+def against_print(store: Store, method: Method, printed: Edition) -> RebaseReport:
+    """What a method changes against an edition taken over from print: by which steps is unknown.
+
+    Raises:
+        MissingKnowledgeError: there is no sound tow, or the method does not cover a season.
+    """
+    history = History.of(store)
+    return _report(history.under(method), printed.register, printed.manifest.edition, NO_STEPS)
+
+
+def _report(new: Draft, old: pl.DataFrame, against: str, rungs: pl.DataFrame) -> RebaseReport:
+    history, method = new.history, new.method
+    changes = register_changes(old, new.register)
     return RebaseReport(
         method=method.name,
         method_hash=method.content_hash,
-        against=against.name,
+        against=against,
         simulated=history.simulated,
         by_season=_by_season(rungs, history.tows).to_dicts(),
         changes=changes["change"].value_counts(sort=True).to_dicts(),
