@@ -323,10 +323,7 @@ def _type_steps(report: TypesAudit) -> Iterator[str]:
     for name, (title, columns) in STEPS.items():
         rows = _rows(report, report.methods, name)
         yield section(tell(title), table(rows, ("boat_type", "method", *columns.split())))
-    fleet = [
-        row | {"method": method}
-        for method, known in report.fleet.items()
-        for row in known.reproducibility
-    ]
     shown = ("method", "scope", "within_sd_ratio", "sd_ratio", "lo", "hi", "n_pairs")
-    yield section(tell("How well repeat tows of all types agree"), table(fleet, shown))
+    yield section(
+        tell("How well repeat tows of all types agree"), table(report.reproducibility, shown)
+    )

@@ -22,6 +22,8 @@ _END_OF_HEADER: Final = "***End_of_Header***"
 _SEPARATORS: Final = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " "}
 _SEPARATOR: Final = re.compile(r"(?im)^separator[\t,][ \t,]*(\w+)")
 _NUMBER_IN_NAME: Final = re.compile(r"([0-9]{1,2})[^0-9]*$")
+_NONE: Final = ("", "comment")
+"""What is no channel."""
 _INDEX_COLUMN: Final = "X_Value"
 
 
@@ -34,7 +36,7 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
     """A LabVIEW measurement file as a table of text with one header.
 
     Each segment (a header of its own, with samples below it) becomes a run where there is none:
-    column `run` is put before the others. All segments have the columns of the first.
+    column `run` is put before the others. All segments have the same columns.
 
     Returns:
         The table, with the separator and decimal mark of the file; and the line in the file of
@@ -48,11 +50,12 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
     named = _SEPARATOR.search("\n".join(lines[: starts[0]] if starts else []))
     separator = _SEPARATORS.get(named[1].casefold(), "\t") if named else "\t"
     cells = [line.split(separator) for line in [*lines, ""]]
-    names = [cell.strip() for cell in cells[starts[1] + 1]] if starts[1:] else []
-    kept = [i for i, name in enumerate(names) if name and name.casefold() != "comment"]
-    if not kept:
+    headers = [[cell.strip() for cell in cells[start + 1]] for start in starts[1:]]
+    columns = [[i for i, name in enumerate(x) if name.casefold() not in _NONE] for x in headers]
+    if not columns or [] in columns or columns != columns[:1] * len(columns):
         said = say("This LabVIEW file has no segment header.")
         raise DefectiveInputError("unreadable_file", said)
+    names, kept = headers[0], columns[0]
     of_units = next((c for c in cells[: starts[1]] if c[0].strip() == "Y_Unit_Label"), [])
     units = {place: unit.strip() for place, unit in enumerate(of_units)}
     header = [_with_unit(names[i], units.get(i, "")) for i in kept]
