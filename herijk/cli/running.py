@@ -23,7 +23,7 @@ from warehouse.store.machine_faults import machine_faults_explained
     help="Method to add to those of the data folder, or to renew; repeat for more. A file is kept "
     "there. Default: those that beheer.toml lists, or all that ship.",
 )
-@option("--seasons", type=Seasons(), metavar="A:B", help="Read these seasons only.")
+@option("--seasons", type=Seasons(), help="Read these seasons only.")
 @json_option
 def rebuild(
     archive: Path, data: Path, methods: tuple[str, ...], seasons: range | None, as_json: bool
