@@ -85,7 +85,7 @@ def test_data_is_never_translated():
     assert say("{} tows in {} seasons", "Look", 3).spoken("nl") == "Look proeven in 3 seizoenen"
     assert NL("{} tows in {} seasons", "Look", 3) == "Look proeven in 3 seizoenen"
     before = LANGUAGE.set("nl")
-    assert table([{"name": "Look"}], {"name": say("boat")}) == "  sloep\n  Look"
+    assert table([{"name": "Look"}], "name", {"name": say("boat")}) == "  sloep\n  Look"
     LANGUAGE.reset(before)
 
 

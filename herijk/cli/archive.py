@@ -20,7 +20,7 @@ from warehouse.store.machine_faults import machine_faults_explained
 
 
 @click.command(cls=Command)
-@argument("directory", metavar="DIR", type=PATH, help="Folder to make.")
+@argument("directory", type=PATH, help="Folder to make.")
 @json_option
 def init(directory: Path, as_json: bool) -> None:
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
@@ -38,14 +38,8 @@ def init(directory: Path, as_json: bool) -> None:
 
 
 @click.command(cls=Command)
-@argument("directory", metavar="DIR", type=PATH, required=False, help="Folder to make.")
-@option(
-    "--seasons",
-    type=Seasons(),
-    default="2009:2018",
-    metavar="A:B",
-    help="Seasons, both ends included.",
-)
+@argument("directory", type=PATH, required=False, help="Folder to make.")
+@option("--seasons", type=Seasons(), default="2009:2018", help="Seasons, both ends included.")
 @option("--tows-per-season", type=click.IntRange(1, 1000), default=24, help="Tows in each.")
 @option("--rate", type=click.IntRange(5, 1000), default=1000, help="Samples per second.")
 @option("--seed", type=click.IntRange(0), default=1, help="Decides all that is drawn.")
@@ -63,7 +57,7 @@ def simulate(
     as_json: bool,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
-    from herijk.cli.progress import TerminalProgress
+    from herijk.cli.progress import tows_counted
     from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
 
@@ -75,11 +69,8 @@ def simulate(
     settings = world_settings(
         world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    with machine_faults_explained(directory), TerminalProgress() as progress:
-        progress.expect(len(seasons) * tows_per_season)
-        truth = write_simulated_archive(
-            directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
-        )
+    with machine_faults_explained(directory), tows_counted() as counted:
+        truth = write_simulated_archive(directory, simulate_world(settings), counted)
     made = {"archive": str(directory), "truth": str(truth)}
     show(made, lambda m: tell("Simulated archive: {archive}\nIts truth: {truth}", **m), as_json)
 

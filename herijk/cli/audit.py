@@ -36,7 +36,7 @@ MOST_TYPES: Final = 2
     metavar="all|newest|SEASON|A:B",
     help="Which tows a type's statistics rest on.",
 )
-@option("--plots", type=PATH, metavar="DIR", help="Draw the plots in this folder.")
+@option("--plots", type=PATH, help="Draw the plots in this folder.")
 @json_option
 def audit(
     names: tuple[str, ...],

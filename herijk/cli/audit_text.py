@@ -12,6 +12,7 @@ from dashboards.labels import candidate, code_in_words
 from herijk.cli.render import (
     cell,
     codes,
+    interval_of_runs_alone,
     page,
     place,
     section,
@@ -21,6 +22,7 @@ from herijk.cli.render import (
     with_crew,
 )
 from pipeline.messages import say, tell
+from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
 from warehouse.editions.lineage import Lineage, LineLineage
 from warehouse.queries.answers import answers, current_edition, own_races, season_faults
@@ -75,13 +77,12 @@ TOWS: Final = (
     "altered"
 )
 CURVES: Final = (
-    "method a_kg_m b_m_s b_lo_m_s b_hi_m_s cw_kg_m cw_lo_kg_m cw_hi_kg_m power_w status flags "
-    "interval"
+    "method a_kg_m b_m_s b_lo_m_s b_hi_m_s cw_kg_m cw_lo_kg_m cw_hi_kg_m power_w status flags"
 )
-RUNS: Final = "run window_start_s window_end_s cut_reason speed_factor speed_m_s"
-CORRECTIONS: Final = (
-    "gross_cw_kg_m inertia_cw_kg_m air_cw_kg_m still_air_cw_kg_m temperature_cw_kg_m cw_kg_m "
-    "fitted_cw_kg_m reason"
+RUNS: Final = (
+    "run window_start_s window_end_s cut_reason speed_factor speed_m_s gross_cw_kg_m "
+    "inertia_cw_kg_m air_cw_kg_m still_air_cw_kg_m temperature_cw_kg_m cw_kg_m fitted_cw_kg_m "
+    "reason"
 )
 BOAT: Final = {
     "in_type": (
@@ -112,20 +113,20 @@ BOAT: Final = {
 
 def _boat_steps(report: BoatAudit) -> Iterator[str]:
     """Tables of all that is known of a boat, in the order in which it is made."""
-    tows = table(list(map(with_crew, report.tows)), TOWS.split())
+    tows = table(report.tows, TOWS)
     yield section(tell("Its tows"), tows or tell("  No tow of this boat was accepted."))
     for tow in report.tows:
         yield from _tow_steps(tow)
     for name, (heading, columns) in BOAT.items():
         rows = list(map(_shown, getattr(report, name)))
-        yield section(tell(heading), table(rows, ("method", *columns.split())))
+        yield section(tell(heading), table(rows, f"method {columns}"))
     faults = [f"  {place(row)}: {why_set_aside(row)}" for row in report.set_aside]
     yield section(tell("Set aside, by its number or the name of its file"), *faults)
 
 
 def _shown(row: Row) -> Row:
     """A row with what columns show that the table has in another form."""
-    shown = with_crew(row) if "rowers" in row else dict(row)
+    shown = dict(row)
     if "ln_ratio" in row:
         shown["shift_ratio"] = None if row["ln_ratio"] is None else exp(row["ln_ratio"])
     if "candidates" in row:
@@ -144,12 +145,17 @@ def _tow_steps(tow: Row) -> Iterator[str]:
             ladder[step["step"]] = cell("cw_ratio", step["factor"])
     rows = [dict(zip(ends, pair, strict=True)) | row for pair, row in ladders.items()]
     names = dict.fromkeys(name for row in rows for name in row)
-    heads = {name: "" if name in ends else code_in_words(name) for name in names}
+    heads = {name: code_in_words(name) for name in names if name not in (*ends, "total")}
     yield section(
         tell("Tow {}: change of Cw by each step", tow["tow_id"]),
-        table(rows, heads | {"total": say("total")}),
+        table(rows, " ".join(names), heads),
     )
-    yield section(tell("Tow {}: curves", tow["tow_id"]), table(tow["curves"], CURVES.split()))
+    runs_alone = [c["method"] for c in tow["curves"] if c["interval"] != COMPLETE]
+    yield section(
+        tell("Tow {}: curves", tow["tow_id"]),
+        table(tow["curves"], CURVES),
+        interval_of_runs_alone(", ".join(runs_alone)) if runs_alone else "",
+    )
     for methods, runs in _alike(tow["curves"]).items():
         yield section(tell("Tow {}: runs under {}", tow["tow_id"], methods), runs)
 
@@ -159,8 +165,8 @@ def _alike(curves: Sequence[Row]) -> dict[str, str]:
     methods: dict[str, list[str]] = {}
     for curve in curves:
         budget = [row for row in curve["budget"] if row["u_ratio"]]
-        runs = table(curve["run_points"], (*RUNS.split(), *CORRECTIONS.split()))
-        causes = table(budget, ("component", "shared", "u_ratio"))
+        runs = table(curve["run_points"], RUNS)
+        causes = table(budget, "component shared u_ratio")
         methods.setdefault(f"{runs}\n{causes}", []).append(curve["method"])
     return {", ".join(names): runs for runs, names in methods.items()}
 
@@ -185,7 +191,7 @@ def _line_history(line: LineLineage) -> str:
     head = tell("Verification code {}", line.code)
     if line.tow is None:
         return section(head, printed, tell("No tow of the archive is behind this line."))
-    runs = ("run", "window_start_s", "window_end_s", "speed_m_s", "cw_kg_m", "used", "reason")
+    runs = "run window_start_s window_end_s speed_m_s cw_kg_m used reason"
     return section(
         head,
         f"  {printed}",
@@ -275,7 +281,7 @@ def _lines(report: TypesAudit, methods: Sequence[str], of_crews: bool) -> str:
         "Do B, A and Cw follow weight or tow speed? Cw at the standard speed; tows: {}.",
         report.statistics_over,
     )
-    return section(title, table(shown, LINE.split()))
+    return section(title, table(shown, LINE))
 
 
 def _rows(report: TypesAudit, methods: Sequence[str], name: str) -> list[Row]:
@@ -322,11 +328,6 @@ STEPS: Final = {
 def _type_steps(report: TypesAudit) -> Iterator[str]:
     for name, (title, columns) in STEPS.items():
         rows = _rows(report, report.methods, name)
-        yield section(tell(title), table(rows, ("boat_type", "method", *columns.split())))
-    fleet = [
-        row | {"method": method}
-        for method, known in report.fleet.items()
-        for row in known.reproducibility
-    ]
-    shown = ("method", "scope", "within_sd_ratio", "sd_ratio", "lo", "hi", "n_pairs")
-    yield section(tell("How well repeat tows of all types agree"), table(fleet, shown))
+        yield section(tell(title), table(rows, f"boat_type method {columns}"))
+    shown = table(report.reproducibility, "method scope within_sd_ratio sd_ratio lo hi n_pairs")
+    yield section(tell("How well repeat tows of all types agree"), shown)

@@ -3,7 +3,6 @@
 import shutil
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
@@ -15,7 +14,7 @@ from herijk.cli.render import place
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, say, spoken, tell
 from warehouse.archive.check import CauseReport, CheckReport, check_archive, check_report
-from warehouse.queries.reports import RebuildReport, rebuild_report
+from warehouse.queries.reports import rebuild_report
 from warehouse.store.lock import only_writer
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
@@ -67,18 +66,20 @@ def checked(archive: Path | None, data: Path) -> Checked:
 
 
 def _findings(data: Path) -> Iterator[Finding]:
+    """How the machine, the settings, each method and the tables are."""
     yield Finding("Herijk", True, f"{version('herijk')}, Python {sys.version.split()[0]}")
     yield _space(data)
-    yield _tried(say("settings"), lambda: tell("applies {}", ", ".join(applied(data))))
     known = KnownMethods.of(Store(data))
+    looks: dict[str, Callable[[], str]] = {say("settings"): partial(_applied, data)}
     for name in known.own:
-        yield _tried(tell("method {}", name), partial(_title, known, name))
+        looks[tell("method {}", name)] = partial(_title, known, name)
     if data.is_dir():
-        yield _tried(say("lock"), lambda: _taken(only_writer(data)))
-        yield _tried(say("tables"), lambda: _tows(rebuild_report(Store(data))))
-    else:
-        there_later = tell("{} is not there yet; a rebuild makes it", data)
-        yield Finding(say("data folder"), True, there_later)
+        looks |= {say("lock"): partial(_free, data), say("tables"): partial(_tows, data)}
+    for what, look in looks.items():
+        try:
+            yield Finding(what, True, look())
+        except (HerijkError, OSError) as error:
+            yield Finding(what, False, spoken(error, LANGUAGE.get()))
 
 
 def _space(data: Path) -> Finding:
@@ -89,25 +90,22 @@ def _space(data: Path) -> Finding:
     return Finding(say("disk"), free >= LEAST_FREE, said)
 
 
-def _tried(what: str, look: Callable[[], str]) -> Finding:
-    try:
-        return Finding(what, True, look())
-    except (HerijkError, OSError) as error:
-        return Finding(what, False, spoken(error, LANGUAGE.get()))
+def _applied(data: Path) -> str:
+    return tell("applies {}", ", ".join(applied(data)))
 
 
 def _title(known: KnownMethods, name: str) -> str:
     return known.get(name).title
 
 
-def _taken(lock: AbstractContextManager[None]) -> str:
-    with lock:
+def _free(data: Path) -> str:
+    with only_writer(data):
         return tell("free")
 
 
-def _tows(report: RebuildReport) -> str:
-    tows = sum(season["tows"] for season in report.seasons)
-    return tell("{} tows in {} seasons", tows, len(report.seasons))
+def _tows(data: Path) -> str:
+    seasons = rebuild_report(Store(data)).seasons
+    return tell("{} tows in {} seasons", sum(row["tows"] for row in seasons), len(seasons))
 
 
 def text(report: Checked) -> str:

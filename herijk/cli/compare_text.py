@@ -6,7 +6,7 @@ from typing import Final
 
 from dashboards.labels import code_in_words
 from herijk.cli.methods_text import options_text
-from herijk.cli.render import cell, codes, page, section, speech, table, with_crew
+from herijk.cli.render import cell, codes, interval_of_runs_alone, page, section, speech, table
 from pipeline.messages import in_per_cent, say, tell
 from pipeline.method.variant import Difference, differences
 from pipeline.register.register import draft_name
@@ -16,8 +16,6 @@ from warehouse.queries.rebase import RebaseReport, against_print, rebase
 from warehouse.store.editions import edition_names, method_of_edition, read_edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
-
-BOAT: Final = ("fsn_no", "name", "crew")
 
 # Methods
 
@@ -77,7 +75,8 @@ def _effect(report: RebaseReport) -> list[str]:
     steps = [name for name in (report.by_season or [{}])[0] if name not in SEASON]
     heads = {name: code_in_words(name) for name in steps}
     seasons = [row | _as_changes(row, steps) for row in report.by_season]
-    boats = [with_crew(row) | _as_changes(row, steps) for row in report.boats]
+    boats = [row | _as_changes(row, steps) | {"in_2_h": in_two_hours(row)} for row in report.boats]
+    shown = " ".join(steps)
     return [
         tell("{} against {}; nothing was stored.", report.method, report.against),
         tell("Register lines: {}.", counts),
@@ -86,18 +85,16 @@ def _effect(report: RebaseReport) -> list[str]:
                 "Change of Cw at the declared speed by each step, median of the season's tows; a "
                 "tow's\nown steps multiply to its total, medians need not:"
             ),
-            table(seasons, {"season": "", "tows": "", **heads, "total": say("total")}),
+            table(seasons, f"season tows {shown} total", heads),
         ),
         section(
             tell("Register lines most affected:"),
-            table(
-                [row | {"in_2_h": in_two_hours(row)} for row in boats],
-                dict.fromkeys(BOAT, "") | heads | {"cw_ratio": say("Cw"), "in_2_h": say("in 2 h")},
-            ),
+            table(boats, f"fsn_no name crew {shown} cw_ratio in_2_h", heads | CW),
         ),
     ]
 
 
+CW: Final = {"cw_ratio": say("Cw")}
 SEASON: Final = ("season", "tows", "total")
 
 
@@ -133,13 +130,7 @@ def editions(report: DiffReport) -> str:
             str(report.exceeds_interval) if known else tell("not known"),
             report.interval_unknown,
         ),
-        *(
-            tell(
-                "The interval of {} is the spread of the runs alone: the log's error is not in it.",
-                edition,
-            )
-            for edition in report.runs_alone
-        ),
+        interval_of_runs_alone(", ".join(report.runs_alone)) if report.runs_alone else "",
         section(tell("Causes, with their factor on Cw:"), table(causes, CAUSES)),
         section(
             tell(
@@ -154,29 +145,11 @@ def editions(report: DiffReport) -> str:
     return page(parts, report.simulated)
 
 
-CAUSES: Final = {
-    "cause": "",
-    "lines": say("lines"),
-    "median_factor": say("median"),
-    "lowest_factor": say("lowest"),
-    "highest_factor": say("highest"),
-}
-LINE: Final = {
-    **dict.fromkeys((*BOAT, "change"), ""),
-    "old_a_kg_m": say("A old"),
-    "new_a_kg_m": say("new"),
-    "old_b_m_s": say("B old"),
-    "new_b_m_s": say("new"),
-    "old_cw_kg_m": say("Cw old"),
-    "new_cw_kg_m": say("new"),
-    "old_power_w": say("W old"),
-    "new_power_w": say("new"),
-    "power_ratio": say("W %"),
-    "in_2_h": say("in 2 h"),
-    "old_rank": say("rank"),
-    "new_rank": say("new"),
-    "causes": "",
-}
+CAUSES: Final = "cause lines median_factor lowest_factor highest_factor"
+LINE: Final = (
+    "fsn_no name crew change old_a_kg_m new_a_kg_m old_b_m_s new_b_m_s old_cw_kg_m new_cw_kg_m "
+    "old_power_w new_power_w power_ratio in_2_h old_rank new_rank causes"
+)
 
 
 def _cause(cause: Row) -> str:
@@ -192,7 +165,7 @@ def _line(row: Row) -> Row:
     if row["change"] == "removed":
         change += f": {code_in_words(row['new_status'] or 'gone')}"
     in_2_h = seconds(row["gain_in_two_hours_s"])
-    return with_crew(row) | {"causes": causes, "change": change, "in_2_h": in_2_h}
+    return row | {"causes": causes, "change": change, "in_2_h": in_2_h}
 
 
 def _group(group: Group) -> str:
@@ -234,22 +207,13 @@ def _races(report: DiffReport) -> str:
         text,
         section(tell("Winners:"), table(winners, WINNER)),
         tell("  The chance: in how many of the equally likely new registers the old winner loses."),
-        section(tell("Ranks that change:"), table(list(map(with_crew, moved)), MOVED)),
+        section(tell("Ranks that change:"), table(moved, MOVED)),
     ]
     return "\n".join(filter(None, parts))
 
 
-WINNER: Final = {
-    **dict.fromkeys(("race", "race_date", "crew_class"), ""),
-    "old_winner": say("old winner"),
-    "new_winner": say("new winner"),
-    "winner_changed": say("changes"),
-    "chance": say("chance that another wins"),
-}
-MOVED: Final = (
-    *("race", "race_date", "fsn_no", "crew", "old_power_w", "new_power_w", "old_rank"),
-    *("new_rank", "podium_changed"),
-)
+WINNER: Final = "race race_date crew_class old_winner new_winner winner_changed chance"
+MOVED: Final = "race race_date fsn_no crew old_power_w new_power_w old_rank new_rank podium_changed"
 
 
 def _chance(winner: Row) -> str:

@@ -20,13 +20,11 @@ def export() -> None:
 
 @export.command()
 @argument(
-    "boat",
-    required=False,
-    help="A boat by number or name; without it all boats of the edition.",
+    "boat", required=False, help="A boat by number or name; without it all boats of the edition."
 )
 @data_option
-@option("--edition", metavar="EDITION", help="Edition; the newest when left out.")
-@option("--out", type=PATH, metavar="FILE", help="File to write: a PDF, or .html for a page.")
+@option("--edition", help="Edition; the newest when left out.")
+@option("--out", type=PATH, help="File to write: a PDF, or .html for a page.")
 @json_option
 def certificate(
     boat: str | None, data: Path, edition: str | None, out: Path | None, as_json: bool
@@ -50,7 +48,7 @@ def certificate(
 
 
 @export.command()
-@option("--out", type=PATH, required=True, metavar="DIR", help="Folder for them, new or of pages.")
+@option("--out", type=PATH, required=True, help="Folder for them, new or of pages.")
 @data_option
 @as_of_option
 def pages(out: Path, data: Path, as_of: dt.date | None) -> None:
@@ -68,21 +66,10 @@ def pages(out: Path, data: Path, as_of: dt.date | None) -> None:
 
 
 @export.command()
-@argument(
-    "methods",
-    nargs=-1,
-    required=True,
-    metavar="METHOD...",
-    help="Method proposed; several make a ballot.",
-)
+@argument("methods", nargs=-1, required=True, help="Method proposed; several make a ballot.")
 @data_option
-@option(
-    "--against",
-    default="concept-as-published",
-    metavar="EDITION",
-    help="Edition that counts now, or a draft.",
-)
-@option("--out", type=PATH, metavar="FILE", help="File to write, a PDF.")
+@option("--against", default="concept-as-published", help="Edition that counts now, or a draft.")
+@option("--out", type=PATH, help="File to write, a PDF.")
 @json_option
 def proposal(
     methods: tuple[str, ...], data: Path, against: str, out: Path | None, as_json: bool
@@ -103,14 +90,9 @@ def proposal(
 
 @export.command()
 @data_option
-@option("--out", type=PATH, metavar="DIR", help="Folder for them. Default: slides in --data.")
+@option("--out", type=PATH, help="Folder for them. Default: slides in --data.")
 @option("--type", "types", multiple=True, help="Type of boat; repeat for two together.")
-@option(
-    "--tows",
-    default="all",
-    metavar="all|newest|SEASON|A:B",
-    help="Which tows are drawn.",
-)
+@option("--tows", default="all", metavar="all|newest|SEASON|A:B", help="Which tows are drawn.")
 @option(
     "--boat",
     "boats",

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import as_json_text, data_option, json_option, show, show_files
+from herijk.cli.options import data_option, json_option, show, show_files
 from herijk.cli.speaking import Command, Group, argument, option
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, tell
@@ -82,7 +82,7 @@ def check(file: str, data: Path, as_json: bool) -> None:
 
 @methods.command()
 @argument("name", help="Name of the new method, for example ours-2027.")
-@option("--from", "base", default="rebased", metavar="METHOD", help="Method that it begins from.")
+@option("--from", "base", default="rebased", help="Method that it begins from.")
 @data_option
 @json_option
 def new(name: str, base: str, data: Path, as_json: bool) -> None:
@@ -128,11 +128,7 @@ def compare(old: str, new: str, data: Path, fatigue: str, as_json: bool) -> None
     if {old, new} <= {*edition_names(store)}:
         show(_editions(store, old, new, fatigue), text.editions, as_json)
         return
-    report = text.of_methods(store, old, new)
-    if as_json:
-        click.echo(as_json_text(report))
-    else:
-        click.echo(text.methods(report))
+    show(text.of_methods(store, old, new), text.methods, as_json)
 
 
 def _editions(store: "Store", old: str, new: str, fatigue: str) -> "DiffReport":

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from dashboards.workbench.texts import text
 from herijk.cli.render import table
-from pipeline.messages import LANGUAGE, headings, say, tell
+from pipeline.messages import LANGUAGE, say, tell
 from pipeline.method.definition import Method, basis_of
 from pipeline.method.variant import Difference, differences
 from pipeline.method.writing import range_text
@@ -63,7 +63,7 @@ def _all_options(shown: Method) -> list[Difference]:
 def methods(report: dict[str, list[Row]]) -> str:
     """The list of methods."""
     rows = [row | {"content_hash": row["content_hash"][:12]} for row in report["methods"]]
-    return table(rows, {"method": "", "title": say("title"), "content_hash": ""})
+    return table(rows, "method title content_hash")
 
 
 def method(report: MethodReport) -> str:
@@ -82,18 +82,16 @@ def method(report: MethodReport) -> str:
 
 def options_text(options: Sequence[Difference], old: str, new: str) -> str:
     """Options, one a line, as a method's file has them and in words, with what they were."""
-    option, seasons, words, status = headings("option", "seasons", "in words", "status")
     rows = [
         {
             "option": f"{one.step}.{one.option}",
             "seasons": range_text(one.first, one.last),
             "before": ", ".join(map(json.dumps, one.before)),
             "after": json.dumps(one.after),
-            "words": tell(text(f"{one.step}.{one.option}")),
+            "in_words": tell(text(f"{one.step}.{one.option}")),
             "status": tell(text(f"status.{basis_of(one.step, one.option).status}")),
         }
         for one in options
     ]
-    before = {"before": old} if old else {}
-    heads = {"option": option, "seasons": seasons, **before, "after": new}
-    return table(rows, heads | {"words": words, "status": status})
+    heads = {"option": say("option"), "seasons": say("seasons"), "before": old, "after": new}
+    return table(rows, f"option seasons {'before ' if old else ''}after in_words status", heads)

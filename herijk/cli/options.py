@@ -70,7 +70,6 @@ def folder_option(name: str, **settings: Any) -> Callable[[F], F]:
         type=PATH,
         envvar=envvar,
         show_envvar=True,
-        metavar="DIR",
         **settings,
     )
 
@@ -98,7 +97,7 @@ class Day(click.ParamType[dt.date]):
 class Seasons(click.ParamType[range]):
     """A season, written as 2014, or a range of them, 2009:2018."""
 
-    name = "seasons"
+    name = "a:b"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -113,7 +112,6 @@ class Seasons(click.ParamType[range]):
 as_of_option = option(
     "--as-of",
     type=Day(),
-    metavar="DATE",
     help="Judge on this day, as if nothing later were known; without: on the day of the "
     "archive's last tow or race.",
 )
@@ -136,5 +134,7 @@ def show_files(files: Iterable[Path], as_json: bool, said: str | None = None) ->
 
 
 def _plain(value: object) -> object:
-    """What JSON has no form for: a dataclass as its fields, anything else as text."""
+    """What JSON has no form for: a record as its fields, anything else as text."""
+    if hasattr(value, "model_dump"):  # of pydantic, which few commands need
+        return value.model_dump(mode="json")
     return asdict(value) if is_dataclass(value) and not isinstance(value, type) else str(value)

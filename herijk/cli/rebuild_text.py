@@ -48,7 +48,7 @@ def _set_aside(report: RebuildReport) -> str:
     more = sum(row["number"] for row in report.set_aside) - shown
     return section(
         tell("Set aside:"),
-        table(counted, ("lost", "reason_code", "number")),
+        table(counted, "lost reason_code number"),
         *map(_fault, report.first_faults),
         tell("  and {} more: see the table quarantine", more) if more else "",
     )

@@ -6,14 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import (
-    Day,
-    as_json_text,
-    as_of_option,
-    data_option,
-    json_option,
-    show,
-)
+from herijk.cli.options import Day, as_of_option, data_option, json_option, show
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import tell
@@ -80,27 +73,12 @@ def seasons(data: Path, method: str, as_json: bool) -> None:
 
 @click.command(cls=Command)
 @argument("edition", help="Name of the new edition, for example 2026-1.")
-@option(
-    "--valid-from",
-    type=Day(),
-    required=True,
-    metavar="DATE",
-    help="Day from which it counts: 2026-05-08.",
-)
+@option("--valid-from", type=Day(), required=True, help="Day from which it counts: 2026-05-08.")
 @option("--decision", required=True, help="Who decided it, and where.")
-@option("--method", metavar="NAME", help="Method that the last rebuild applied.")
-@option(
-    "--printed",
-    type=int,
-    metavar="YEAR",
-    help="Instead of a method: the register printed that year.",
-)
-@option(
-    "--carry",
-    metavar="EDITION",
-    help="Printed edition whose lines are re-based for boats without measurements.",
-)
-@option("--published-on", type=Day(), metavar="DATE", help="Day of publication; else today.")
+@option("--method", help="Method that the last rebuild applied.")
+@option("--printed", type=int, help="Instead of a method: the register printed that year.")
+@option("--carry", help="Printed edition whose lines are re-based for boats without measurements.")
+@option("--published-on", type=Day(), help="Day of publication; else today.")
 @data_option
 @json_option
 def publish(
@@ -131,16 +109,12 @@ def publish(
         folder = publish_printed(store, printed, terms)
     else:
         folder = publish_edition(store, KnownMethods.of(store).get(str(method)), terms, carry)
-    made = published(store, folder)
-    if as_json:
-        click.echo(as_json_text(vars(made) | {"manifest": made.manifest.model_dump(mode="json")}))
-    else:
-        click.echo(text.published(made))
+    show(published(store, folder), text.published, as_json)
 
 
 @click.command(cls=Command)
 @data_option
-@option("--head", metavar="HASH", help="The seal of the last edition, from the minutes.")
+@option("--head", help="The seal of the last edition, from the minutes.")
 @json_option
 def verify(data: Path, head: str | None, as_json: bool) -> None:
     """Check that editions and archive are what they were, and make the editions again."""

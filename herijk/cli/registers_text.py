@@ -6,7 +6,7 @@ from typing import Final
 import polars as pl
 
 from dashboards import headlines
-from herijk.cli.render import codes, page, section, speech, table, with_crew
+from herijk.cli.render import codes, page, section, speech, table
 from pipeline.messages import ngettext, say, tell
 from pipeline.tables.row import Row
 from warehouse.editions.chain import Finding
@@ -16,8 +16,6 @@ from warehouse.queries.due import DueReport
 from warehouse.queries.register import RegisterReport
 from warehouse.queries.reports import LogErrorReport
 
-BOAT: Final = ("fsn_no", "name", "crew")
-
 
 def _frame(rows: Sequence[Row]) -> pl.DataFrame:
     return pl.DataFrame(rows, infer_schema_length=None)
@@ -26,14 +24,22 @@ def _frame(rows: Sequence[Row]) -> pl.DataFrame:
 # Registers
 
 
+REGISTER: Final = (
+    "fsn_no name crew empty_thwart status valid_until tow_id declared_speed_m_s a_kg_m b_m_s "
+    "cw_kg_m cw_lo_kg_m cw_hi_kg_m waterline_length_m beam_m bow_height_m weight_kg"
+)
+DUE: Final = (
+    "valid_until fsn_no name crew tow_date declared_speed_m_s power_w raced_speed_m_s "
+    "lowest_speed_m_s highest_speed_m_s tow_speed_m_s beyond_curve speed_reason"
+)
+RETOW: Final = "position fsn_no name crew seasons valid_until tow_speed_m_s factor_sd_after_percent"
+
+
 def register(report: RegisterReport) -> str:
     """The lines of an edition, and the day on which their validity was judged."""
-    numbers = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-    sizes = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
-    about = ("empty_thwart", "status", "valid_until", "tow_id")
     parts = [
         f"{speech().edition(report.edition)}: {headlines.register(_frame(report.lines))(speech())}",
-        table(list(map(with_crew, report.lines)), (*BOAT, *about, *numbers, *sizes)),
+        table(report.lines, REGISTER),
         tell(
             "Low, high: the 95 % interval of Cw where the method estimates the error of the log; "
             "else the spread\nof the runs alone, without that error. A and B hold from 85 to 115 % "
@@ -53,13 +59,8 @@ URGENCIES: Final = {
 
 def due(report: DueReport) -> str:
     """Who is due, at what speed, and which boats to tow again."""
-    lines = list(map(with_crew, report.lines))
-    columns = (
-        *("valid_until", *BOAT, "tow_date", "declared_speed_m_s", "power_w", "raced_speed_m_s"),
-        *("lowest_speed_m_s", "highest_speed_m_s", "tow_speed_m_s", "beyond_curve", "speed_reason"),
-    )
     by_urgency = (
-        section(tell(title), table([li for li in lines if li["urgency"] == urgency], columns))
+        section(tell(title), table([row for row in report.lines if row["urgency"] == urgency], DUE))
         for urgency, title in URGENCIES.items()
     )
     parts = [
@@ -82,16 +83,11 @@ def _retow(choice: list[Row]) -> str:
         return tell(
             "{}: nobody, this method estimates no log error, so no tow would narrow it.", title
         )
-    columns = ("position", *BOAT, "seasons", "valid_until", "tow_speed_m_s")
-    rows = [
-        with_crew(row) | {"then": speech().number(100 * row["factor_sd_after_ratio"], 3)}
-        for row in choice
-    ]
-    return section(
-        title + ":",
-        headlines.retow(_frame(choice))(speech()),
-        table(rows, dict.fromkeys(columns, "") | {"then": say("sd after [%]")}),
-    )
+    rows = [row | {SD_AFTER: 100 * row["factor_sd_after_ratio"]} for row in choice]
+    return section(title + ":", headlines.retow(_frame(choice))(speech()), table(rows, RETOW))
+
+
+SD_AFTER: Final = "factor_sd_after_percent"
 
 
 # Seasons
@@ -99,17 +95,14 @@ def _retow(choice: list[Row]) -> str:
 
 def seasons(report: LogErrorReport) -> str:
     """The log factors of all seasons, and what else may be wrong with instruments."""
-    factor = ("factor", "lo", "hi", "source", "n_tows", "n_links")
+    factor = "factor lo hi source n_tows n_links"
     furthest = headlines.log_factors(_frame(report.factors)) if report.factors else None
     lacking = _seasons_between([row["season"] for row in report.factors])
     parts = [
         furthest(speech()) if furthest else "",
         section(
             tell("True speed = log speed x factor, under {} (95 % intervals):", report.method),
-            table(
-                report.factors,
-                dict.fromkeys(("season", *factor), "") | {"cause": say("step is of")},
-            ),
+            table(report.factors, f"season {factor} cause", {"cause": say("step is of")}),
         ),
         tell(
             "Step is of: whether the season differs by its log or by its load cell (force), as the "
@@ -121,7 +114,7 @@ def seasons(report: LogErrorReport) -> str:
             tell("Each log, and each part of a season in which one was replaced:"),
             table(
                 [row | {"part": row["part"] + 1} for row in report.parts],
-                ("season", "part", *factor),
+                f"season part {factor}",
             ),
         ),
         section(
@@ -138,11 +131,13 @@ def _seasons_between(seasons: list[int]) -> str:
     return ", ".join(str(season) for season in every if season not in seasons)
 
 
+DIAGNOSIS: Final = "season instrument verdict first_tow size size_lo size_hi p_fault confused_with"
+
+
 def _diagnosis(faults: list[Row]) -> str:
     """Faults that were found, or of which nothing can be said."""
     if not faults:
         return tell("  nothing was found, and nothing is in doubt")
-    columns = ("season", "instrument", "verdict", "first_tow", "size", "size_lo", "size_hi")
     sizes = {"size": "estimate", "size_lo": "lo", "size_hi": "hi"}
     rows = [
         fault
@@ -155,7 +150,7 @@ def _diagnosis(faults: list[Row]) -> str:
         "'or else'. The interval\ncounts how seldom such a fault is, so where nothing points to "
         "one it can be 0 to 0."
     )
-    return f"{table(rows, (*columns, 'p_fault', 'confused_with'))}\n\n{note}"
+    return f"{table(rows, DIAGNOSIS)}\n\n{note}"
 
 
 def _size(value: float, unit: str) -> str:
@@ -245,30 +240,26 @@ def verify(report: Verification) -> str:
     """What was checked and what is wrong."""
     if not report.editions and not report.findings:
         return tell("No edition has been published yet; nothing to verify.")
-    editions = {"edition": "", "kind": "", "lines": say("lines"), "made_again": say("made again")}
     findings = [
-        {
-            "edition": finding.edition,
-            "wrong": tell("WRONG" if finding.wrong else "notice"),
-            "what": tell(KINDS.get(finding.kind, finding.kind)),
-            "where": finding.where,
-            "message": finding.message,
+        vars(finding)
+        | {
+            "verdict": tell("WRONG" if finding.wrong else "notice"),
+            "kind": tell(KINDS.get(finding.kind, finding.kind)),
         }
         for finding in report.findings
     ]
-    heads = {"edition": "", "wrong": say("verdict"), "what": say("kind"), "where": say("where")}
     head = tell(
         "Head: {}\nThe seal of the last edition. Keep it, for example in the minutes: with it "
         "anybody can tell later whether\nany edition was made anew.",
         report.head,
     )
     parts = [
-        table(list(map(vars, report.editions)), editions | {"equal": say("equal")}),
+        table(list(map(vars, report.editions)), "edition kind lines made_again equal"),
         tell(
             "Made again: measured lines from the samples files of the archive, carried lines from "
             "the printed edition,\nprinted lines from the register in the archive."
         ),
-        table(findings, heads | {"message": say("what")}),
+        table(findings, "edition verdict kind where message"),
         head if report.head else "",
         _verdict(report.findings),
     ]

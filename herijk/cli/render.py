@@ -39,7 +39,7 @@ SHARES: Final = re.compile("share|_sd_ratio|^sd_|u_ratio|rmse|most_|r2|at_10pct|
 CODES: Final = {
     *("status", "reason", "change", "source", "step", "component", "kind", "scope", "cause"),
     *("quantity", "explaining", "within", "speed_reason", "instrument", "verdict", "log"),
-    *("reason_code", "lost", "pooling", "shared", "flags", "cut_reason", "interval"),
+    *("reason_code", "lost", "pooling", "shared", "flags", "cut_reason"),
 }
 """Columns that hold codes, shown in words."""
 
@@ -61,12 +61,37 @@ HEADS: Final = {
     "follows": say("follows"),
     "equal_possible": say("possible"),
     "n_disagree": say("disagree"),
+    "in_words": say("in words"),
+    "made_again": say("made again"),
+    "equal": say("equal"),
+    "lines": say("lines"),
+    "title": say("title"),
+    "total": say("total"),
+    "median_factor": say("median"),
+    "lowest_factor": say("lowest"),
+    "highest_factor": say("highest"),
+    "old_winner": say("old winner"),
+    "new_winner": say("new winner"),
+    "winner_changed": say("changes"),
+    "chance": say("chance that another wins"),
+    "where": say("where"),
+    "old_a_kg_m": say("A old"),
+    "new_a_kg_m": say("new"),
+    "old_b_m_s": say("B old"),
+    "new_b_m_s": say("new"),
+    "old_cw_kg_m": say("Cw old"),
+    "new_cw_kg_m": say("new"),
+    "old_power_w": say("W old"),
+    "new_power_w": say("new"),
+    "power_ratio": say("W %"),
+    "in_2_h": say("in 2 h"),
     "n_predicted": say("predicted"),
     "rmse_ratio": say("off by"),
     "tow_sd_ratio": say("error of the tow"),
 }
 """Headings on the terminal that are shorter than those of pages, or are there alone."""
 
+NO_HEADS: Final[Mapping[str, str]] = {}
 _NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0%|\u00a0s|\u00a0N)?\*?|-?")
 """A cell that is aligned to the right."""
 
@@ -86,23 +111,27 @@ def section(heading: str, *parts: str) -> str:
     return "\n".join([heading, *filter(None, parts)]) if any(parts) else ""
 
 
-def table(rows: Sequence[Row], columns: Sequence[str] | Mapping[str, str]) -> str:
+def table(rows: Sequence[Row], columns: str, heads: Mapping[str, str] = NO_HEADS) -> str:
     """Rows as lines of text, numbers to the right; no text where there are none.
 
     Args:
-        rows: each with a value by name of column.
-        columns: the names of the columns shown, perhaps with headings of their own.
+        rows: each with a value by name of column; of a line of a register also with its `crew`.
+        columns: names of the columns shown, with blanks between them.
+        heads: headings of this table alone.
     """
     if not rows:
         return ""
-    named = columns if isinstance(columns, Mapping) else dict.fromkeys(columns, "")
     drawn = Table(box=None, pad_edge=False, header_style="", collapse_padding=True)
-    cells = {name: [cell(name, row.get(name)) for row in rows] for name in named}
-    for name, heading in named.items():
-        to_the_right = all(map(_NUMBER.fullmatch, cells[name]))
-        known = heading or HEADS.get(name) or labels.column(name)
-        said = labels.unbroken(tell(known))
-        drawn.add_column(said, justify="right" if to_the_right else "left", overflow="fold")
+    shown = [with_crew(row) if "rowers" in row else row for row in rows]
+    cells = {name: [cell(name, row.get(name)) for row in shown] for name in columns.split()}
+    for name, texts in cells.items():
+        to_the_right = all(map(_NUMBER.fullmatch, texts))
+        heading = heads.get(name) or HEADS.get(name) or labels.column(name)
+        drawn.add_column(
+            labels.unbroken(tell(heading)),
+            justify="right" if to_the_right else "left",
+            overflow="fold",
+        )
     for line in zip(*cells.values(), strict=True):
         drawn.add_row(*line)
     return _as_text(drawn)
@@ -163,3 +192,10 @@ def place(fault: Row) -> str:
 def why_set_aside(fault: Row) -> str:
     """What is wrong with something that was set aside."""
     return str(fault["message_nl" if LANGUAGE.get() == "nl" else "message"])
+
+
+def interval_of_runs_alone(whose: str) -> str:
+    """That an interval is too small, as it leaves out the error of the log."""
+    return tell(
+        "The interval of {} is the spread of the runs alone: the log's error is not in it.", whose
+    )

@@ -27,7 +27,6 @@ from pipeline.recompute.run_cache import RunCache
 from pipeline.recompute.season_factors import (
     find_season_factors,
     instruments_of,
-    is_estimated,
     without_factor,
     without_gps,
 )
@@ -94,10 +93,8 @@ def recompute(
 def season_factors(plans: Plans, cache: RunCache) -> SeasonFactors | None:
     """The log factors that the given steps ask to estimate, and how far tows scatter.
 
-    None if they ask for none, or not a single tow has a curve from which to estimate.
+    None if not a single tow has a curve from which to estimate.
     """
-    if not any(is_estimated(steps) for _, steps in plans):
-        return None
     as_read = evaluate([(batch, without_factor(steps)) for batch, steps in plans], cache)
     if not any((np.isfinite(c.cw_at_declared) & c.batch.trusted).any() for c in as_read):
         return None

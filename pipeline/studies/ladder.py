@@ -17,6 +17,7 @@ from pipeline.method.definition import Method, Steps
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.recompute import batches, evaluate, season_factors
 from pipeline.recompute.run_cache import RunCache
+from pipeline.recompute.season_factors import is_estimated
 
 STEP_ORDER: Final = (
     "speed",
@@ -77,7 +78,8 @@ def ladder(
 
 
 def _instruments(plans: list[tuple[Batch, Steps]], cache: RunCache) -> pl.DataFrame | None:
-    estimated = season_factors(plans, cache)
+    asked = any(is_estimated(steps) for _, steps in plans)
+    estimated = season_factors(plans, cache) if asked else None
     return None if estimated is None else estimated.instruments
 
 

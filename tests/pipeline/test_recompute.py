@@ -184,12 +184,6 @@ def test_a_tow_does_not_depend_on_the_other_tows(measured, name):
             assert_frame_equal(one, both.drop(judged), check_exact=True)
 
 
-def test_every_tow_and_run_is_in_the_tables(measured, rebased):
-    assert rebased.curves["tow_id"].sort().to_list() == measured.tows["tow_id"].sort().to_list()
-    keys = rebased.run_points.select("tow_id", "run").sort("tow_id", "run")
-    assert_frame_equal(keys, measured.runs.select("tow_id", "run"))
-
-
 def test_seasons_are_batched_by_their_steps_and_not_otherwise(measured):
     """A method that says the same of every season in many overrides gives the same numbers."""
     once = recompute(method(), measured.tows, measured.blocks)
@@ -285,16 +279,6 @@ def three_tows_without(*channels):
         sums = block_sums(simulate_tow(world, tow)[0].with_columns(absent), settings.rate_hz)
         frames.append(sums.select(pl.lit(tow.tow_id).alias("tow_id"), pl.all()))
     return tows, stack_blocks(pl.concat(frames), run_rows(tows))
-
-
-def test_without_gps_a_method_that_calibrates_on_it_has_no_curve():
-    tows, blocks = three_tows_without("gps_m_s")
-    by_gps, by_log = (
-        recompute(method(calibration=f'{{ rule = "{rule}" }}'), tows, blocks).curves
-        for rule in ("gps_per_tow", "none")
-    )
-    assert by_gps["cw_kg_m"].null_count() == tows.height
-    assert by_log["cw_kg_m"].null_count() == 0
 
 
 def test_a_tow_without_gps_gets_the_factor_of_its_log_from_the_other_tows(measured):

@@ -69,12 +69,3 @@ def test_a_log_factor_leaves_windows_and_means_as_they_are(batches):
     assert found is cache.means(batches[0], plain)
     cache.clear()
     assert len(cache) == 0
-
-
-def test_coefficients_of_the_wind_leave_windows_and_means_as_they_are(batches):
-    cache = RunCache()
-    fixed, searched = (
-        method(wind=f'{{ model = "head", {rest} }}').for_season(2012)
-        for rest in ("ahead = 0.5", 'ahead = 0.3, coefficients = "archive"')
-    )
-    assert cache.means(batches[0], fixed) is cache.means(batches[0], searched)

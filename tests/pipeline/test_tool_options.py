@@ -60,18 +60,6 @@ def test_b_from_length_is_hull_speed(world, curves):
     assert ticked["b_m_s"].to_numpy() == pytest.approx(hull)
 
 
-def test_an_effect_is_the_mean_over_all_combinations_of_the_others(curves):
-    effects = tick_effects(curves)
-    tow_id = curves["tow_id"][0]
-    of_tow = curves.filter(tow_id=tow_id).with_columns(ln=pl.col("cw_kg_m").log())
-    for name in TICKS:
-        others = ["speed", *(tick for tick in TICKS if tick != name)]
-        pairs = of_tow.filter(~pl.col(name)).join(of_tow.filter(name), on=others, suffix="_on")
-        mean = np.exp((pairs["ln_on"] - pairs["ln"]).mean())
-        found = effects.filter(tow_id=tow_id, option=name)["cw_effect_ratio"].item()
-        assert found == pytest.approx(mean)
-
-
 def test_the_speed_correction_is_the_largest_effect_and_dividing_takes_more(world, curves):
     effects = tick_effects(curves).join(world.tows.select("tow_id", "season"), on="tow_id")
     old = effects.filter(season=2010)

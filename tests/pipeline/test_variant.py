@@ -9,8 +9,8 @@ from pipeline.method.definition import (
     parse_method,
     shipped_method,
 )
-from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
-from tests.pipeline.methods import method, method_text
+from pipeline.method.variant import cut_at, differences, variant, variant_text
+from tests.pipeline.methods import method
 
 SEASONS = range(2009, 2019)
 
@@ -43,14 +43,6 @@ def test_a_change_of_all_seasons_is_one_line():
     )
 
 
-def test_a_change_of_neighbouring_seasons_is_one_override():
-    base = shipped_method("rebased-2015")
-    ranges = changed(base, "speed", "factor", 1.05, (2010, 2011, 2012))
-    made = variant(base, "own", "t", "", ranges)
-    assert differences(made, base) == [Difference("speed", "factor", 2010, 2012, (1.06, 1.0), 1.05)]
-    assert '[[overrides]]\nrange = "2010:2012"\nspeed = { factor = 1.05 }' in (variant_text(made))
-
-
 def test_nothing_changed_is_the_method_itself():
     base = shipped_method("rebased")
     made = variant(base, "own", "t", "", cut_at(base, SEASONS))
@@ -78,11 +70,6 @@ def test_a_variant_of_a_file_that_extends_nothing_is_written_out():
     made = variant(base, "own", "t", "", changed(base, "wind", "ahead", 0.4))
     assert "extends" not in variant_text(made)
     assert parse_method(variant_text(made), "own.toml") == made
-
-
-def test_a_file_that_borrows_the_name_of_a_shipped_method_is_not_extended():
-    base = parse_method(method_text("rebased"), "rebased.toml")
-    assert variant(base, "own", "t", "", base.ranges).extends is None
 
 
 def test_seasons_that_are_left_out_are_refused():
