@@ -89,7 +89,7 @@ def test_log_factors_of_the_editions_are_used_and_not_estimated_again(published,
     def refuse(*_):
         raise AssertionError("estimated again")
 
-    monkeypatch.setattr(pipeline.studies.ladder, "instruments_of", refuse)
+    monkeypatch.setattr(pipeline.studies.ladder, "season_factors", refuse)
     assert_factors_multiply(diff(published.store, "2014-1", "2014-2").lines)
 
 
