@@ -10,6 +10,8 @@ HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy
 HEAVY |= {READING}
 NEEDED = {
     "herijk.cli.main": set(),
+    "herijk.cli.render": set(),
+    "herijk.cli.registers_text": {"duckdb", "numpy", "polars"},
     "pipeline.method.definition": set(),
     "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
     "warehouse.queries.due": {"duckdb", "numpy", "polars"},
