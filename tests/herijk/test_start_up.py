@@ -12,7 +12,7 @@ NEEDED = {
     "herijk.cli.main": set(),
     "herijk.cli.render": set(),
     "herijk.cli.registers_text": {"duckdb", "numpy", "polars"},
-    "herijk.cli.audit_text": HEAVY - {"altair", "dagster", "sqlalchemy", READING},
+    "herijk.cli.audit_text": HEAVY - {"altair", "dagster", "sqlalchemy"},
     "pipeline.method.definition": set(),
     "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
     "warehouse.queries.due": {"duckdb", "numpy", "polars"},
