@@ -50,12 +50,10 @@ def boat_text(store: Store, report: BoatAudit, edition: str | None, steps: bool)
     if steps:
         parts += list(_boat_steps(report))
     else:
-        parts.append(tell("All methods, tows and runs: herijk audit {} --steps", _name(report)))
+        parts.append(
+            tell("All methods, tows and runs: herijk audit {} --steps", report.boat["fsn_no"])
+        )
     return page(parts, report.simulated)
-
-
-def _name(report: BoatAudit) -> str:
-    return str(report.boat["fsn_no"])
 
 
 def _answers(store: Store, boat: Row, edition: str | None) -> Iterator[Answer]:

@@ -85,11 +85,8 @@ def _retow(choice: list[Row]) -> str:
         return tell(
             "{}: nobody, this method estimates no log error, so no tow would narrow it.", title
         )
-    rows = [row | {SD_AFTER: 100 * row["factor_sd_after_ratio"]} for row in choice]
+    rows = [row | {"factor_sd_after_percent": 100 * row["factor_sd_after_ratio"]} for row in choice]
     return section(title + ":", headlines.retow(_frame(choice))(speech()), table(rows, RETOW))
-
-
-SD_AFTER: Final = "factor_sd_after_percent"
 
 
 # Seasons
