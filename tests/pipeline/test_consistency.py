@@ -423,7 +423,6 @@ def test_degenerate_input_gives_no_nan_and_fits_the_schemas(case):
         ("no type", "cw_kg_m", "weight_kg", "no_type", 12),
         ("equal weights", "cw_kg_m", "weight_kg", "equal_values", 12),
         ("no weights", "cw_kg_m", "weight_kg", "few_boats", 0),
-        ("no weights", "ln_cw_standard", "ln_displacement", "few_boats", 0),
         ("no B", "b_m_s", "weight_kg", "few_boats", 0),
     ],
 )
