@@ -3,7 +3,6 @@
 import dagster as dg
 import polars as pl
 
-from assets import workers
 from assets.progress import Progress
 from assets.resources import Setup
 from assets.stale import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
@@ -21,13 +20,13 @@ from warehouse.store.code import code_hash
     code_version=code_hash(*SITE_CODE),
 )
 def site(setup: Setup, progress: dg.ResourceParam[Progress]) -> dg.MaterializeResult:
-    """Pages people can look at, swapped in whole; pictures are drawn by who helps."""
+    """Pages people can look at, swapped in whole."""
     store = setup.store
     if is_stale := site_is_stale(store):
         progress.step(say("making the site"))
         from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
 
-        build_site(store, workers.workers(setup.settings.dask))
+        build_site(store)
         store.write(SITE_TABLE, pl.DataFrame(), site_made_from(store))
     index = store.root / "site" / "index.html"
     return dg.MaterializeResult(
