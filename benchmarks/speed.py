@@ -56,7 +56,7 @@ AT_MOST = {
 }
 """What the project asks of the ratio of two tasks."""
 WITHIN_S = {"rebased, all tows, from blocks": 1.0, "herijk rebase, all tows": 4.0}
-COMMANDS = ("--help", "methods", "audit --help", "diff --help", "lineage --help")
+COMMANDS = ("--help", "methods", "audit --help", "compare --help", "register --help")
 COMMAND_WITHIN_S = 0.5
 
 

@@ -1,15 +1,16 @@
 """The documents and the reference of the library as pages: `make docs`. No network is needed."""
 
+import json
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import astuple
 from importlib.metadata import version as installed_version
 from typing import Any, Literal, get_args, get_origin
 
-import typer.main
+from click.testing import CliRunner
 from pydantic.fields import FieldInfo
-from typer.testing import CliRunner
 
+from herijk.cli.forms import FORMS, schema
 from herijk.cli.main import app
 from pipeline.assessment.checks import CHECK, Check
 from pipeline.method.definition import Steps
@@ -62,6 +63,8 @@ def _add_contents(_app: Any, name: str, text: list[str]) -> None:
         text[0] += CONTENTS
     if name == "command-line":
         text[0] += "".join(_helps())
+    if name == "json":
+        text[0] += "".join(_schemas())
     if name == "results":
         text[0] += "".join(_tables())
     if name == "method-details":
@@ -73,8 +76,8 @@ def _add_contents(_app: Any, name: str, text: list[str]) -> None:
 def _tables() -> Iterator[str]:
     """Every table and view with the first sentence of its meaning."""
     yield "\n## All tables\n\n| table | a row is |\n| --- | --- |\n"
-    for name, schema in TABLES.items():
-        yield f"| `{'study.' * (name in STUDY)}{name}` | {summary_of(schema)} |\n"
+    for name, table in TABLES.items():
+        yield f"| `{'study.' * (name in STUDY)}{name}` | {summary_of(table)} |\n"
     for name, view in VIEWS.items():
         yield f"| `{name}` | {view.meaning} |\n"
 
@@ -121,9 +124,17 @@ def _default(field: FieldInfo) -> str:
 
 def _helps() -> Iterator[str]:
     """What each command says of itself."""
-    for command in sorted(typer.main.get_command(app).commands):
-        said = CliRunner().invoke(app, ["--lang", "en", command, "--help"]).output
-        yield f"\n## herijk {command}\n\n```text\n{said}\n```\n"
+    for name, command in sorted(app.commands.items()):
+        for path in ([name], *([name, inner] for inner in getattr(command, "commands", ()))):
+            said = CliRunner().invoke(app, [*path, "--help", "--lang", "en"]).output
+            yield f"\n## herijk {' '.join(path)}\n\n```text\n{said}\n```\n"
+
+
+def _schemas() -> Iterator[str]:
+    """The JSON Schema of every result."""
+    for call in FORMS:
+        shown = json.dumps(schema(call), indent=1)
+        yield f"\n## herijk {call} --json\n\n```json\n{shown}\n```\n"
 
 
 def setup(app: Any) -> None:

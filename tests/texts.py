@@ -15,7 +15,6 @@ from string import Formatter
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
-from typer.main import get_command
 
 from herijk.cli.main import app
 from pipeline import errors
@@ -26,12 +25,26 @@ from tests.architecture.repository import ROOT, modules
 PO = Path(CATALOGUES) / "nl" / "LC_MESSAGES" / f"{DOMAIN}.po"
 WHAT_TO_DO = f"Run `make texts`, and give what has none its Dutch in {PO.relative_to(ROOT)}."
 MARKS = {
-    *("say", "tell", "wrong", "fault", "headings", "NamedWorld", "BadParameter"),
+    *("say", "tell", "wrong", "fault", "headings", "NamedWorld"),
     *("MethodFileError", "ArchiveChangedError"),
     *(name for name in dir(errors) if name.endswith("Error")),
 } - {"DefectiveInputError"}
-OF_LIBRARY = ("Arguments", "Options", "Commands", "Show this message and exit.")
-"""What the library of the command line says itself."""
+OF_CLICK = (
+    *("Usage:", "Options", "Commands", "Positional arguments", "Show this message and exit."),
+    *("Error: {message}", "Try '{command} {option}' for help.", "Missing command."),
+    *("Missing option", "Missing argument", "No such option {name!r}."),
+    *("No such command {name!r}.", "env var: {var}", "default: {default}", "required"),
+    *("Invalid value: {message}", "Invalid value for {param_hint}: {message}"),
+    *("{value!r} is not a valid {number_type}.", "{value} is not in the range {range}."),
+    ("Did you mean {possibility}?", "(Did you mean one of: {possibilities}?)"),
+    ("Got unexpected extra argument ({args})", "Got unexpected extra arguments ({args})"),
+    (
+        "Option {name!r} requires an argument.",
+        "Option {name!r} requires {nargs} arguments.",
+    ),
+    ("{value!r} is not {choice}.", "{value!r} is not one of {choices}."),
+)
+"""What the library of the command line says itself, which it looks up in our catalogue."""
 IN_TEMPLATES = {"_": None, "say": None, "both": None, "pgettext": ((1, "c"), 2)}
 WIDTH = 100
 CODE = re.compile("[a-z]+(_[a-z]+)+")
@@ -93,8 +106,8 @@ def said() -> Iterator[tuple[str, Text]]:
     for file in sorted((ROOT / "dashboards").rglob("*.j2")):
         name = file.relative_to(ROOT).as_posix()
         yield from ((name, text) for text in in_template(file.read_bytes()))
-    yield from (("herijk/cli", text) for text in in_help(get_command(app)))
-    yield from (("herijk/cli", (text, None)) for text in OF_LIBRARY)
+    yield from (("herijk/cli", text) for text in in_help(app))
+    yield from (("herijk/cli", (text, None)) for text in OF_CLICK)
     tables = (TABLES | ABOUT).values()
     yield from (("pipeline/tables", (summary_of(table), None)) for table in tables)
 

@@ -71,7 +71,11 @@ def application(bench: Bench) -> Starlette:
 
     def saved(wish: Named) -> dict[str, object]:
         path = bench.save(wish)
-        return {"path": str(path), "command": f"herijk rebase {path} --data {path.parents[1]}"}
+        data = path.parents[1]
+        return {
+            "path": str(path),
+            "command": f"herijk compare as-published {path} --data {data}",
+        }
 
     return Starlette(
         routes=[

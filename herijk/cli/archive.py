@@ -1,39 +1,28 @@
-"""The commands about an archive that come before a rebuild: `check` and `init`."""
+"""The commands about an archive that come before a rebuild: `init`, `simulate` and `check`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
 
-from herijk.cli.arguments import AsJson, show, show_files
-from herijk.cli.text import place
+from herijk.cli.options import (
+    PATH,
+    Seasons,
+    data_option,
+    folders_here,
+    json_option,
+    show,
+    show_files,
+)
+from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import MissingKnowledgeError
-from pipeline.messages import LANGUAGE, tell
-
-if TYPE_CHECKING:
-    from warehouse.archive.check import CauseReport, CheckReport
+from pipeline.messages import tell
+from warehouse.store.machine_faults import machine_faults_explained
 
 
-def check(
-    archive: Annotated[
-        Path,
-        typer.Argument(metavar="ARCHIVE", envvar="HERIJK_ARCHIVE", help="The archive folder."),
-    ],
-    as_json: AsJson = False,
-) -> None:
-    """Every fault of lists, headers and a sample of the data, by cause, before any rebuild."""
-    from warehouse.archive.check import check_archive, check_report
-
-    checked = check_archive(archive)
-    show(check_report(archive, checked, LANGUAGE.get()), check_text, as_json)
-    if checked.causes:
-        raise typer.Exit(1)
-
-
-def init(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],
-    as_json: AsJson = False,
-) -> None:
+@click.command(cls=Command)
+@argument("directory", type=PATH, help="Folder to make.")
+@json_option
+def init(directory: Path, as_json: bool) -> None:
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
     from warehouse.archive.files.empty_archive import write_templates
 
@@ -48,27 +37,66 @@ def init(
     show_files(files, as_json, said)
 
 
-def check_text(report: "CheckReport") -> str:
-    """A check in words: a paragraph per cause."""
-    causes = report.causes
-    if not causes:
-        return tell("Nothing is wrong in the lists and headers of {} tows.", report.tows)
-    head = tell(
-        "Causes: {}; places: {}. As it is, {} tows are left for a rebuild to judge.",
-        len(causes),
-        sum(cause.number for cause in causes),
-        report.tows,
+@click.command(cls=Command)
+@argument("directory", type=PATH, required=False, help="Folder to make.")
+@option("--seasons", type=Seasons(), default="2009:2018", help="Seasons, both ends included.")
+@option("--tows-per-season", type=click.IntRange(1, 1000), default=24, help="Tows in each.")
+@option("--rate", type=click.IntRange(5, 1000), default=1000, help="Samples per second.")
+@option("--seed", type=click.IntRange(0), default=1, help="Decides all that is drawn.")
+@option("--world", default="history", help="What is wrong in it; see --worlds.")
+@flag("--worlds", help="List the worlds, and stop.")
+@json_option
+def simulate(
+    directory: Path | None,
+    seasons: range,
+    tows_per_season: int,
+    rate: int,
+    seed: int,
+    world: str,
+    worlds: bool,
+    as_json: bool,
+) -> None:
+    """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
+    from herijk.cli.progress import TerminalProgress
+    from herijk.simulate import WORLDS, simulate_world, world_settings
+    from herijk.simulate.archive_writer import write_simulated_archive
+
+    if worlds:
+        click.echo("\n".join(f"{name:18s}{tell(named.about)}" for name, named in WORLDS.items()))
+        return
+    if directory is None:
+        raise click.UsageError(tell("name the folder to make"))
+    settings = world_settings(
+        world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    return "\n\n".join([head, *(_cause(cause) for cause in causes)])
+    with machine_faults_explained(directory), TerminalProgress() as progress:
+        progress.expect(len(seasons) * tows_per_season)
+        truth = write_simulated_archive(
+            directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
+        )
+    made = {"archive": str(directory), "truth": str(truth)}
+    show(made, lambda m: tell("Simulated archive: {archive}\nIts truth: {truth}", **m), as_json)
 
 
-def _cause(cause: "CauseReport") -> str:
-    lines = [f"{cause.number} x {cause.reason_code}: {cause.sentence}"]
-    if len(cause.cells) > 1:
-        cells = ", ".join(f"'{cell}'" for cell in cause.cells[1:9])
-        lines.append(f"    {tell('There is also: {}', cells)}")
-    lines += [f"    {place(vars(one))}" for one in cause.places]
-    if cause.number > len(cause.places):
-        lines.append(f"    {tell('and {} more', cause.number - len(cause.places))}")
-    lines += [f"  > archief.toml: {line}" for line in cause.settings]
-    return "\n".join(lines)
+@click.command(cls=Command)
+@argument(
+    "archive",
+    type=PATH,
+    required=False,
+    envvar="HERIJK_ARCHIVE",
+    default=lambda: folders_here(Path.cwd()).get("archive"),
+    help="The archive folder. Without it only the machine and the data folder are checked.",
+)
+@data_option
+@json_option
+def check(archive: Path | None, data: Path, as_json: bool) -> None:
+    """What is wrong in an archive, by cause, and whether this machine is ready for a rebuild.
+
+    Reads lists, headers and a sample of the data; then settings, methods, tables and disk space.
+    """
+    from herijk.cli.check_text import checked, text
+
+    report = checked(archive, data)
+    show(report, text, as_json)
+    if not report.sound:
+        raise click.exceptions.Exit(1)

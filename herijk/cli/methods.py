@@ -1,53 +1,26 @@
-"""`herijk methods`: list, show, begin, check and compare methods."""
+"""`herijk methods`: list, show, begin and check methods; and `herijk compare`."""
 
-import json
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
+import click
 
-from herijk.cli.arguments import AsJson, DataFolder, as_json_text, show, show_files
-from herijk.cli.overview import Overview
+from herijk.cli.options import data_option, json_option, show, show_files
+from herijk.cli.speaking import Command, Group, argument, option
 from pipeline.errors import HerijkError
-from pipeline.messages import LANGUAGE, say, tell
+from pipeline.messages import LANGUAGE, tell
 
 if TYPE_CHECKING:
-    from pipeline.method.definition import Method
-    from pipeline.method.variant import Difference
-    from warehouse.queries.rebase import RebaseReport
+    from warehouse.editions.compare import DiffReport
     from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
 
-app = typer.Typer(
-    cls=Overview,
-    help="The methods: those that ship, and your own.",
-    rich_markup_mode=None,
+method_argument = argument(
+    "name", metavar="METHOD_OR_FILE", help="A method's name, or a TOML file."
 )
-Named = Annotated[
-    str, typer.Argument(metavar="METHOD_OR_FILE", help="A method's name, or a TOML file.")
-]
 
 
-@dataclass(frozen=True)
-class MethodReport:
-    """A method in words.
-
-    Attributes:
-        method, title: what it is called.
-        content_hash: SHA-256 of what it says.
-        extends: the method it extends.
-        words: what it says, step by step.
-    """
-
-    method: str
-    title: str
-    content_hash: str
-    extends: str | None
-    words: str
-
-
-def known_methods(data: Path) -> "KnownMethods":
+def _known(data: Path) -> "KnownMethods":
     """The methods of a data folder."""
     from warehouse.store.methods import KnownMethods
     from warehouse.store.store import Store
@@ -55,57 +28,69 @@ def known_methods(data: Path) -> "KnownMethods":
     return KnownMethods.of(Store(data))
 
 
-@app.callback(invoke_without_command=True)
-def methods(
-    context: typer.Context, data: DataFolder = Path("data"), as_json: AsJson = False
-) -> None:
-    """List the methods: those that ship, and those in the folder `methods` of --data."""
-    from herijk.cli import text
+@click.group(cls=Group, invoke_without_command=True)
+@data_option
+@json_option
+@click.pass_context
+def methods(context: click.Context, data: Path, as_json: bool) -> None:
+    """The methods: those that ship, and your own."""
+    if context.invoked_subcommand is not None:
+        return
+    from herijk.cli import methods_text as text
 
-    if context.invoked_subcommand is None:
-        known = known_methods(data)
-        rows = [
-            {
-                "method": method.name,
-                "title": method.titled(LANGUAGE.get()),
-                "content_hash": method.content_hash,
-                "ships": name not in known.own,
-            }
-            for name in known.names
-            for method in [known.get(name)]
-        ]
-        show({"methods": rows}, text.methods, as_json)
-
-
-@app.command("show")
-def show_method(name: Named, data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
-    """One method in words, with what differs from the one it extends."""
-    known = known_methods(data)
-    show(_one(known.named(name), known), lambda report: report.words, as_json)
+    known = _known(data)
+    rows = [
+        {
+            "method": method.name,
+            "title": method.titled(LANGUAGE.get()),
+            "content_hash": method.content_hash,
+            "ships": name not in known.own,
+        }
+        for name in known.names
+        for method in [known.get(name)]
+    ]
+    show({"methods": rows}, text.methods, as_json)
 
 
-@app.command()
-def check(file: Named, data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
-    """Read a method file and say in words what it does; an error is told with its line."""
-    known = known_methods(data)
-    sound = tell("The file is sound. Try it: herijk rebase {}", file)
-    show(_one(known.named(file), known), lambda report: f"{report.words}\n\n{sound}", as_json)
+@methods.command("show")
+@method_argument
+@data_option
+@json_option
+def show_method(name: str, data: Path, as_json: bool) -> None:
+    """What a method does other than the one it extends; all its options where it extends none."""
+    from herijk.cli import methods_text as text
+
+    show(text.report_on(_known(data), name), text.method, as_json)
 
 
-@app.command()
-def new(
-    name: Annotated[str, typer.Argument(help="Name of the new method, for example ours-2027.")],
-    base: Annotated[
-        str, typer.Option("--from", metavar="METHOD", help="Method that it begins from.")
-    ] = "rebased",
-    data: DataFolder = Path("data"),
-    as_json: AsJson = False,
-) -> None:
+@methods.command()
+@argument("file", metavar="METHOD_OR_FILE", help="A method's name, or a TOML file.")
+@data_option
+@json_option
+def check(file: str, data: Path, as_json: bool) -> None:
+    """Read a method file and say what it does; an error is named with its line."""
+    from herijk.cli import methods_text as text
+
+    report = text.report_on(_known(data), file)
+    sound = tell(
+        "The file is sound. What it does to all boats: herijk compare {} {}",
+        report.extends or report.method,
+        file,
+    )
+    show(report, lambda shown: f"{text.method(shown)}\n\n{sound}", as_json)
+
+
+@methods.command()
+@argument("name", help="Name of the new method, for example ours-2027.")
+@option("--from", "base", default="rebased", help="Method that it begins from.")
+@data_option
+@json_option
+def new(name: str, base: str, data: Path, as_json: bool) -> None:
     """Begin a method file NAME.toml here, which extends another; every option is listed in it."""
     from pipeline.method.writing import beginning_text
     from warehouse.store.files import write_new
 
-    known = known_methods(data)
+    known = _known(data)
     file = Path(f"{name}.toml")
     if name in known.names:
         raise HerijkError("{} is the name of another method; choose another", name)
@@ -118,66 +103,39 @@ def new(
     show_files([file], as_json, said)
 
 
-@app.command()
-def diff(
-    old: Named,
-    new: Annotated[
-        str, typer.Argument(metavar="METHOD_OR_FILE", help="The method it is compared with.")
-    ],
-    data: DataFolder = Path("data"),
-    as_json: AsJson = False,
-) -> None:
-    """Which options differ between two methods, and what that does to Cw where --data has tows."""
-    from pipeline.method.variant import differences
+@click.command(cls=Command)
+@argument("old", help="An edition or draft, or a method by its name or file.")
+@argument("new", help="What it is compared with, of the same kinds.")
+@data_option
+@option(
+    "--fatigue",
+    type=click.Choice(["none", "known", "extend"]),
+    default="extend",
+    help="Fatigue correction of races between editions: none, known (2 to 3 h only) or extend.",
+)
+@json_option
+def compare(old: str, new: str, data: Path, fatigue: str, as_json: bool) -> None:
+    """Two editions or methods side by side: who gains, who loses, and why.
+
+    Published editions are compared as they are, with races. For a draft, a method or a method file
+    all tows are recomputed under both methods; nothing is published or stored.
+    """
+    from herijk.cli import compare_text as text
+    from warehouse.store.editions import edition_names
     from warehouse.store.store import Store
 
-    known = known_methods(data)
-    first, second = known.named(old), known.named(new)
-    options, effect = differences(second, first), None
     store = Store(data)
-    if store.database.exists():
-        from warehouse.queries.rebase import rebase
-
-        effect = rebase(store, second, first)
-    if as_json:
-        report = {"from": first.name, "to": second.name, "options": options}
-        typer.echo(as_json_text(report if effect is None else report | {"effect": effect}))
-    else:
-        typer.echo(_diff_text(first.name, second.name, options, effect))
+    if {old, new} <= {*edition_names(store)}:
+        show(_editions(store, old, new, fatigue), text.editions, as_json)
+        return
+    show(text.of_methods(store, old, new), text.methods, as_json)
 
 
-def _one(method: "Method", known: "KnownMethods") -> MethodReport:
-    from herijk.cli.method_text import method_in_words
+def _editions(store: "Store", old: str, new: str, fatigue: str) -> "DiffReport":
+    from typing import cast
 
-    parent = None if method.extends is None else known.get(method.extends)
-    return MethodReport(
-        method=method.name,
-        title=method.titled(LANGUAGE.get()),
-        content_hash=method.content_hash,
-        extends=method.extends,
-        words=method_in_words(method, parent),
-    )
+    from pipeline.register.replay import Fatigue, RaceRules
+    from warehouse.editions.compare import diff, report_with_races
 
-
-def _diff_text(
-    first: str, second: str, options: "Sequence[Difference]", effect: "RebaseReport | None"
-) -> str:
-    """Options that differ, one per line, as a method's file has them, and the effect per season."""
-    from herijk.cli import text
-    from pipeline.method.writing import range_text
-
-    if not options:
-        return tell("{} and {} say the same of every season.", first, second)
-    rows = [
-        (
-            f"{one.step}.{one.option}",
-            range_text(one.first, one.last),
-            ", ".join(map(json.dumps, one.before)),
-            json.dumps(one.after),
-        )
-        for one in options
-    ]
-    parts = [text.table((say("option"), say("seasons"), first, second), rows)]
-    if effect is not None:
-        parts.append(text.rebase(effect))
-    return "\n\n".join(parts)
+    rules = RaceRules(fatigue=cast(Fatigue, fatigue))
+    return report_with_races(store, diff(store, old, new), rules)

@@ -4,7 +4,6 @@ import ast
 import re
 
 import pytest
-import typer.main
 
 from herijk.cli.main import app
 from pipeline.assessment.checks import CODES
@@ -23,7 +22,7 @@ LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
 
 def commands():
     """Names of the commands that the command line has."""
-    return sorted(typer.main.get_command(app).commands)
+    return sorted(app.commands)
 
 
 def rows_named(page, known):

@@ -3,7 +3,6 @@
 import re
 
 import pytest
-import typer.main
 
 from dashboards.figures import FIGURES
 from herijk.cli.main import app
@@ -22,13 +21,18 @@ OPTIONS = {
     for step, options in Steps.model_fields.items()
     for option in options.annotation.model_fields
 }
+COMMANDS = {
+    " ".join(("herijk", *path))
+    for name, command in app.commands.items()
+    for path in [(name,), *((name, inner) for inner in getattr(command, "commands", ()))]
+}
 KNOWN = {
     "table": set(TABLES),
     "figure": set(FIGURES),
     "check": set(CODES),
     "method": set(shipped_methods()),
     "option": OPTIONS,
-    "command": {f"herijk {name}" for name in typer.main.get_command(app).commands},
+    "command": COMMANDS,
 }
 
 

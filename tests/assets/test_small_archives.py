@@ -48,7 +48,7 @@ def test_one_tow_without_runs_that_are_not_asked_for_is_computed(one_tow, monkey
     one_tow.rebuild(("as-published-2014", *METHODS), whole=True)  # counts runs at 120 %
     assert one_tow.table("tow_runs")["run"].to_list() == [1, 3, 4, 6]
     assert one_tow.table("curves")["runs_used"].max() == 4
-    for command in (["due"], ["log-error"], ["audit", "FSN101"], ["verify"]):
+    for command in (["register", "--due"], ["seasons"], ["audit", "FSN101"], ["verify"]):
         monkeypatch.setattr(sys, "argv", ["herijk", *command, "--data", str(one_tow.data)])
         with pytest.raises(SystemExit) as stopped:
             main()
@@ -58,8 +58,9 @@ def test_one_tow_without_runs_that_are_not_asked_for_is_computed(one_tow, monkey
 
 
 OF_TABLES = (
-    *(["audit", "FSN101"], ["due"], ["log-error"], ["slides"], ["certificate", "FSN101"]),
-    *(["proposal", "rebased"], ["audit", "Kuikensloep"], ["register"], ["pages", "--out", "p"]),
+    *(["audit", "FSN101"], ["register", "--due"], ["seasons"], ["export", "slides"]),
+    *(["export", "certificate", "FSN101"], ["export", "proposal", "rebased"], ["register"]),
+    *(["audit", "Kuikensloep"], ["export", "pages", "--out", "p"]),
 )
 
 

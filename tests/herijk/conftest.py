@@ -1,36 +1,25 @@
-"""The command, run in this process; what it prints as JSON is held against its schema."""
+"""The command, run in this process; what it prints as JSON is held against its documented form."""
 
 import json
 import sys
+from dataclasses import fields
 
-import jsonschema
 import pytest
+from pydantic import TypeAdapter
 
-from herijk.cli.json_schemas import schema_of, schemas
+from herijk.cli.forms import FORMS
 from herijk.cli.main import main
 from tests.warehouse.conftest import edition_archive, published
 
 __all__ = ["edition_archive", "published"]
 
 
-def _closed(schema):
-    """The same schema, without room for fields that it does not name."""
-    if not isinstance(schema, dict):
-        return schema
-    inner = {
-        key: {name: _closed(field) for name, field in value.items()}
-        if key == "properties"
-        else _closed(value)
-        for key, value in schema.items()
-    }
-    named = schema.get("properties")
-    return {"additionalProperties": False, **inner} if named else inner
-
-
-def hold_against_schema(arguments, printed):
-    """Fails where a result has another form than `herijk schema` says."""
-    name = next(n for n in (" ".join(arguments[:2]), arguments[0]) if n in schemas())
-    jsonschema.validate(json.loads(printed), _closed(schema_of(name)))
+def hold_against_form(command, printed):
+    """Fails where a result has no form that is documented for its command."""
+    result = json.loads(printed)
+    forms = [form for call, form in FORMS.items() if call.split()[0] == command]
+    (form,) = {form for form in forms if {field.name for field in fields(form)} == set(result)}
+    TypeAdapter(form).validate_python(result)
 
 
 @pytest.fixture
@@ -40,16 +29,12 @@ def herijk(monkeypatch, capsys):
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", ["herijk", *map(str, arguments)])
         capsys.readouterr()
-        try:
+        with pytest.raises(SystemExit) as stopped:
             main()
-        except SystemExit as stop:
-            status = stop.code or 0
-        else:
-            status = 0
         printed = capsys.readouterr()
         assert "Traceback" not in printed.err
         if "--json" in arguments and printed.out:
-            hold_against_schema([*map(str, arguments)], printed.out)
-        return status, printed.out, printed.err
+            hold_against_form(arguments[0], printed.out)
+        return stopped.value.code or 0, printed.out, printed.err
 
     return run

@@ -1,173 +1,114 @@
-"""The pages of `herijk audit`."""
+"""What `herijk audit` prints: a short answer, and all that is behind it."""
 
 import json
 import re
-from pathlib import Path
 
-import duckdb
 import polars as pl
-from typer.testing import CliRunner
+import pytest
 
 from dashboards.labels import code
-from herijk.cli.arguments import as_json_text
-from herijk.cli.audit_text import audit as page_of
-from herijk.cli.main import app
-from warehouse.queries.audit import audit
-
-WIDTH = 100
+from tests.conftest import METHODS
 
 
-def page(built, *names, method=None):
-    return page_of(audit(built.store, names, method))
+@pytest.fixture
+def audit(herijk, built):
+    def run(*arguments):
+        status, out, err = herijk("audit", *arguments, "--data", built.data)
+        assert (status, err) == (0, "")
+        if "--json" not in arguments:
+            assert not re.search(r"\bNone\b|\bnan\b|\binf\b|few_boats|no_type", out)
+        return " ".join(out.split()) if "--steps" in arguments else out
+
+    return run
 
 
-def types_of(built):
-    return [*sorted(built.table("boats")["boat_type"].drop_nulls().unique()), "unknown"]
+EDITION = f"concept-{METHODS[1]}"
 
 
-def run(*arguments):
-    return CliRunner().invoke(app, list(map(str, arguments)))
+def minus(text):
+    return text.replace("-", "\N{MINUS SIGN}")
 
 
-def test_a_type_page_is_a_page_of_words_and_figures(built):
-    for boat_type in types_of(built):
-        lines = page(built, boat_type).splitlines()
-        assert len(lines) <= 96
-        assert max(map(len, lines)) <= WIDTH
-        assert lines[0].startswith("SIMULATED")
-        text = "\n".join(lines)
-        assert not re.search(r"\bNone\b|\bnan\b|\binf\b|_m_s|_kg|few_boats|no_type", text)
-        assert [line[0] for line in lines if re.match(r"\d\. ", line)] == list("12345678")
+def test_the_answer_about_a_boat_is_short_and_has_the_number_of_the_register(audit, built):
+    line = built.table("register").filter(edition=EDITION).drop_nulls("cw_kg_m")
+    line = line.row(0, named=True)
+    answer = audit(line["fsn_no"], "--edition", EDITION)
+    assert answer.startswith("SIMULATED")
+    assert f"{line['cw_kg_m']:.2f} kg/m" in answer
+    assert len(audit(line["fsn_no"]).splitlines()) < 40
 
 
-def test_every_figure_of_a_line_is_printed_with_its_n(built):
+def test_steps_show_every_tow_curve_and_run(audit, built):
+    boat = built.table("tows")["fsn_no"][0]
+    out = audit(boat, "--steps")
+    curves = built.table("curves").filter(fsn_no=boat).drop_nulls("cw_kg_m")
+    for tow_id, method, cw in curves.select("tow_id", "method", "cw_kg_m").rows():
+        assert f"Tow {tow_id}: curves" in out
+        assert re.search(rf"{method} [^:]*{cw:.2f}", out)
+    points = built.table("run_points").filter(pl.col("tow_id").is_in(curves["tow_id"].to_list()))
+    for speed in points["speed_m_s"]:
+        assert f" {speed:.2f} " in out
+    budget = built.table("uncertainty_budget").filter(
+        pl.col("u_ratio") > 1e-4, pl.col("tow_id").is_in(curves["tow_id"].to_list())
+    )
+    for component, u_ratio in budget.select("component", "u_ratio").rows():
+        assert re.search(rf"{re.escape(code(component))} [\w ]+ {100 * u_ratio:.1f} %", out)
+    one = audit(boat, "--steps", "--method", "rebased-2015")
+    assert "as-published " not in one.split("Its tows")[1]
+
+
+def test_the_steps_of_a_tow_multiply_to_the_total_printed(audit, built):
+    steps = built.table("correction_steps").filter(to_method="rebased-2015")
+    tow = steps.sort((pl.col("factor") - 1).abs(), descending=True)["tow_id"][0]
+    fsn_no = built.table("tows").filter(tow_id=tow)["fsn_no"].item()
+    total = 100 * (steps.filter(tow_id=tow)["factor"].product() - 1)
+    part = audit(fsn_no, "--steps").split(f"Tow {tow}: change of Cw by each step")[1]
+    assert re.search(rf"as-published rebased-2015 {re.escape(minus(f'{total:+.1f}'))} %", part)
+
+
+def test_the_answer_about_types_has_every_line_with_its_interval_and_n(audit, built):
+    types = sorted(built.table("boats")["boat_type"].drop_nulls().unique())
     rows = built.table("type_consistency").filter(
         pl.col("reason") == "",
-        pl.col("quantity").is_in(["b_m_s", "a_kg_m", "cw_standard_kg_m", "q"]),
+        pl.col("quantity").is_in(["b_m_s", "a_kg_m", "cw_standard_kg_m"]),
         explaining="weight_kg",
         method="rebased-2015",
+        within="all",
     )
     assert rows.height > 0
-    pages = {t: page(built, t, method="rebased-2015") for t in rows["boat_type"].unique()}
+    pages = {t: audit(t, "--method", "rebased-2015") for t in types}
     for row in rows.iter_rows(named=True):
-        text = pages[row["boat_type"]]
-        step_kg = 1000 if row["quantity"] == "q" else 100
-        ends = (f"{step_kg * row[end]:+.2f}" for end in ("slope", "slope_lo", "slope_hi"))
-        slope = "{} ({} to {})".format(*ends)
-        line = next(line for line in text.splitlines() if slope in line)
-        assert f" {100 * row['r2']:.0f} % " in line
-        assert re.search(rf" {row['n']}  (follows|no trend seen)$", line)
+        slope = " +".join(minus(f"{row[end]:.4f}") for end in ("slope", "slope_lo", "slope_hi"))
+        assert re.search(rf"{slope} .* {row['n']} (yes|no)", pages[row["boat_type"]])
+    assert all("Outside the type: " in page for page in pages.values())
+    assert "Can all boats have the same bend?" in audit(types[0], "--steps")
 
 
-def test_where_nothing_is_claimed_the_page_says_why(bench):
-    with duckdb.connect(bench.store.database) as db:
-        for lines in ("type_consistency", "type_lines"):
-            db.execute(
-                f"""UPDATE {lines} SET slope = NULL, slope_lo = NULL, slope_hi = NULL,
-                       reason = 'few_boats', n_boats = 2"""  # noqa: S608
-            )
-        db.execute("UPDATE type_homogeneity SET reason = 'few_boats', n_boats = 2")
-        db.execute("UPDATE speed_trend SET reason = 'few_boats', n_boats = 2")
-        db.execute("DELETE FROM type_outliers")
-        db.execute("DELETE FROM pooled_curves WHERE pooling != 'own'")
-        db.execute("DELETE FROM repeat_pairs")
-        db.execute("DELETE FROM era_shifts")
-        db.execute("UPDATE predicted_cw SET predicted_cw_kg_m = NULL, ln_ratio = NULL")
-    text = page(bench, "Kuikensloep", method="rebased-2015")
-    assert text.count("nothing claimed: too few boats (2 boats)") == 6
-    assert text.count("fewer than six pairs") == 5
-    assert "no repeat pairs of this type (n 0)" in text
-    claims = ("follows", "equal bends are possible", "closer together", "disagree.", " outside (")
-    assert not [claim for claim in claims if claim in text]
-
-
-def test_two_types_stand_side_by_side_with_what_differs(bench):
-    with duckdb.connect(bench.store.database) as db:
-        db.execute("UPDATE type_homogeneity SET p_value = 0.4, power_at_10pct = 0.9, reason = ''")
-        db.execute("UPDATE type_homogeneity SET p_value = 0.001 WHERE boat_type = 'Stersloep'")
-    text = page(bench, "Kuikensloep", "Stersloep")
-    assert max(map(len, text.splitlines())) <= WIDTH
-    head = next(line for line in text.splitlines() if "method" in line)
-    assert head.split() == ["method", "Kuikensloep", "Stersloep"]
-    different = text.split("What differs:")[1]
-    for method in ("as-published", "rebased-2015"):
-        found = re.search(
-            rf"equal bends possible, {method}: (.*?)(?:\n  \S|\Z)", different, re.DOTALL
-        )
-        assert re.match(
-            r"Kuikensloep yes, p 0.400.*Stersloep\s+no,\s+p\s+0.001", found[1], re.DOTALL
-        )
-
-
-def test_a_boats_page_has_its_place_history_and_second_opinion(built):
-    pairs = built.table("repeat_pairs").filter(method="rebased-2015")
-    predicted = built.table("predicted_cw").filter(method="rebased-2015")
-    fsn_no = next(f for f in pairs["fsn_no"] if f in predicted["fsn_no"])
-    text = page(built, fsn_no, method="rebased-2015")
-    for pair in pairs.filter(fsn_no=fsn_no).iter_rows(named=True):
-        assert f"{pair['tow_id_before']} to {pair['tow_id']}" in text
-        assert f"E_n {pair['e_n']:+.2f}" in text
-    for line in built.table("register").filter(fsn_no=fsn_no, method="rebased-2015").rows():
-        assert f"{line[0]}, {line[3]}{line[4]}: " in text
-    assert "Its place among" in text
-    assert "as-published" not in text
-    assert re.search(r"Set aside, .*:\n  nothing", text)
-
-
-def test_a_boats_page_has_its_uncertainty_budget(built):
-    tow = built.table("tows").row(0, named=True)
-    text = " ".join(page(built, tow["fsn_no"], method="rebased-2015").split())
-    felt = built.table("uncertainty_budget").filter(
-        pl.col("u_ratio") > 1e-4, tow_id=tow["tow_id"], method="rebased-2015"
-    )
-    assert felt.height >= 3
-    for component, u_ratio in felt.select("component", "u_ratio").iter_rows():
-        assert f"{code(component)} {100 * u_ratio:.2f} %" in text
-
-
-def test_the_steps_of_a_boats_tow_multiply_to_the_total_printed(built):
-    tow = built.table("correction_steps")["tow_id"][0]
-    steps = built.table("correction_steps").filter(tow_id=tow, to_method="rebased-2015")
-    fsn_no = built.table("tows").filter(tow_id=tow)["fsn_no"].item()
-    total = steps["factor"].product()
-    assert f"Cw {100 * (total - 1):+.1f} % = " in page(built, fsn_no)
-
-
-def test_json_holds_what_the_page_is_made_of(built):
-    names = ("Kuiken sloep", "barkas")
-    printed = run("audit", *names, "--data", built.data, "--json")
-    assert printed.exit_code == 0
-    report = json.loads(printed.stdout)
+def test_two_types_stand_side_by_side(audit, built):
+    assert audit("Kuiken sloep", "barkas").count("\nKuikensloep") == 1
+    report = json.loads(audit("Kuiken sloep", "barkas", "--json"))
     assert [one["boat_type"] for one in report["types"]] == ["Kuikensloep", "Barkas"]
-    plots = report.pop("plots")
-    assert report == json.loads(as_json_text(audit(built.store, names)))
-    assert {Path(plot).parent for plot in plots} == {built.data / "audit" / "Kuiken-sloep-barkas"}
-    assert all(Path(plot).is_file() for plot in plots)
+    boat = built.table("tows")["fsn_no"][0]
+    assert json.loads(audit(boat, "--json"))["boat"]["fsn_no"] == boat
 
 
-def test_plots_lie_where_they_are_asked_for(built, tmp_path):
+def test_plots_lie_where_they_are_asked_for_or_it_is_named_why_not(herijk, built, tmp_path):
     fsn_no = built.table("tows")["fsn_no"][0]
-    asked = tmp_path / "plots"
-    printed = run("audit", fsn_no, "--data", built.data, "--plots", asked)
-    plots = list(asked.glob("*.svg"))
-    assert printed.stdout.rstrip().endswith(f"{len(plots)} plots in {asked}")
-    assert (asked / "history.svg").is_file()
+    call = ("audit", fsn_no, "--data", built.data, "--plots")
+    printed = herijk(*call, tmp_path / "plots")[1]
+    assert printed.rstrip().endswith(f"plots in {tmp_path / 'plots'}")
+    assert (tmp_path / "plots" / "history.svg").is_file()
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    status, _, err = herijk(*call, tmp_path / "file")
+    assert status == 1
+    assert "--plots" in err
 
 
-def test_where_plots_cannot_be_written_the_page_stands_and_it_is_said(built, tmp_path):
-    asked = tmp_path / "plots"
-    asked.write_text("a file", encoding="utf-8")
-    fsn_no = built.table("boats")["fsn_no"][0]
-    printed = run("audit", fsn_no, "--data", built.data, "--plots", asked)
-    assert printed.exit_code == 0
-    assert fsn_no in printed.stdout
-    assert "plots in" not in printed.stdout
-    assert printed.stderr.count("\n") == 1
-    assert str(asked) in printed.stderr
-    assert "--plots" in printed.stderr
-
-
-def test_three_names_are_too_many(built):
-    printed = run("audit", "Kuikensloep", "Barkas", "Vlet", "--data", built.data)
-    assert printed.exit_code == 2
-    assert "one or two types" in printed.stderr
+def test_with_an_edition_it_goes_from_line_to_files_runs_and_seconds(herijk, published):
+    tow = published.tow(2014)
+    call = ("audit", tow["fsn_no"], "--edition", "2014-2", "--data", published.data)
+    status, out, err = herijk(*call)
+    assert (status, err) == (0, "")
+    for part in ("Verification code", tow["samples_path"], tow["samples_sha256"], "Window from"):
+        assert part in out
+    assert json.loads(herijk(*call, "--json")[1])["about"]["edition"] == "2014-2"

@@ -56,7 +56,7 @@ def certificate_of(line):
 def test_of_all_certificates(fails, herijk, data, lines, tmp_path):
     line = lines.row(0, named=True)
     lost = certificate_of(line)
-    command = ("certificate", "--edition", EDITION, "--out", tmp_path / "all.pdf")
+    command = ("export", "certificate", "--edition", EDITION, "--out", tmp_path / "all.pdf")
     fails(lost, certificate, "crew_name", lambda one, _: one["tow_id"] == line["tow_id"], *command)
     assert len(pypdf.PdfReader(tmp_path / "all.pdf").pages) == lines.height - 1
     assert herijk(*command, "--data", data)[0] == 0
@@ -65,13 +65,21 @@ def test_of_all_certificates(fails, herijk, data, lines, tmp_path):
 
 def test_the_only_certificate(fails, lines, tmp_path):
     line = lines.row(0, named=True)
-    command = ("certificate", line["fsn_no"], "--edition", EDITION, "--out", tmp_path / "one.pdf")
+    command = (
+        "export",
+        "certificate",
+        line["fsn_no"],
+        "--edition",
+        EDITION,
+        "--out",
+        tmp_path / "one.pdf",
+    )
     fails(certificate_of(line), certificate, "crew_name", lambda *_: True, *command)
     assert not (tmp_path / "one.pdf").exists()
 
 
 def test_a_proposal(fails, tmp_path):
-    command = ("proposal", METHODS[1], "--out", tmp_path / "p.pdf")
+    command = ("export", "proposal", METHODS[1], "--out", tmp_path / "p.pdf")
     fails(f"proposal-{METHODS[1]}", proposal, "_types", lambda *_: True, *command)
     assert not (tmp_path / "p.pdf").exists()
 
@@ -87,13 +95,13 @@ def test_a_slide(lost, owner, name, is_one, fails, monkeypatch, tmp_path):
     few = ("hull speed", "towed at")
     makers = slide_book._makers
     monkeypatch.setattr(slide_book, "_makers", lambda *of: [m for m in makers(*of) if m[0] in few])
-    fails(lost, owner, name, is_one, "slides", "--out", tmp_path / "slides")
+    fails(lost, owner, name, is_one, "export", "slides", "--out", tmp_path / "slides")
     assert len(list((tmp_path / "slides").glob("*.svg"))) == 1
     assert len(pypdf.PdfReader(tmp_path / "slides" / "slides-en.pdf").pages) == 1
 
 
 def test_a_page(fails, tmp_path):
-    command = ("pages", "--out", tmp_path / "pages")
+    command = ("export", "pages", "--out", tmp_path / "pages")
     fails(
         "page-boats.html", render, "_write_page", lambda _, p, *__: p.path == "boats.html", *command
     )

@@ -1,4 +1,4 @@
-"""`herijk log-error` on archives that are hard: few boats, a season without repeats, one set aside.
+"""`herijk seasons` on archives that are hard: few boats, a season without repeats, one set aside.
 
 The archive has five tows per season, about twenty boats. Those of 2009 got other numbers, so that
 no boat of that season was ever towed again; every day of 2010 is set aside; a log was replaced in
@@ -125,7 +125,7 @@ def test_each_part_of_a_season_has_its_factor_and_its_tows_use_it(hard):
 
 
 def test_the_command_says_what_is_not_known(hard, herijk):
-    status, out, err = herijk("log-error", "--data", hard.data)
+    status, out, err = herijk("seasons", "--data", hard.data)
     assert (status, err) == (0, "")
     assert "SIMULATED" in out
     assert re.search(r"2009 +1\.0600 +- +- +prescribed", out)

@@ -1,29 +1,52 @@
-"""`herijk methods`: a federation begins, checks and compares a method of its own."""
+"""Methods: a federation lists, begins, checks, compares and publishes one of its own."""
 
 import json
 
 from assets.resources import Setup
-from pipeline.method.definition import shipped_methods
+from pipeline.method.definition import Steps, shipped_methods
 from tests.conftest import METHODS, directly
 from warehouse.store.methods import methods_to_apply
 from warehouse.store.store import Store
 
 
+def test_methods_are_listed_and_shown_with_what_differs_from_their_parent(herijk):
+    listed = json.loads(herijk("methods", "--json")[1])["methods"]
+    assert [one["method"] for one in listed] == list(shipped_methods())
+    for name in METHODS:
+        assert name in herijk("methods")[1]
+    shown = json.loads(herijk("methods", "show", "corrected-2013", "--json")[1])
+    assert {(o["step"], o["option"], o["after"]) for o in shown["options"]} >= {
+        ("speed", "factor", 1.06)
+    }
+    whole = json.loads(herijk("methods", "show", "as-published", "--json")[1])
+    assert whole["extends"] is None
+    steps = Steps.model_json_schema()["$defs"].values()
+    options = {(o["step"], o["option"]) for o in whole["options"]}
+    assert len(options) == sum(len(step["properties"]) for step in steps)
+
+
 def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     data = ("--data", built.data)
-    assert herijk("methods", "new", "ours", "--from", "rebased-2015", *data)[0] == 0
+    assert herijk("methods", "new", "ours", "--from", "rebased-2015", *data, "--json")[0] == 0
     assert "sound" in herijk("methods", "check", "ours.toml", *data)[1]
-    same = herijk("methods", "diff", "rebased-2015", "ours.toml", "--data", tmp_path / "none")[1]
-    assert "say the same" in same
+    pair = ("rebased-2015", "ours.toml")
+    assert "say the same" in herijk("compare", *pair, "--data", tmp_path / "none")[1]
     file = tmp_path / "ours.toml"
     file.write_text(file.read_text(encoding="utf-8") + "[steps.wind]\nside = 0.3\n", "utf-8")
-    report = json.loads(herijk("methods", "diff", "rebased-2015", "ours.toml", "--json", *data)[1])
+    report = json.loads(herijk("compare", *pair, "--json", *data)[1])
     assert [(o["step"], o["option"], o["after"]) for o in report["options"]] == [
         ("wind", "side", 0.3)
     ]
     assert report["effect"]["by_season"]
-    assert "wind.side" in herijk("methods", "diff", "rebased-2015", "ours.toml", *data)[1]
+    assert "wind.side" in herijk("compare", "concept-rebased-2015", "ours.toml", *data)[1]
+
+
+def test_editions_and_methods_are_compared_with_each_other(herijk, published):
+    data = ("--data", published.data)
+    report = json.loads(herijk("compare", "2014-1", "rebased", *data, "--json")[1])
+    assert report["effect"]["boats"]
+    assert json.loads(herijk("compare", "rebased", "2014-1", *data, "--json")[1])["options"]
 
 
 def test_a_name_that_is_taken_is_refused(herijk, tmp_path, monkeypatch):
@@ -33,12 +56,15 @@ def test_a_name_that_is_taken_is_refused(herijk, tmp_path, monkeypatch):
     assert "is there already" in herijk("methods", "new", "ours")[2]
 
 
-def test_an_error_in_a_file_is_told_with_its_line(herijk, tmp_path):
+def test_an_error_in_a_file_is_named_with_its_line(herijk, tmp_path):
     file = tmp_path / "ours.toml"
     file.write_text('name = "ours"\ntitle = "x"\nextends = "rebased"\n[steps.wind]\nzij = 1\n')
     status, _, err = herijk("methods", "check", file)
     assert status == 1
     assert "line 5" in err
+    script = tmp_path / "cmp.py"
+    script.write_text("print(1)")
+    assert f"{script} is no method file" in herijk("methods", "check", script)[2]
 
 
 def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
@@ -72,9 +98,3 @@ def test_without_a_list_all_that_ship_are_applied_and_those_that_are_there(tmp_p
     assert methods_to_apply(built.store, ("rebased",)) == ["rebased"]
     setup = Setup(archive="", data=str(built.data), methods=[])
     assert [method.name for method in setup.chosen_methods] == list(shipped_methods())
-
-
-def test_a_file_that_is_no_toml_is_named_as_such(herijk, tmp_path):
-    script = tmp_path / "cmp.py"
-    script.write_text("print(1)")
-    assert f"{script} is no method file" in herijk("methods", "check", script)[2]

@@ -10,7 +10,7 @@ import polars as pl
 import pytest
 
 from tests.conftest import METHODS, SMALL, Workbench
-from tests.herijk.conftest import hold_against_schema
+from tests.herijk.conftest import hold_against_form
 from warehouse.store.store import table_digest
 
 ROOT = Path(__file__).parents[2]
@@ -33,10 +33,10 @@ def test_a_fresh_process_with_other_threads_gives_the_same_tables(built: Workben
         check=False,
     )
     assert (run.returncode, run.stderr) == (0, "")
-    hold_against_schema(["rebuild", "--json"], run.stdout)
+    hold_against_form("rebuild", run.stdout)
     report = json.loads(run.stdout)
-    assert report["done"]["seasons"] == list(SMALL.seasons)
-    assert report["simulated"] is True
+    assert report["since"]["done"]["seasons"] == list(SMALL.seasons)
+    assert report["report"]["simulated"] is True
     made = Workbench(built.archive, tmp_path / "data").tables()
     assert made.keys() == built.tables().keys()
     for name, frame in built.tables().items():
@@ -64,17 +64,19 @@ def test_what_systemd_stops_says_so(tmp_path: Path):
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert run.returncode == 130
-    assert run.stderr.startswith("herijk: stopped, as it was told to. What was there before")
+    assert run.stderr.lstrip().startswith(
+        "herijk: stopped, as it was told to. What was there before"
+    )
 
 
 def test_names_of_files_are_utf8_in_an_old_locale(tmp_path: Path):
     locale = {"LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     run = subprocess.run(
-        [sys.executable, "-m", "herijk", "fit", tmp_path / "Tréwes.csv"],
+        [sys.executable, "-m", "herijk", "methods", "check", tmp_path / "Tréwes.toml"],
         cwd=ROOT,
         env=os.environ | locale,
         capture_output=True,
         check=False,
     )
     assert run.returncode == 1
-    assert "Tréwes.csv" in run.stderr.decode("utf-8")
+    assert "Tréwes.toml" in run.stderr.decode("utf-8")

@@ -7,7 +7,6 @@ import tomllib
 
 import duckdb
 import pytest
-from typer.main import get_command
 
 from assets.settings import Settings
 from herijk.cli.main import app
@@ -38,7 +37,7 @@ def shell_lines(page):
 
 def command_of(words):
     """The command that a call names, with the words that follow."""
-    command, left = get_command(app), list(words)
+    command, left = app, list(words)
     while getattr(command, "commands", None) and left and left[0] in command.commands:
         command = command.commands[left.pop(0)]
     return command, left

@@ -10,7 +10,7 @@ import pytest
 from pipeline.errors import MissingKnowledgeError
 from tests.conftest import METHODS
 from warehouse.queries.audit import audit
-from warehouse.queries.audit_types import Closest, closest, differences
+from warehouse.queries.audit_types import cw_closest, differences
 
 
 def change(bench, *statements):
@@ -45,21 +45,10 @@ def test_figures_of_a_type_are_those_of_the_tables(built):
             assert test.items() <= found.bends.items()
             outliers = built.table("type_outliers").filter(**own)
             assert len(found.outside) == outliers["outside"].sum()
-            assert sum(row["n"] for row in found.judged) == outliers.height
 
 
 def _where(key):
     return pl.all_horizontal(*(pl.col(name) == value for name, value in key.items()))
-
-
-def test_a_line_follows_only_where_its_interval_leaves_out_zero(built):
-    seen = set()
-    for boat_type in types_of(built):
-        for line in under(built, boat_type).lines:
-            expected = None if line["reason"] else line["slope_lo"] > 0 or line["slope_hi"] < 0
-            assert line["follows"] is expected
-            seen.add(line["follows"])
-    assert seen == {None, True, False}
 
 
 @pytest.mark.parametrize(
@@ -82,8 +71,8 @@ def test_repeats_of_a_type_are_those_of_its_boats(built):
     pairs = built.table("repeat_pairs").filter(method="rebased-2015")
     own = pairs.filter(pairs["fsn_no"].is_in(boats))["ln_ratio"].to_numpy()
     found = under(built, "Kuikensloep").repeats
-    assert found.n_pairs == len(own) > 0
-    assert found.sd_ratio == pytest.approx(np.sqrt((own**2).mean() / 2))
+    assert found["n_pairs"] == len(own) > 0
+    assert found["sd_ratio"] == pytest.approx(np.sqrt((own**2).mean() / 2))
 
 
 @pytest.fixture
@@ -101,7 +90,7 @@ def of(built):
             speed_trend={"reason": "few_boats"},
             eras=[],
             bends={"equal_possible": bends},
-            closest=Closest(0, None, ""),
+            cw_closest=None,
         )
 
     return lambda first, second: [statistics(*first), statistics(*second)]
@@ -145,32 +134,13 @@ def spread(n_boats, **sds):
 )
 def test_cw_lies_closest_only_where_chance_would_not_make_it(n_boats, b, a, cw, verdict):
     lines = spread(n_boats, b_m_s=b, a_kg_m=a, cw_standard_kg_m=cw)
-    assert closest(lines).cw_closest is verdict
-    missing = [line | {"reason": "few_boats"} for line in lines]
-    assert closest(missing) == Closest(n_boats, None, "few_boats")
-
-
-def test_eras_are_those_of_the_table(built):
-    shifts = built.table("era_shifts")
-    for boat_type in [*types_of(built), "unknown"]:
-        for era in under(built, boat_type).eras:
-            row = shifts.filter(method="rebased-2015", boat_type=boat_type, era=era["era"])
-            if row.height:
-                assert era == row.row(0, named=True)
-            else:
-                assert (era["n"], era["apart"], era["reason"]) == (0, None, "few_pairs")
-    everyone = audit(built.store, ["Vlet"]).fleet["rebased-2015"].eras
-    assert everyone.keys() == {"2009-2011", "2012-2013"}
+    assert cw_closest(lines) is verdict
+    assert cw_closest([line | {"reason": "few_boats"} for line in lines]) is None
 
 
 @pytest.mark.parametrize("name", ["Kuikensloep", "kuikensloep", " KUIKEN SLOEP "])
 def test_a_type_is_found_whatever_its_case_and_blanks(built, name):
     assert audit(built.store, [name]).types[0].boat_type == "Kuikensloep"
-
-
-def test_a_boat_is_found_whatever_its_case_and_blanks(built):
-    fsn_no = built.table("tows")["fsn_no"][0]
-    assert audit(built.store, [f" fsn {fsn_no[3:]}"]).boat["fsn_no"] == fsn_no
 
 
 def test_boats_without_a_type_have_a_page_without_claims(built):
@@ -187,22 +157,9 @@ def test_an_unknown_name_lists_the_types_and_a_boat(built):
         assert expected in str(error.value)
 
 
-def test_a_boat_next_to_a_type_is_refused(built):
-    boat = built.table("tows")["fsn_no"][0]
-    with pytest.raises(MissingKnowledgeError, match="a page of its own"):
-        audit(built.store, [boat, "Kuikensloep"])
-
-
 def test_a_method_that_the_tables_do_not_hold_is_named_with_those_they_do(built):
     with pytest.raises(MissingKnowledgeError, match=r"'rebased'.*as-published, rebased-2015"):
         audit(built.store, ["Kuikensloep"], "rebased")
-
-
-def test_a_type_whose_tows_gave_no_curve_has_a_page(bench):
-    change(bench, "UPDATE boats SET boat_type = 'Punter' WHERE fsn_no = 'FSN100'")
-    found = under(bench, "punter")
-    assert found.lines == []
-    assert found.bends["reason"] == found.speed_trend["reason"] == "no_curves"
 
 
 def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
@@ -222,15 +179,6 @@ def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
     for tow in report.tows:
         assert {curve["method"] for curve in tow["curves"]} == set(METHODS)
         assert tow["steps"][0]["step"] == "start"
-
-
-def test_one_method_leaves_out_the_others(built):
-    fsn_no = built.table("repeat_pairs")["fsn_no"][0]
-    report = audit(built.store, [fsn_no], "rebased-2015")
-    parts = ("in_type", "pooled", "repeat_pairs", "predicted", "register")
-    methods = {row["method"] for part in parts for row in getattr(report, part)}
-    curves = {curve["method"] for tow in report.tows for curve in tow["curves"]}
-    assert methods == curves == {"rebased-2015"}
 
 
 def test_set_aside_tows_of_a_boat_are_found_by_number_or_file_and_no_others(bench):
@@ -261,19 +209,10 @@ def test_statistics_of_a_season_rest_on_its_tows_alone(built):
     assert report.statistics_over == "2014"
     assert page.n_tows == own.height < built.table("tows").height
     figures = page.under["rebased-2015"]
-    assert all(line["n"] <= own.height for line in figures.lines + figures.all_tows)
+    assert all(line["n"] <= own.height for line in figures.lines)
     assert {row["season"] for row in figures.outside} <= {2014}
     again = audit(built.store, [boat_type], "rebased-2015")
     assert again.types[0].n_tows > own.height, "the database is as it was"
-
-
-def test_lines_over_all_tows_are_those_of_the_table(built):
-    boat_type = types_of(built)[0]
-    report = audit(built.store, [boat_type], "rebased-2015", tows="all")
-    lines = report.types[0].under["rebased-2015"].lines
-    table = built.table("type_lines").filter(boat_type=boat_type, method="rebased-2015", tows="all")
-    table = table.sort("quantity", "explaining", "within")
-    assert [line["n"] for line in lines] == table["n"].to_list()
 
 
 def test_a_boat_is_found_by_its_name_as_people_write_it(built):

@@ -6,8 +6,7 @@ import polars as pl
 import pytest
 
 from dashboards.labels import CODES
-from herijk.cli.due_text import URGENCIES
-from pipeline.errors import MissingKnowledgeError
+from herijk.cli.registers_text import URGENCIES
 from pipeline.register.due import NOT_RACED
 from pipeline.register.register import draft_name
 from warehouse.queries.due import due_report
@@ -34,11 +33,6 @@ def test_the_report_tells_who_is_due(built):
     assert all(line["valid_until"] < report.as_of for line in expired)
     days = [line["valid_until"] for line in report.lines if line["valid_until"]]
     assert days == sorted(days)
-
-
-def test_a_method_that_was_not_applied_is_named(built):
-    with pytest.raises(MissingKnowledgeError, match="--method corrected-2013"):
-        due_report(built.store, "corrected-2013")
 
 
 def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):

@@ -148,7 +148,7 @@ def check_without(bench, expected):
 @pytest.mark.parametrize(
     ("module", "name"),
     [
-        ("warehouse.archive.plausibility.whole_columns", "check_mix_ups"),
+        ("warehouse.archive.plausibility.mix_ups", "check_mix_ups"),
         ("pipeline.assessment.plausibility", "plausibility"),
         ("pipeline.recompute.season_factors", "_rows"),
         ("pipeline.season_log.estimate", "estimate_season_factors"),
@@ -168,17 +168,6 @@ def test_a_failing_tow_is_set_aside_and_the_rest_goes_on(
     assert faults["reason_code"].to_list() == ["unforeseen"]
     assert (TOW in bench.table("curves")["tow_id"]) is False
     assert [c.severity for c in report.checks if c.check == "nothing_unforeseen"] == ["WARN"]
-
-
-def test_a_log_that_stood_still_fails_no_check():
-    from warehouse.archive.plausibility.whole_columns import _follows_log  # noqa: PLC0415
-
-    class Still:
-        channels = {"log1": mock.Mock(), "log2": mock.Mock()}  # noqa: RUF012
-
-    median = "warehouse.archive.plausibility.whole_columns.median_of"
-    with mock.patch(median, return_value=0.0):
-        assert not _follows_log([Still()], "log2")
 
 
 def test_a_failing_method_costs_its_rows_alone(tiny, tmp_path):

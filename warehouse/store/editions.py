@@ -231,7 +231,7 @@ def method_of_edition(store: Store, edition: str) -> Method:
     if method is None:
         raise MissingKnowledgeError(
             "edition {} was taken over from print and has no method; compare it with "
-            "another edition: herijk diff {} EDITION",
+            "another edition: herijk compare {} EDITION",
             edition,
             edition,
         )

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from herijk.cli.archive import check_text
+from herijk.cli.check_text import archive_text
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGE, say
 from tests.warehouse.archive.conftest import BOATS, FIRST, TOWS, Archive, Scan
@@ -44,7 +44,7 @@ def test_one_round_finds_every_cause_and_asks_what_only_a_person_knows(archive: 
         *("bad_list_row", "bad_boat_row", "unknown_column", "ambiguous_date", "missing_column")
     }
     before = LANGUAGE.set("nl")
-    text = check_text(report)
+    text = "\n\n".join(archive_text(report))
     LANGUAGE.reset(before)
     assert "; H of D wordt verwacht." in text
     json.dumps(asdict(report))

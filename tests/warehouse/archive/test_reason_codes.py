@@ -384,14 +384,6 @@ def test_a_fault_in_a_run_that_is_not_used_does_no_harm(archive: Archive, select
     assert archive.scan().faults == []
 
 
-def test_a_mended_tow_comes_back(archive: Archive, good_scan: Scan) -> None:
-    kept = (archive.root / FIRST).read_bytes()
-    archive.cells(4, lambda cell, line: "abc", 77, 77)
-    assert archive.scan().faults
-    (archive.root / FIRST).write_bytes(kept)
-    assert_others_unchanged(archive.scan(), good_scan, set())
-
-
 def test_an_unreadable_list_costs_only_its_own_season(archive: Archive) -> None:
     (archive.root / "sleeplijsten/sleeplijst_2015.csv").write_bytes(b"\xff\x00")
     (archive.root / "meetdata_2015").mkdir()

@@ -8,24 +8,19 @@ import polars as pl
 from pipeline.tables.row import Row
 from warehouse.archive.faults import DefectiveFileError, Fault
 from warehouse.archive.plausibility.left_out import judge_run, usual_resistance_kg_m
-from warehouse.archive.plausibility.run import CHANNELS, FIRST_ROW, WIND, Run
-from warehouse.archive.plausibility.selected_runs import (
-    lasts,
-    long_runs,
-    measured,
-    selected_runs,
-    without_copies,
-)
-from warehouse.archive.plausibility.whole_columns import (
-    check_log2_and_gps,
+from warehouse.archive.plausibility.mix_ups import (
     check_mix_ups,
-    check_speed_unit,
-    is_no_wind,
-    no_wind,
     without_other_units,
     without_wind,
 )
-from warehouse.archive.plausibility.whole_runs import without_stuck_gps
+from warehouse.archive.plausibility.rules import without_stuck_gps
+from warehouse.archive.plausibility.run import CHANNELS, FIRST_ROW, Run
+from warehouse.archive.plausibility.selected_runs import (
+    check_not_long,
+    lasts,
+    selected_runs,
+    without_copies,
+)
 from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.samples.tow import place_in_file
 
@@ -58,7 +53,7 @@ def judge_in_files(
     def place(path: str, line: int | None) -> tuple[str, int | None]:
         if line is None:
             return path, None
-        return place_in_file(root, tow, profile, samples["run"], path, line - FIRST_ROW)
+        return place_in_file(root, tow, profile, samples["run"], line - FIRST_ROW)
 
     try:
         judged = judge_samples(samples, tow, runs)
@@ -88,21 +83,15 @@ def judge_samples(samples: pl.DataFrame, tow: Row, runs: pl.DataFrame) -> Judged
     selected = selected_runs(samples, tow, runs, faults)
     number = len(selected) + len(faults)
     whole = [run for run in selected if lasts(run, faults)]
-    faults += long_runs(whole)
+    check_not_long(whole, faults)
     whole = without_copies(whole, faults)
     _check_left(whole, number, faults)
-    if all(map(is_no_wind, whole)):
-        faults.append(no_wind(whole))
-        nothing = (pl.lit(None, pl.Float32).alias(CHANNELS[key]) for key in WIND)
-        samples, whole = samples.with_columns(nothing), [without_wind(run) for run in whole]
-    check_mix_ups(whole)
-    check_log2_and_gps(whole)
-    check_speed_unit(whole)
+    whole = without_wind(whole, faults)
     whole, gone = without_other_units(whole, faults)
+    check_mix_ups(whole)
     usual_kg_m = usual_resistance_kg_m(whole)
-    judged = [judge_run(run, usual_kg_m, gone) for run in whole]
-    faults += [fault for _, of_run in judged for fault in of_run]
-    kept = without_stuck_gps([run for run, _ in judged if run is not None], faults)
+    judged = [judge_run(run, usual_kg_m, gone, faults) for run in whole]
+    kept = without_stuck_gps([run for run in judged if run is not None], faults)
     _check_left(kept, number, faults)
     return Judged(_with_changes(samples, kept, faults), tuple(faults))
 
@@ -119,12 +108,15 @@ def _with_changes(samples: pl.DataFrame, kept: list[Run], faults: list[Fault]) -
     """The samples without lost runs, with NaN where a sample of the others was left out."""
     if not faults:
         return samples
-    number = samples["run"].to_numpy()
     changed = []
-    for key, name in measured(samples).items():
+    for key, name in CHANNELS.items():
+        if key not in kept[0].channels:
+            changed.append(pl.Series(name, [None] * len(samples), pl.Float32))
+            continue
         values = samples[name].to_numpy().copy()
         for run in kept:
-            values[number == run.number] = run.channels[key]
+            own = run.channels[key]
+            values[run.start : run.start + len(own)] = own
         changed.append(pl.Series(name, values))
     lost = [fault.run for fault in faults if fault.lost == "run"]
     return samples.with_columns(changed).filter(~pl.col("run").is_in(lost))

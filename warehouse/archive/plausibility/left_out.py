@@ -10,30 +10,27 @@ from numpy.typing import NDArray
 
 from pipeline.arrays import BoolArray
 from pipeline.messages import say
-from warehouse.archive.faults import Fault, Lost
+from warehouse.archive.faults import Fault
+from warehouse.archive.plausibility.rules import EXTREMES, apply_rules
 from warehouse.archive.plausibility.run import (
     COLUMN_OF,
-    LEFT_OUT_S,
     SPARE,
     SPEEDS,
-    WIND_ANGLE_DEG,
-    WIND_SPEED_M_S,
     Array,
+    Cost,
     Run,
-    known_of,
-    median_of,
     second_means,
     stretches,
     what_it_holds,
-    what_then,
 )
-from warehouse.archive.plausibility.whole_runs import judge_whole
 
+LEFT_OUT_S: Final = 2.0
+"""Longest time in all of a run in which what the run point needs may be left out; as long again for
+log 2 and the GPS each."""
 DROPOUT_M_S: Final = 0.1
-SPEED_SPIKE_RATIO: Final = 0.3
-"""Share of the speed around it: a boat and its crew weigh a ton, and change no faster."""
-GPS_JUMP_RATIO: Final = 0.1
-"""The same of a GPS, which has no noise of samples: such a jump is the receiver's (inferred)."""
+SPIKE_RATIO: Final = {"log1": 0.3, "log2": 0.3, "gps": 0.1}
+"""Share of the speed around it: a boat and its crew weigh a ton, and change no faster. A GPS has no
+noise of samples: such a jump is the receiver's (inferred)."""
 AROUND_S: Final = 11
 """The speed around a sample: the median over so many seconds of each one's median."""
 FORCE_SPIKE_RATIO: Final = (-3.0, 5.0)
@@ -45,71 +42,60 @@ GUST_RATIO: Final = 2.5
 GUST_M_S: Final = 4.0
 """Wind so many times the run's median, and this much more, is not a gust that cups follow."""
 
-_NOT_IN_THIS_RUN: Final = say("over {:g} s, so the run goes on without this column", LEFT_OUT_S)
-
 
 def usual_resistance_kg_m(runs: list[Run]) -> float:
     """Force / speed squared of a typical run, which a fault over most of one does not move."""
-    each = [median_of(run.channels["force"]) / run.intended_m_s**2 for run in runs]
-    return abs(known_of(np.nanmedian, np.asarray(each)))
+    each = [run.statistics["force"].median / run.intended_m_s**2 for run in runs]
+    return abs(float(np.nanmedian(each))) if np.isfinite(each).any() else np.nan
 
 
-def judge_run(run: Run, usual_kg_m: float, gone: Collection[str]) -> tuple[Run | None, list[Fault]]:
+def judge_run(
+    run: Run, usual_kg_m: float, gone: Collection[str], faults: list[Fault]
+) -> Run | None:
     """The run without the samples that cannot be, or None where too much or all of it is wrong.
 
-    Channels that are `gone` were told before.
+    Args:
+        run: as measured.
+        usual_kg_m: usual force over speed squared.
+        gone: channels that all runs lost; that is said before.
+        faults: those of the run are added.
     """
-    wrong = _wrong_samples(run, usual_kg_m * run.intended_m_s**2)
-    wrong = {key: mask for key, mask in wrong.items() if key not in gone}
-    no_row = np.logical_and.reduce([~np.isfinite(values) for values in run.channels.values()])
+    usual_n = usual_kg_m * run.intended_m_s**2
+    wrong = {key: _wrong(run, key, usual_n) for key in run.channels if key not in gone}
+    no_row = np.logical_and.reduce([np.isnan(values) for values in run.channels.values()])
     needed = np.logical_or.reduce([mask for key, mask in wrong.items() if key not in SPARE])
     most = LEFT_OUT_S * run.rate_hz
-    lost: Lost = "run" if needed.sum() > most else "seconds"
-    faults = [_of_rows(run, no_row, lost)] if no_row.any() else []
-    wrong = {key: mask & ~no_row for key, mask in wrong.items() if (mask & ~no_row).any()}
+    cost: Cost = "run" if needed.sum() > most else "seconds"
+    found = [_of_samples(run, None, no_row, cost)] if no_row.any() else []
     channels = dict(run.channels)
     for key, mask in wrong.items():
-        cost = "seconds" if key in SPARE else lost
-        is_gone = key in SPARE and mask.sum() > most
-        then = _NOT_IN_THIS_RUN if is_gone else what_then(cost)
-        faults.append(_of_samples(run, key, mask, cost, then))
-        channels[key] = np.where(mask | is_gone, np.float32(np.nan), channels[key])
-    if lost == "run":
-        return None, [fault for fault in faults if fault.lost == "run"]
-    return judge_whole(replace(run, channels=channels), faults)
+        own = mask & ~no_row
+        if own.any():
+            of_spare: Cost = "column" if own.sum() > most else "seconds"
+            of_channel = of_spare if key in SPARE else cost
+            found.append(_of_samples(run, key, own, of_channel))
+            is_gone = of_channel == "column"
+            channels[key] = np.where(own | is_gone, np.float32(np.nan), channels[key])
+    cleaned = replace(run, channels=channels) if found else run
+    kept = None if cost == "run" else apply_rules(cleaned, found)
+    faults += [fault for fault in found if kept is not None or fault.lost == "run"]
+    return kept
 
 
-def _of_rows(run: Run, mask: BoolArray, lost: Lost) -> Fault:
-    """The fault of rows of which nothing can be read."""
-    seconds = float(mask.sum()) / run.rate_hz
-    message = say(
-        "{}: rows do not have their fields, {:.3g} s in all; {}.",
-        run.name,
-        seconds,
-        what_then(lost),
-    )
-    if mask.all():
-        message = say(
-            "{}: no row can be used, as fields are missing or the times jump back; the run is left "
-            "out.",
-            run.name,
-        )
-    return run.fault("broken_row", message, int(mask.argmax()), lost, seconds)
-
-
-def _of_samples(run: Run, key: str, mask: BoolArray, lost: Lost, then: str) -> Fault:
-    """The fault of samples of one channel, named by the first of them."""
+def _of_samples(run: Run, key: str | None, mask: BoolArray, cost: Cost) -> Fault:
+    """The fault of samples of one channel, or of all without one, named by the first of them."""
     row = int(mask.argmax())
     seconds = float(mask.sum()) / run.rate_hz
-    message = say(
-        "{}: column '{column}' {} and is wrong for {:.3g} s in all; {}.",
-        run.name,
+    if key is None:
+        what = say("rows lack fields, or their times jump back, for {:.3g} s in all", seconds)
+        return run.fault("broken_row", what, cost, row, seconds)
+    what = say(
+        "column '{column}' {} and is wrong for {:.3g} s in all",
         what_it_holds(run.channels[key][row]),
         seconds,
-        then,
         column=COLUMN_OF[key],
     )
-    return run.fault(_reason(run, key, row), message, row, lost, seconds)
+    return run.fault(_reason(run, key, row), what, cost, row, seconds)
 
 
 def _reason(run: Run, key: str, row: int) -> str:
@@ -118,25 +104,21 @@ def _reason(run: Run, key: str, row: int) -> str:
         return "bad_number"
     if key in SPEEDS and value <= DROPOUT_M_S:
         return "gps_dropout" if key == "gps" else "log_dropout"
-    pushes = FORCE_SPIKE_RATIO[0] * abs(median_of(run.channels["force"]))
+    pushes = FORCE_SPIKE_RATIO[0] * abs(run.statistics["force"].median)
     return "negative_force" if key == "force" and pushes <= value < 0 else "implausible_value"
 
 
-def _wrong_samples(run: Run, usual_n: float) -> dict[str, BoolArray]:
-    """Samples that are no number, have dropped out or cannot be, by channel."""
-    wrong = {}
-    for key, values in run.channels.items():
-        if key in SPEEDS:
-            spike = GPS_JUMP_RATIO if key == "gps" else SPEED_SPIKE_RATIO
-            wrong[key] = _wrong_speed(values, run.rate_hz, spike)
-        elif key == "force":
-            wrong[key] = _wrong_force(values, usual_n, run.rate_hz)
-        elif key == "wind_speed":
-            most = GUST_RATIO * abs(median_of(values)) + GUST_M_S
-            wrong[key] = _outside(values, WIND_SPEED_M_S[0], min(WIND_SPEED_M_S[1], most))
-        else:
-            wrong[key] = _outside(values, *WIND_ANGLE_DEG)
-    return wrong
+def _wrong(run: Run, key: str, usual_n: float) -> BoolArray:
+    """Samples of a channel that are no number, have dropped out or cannot be."""
+    values, median = run.channels[key], run.statistics[key].median
+    if key in SPEEDS:
+        return _wrong_speed(values, median, run.rate_hz, SPIKE_RATIO[key])
+    if key == "force":
+        return _wrong_force(values, usual_n, run.rate_hz)
+    least, most = EXTREMES[key]
+    if key == "wind_speed":
+        most = min(most, GUST_RATIO * abs(median) + GUST_M_S)
+    return _outside(values, least, most)
 
 
 def _outside(values: Array, lowest: float, highest: float) -> BoolArray:
@@ -144,8 +126,7 @@ def _outside(values: Array, lowest: float, highest: float) -> BoolArray:
     return np.asarray(~((values >= lowest) & (values <= highest)))
 
 
-def _wrong_speed(values: Array, rate_hz: int, spike_ratio: float) -> BoolArray:
-    median = median_of(values)
+def _wrong_speed(values: Array, median: float, rate_hz: int, spike_ratio: float) -> BoolArray:
     far = spike_ratio * abs(median)
     near = (values > DROPOUT_M_S) & (np.abs(values - median) <= far)
     if near.all():

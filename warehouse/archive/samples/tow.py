@@ -73,7 +73,7 @@ def _read_part(
 
 
 def place_in_file(
-    root: Path, tow: Row, profile: SeasonProfile, runs: pl.Series, path: str, row: int
+    root: Path, tow: Row, profile: SeasonProfile, runs: pl.Series, row: int
 ) -> tuple[str, int]:
     """The file of a row of a tow's samples, and the line in it.
 
@@ -82,17 +82,18 @@ def place_in_file(
         tow: a row of `ArchiveIndex.tows`.
         profile: the profile of its season.
         runs: the run of each sample, as `read_tow_samples` returns them.
-        path: the file, or the files that are a run each.
-        row: counted over these files from 0; negative for the header.
+        row: counted over the samples of the tow from 0; negative for the header.
     """
-    in_second = runs > SECOND_FILE_OFFSET
-    own = runs.filter(in_second if path == tow["second_path"] else ~in_second).to_numpy()
-    files = path.split(PARTS)
-    file = files[0]
-    if len(files) > 1:
-        starts = run_starts(own)
-        begun = int(np.searchsorted(starts, max(row, 0), "right")) - 1
-        file, row = files[begun], row - int(starts[begun])
+    numbers = runs.to_numpy()
+    begins = int((numbers <= SECOND_FILE_OFFSET).sum())
+    in_second = tow["second_path"] is not None and row >= begins
+    files = tow["second_path" if in_second else "samples_path"].split(PARTS)
+    own = numbers[begins:] if in_second else numbers
+    row -= begins if in_second else 0
+    starts = run_starts(own)
+    part = int(np.searchsorted(starts, max(row, 0), "right")) - 1 if len(files) > 1 else 0
+    file = files[part]
+    row -= int(starts[part])
     full = path_inside(root, file)
     if kind_of(full) in BINARY:
         return file, next_line(row)

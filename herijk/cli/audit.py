@@ -1,0 +1,100 @@
+"""`herijk audit`: the answer about a boat or a type, and with --steps all that is behind it."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from herijk.cli.options import PATH, as_json_text, data_option, json_option, show
+from herijk.cli.speaking import Command, argument, flag, option
+from pipeline.errors import HerijkError
+from pipeline.messages import LANGUAGE, tell
+
+if TYPE_CHECKING:
+    from warehouse.queries.audit import BoatAudit
+    from warehouse.queries.audit_types import TypesAudit
+    from warehouse.store.store import Store
+
+MOST_TYPES: Final = 2
+
+
+@click.command(cls=Command)
+@argument(
+    "names",
+    nargs=-1,
+    required=True,
+    metavar="BOAT|TYPE [TYPE]",
+    help='A boat by number or name, FSN211 or "Razende Snol", or one or two types.',
+)
+@data_option
+@option("--edition", help="Edition or draft that a boat's answer is about; else the newest.")
+@flag("--steps", help="Also show the methods, tows, runs and statistics behind the answer.")
+@option("--method", help="Show this method only.")
+@option(
+    "--tows",
+    default="newest",
+    metavar="all|newest|SEASON|A:B",
+    help="Which tows a type's statistics rest on.",
+)
+@option("--plots", type=PATH, help="Draw the plots in this folder.")
+@json_option
+def audit(
+    names: tuple[str, ...],
+    data: Path,
+    edition: str | None,
+    steps: bool,
+    method: str | None,
+    tows: str,
+    plots: Path | None,
+    as_json: bool,
+) -> None:
+    """Where a boat's number comes from, or whether boats of a type are equal.
+
+    With --edition also the files, runs and seconds behind a line of a published edition.
+    """
+    from herijk.cli import audit_text
+    from warehouse.queries.audit import BoatAudit
+    from warehouse.queries.audit import audit as audit_report
+    from warehouse.store.editions import edition_names
+    from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
+
+    if len(names) > MOST_TYPES:
+        raise click.UsageError(tell("give a boat, or one or two types; quote a name with blanks"))
+    store = Store(data)
+    behind = None
+    if edition in edition_names(store):
+        from warehouse.editions.lineage import lineage
+
+        behind = lineage(store, str(edition), names[0])
+        if as_json or not store.database.exists():  # an edition says this by itself
+            show(behind, audit_text.lineage_text, as_json)
+            return
+    if method is not None:
+        KnownMethods.of(store).text(method)
+    report = audit_report(store, names, method, tows)
+    drawn = [] if plots is None else _plots(store, report, plots)
+    if as_json:
+        click.echo(as_json_text(report))
+        return
+    if isinstance(report, BoatAudit):
+        click.echo(audit_text.boat_text(store, report, edition, steps))
+    else:
+        click.echo(audit_text.types_text(report, steps))
+    if behind:
+        click.echo("\n" + audit_text.lineage_text(behind))
+    if drawn:
+        click.echo("\n" + tell("{} plots in {}", len(drawn), plots))
+
+
+def _plots(store: "Store", report: "BoatAudit | TypesAudit", folder: Path) -> list[Path]:
+    from dashboards.audit_plots import write_audit_plots
+
+    try:
+        return write_audit_plots(store, report, folder, LANGUAGE.get())
+    except OSError as error:
+        raise HerijkError(
+            "no plots, for {} cannot be written ({}); give another folder with --plots",
+            folder,
+            error.strerror,
+        ) from error

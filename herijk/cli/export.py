@@ -1,0 +1,136 @@
+"""`herijk export`: pages of the site, certificates, a proposal to vote on, and slides."""
+
+import datetime as dt
+from pathlib import Path
+
+import click
+
+from herijk.cli.options import PATH, as_of_option, data_option, json_option, show_files
+from herijk.cli.speaking import Group, argument, option
+from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import LANGUAGE, tell
+
+MOST_TYPES = 2
+
+
+@click.group(cls=Group)
+def export() -> None:
+    """Pages of the site, certificates, a proposal or slides as files."""
+
+
+@export.command()
+@argument(
+    "boat", required=False, help="A boat by number or name; without it all boats of the edition."
+)
+@data_option
+@option("--edition", help="Edition; the newest when left out.")
+@option("--out", type=PATH, help="File to write: a PDF, or .html for a page.")
+@json_option
+def certificate(
+    boat: str | None, data: Path, edition: str | None, out: Path | None, as_json: bool
+) -> None:
+    """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
+    from dashboards.documents.certificate import certificates
+    from warehouse.queries.answers import current_edition
+    from warehouse.queries.views import Views
+    from warehouse.store.boats import the_boat
+    from warehouse.store.store import Store
+    from warehouse.store.unforeseen import documents
+
+    store = Store(data)
+    with documents(store.root, "certificate") as border, Views(store) as views:
+        chosen = edition or current_edition(views)
+        fsn_no = boat and the_boat(views.table("boats"), boat)
+        as_page = out is not None and out.suffix == ".html"
+        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), as_page, border)
+        name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
+        _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
+
+
+@export.command()
+@option("--out", type=PATH, required=True, help="Folder for them, new or of pages.")
+@data_option
+@as_of_option
+def pages(out: Path, data: Path, as_of: dt.date | None) -> None:
+    """All pages of the site in a folder of their own, for instance as of an earlier day."""
+    from dashboards.site.render import OWN_FILES, build_pages
+    from warehouse.store.store import Store
+    from warehouse.store.unforeseen import documents
+
+    if out.exists() and not (out / "static" / OWN_FILES[0]).is_file():
+        raise MissingKnowledgeError("{} is there and holds no pages; give a new folder", out)
+    store = Store(data)
+    with documents(store.root, "pages") as border:
+        made = build_pages(store, out, as_of, bordered=border)
+        click.echo(tell("{} files in {}; begin with index.html", made["files"], out))
+
+
+@export.command()
+@argument("methods", nargs=-1, required=True, help="Method proposed; several make a ballot.")
+@data_option
+@option("--against", default="concept-as-published", help="Edition that counts now, or a draft.")
+@option("--out", type=PATH, help="File to write, a PDF.")
+@json_option
+def proposal(
+    methods: tuple[str, ...], data: Path, against: str, out: Path | None, as_json: bool
+) -> None:
+    """What a board sends its members before they vote: what changes, for whom, how uncertain."""
+    from dashboards.documents.proposal import proposal as make_proposal
+    from warehouse.queries.views import Views
+    from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
+    from warehouse.store.unforeseen import documents
+
+    store, name = Store(data), "-".join(("proposal", *methods))
+    with documents(store.root, name), Views(store) as views:
+        known = KnownMethods.of(store)
+        made = make_proposal(views, list(methods), against, LANGUAGE.get(), known)
+        _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
+
+
+@export.command()
+@data_option
+@option("--out", type=PATH, help="Folder for them. Default: slides in --data.")
+@option("--type", "types", multiple=True, help="Type of boat; repeat for two together.")
+@option("--tows", default="all", metavar="all|newest|SEASON|A:B", help="Which tows are drawn.")
+@option(
+    "--boat",
+    "boats",
+    multiple=True,
+    help="Boat through the years, by number or name; repeat for more.",
+)
+@json_option
+def slides(
+    data: Path,
+    out: Path | None,
+    types: tuple[str, ...],
+    tows: str,
+    boats: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
+    from dashboards.slide_book import Asked
+    from dashboards.slides import write_slides
+    from warehouse.store.store import Store
+    from warehouse.store.unforeseen import documents
+
+    if len(types) > MOST_TYPES:
+        raise click.UsageError(tell("give one or two types"))
+    store, asked = Store(data), Asked(types, tows, boats)
+    with documents(store.root, "slides") as border:
+        written = write_slides(store, out or store.root / "slides", LANGUAGE.get(), asked, border)
+        show_files(written, as_json)
+
+
+def _write(content: bytes | None, path: Path, as_json: bool) -> None:
+    """Writes the file whole, and says where; nothing where nothing could be made."""
+    if content is None:
+        return
+    from warehouse.store.files import written_beside
+    from warehouse.store.machine_faults import machine_faults_explained
+
+    with machine_faults_explained(path.parent):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with written_beside(path) as beside:
+            beside.write_bytes(content)
+    show_files([path], as_json)

@@ -1,0 +1,75 @@
+"""What `--json` of each command prints, as a class: for the documentation and for tests.
+
+Fields may be added to a result; none is renamed or dropped without a line in the changelog.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+from pydantic import TypeAdapter
+
+from herijk.cli.check_text import Checked
+from herijk.cli.compare_text import MethodComparison
+from herijk.cli.methods_text import MethodReport
+from herijk.cli.rebuild_text import Rebuilt
+from pipeline.tables.row import Row
+from warehouse.editions.compare import DiffReport
+from warehouse.editions.lineage import Lineage
+from warehouse.editions.publish import Published
+from warehouse.editions.verify import Verification
+from warehouse.queries.audit import BoatAudit
+from warehouse.queries.audit_types import TypesAudit
+from warehouse.queries.due import DueReport
+from warehouse.queries.register import RegisterReport
+from warehouse.queries.reports import LogErrorReport
+
+
+@dataclass(frozen=True)
+class Files:
+    """The files that were written."""
+
+    files: list[str]
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A simulated archive, and the file with its truth."""
+
+    archive: str
+    truth: str
+
+
+@dataclass(frozen=True)
+class Methods:
+    """The methods: `method`, `title`, `content_hash`, and whether it `ships`."""
+
+    methods: list[Row]
+
+
+FORMS: Final[dict[str, Any]] = {
+    "audit BOAT": BoatAudit,
+    "audit BOAT --edition EDITION": Lineage,
+    "audit TYPE": TypesAudit,
+    "check": Checked,
+    "compare EDITION EDITION": DiffReport,
+    "compare METHOD METHOD": MethodComparison,
+    "export": Files,
+    "init": Files,
+    "methods": Methods,
+    "methods check": MethodReport,
+    "methods new": Files,
+    "methods show": MethodReport,
+    "publish": Published,
+    "rebuild": Rebuilt,
+    "register": RegisterReport,
+    "register --due": DueReport,
+    "seasons": LogErrorReport,
+    "simulate": Simulated,
+    "verify": Verification,
+}
+"""Classes by the call."""
+
+
+def schema(call: str) -> dict[str, Any]:
+    """The JSON Schema of what a call prints."""
+    return TypeAdapter(FORMS[call]).json_schema()

@@ -1,0 +1,96 @@
+"""A method as text for a committee member: what it is, and its options with what they were."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from dashboards.workbench.texts import text
+from herijk.cli.render import table
+from pipeline.messages import LANGUAGE, say, tell
+from pipeline.method.definition import Method
+from pipeline.method.variant import Difference, differences
+from pipeline.method.writing import range_text
+from pipeline.tables.row import Row
+from warehouse.store.methods import KnownMethods
+
+
+@dataclass(frozen=True)
+class MethodReport:
+    """A method, and what it does other than the one it extends.
+
+    Attributes:
+        method, title, description: what it is called, and what it is.
+        content_hash: SHA-256 of what it says.
+        extends: the method it extends.
+        options: those that differ from it; all where it extends none.
+    """
+
+    method: str
+    title: str
+    description: str
+    content_hash: str
+    extends: str | None
+    options: list[Difference]
+
+
+def report_on(known: KnownMethods, name_or_file: str) -> MethodReport:
+    """What there is to say of a method.
+
+    Raises:
+        HerijkError: there is no such method or file, or it has an error.
+    """
+    shown = known.named(name_or_file)
+    options = differences(shown, known.get(shown.extends)) if shown.extends else _all_options(shown)
+    return MethodReport(
+        method=shown.name,
+        title=shown.titled(LANGUAGE.get()),
+        description=shown.description.strip(),
+        content_hash=shown.content_hash,
+        extends=shown.extends,
+        options=list(options),
+    )
+
+
+def _all_options(shown: Method) -> list[Difference]:
+    return [
+        Difference(step, option, block.first, block.last, (), value)
+        for block in shown.ranges
+        for step, options in block.steps
+        for option, value in options
+    ]
+
+
+def methods(report: dict[str, list[Row]]) -> str:
+    """The list of methods."""
+    rows = [row | {"content_hash": row["content_hash"][:12]} for row in report["methods"]]
+    return table(rows, "method title content_hash")
+
+
+def method(report: MethodReport) -> str:
+    """A method with its options."""
+    about = tell("It extends {}, and differs from it in:", report.extends)
+    heads = (report.extends or "", report.method)
+    parts = [
+        f"{report.method}: {report.title}",
+        report.description,
+        about if report.extends else tell("It extends no other method; all its options:"),
+        options_text(report.options, *heads),
+        tell("Content hash {}", report.content_hash),
+    ]
+    return "\n\n".join(filter(None, parts))
+
+
+def options_text(options: Sequence[Difference], old: str, new: str) -> str:
+    """Options, one a line, as a method's file has them and in words, with what they were."""
+    rows = [
+        {
+            "option": f"{one.step}.{one.option}",
+            "seasons": range_text(one.first, one.last),
+            "before": ", ".join(map(json.dumps, one.before)),
+            "after": json.dumps(one.after),
+            "in_words": tell(text(f"{one.step}.{one.option}")),
+        }
+        for one in options
+    ]
+    heads = {"option": say("option"), "seasons": say("seasons"), "before": old, "after": new}
+    return table(rows, f"option seasons {'before ' if old else ''}after in_words", heads)

@@ -1,0 +1,135 @@
+"""The commands about registers: `register`, `seasons`, `publish` and `verify`."""
+
+import datetime as dt
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from herijk.cli.options import Day, as_of_option, data_option, json_option, show
+from herijk.cli.speaking import Command, argument, flag, option
+from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import tell
+
+if TYPE_CHECKING:
+    from warehouse.store.store import Store
+
+
+@click.command(cls=Command)
+@argument("edition", required=False, help="Edition or draft; the newest when left out.")
+@flag(
+    "--due",
+    help="When each tow expires, at what speed to tow next, and which boats to tow again, by the "
+    "curves of the edition's method.",
+)
+@data_option
+@as_of_option
+@json_option
+def register(
+    edition: str | None, due: bool, data: Path, as_of: dt.date | None, as_json: bool
+) -> None:
+    """The register: every line with its sizes, and whether it is valid on a day."""
+    from herijk.cli import registers_text as text
+    from warehouse.queries.register import register_report
+    from warehouse.store.store import Store
+
+    store = Store(data)
+    if not due:
+        show(register_report(store, edition, as_of), text.register, as_json)
+        return
+    from warehouse.queries.due import due_report
+
+    show(due_report(store, _method_of(store, edition), as_of), text.due, as_json)
+
+
+def _method_of(store: "Store", edition: str | None) -> str:
+    """The method of an edition or draft; that of the best draft without one."""
+    from pipeline.register.register import draft_name
+    from warehouse.derive.studies import STUDIED_METHOD
+    from warehouse.store.editions import edition_names, method_of_edition
+    from warehouse.store.methods import KnownMethods
+
+    if edition in edition_names(store):
+        return method_of_edition(store, str(edition)).name
+    asked = (edition or STUDIED_METHOD).removeprefix(draft_name(""))
+    return KnownMethods.of(store).get(asked).name
+
+
+@click.command(cls=Command)
+@data_option
+@option("--method", default="rebased", help="Method whose factors are shown.")
+@json_option
+def seasons(data: Path, method: str, as_json: bool) -> None:
+    """What was wrong with log, force and wind in each season, and how sure that is."""
+    from herijk.cli import registers_text as text
+    from warehouse.queries.reports import log_error_report
+    from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
+
+    store = Store(data)
+    KnownMethods.of(store).text(method)
+    show(log_error_report(store, method), text.seasons, as_json)
+
+
+@click.command(cls=Command)
+@argument("edition", help="Name of the new edition, for example 2026-1.")
+@option("--valid-from", type=Day(), required=True, help="Day from which it counts: 2026-05-08.")
+@option("--decision", required=True, help="Who decided it, and where.")
+@option("--method", help="Method that the last rebuild applied.")
+@option("--printed", type=int, help="Instead of a method: the register printed that year.")
+@option("--carry", help="Printed edition whose lines are re-based for boats without measurements.")
+@option("--published-on", type=Day(), help="Day of publication; else today.")
+@data_option
+@json_option
+def publish(
+    edition: str,
+    valid_from: dt.date,
+    decision: str,
+    method: str | None,
+    printed: int | None,
+    carry: str | None,
+    published_on: dt.date | None,
+    data: Path,
+    as_json: bool,
+) -> None:
+    """Freeze an edition of the register: it is never changed afterwards."""
+    from herijk.cli import registers_text as text
+    from warehouse.editions.publish import Terms, publish_printed, published
+    from warehouse.editions.publish import publish as publish_edition
+    from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
+
+    if (method is None) == (printed is None):
+        raise click.UsageError(tell("give --method NAME, or --printed YEAR, and not both"))
+    if printed is not None and carry is not None:
+        raise click.UsageError(tell("--carry goes with --method"))
+    terms = Terms(edition, valid_from, decision, published_on or dt.date.today())
+    store = Store(data)
+    if printed is not None:
+        folder = publish_printed(store, printed, terms)
+    else:
+        folder = publish_edition(store, KnownMethods.of(store).get(str(method)), terms, carry)
+    show(published(store, folder), text.published, as_json)
+
+
+@click.command(cls=Command)
+@data_option
+@option("--head", help="The seal of the last edition, from the minutes.")
+@json_option
+def verify(data: Path, head: str | None, as_json: bool) -> None:
+    """Check that editions and archive are what they were, and make the editions again."""
+    from herijk.cli import registers_text as text
+    from warehouse.editions.verify import verify as verify_editions
+    from warehouse.store.editions import edition_names
+    from warehouse.store.store import Store
+
+    store = Store(data)
+    if not edition_names(store) and not store.database.exists():
+        raise MissingKnowledgeError(
+            "{} holds no editions and no tables; is it the right data folder?",
+            data,
+        )
+    report = verify_editions(store, head=head)
+    show(report, text.verify, as_json)
+    if report.wrong:
+        raise click.exceptions.Exit(1)

@@ -1,0 +1,125 @@
+"""The commands that work on a data folder: `rebuild`, `serve` and `workbench`."""
+
+from contextlib import suppress
+from pathlib import Path
+
+import click
+
+from herijk.cli.options import Seasons, archive_option, data_option, json_option, show
+from herijk.cli.speaking import Command, flag, option
+from pipeline.errors import BrokenPromiseError, HerijkError, unexpected
+from pipeline.messages import tell
+from warehouse.store.machine_faults import machine_faults_explained
+
+
+@click.command(cls=Command)
+@archive_option
+@data_option
+@option(
+    "--method",
+    "methods",
+    multiple=True,
+    metavar="METHOD_OR_FILE",
+    help="Method to add to those of the data folder, or to renew; repeat for more. A file is kept "
+    "there. Default: those that beheer.toml lists, or all that ship.",
+)
+@option("--seasons", type=Seasons(), help="Read these seasons only.")
+@json_option
+def rebuild(
+    archive: Path, data: Path, methods: tuple[str, ...], seasons: range | None, as_json: bool
+) -> None:
+    """From the archive to registers and tables; only what changed is done again."""
+    from assets.notify import notifier_of
+    from assets.rebuild import rebuild as run
+    from assets.report import failed_checks
+    from assets.report import tell as notify
+    from assets.settings import applied, read_settings
+    from herijk.cli.progress import TerminalProgress
+    from herijk.cli.rebuild_text import Rebuilt, text
+    from warehouse.queries.reports import rebuild_report
+    from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
+
+    known = KnownMethods.of(Store(data))
+    chosen = applied(data, [known.kept(name) for name in methods])
+    try:
+        with TerminalProgress() as progress:
+            news = run(archive, data, chosen, progress, seasons)
+    except Exception as error:
+        _tell_failure(data, error)
+        raise
+    show(Rebuilt(rebuild_report(Store(data)), news), text, as_json)
+    for problem in notify(notifier_of(str(data), read_settings(data)), news):
+        click.echo(f"herijk: {problem}", err=True)
+    if failed := failed_checks(news.checks):
+        raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
+
+
+def _tell_failure(data: Path, error: Exception) -> None:
+    """Says to those who asked for it that a rebuild failed, as under `serve`."""
+    from assets.notify import notifier_of
+    from assets.report import tell_failure
+    from assets.settings import read_settings
+
+    what = str(error) if isinstance(error, HerijkError) else unexpected(error)
+    with suppress(HerijkError):  # settings that cannot be read are what failed
+        for problem in tell_failure(notifier_of(str(data), read_settings(data)), what):
+            click.echo(f"herijk: {problem}", err=True)
+
+
+@click.command(cls=Command)
+@archive_option
+@data_option
+@option("--host", default="127.0.0.1", help="Address to listen on.")
+@option(
+    "--port",
+    type=click.IntRange(1, 65534),
+    default=3000,
+    help="Port of Dagster's page; the site has the next.",
+)
+@flag("--may-start", help="Let Dagster's page start rebuilds and switch schedules.")
+def serve(archive: Path, data: Path, host: str, port: int, may_start: bool) -> None:
+    """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
+    from assets.instance import prepare_home, taking_over
+    from assets.rebuild import check_apart
+    from assets.settings import read_settings
+    from herijk.cli.serving import Served, serve_until_stopped
+    from warehouse.store.lock import only_server
+    from warehouse.store.store import Store
+
+    def say_aloud(line: str) -> None:
+        click.echo(line, err=True)
+
+    check_apart(archive, data)
+    read_settings(data)
+    store = Store(data)
+    with machine_faults_explained(data), only_server(data):
+        for line in taking_over(store):
+            say_aloud(line)
+        served = Served(archive, data, host, port, may_start)
+        serve_until_stopped(served, prepare_home(store), say_aloud)
+
+
+@click.command(cls=Command)
+@data_option
+@option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=8765,
+    help="Port on this machine; 0 for any that is free.",
+)
+def workbench(data: Path, port: int) -> None:
+    """Change a method's options in a browser and see at once what happens to all boats."""
+    from dashboards.guard import listen
+    from dashboards.workbench.bench import Bench
+    from dashboards.workbench.server import LOOPBACK, address, serving
+    from warehouse.queries.history import History
+    from warehouse.store.store import Store
+
+    listening, store = listen(LOOPBACK, port), Store(data)
+    bench = Bench(store, History.of(store))
+    click.echo(
+        tell("The workbench is at {} (on this machine only); Ctrl-C stops it.", address(listening))
+    )
+    with suppress(KeyboardInterrupt):
+        serving(bench).run(sockets=[listening])
