@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import zip_longest
 from typing import Any, Final
 
 import polars as pl
@@ -76,16 +75,20 @@ class Cells:
 
     def rows(self, page: Page, table: Table) -> Rows:
         """The rows of a table on a page."""
-        keys = list(zip(*(hashable(table.frame[name]) for name in table.follows), strict=True))
+        height = table.frame.height
+        columns = [hashable(table.frame[name]) for name in table.follows]
+        keys: list[Key] = list(zip(*columns, strict=True)) if columns else [()] * height
         distinct = list(dict.fromkeys(keys))
         chosen = [page.chosen.get(name, "") for name in table.follows]
         marks = {
             key: f" data-k={place}{'' if all(map(is_chosen, key, chosen)) else ' hidden'}"
             for place, key in enumerate(distinct)
         }
-        boats = [f' data-boat="{escape(n)}"' for n in table.frame["fsn_no"]] if table.linked else []
-        rows = zip_longest(self._cells_by_row(page, table), keys, boats, fillvalue="")
-        lines = (f"<tr{boat}{marks.get(key, '')}>{cells}</tr>" for cells, key, boat in rows)
+        boats = [""] * height
+        if table.linked:
+            boats = [f' data-boat="{escape(number)}"' for number in table.frame["fsn_no"]]
+        rows = zip(self._cells_by_row(page, table), keys, boats, strict=True)
+        lines = (f"<tr{boat}{marks[key]}>{cells}</tr>" for cells, key, boat in rows)
         return Rows(Markup("\n".join(lines)), distinct)  # noqa: S704 - escaped parts
 
     def _cells_by_row(self, page: Page, table: Table) -> list[str]:
