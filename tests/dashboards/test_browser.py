@@ -357,8 +357,8 @@ def test_a_chart_downloads_its_data(visitor, attacked):
     rows = list(csv.DictReader(io.StringIO(caught.value.path().read_text("utf-8-sig"))))
     tow = page.locator("select[name=tow_id]").input_value()
     assert {row["Tow"] for row in rows} == {tow}
+    figure.locator(".chart summary").click()
     for kind in ("svg", "png"):
-        figure.locator(".chart summary").click()
         with page.expect_download() as caught:
             figure.get_by_role("link", name=kind.upper()).click()
         assert caught.value.suggested_filename == f"resistance_curve.{kind}"
