@@ -11,9 +11,8 @@ import pytest
 from polars.testing import assert_frame_equal
 
 from dashboards.guard import listen
-from dashboards.site.cells import KEPT
 from dashboards.workbench import texts
-from dashboards.workbench.bench import SCENARIO, Base, Bench, Named, Question
+from dashboards.workbench.bench import KEPT, SCENARIO, Base, Bench, Named, Question
 from dashboards.workbench.form import _kind, controls
 from dashboards.workbench.server import LOOPBACK
 from pipeline.assessment.checks import CODES
