@@ -32,7 +32,7 @@ KM_H_RATIO: Final = (3.0, 4.2)
 FOLLOWS_RATIO: Final = 0.1
 """Spread over the runs of a log or GPS over log 1; wind out and back differs far more."""
 STANDS_RATIO: Final = 0.1
-"""Of a log or GPS over log 1; below it dropped out."""
+"""A log or GPS that is less than so many times log 1 has dropped out."""
 UNITS: Final = {"km/h": 3.6, "kn": 1.9438}
 """Other units of speed in which people have a log or GPS, times m/s."""
 
@@ -67,37 +67,30 @@ def _is_no_wind(run: Run) -> bool:
 def without_other_units(runs: list[Run], faults: list[Fault]) -> tuple[list[Run], list[str]]:
     """The runs without a log 2 or GPS in another unit of speed, and which of the two that is.
 
-    Raises:
-        DefectiveFileError: `speed_unit`, where log 1 is.
+    Nothing is said of them where log 1 cannot be right.
     """
-    log1 = np.array([run.statistics["log1"].median for run in runs])
-    ratio = float(np.median(log1 / [run.intended_m_s for run in runs]))
-    low, high = KM_H_RATIO
-    if low <= ratio <= high:
-        said = say(
-            "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
-            "looks like km/h under another header.",
-            ratio,
-            low,
-            high,
-        )
-        raise DefectiveFileError("speed_unit", said, HEADER, runs[0].path)
-    if not USUAL["log1"].low <= ratio <= USUAL["log1"].high:
+    log1 = _typical(runs, "log1")[0]
+    if not USUAL["log1"].low <= _typical_ratio(runs) <= USUAL["log1"].high:
         return runs, []
     gone = [key for key in SPARE if key in runs[0].channels and _is_in_another_unit(runs, key)]
     for key in gone:
-        other, ratio = _typical(runs, key)[0], _typical(runs, key)[0] / float(np.median(log1))
-        units = [unit for unit, usual in UNITS.items() if 0.9 < ratio / usual < 1.1]
+        other = _typical(runs, key)[0]
+        units = [unit for unit, usual in UNITS.items() if 0.9 < other / log1 / usual < 1.1]
         message = say(
             "column '{column}' holds {:.3g} in a typical run and log1 {:.3g}, so it looks like "
             "{unit}; the tow goes on without this column.",
             other,
-            np.median(log1),
+            log1,
             column=COLUMN_OF[key],
             unit=units[0] if units else say("another unit"),
         )
         faults.append(replace(fault_of_all(runs, "implausible_value", message), line=HEADER))
     return [run.without(*gone) for run in runs], gone
+
+
+def _typical_ratio(runs: list[Run]) -> float:
+    """Log 1 over the intended speed in a typical run."""
+    return float(np.median([run.statistics["log1"].median / run.intended_m_s for run in runs]))
 
 
 def _is_in_another_unit(runs: list[Run], key: str) -> bool:
@@ -112,10 +105,10 @@ def _is_in_another_unit(runs: list[Run], key: str) -> bool:
 
 
 def check_mix_ups(runs: list[Run]) -> None:
-    """Raises where a tow can only be right with its force turned, or two columns exchanged.
+    """Raises where a tow can only be right with its force turned, or columns or a unit changed.
 
     Raises:
-        DefectiveFileError: `negative_force` or `swapped_columns`.
+        DefectiveFileError: `negative_force`, `swapped_columns` or `speed_unit`.
     """
     typical = {key: _typical(runs, key) for key in runs[0].statistics}
     intended_m_s = float(np.median([run.intended_m_s for run in runs]))
@@ -131,6 +124,7 @@ def check_mix_ups(runs: list[Run]) -> None:
             what = say("typically they hold {:.4g} and {:.4g}", typical[one][0], typical[other][0])
             raise _exchanged(one, other, what, runs[0].path)
     _check_log2_and_gps(runs)
+    _check_speed_unit(runs)
 
 
 def _typical(runs: list[Run], key: str) -> Typical:
@@ -169,3 +163,17 @@ def _check_log2_and_gps(runs: list[Run]) -> None:
     if min(log1, gps) > MOVES_AS_A_LOG_HZ and least < log2 < most:
         what = say("the first changes {:.1f} times a second, the second {:.0f} times", log2, gps)
         raise _exchanged("log2", "gps", what, runs[0].path)
+
+
+def _check_speed_unit(runs: list[Run]) -> None:
+    """Log 1 over the intended speed tells km/h."""
+    (low, high), ratio = KM_H_RATIO, _typical_ratio(runs)
+    if low <= ratio <= high:
+        said = say(
+            "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
+            "looks like km/h under another header.",
+            ratio,
+            low,
+            high,
+        )
+        raise DefectiveFileError("speed_unit", said, HEADER, runs[0].path)
