@@ -1,14 +1,15 @@
 """Numbers and texts as people of one language write them."""
 
 from collections.abc import Callable, Sequence
-from typing import Final, TypeAlias, cast
+from typing import TYPE_CHECKING, Final, TypeAlias, cast
 
-import polars as pl
 from markupsafe import Markup, escape
 
 from dashboards import labels
 from pipeline.messages import DECIMALS, speaker
-from pipeline.races.race import FATIGUE_REFERENCE
+
+if TYPE_CHECKING:
+    import polars as pl
 
 MINUS: Final = "\u2212"
 
@@ -56,8 +57,10 @@ def duration(seconds: float) -> str:
     return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"
 
 
-def stretched_fatigue(times_s: pl.Series, speech: Speech) -> str:
+def stretched_fatigue(times_s: "pl.Series", speech: Speech) -> str:
     """That the correction for fatigue is used for times that it was not made for, where it is."""
+    from pipeline.races.race import FATIGUE_REFERENCE  # noqa: PLC0415 - many need no NumPy
+
     (first, _), (last, _) = FATIGUE_REFERENCE
     beyond = times_s.filter(~times_s.is_between(first, last))
     if beyond.is_empty():

@@ -13,6 +13,7 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
+from dashboards.colours import OKABE_ITO
 from dashboards.figures import boat, slides, style, tool
 from dashboards.figures.charts import (
     CHANGE,
@@ -25,7 +26,7 @@ from dashboards.figures.charts import (
     curves,
     scatter,
 )
-from dashboards.figures.style import OKABE_ITO, WIDTH, Column, Drawing, named, tips
+from dashboards.figures.style import WIDTH, Column, Drawing, named, tips
 from pipeline.messages import Say, say
 from pipeline.studies.ladder import STEP_ORDER
 from pipeline.studies.options import CHOICES

@@ -13,8 +13,8 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
+from dashboards.colours import GREY
 from dashboards.figures.style import (
-    GREY,
     Drawing,
     colour,
     crews,

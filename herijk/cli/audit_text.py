@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from math import exp
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import polars as pl
 
@@ -24,7 +24,6 @@ from herijk.cli.render import (
 from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
-from warehouse.editions.lineage import Lineage, LineLineage
 from warehouse.queries.answers import answers, current_edition, own_races, season_faults
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import OneType, TypesAudit
@@ -32,6 +31,9 @@ from warehouse.queries.documents import curve_of
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import no_such_edition
 from warehouse.store.store import Store
+
+if TYPE_CHECKING:
+    from warehouse.editions.lineage import Lineage, LineLineage
 
 # A boat
 
@@ -48,12 +50,10 @@ def boat_text(store: Store, report: BoatAudit, edition: str | None, steps: bool)
     if steps:
         parts += list(_boat_steps(report))
     else:
-        parts.append(tell("All methods, tows and runs: herijk audit {} --steps", _name(report)))
+        parts.append(
+            tell("All methods, tows and runs: herijk audit {} --steps", report.boat["fsn_no"])
+        )
     return page(parts, report.simulated)
-
-
-def _name(report: BoatAudit) -> str:
-    return str(report.boat["fsn_no"])
 
 
 def _answers(store: Store, boat: Row, edition: str | None) -> Iterator[Answer]:
@@ -171,7 +171,7 @@ def _alike(curves: Sequence[Row]) -> dict[str, str]:
     return {", ".join(names): runs for runs, names in methods.items()}
 
 
-def lineage_text(report: Lineage) -> str:
+def lineage_text(report: "Lineage") -> str:
     """From the lines of a published edition to files, runs and seconds."""
     about = report.about
     head = tell(
@@ -186,7 +186,7 @@ def lineage_text(report: Lineage) -> str:
     return "\n\n".join([head, *map(_line_history, report.lines)])
 
 
-def _line_history(line: LineLineage) -> str:
+def _line_history(line: "LineLineage") -> str:
     printed = "; ".join(f"{header} {cell}" for header, cell in line.printed.items() if cell)
     head = tell("Verification code {}", line.code)
     if line.tow is None:

@@ -236,12 +236,12 @@ def _boats_elsewhere(network: Network, season: int) -> int:
 def _rests_on(network: Network, season: int) -> str:
     """What tells: repeat boats, plain GPS, dGPS."""
     mine = network.numbers("season") == season
-    told = [f"{_boats_elsewhere(network, season)} boats towed in other seasons too"]
+    rests_on = [f"{_boats_elsewhere(network, season)} boats towed in other seasons too"]
     if np.isfinite(network.numbers("gps_ln_ratio")[mine & (network.group >= 0)]).any():
-        told.append("plain GPS")
+        rests_on.append("plain GPS")
     if (network.group[mine] < 0).any():
-        told.append("dGPS")
-    return ", ".join(told)
+        rests_on.append("dGPS")
+    return ", ".join(rests_on)
 
 
 def _confused_with(posterior: Posterior, mine: list[int], faults: list[int]) -> str | None:

@@ -21,10 +21,14 @@ from pipeline.consistency.lines import (
 )
 from pipeline.consistency.observed import newest, observe
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
-from pipeline.consistency.tables import consistency_tables, line_tables
+from pipeline.consistency.tables import line_tables
 from pipeline.consistency.tow_speed import slow_tows, speed_trend
 from pipeline.tables.schemas import conform
-from tests.pipeline.consistency_fleet import NO_RACES, fleet, type_consistency
+from tests.pipeline.consistency_fleet import (
+    consistency_tables,
+    fleet,
+    type_consistency,
+)
 
 
 def within(observed, expected, trials):
@@ -283,17 +287,6 @@ def test_every_choice_of_tows_has_its_line_with_its_own_count(three_seasons):
     assert (drawn["lo"] < drawn["y"]).all()
 
 
-def test_a_tow_far_too_slow_for_the_standard_speed_is_there_and_marked():
-    speeds = np.full(8, 2.5)
-    speeds[2] = 2.0
-    found = compared_tows(observe(*fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)))
-    assert found.filter("beyond_curve")["tow_id"].to_list() == ["2016-002"]
-    assert found.filter("slow")["tow_id"].to_list() == ["2016-002"]
-    one = found.filter("slow").row(0, named=True)
-    assert one["standard_speed_m_s"] == 2.5
-    assert one["cw_standard_kg_m"] == pytest.approx(one["expected_cw_kg_m"], rel=0.02)
-
-
 def test_one_tow_pulled_askew_is_named_among_all_tows(three_seasons):
     curves, tows, boats, points = three_seasons
     askew = pl.when(tow_id="2014-004").then(1.2).otherwise(1.0)
@@ -388,16 +381,6 @@ def test_variance_components_recover_the_truth():
     assert found["share"].sum() == pytest.approx(1.0)
 
 
-def test_the_classes_told_apart_are_the_boats_spread_over_that_of_their_tows():
-    tables = fleet(28, boats=40, seasons=(2014, 2016), height_sd=0.05, noise=0.02)
-    found = consistency_tables(*tables, NO_RACES)
-    boats = found["variance_components"].filter(scope="within_type", component="boat")
-    row = found["reproducibility"].filter(scope="2014-").row(0, named=True)
-    expected = 1.41 * boats["sd_ratio"].item() / row["sd_ratio"]
-    assert row["distinct_categories"] == pytest.approx(expected)
-    assert found["reproducibility"].filter(scope="2009-2011")["distinct_categories"].item() is None
-
-
 # Degenerate input: nulls and a reason, never NaN, never a warning (warnings are errors here)
 
 
@@ -420,7 +403,7 @@ CASES = {
 
 
 def everything(*tables):
-    return line_tables(observe(*tables)) | consistency_tables(*tables, NO_RACES)
+    return line_tables(observe(*tables)) | consistency_tables(*tables)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -440,7 +423,6 @@ def test_degenerate_input_gives_no_nan_and_fits_the_schemas(case):
         ("no type", "cw_kg_m", "weight_kg", "no_type", 12),
         ("equal weights", "cw_kg_m", "weight_kg", "equal_values", 12),
         ("no weights", "cw_kg_m", "weight_kg", "few_boats", 0),
-        ("no weights", "ln_cw_standard", "ln_displacement", "few_boats", 0),
         ("no B", "b_m_s", "weight_kg", "few_boats", 0),
     ],
 )
