@@ -109,11 +109,6 @@ def test_a_column_in_another_unit_is_lost_once_for_all_runs(times, unit):
     assert [(fault.run, unit in fault.message) for fault in faults] == [(None, True)]
 
 
-def test_a_log_that_stood_still_says_nothing_of_the_unit_of_others():
-    still = [sound(number, log1=np.zeros(1000, np.float32)) for number in (1, 2)]
-    assert without_other_units(still, []) == (still, [])
-
-
 @pytest.mark.parametrize(
     ("changed", "code"),
     [

@@ -26,7 +26,6 @@ from warehouse.archive.plausibility.run import (
 MOVES_AS_A_LOG_HZ: Final = 5.0
 HELD_AS_A_FIX_HZ: Final = (0.1, 2.0)
 """Changes of value a second, at least of a log and of a receiver of one fix a second."""
-
 KM_H_RATIO: Final = (3.0, 4.2)
 """Log 1 over the intended speed where it looks like km/h."""
 FOLLOWS_RATIO: Final = 0.1
@@ -59,9 +58,9 @@ def without_wind(runs: list[Run], faults: list[Fault]) -> list[Run]:
 
 def _is_no_wind(run: Run) -> bool:
     wind, (least, most) = run.statistics.get("wind_speed"), EXTREMES["wind_speed"]
-    if wind is None or np.isnan(wind.mean):
-        return wind is not None
-    return wind.changes_hz == 0 and not least <= wind.mean <= most
+    if wind is None:
+        return False
+    return np.isnan(wind.mean) or (wind.changes_hz == 0 and not least <= wind.mean <= most)
 
 
 def without_other_units(runs: list[Run], faults: list[Fault]) -> tuple[list[Run], list[str]]:
@@ -69,28 +68,23 @@ def without_other_units(runs: list[Run], faults: list[Fault]) -> tuple[list[Run]
 
     Nothing is said of them where log 1 cannot be right.
     """
-    log1 = _typical(runs, "log1")[0]
-    if not USUAL["log1"].low <= _typical_ratio(runs) <= USUAL["log1"].high:
+    log1 = _typical(runs, "log1")
+    if _implausible({"log1": log1}, _intended_m_s(runs)):
         return runs, []
     gone = [key for key in SPARE if key in runs[0].channels and _is_in_another_unit(runs, key)]
     for key in gone:
         other = _typical(runs, key)[0]
-        units = [unit for unit, usual in UNITS.items() if 0.9 < other / log1 / usual < 1.1]
+        units = (unit for unit, usual in UNITS.items() if 0.9 < other / log1[0] / usual < 1.1)
         message = say(
             "column '{column}' holds {:.3g} in a typical run and log1 {:.3g}, so it looks like "
             "{unit}; the tow goes on without this column.",
             other,
-            log1,
+            log1[0],
             column=COLUMN_OF[key],
-            unit=units[0] if units else say("another unit"),
+            unit=next(units, say("another unit")),
         )
         faults.append(replace(fault_of_all(runs, "implausible_value", message), line=HEADER))
     return [run.without(*gone) for run in runs], gone
-
-
-def _typical_ratio(runs: list[Run]) -> float:
-    """Log 1 over the intended speed in a typical run."""
-    return float(np.median([run.statistics["log1"].median / run.intended_m_s for run in runs]))
 
 
 def _is_in_another_unit(runs: list[Run], key: str) -> bool:
@@ -111,12 +105,14 @@ def check_mix_ups(runs: list[Run]) -> None:
         DefectiveFileError: `negative_force`, `swapped_columns` or `speed_unit`.
     """
     typical = {key: _typical(runs, key) for key in runs[0].statistics}
-    intended_m_s = float(np.median([run.intended_m_s for run in runs]))
+    intended_m_s = _intended_m_s(runs)
     wrong = _implausible(typical, intended_m_s)
-    force = typical["force"][0]
-    if force < 0 and not _implausible({**typical, "force": (-force, 0, 0)}, intended_m_s):
-        message = say("The force is {:.0f} N in a typical run; it must be positive.")
-        said = say(message, force, turned=True)
+    if (force := typical["force"][0]) < 0 and not _implausible(
+        {**typical, "force": (-force, 0, 0)}, intended_m_s
+    ):
+        said = say(
+            "The force is {:.0f} N in a typical run; it must be positive.", force, turned=True
+        )
         raise DefectiveFileError("negative_force", said, runs[0].first_line, runs[0].path)
     for one, other in combinations(typical, 2):
         exchanged = {**typical, one: typical[other], other: typical[one]}
@@ -124,7 +120,19 @@ def check_mix_ups(runs: list[Run]) -> None:
             what = say("typically they hold {:.4g} and {:.4g}", typical[one][0], typical[other][0])
             raise _exchanged(one, other, what, runs[0].path)
     _check_log2_and_gps(runs)
-    _check_speed_unit(runs)
+    (low, high), ratio = KM_H_RATIO, typical["log1"][0] / intended_m_s
+    if low <= ratio <= high:
+        said = say(
+            "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
+            "looks like km/h under another header.",
+            ratio,
+            *KM_H_RATIO,
+        )
+        raise DefectiveFileError("speed_unit", said, HEADER, runs[0].path)
+
+
+def _intended_m_s(runs: list[Run]) -> float:
+    return float(np.median([run.intended_m_s for run in runs]))
 
 
 def _typical(runs: list[Run], key: str) -> Typical:
@@ -163,17 +171,3 @@ def _check_log2_and_gps(runs: list[Run]) -> None:
     if min(log1, gps) > MOVES_AS_A_LOG_HZ and least < log2 < most:
         what = say("the first changes {:.1f} times a second, the second {:.0f} times", log2, gps)
         raise _exchanged("log2", "gps", what, runs[0].path)
-
-
-def _check_speed_unit(runs: list[Run]) -> None:
-    """Log 1 over the intended speed tells km/h."""
-    (low, high), ratio = KM_H_RATIO, _typical_ratio(runs)
-    if low <= ratio <= high:
-        said = say(
-            "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
-            "looks like km/h under another header.",
-            ratio,
-            low,
-            high,
-        )
-        raise DefectiveFileError("speed_unit", said, HEADER, runs[0].path)
