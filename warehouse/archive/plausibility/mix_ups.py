@@ -34,7 +34,6 @@ STANDS_RATIO: Final = 0.1
 """A log or GPS that is less than so many times log 1 has dropped out."""
 UNITS: Final = {"km/h": 3.6, "kn": 1.9438}
 """Other units of speed in which people have a log or GPS, times m/s."""
-
 Typical = tuple[float, float, float]
 """Median, lowest and highest value of a channel in a typical run."""
 
@@ -58,9 +57,9 @@ def without_wind(runs: list[Run], faults: list[Fault]) -> list[Run]:
 
 def _is_no_wind(run: Run) -> bool:
     wind, (least, most) = run.statistics.get("wind_speed"), EXTREMES["wind_speed"]
-    if wind is None:
-        return False
-    return np.isnan(wind.mean) or (wind.changes_hz == 0 and not least <= wind.mean <= most)
+    return wind is not None and bool(
+        np.isnan(wind.mean) or (wind.changes_hz == 0 and not least <= wind.mean <= most)
+    )
 
 
 def without_other_units(runs: list[Run], faults: list[Fault]) -> tuple[list[Run], list[str]]:
