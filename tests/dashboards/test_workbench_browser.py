@@ -203,9 +203,8 @@ def test_what_cannot_be_is_said_and_what_can_be_goes_on(page):
     assert not alert.is_visible()
 
 
-def test_a_method_without_any_curve_is_shown(page):
-    set_number(page, "window.force_ends_ratio", 0.001)
-    set_number(page, "window.speed_drift_m_s", 0.0001)
+def test_a_method_that_leaves_tows_without_a_curve_is_shown(page):
+    set_number(page, "runs.highest_target_ratio", 1.0)
     page.wait_for_function(IDLE)
     assert page.locator("#count_removed dd").inner_text() != "0"
 
