@@ -4,6 +4,7 @@ The numbers come from `warehouse.queries.answers`.
 """
 
 import json
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import exp
@@ -16,7 +17,9 @@ from dashboards.pictures import curve_picture, waterfall_picture
 from dashboards.speech import Speech
 from pipeline.messages import say
 from pipeline.tables.row import Row
-from warehouse.queries.documents import Curve
+from warehouse.queries.answers import answers, own_races, season_faults
+from warehouse.queries.documents import Curve, curve_of
+from warehouse.queries.views import DRAFT, Views
 
 FEW: Final = 2
 """A place among fewer says nothing."""
@@ -43,6 +46,30 @@ class Answer:
     races: Sequence[Row]
     curve: Curve
     faults: Sequence[Row] = ()
+
+
+def answers_by_boat(views: Views, edition: str, only: str | None = None) -> dict[str, list[Answer]]:
+    """What there is to say of each crew under an edition or draft, by boat.
+
+    Args:
+        only: the number of the one boat that is asked for; all when left out.
+    """
+    lines = answers(views, edition)
+    races = own_races(views, next(iter(lines["from_edition"].drop_nulls()), None), edition)
+    crew = ["fsn_no", "rowers", "crew_class"]
+    by_crew = races.partition_by(crew, as_dict=True, maintain_order=True)
+    faults = season_faults(views) if edition.startswith(DRAFT) else {}  # an edition holds none
+    by_boat: dict[str, list[Answer]] = defaultdict(list)
+    for line in (lines if only is None else lines.filter(fsn_no=only)).to_dicts():
+        by_boat[line["fsn_no"]].append(
+            Answer(
+                line=line,
+                races=by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts(),
+                curve=curve_of(line),
+                faults=faults.get((line["method"], line["season"]), ()),
+            )
+        )
+    return by_boat
 
 
 @dataclass(frozen=True)

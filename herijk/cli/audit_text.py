@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import polars as pl
 
-from dashboards.answer import Answer, told
+from dashboards.answer import Answer, answers_by_boat, told
 from dashboards.headlines import homogeneity
 from dashboards.labels import candidate, code_in_words
 from herijk.cli.render import (
@@ -24,11 +24,10 @@ from herijk.cli.render import (
 from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
-from warehouse.queries.answers import answers, current_edition, own_races, season_faults
+from warehouse.queries.answers import current_edition
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import OneType, TypesAudit
-from warehouse.queries.documents import curve_of
-from warehouse.queries.views import DRAFT, Views
+from warehouse.queries.views import Views
 from warehouse.store.database import no_such_edition
 from warehouse.store.store import Store
 
@@ -56,20 +55,14 @@ def boat_text(store: Store, report: BoatAudit, edition: str | None, steps: bool)
     return page(parts, report.simulated)
 
 
-def _answers(store: Store, boat: Row, edition: str | None) -> Iterator[Answer]:
+def _answers(store: Store, boat: Row, edition: str | None) -> list[Answer]:
     """The answers about the crews of a boat in an edition or draft."""
     with Views(store) as views:
         chosen = edition or current_edition(views)
-        lines = answers(views, chosen)
-        if lines.is_empty():
-            raise no_such_edition(chosen, views.table("register")["edition"].unique())
-        compared = lines["from_edition"].drop_nulls()
-        races = own_races(views, compared[0] if compared.len() else None, chosen)
-        faults = season_faults(views) if chosen.startswith(DRAFT) else {}
-        for line in lines.filter(fsn_no=boat["fsn_no"]).to_dicts():
-            crew = {name: line[name] for name in ("fsn_no", "rowers", "crew_class")}
-            own_faults = faults.get((line["method"], line["season"]), ())
-            yield Answer(line, races.filter(**crew).to_dicts(), curve_of(line), own_faults)
+        known = views.table("register")["edition"].unique()
+        if chosen not in known:
+            raise no_such_edition(chosen, known)
+        return answers_by_boat(views, chosen, boat["fsn_no"]).get(boat["fsn_no"], [])
 
 
 TOWS: Final = (

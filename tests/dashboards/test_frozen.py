@@ -2,9 +2,8 @@
 
 import datetime as dt
 
-from dashboards.answer import told
+from dashboards.answer import answers_by_boat, told
 from dashboards.documents import certificate
-from dashboards.site import boats
 from dashboards.speech import Speech
 from pipeline.method.definition import shipped_method
 from warehouse.editions.publish import Terms, publish
@@ -19,7 +18,7 @@ OF_TODAY = ("tow_speed_m_s", "speed_reason")
 def shown(store):
     """Answers on the boats' pages without what is of today, the register and all certificates."""
     with Views(store) as views:
-        answers = [one for crews in boats._answers(views, EDITION).values() for one in crews]
+        answers = [one for crews in answers_by_boat(views, EDITION).values() for one in crews]
         for answer in answers:
             answer.line.update(dict.fromkeys(OF_TODAY))
         pages = [told(answer, Speech("en")) for answer in answers]
