@@ -12,10 +12,11 @@ import polars as pl
 from dashboards import labels
 from dashboards.speech import Headline, Speech
 from pipeline.messages import say
-from warehouse.queries.due import WORTH
 
 CLEAR_P = 0.05
 STRONG_POWER = 0.8
+WORTH = 0.9
+"""A set of tows is worth its trouble where it takes a tenth or more off the uncertainty."""
 MONTHS_AHEAD = dt.timedelta(days=365)
 
 

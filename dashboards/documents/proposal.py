@@ -10,8 +10,9 @@ from dashboards import headlines, labels
 from dashboards.documents import pdf
 from dashboards.speech import Speech, stretched_fatigue
 from pipeline.messages import in_per_cent, pgettext, say
+from pipeline.register.changes import largest_first
 from pipeline.register.register import draft_name
-from warehouse.editions.compare import causes_of, largest_first
+from warehouse.editions.compare import causes_of
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
@@ -146,7 +147,7 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
         if unknown
         else say("Of every line it can be told whether the change is larger than the uncertainty.")
     )
-    flagged = views.flagged_boats().filter(method=method)["tow_id"].implode()
+    flagged = views.ask("flagged_boats").filter(method=method)["tow_id"].implode()
     voted = lines.drop_nulls("new_cw_kg_m").select(pl.col("new_tow_id").is_in(flagged))
     flags = say(
         "Lines with a flag that the committee still has to look at: {flagged} of "
@@ -160,12 +161,12 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
 
 def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
     """What each cause did, as the notice of an edition says it, the largest first."""
-    causes = sorted(causes_of(lines), key=lambda cause: -abs(log(cause.median_factor)))
+    causes = sorted(causes_of(lines), key=lambda cause: -abs(log(cause["median_factor"])))
     return [
         [
-            speech.say(labels.code(cause.step or cause.cause)),
-            speech.per_cent(cause.median_factor),
-            str(cause.lines),
+            speech.say(labels.code(cause["step"] or cause["cause"])),
+            speech.per_cent(cause["median_factor"]),
+            str(cause["lines"]),
         ]
         for cause in causes
     ]

@@ -119,7 +119,7 @@ def editions(report: DiffReport) -> str:
     """Two editions side by side."""
     counts = ", ".join(f"{n} {codes(change)}" for change, n in report.changes.items())
     known = report.changes.get("changed", 0) > report.interval_unknown
-    causes = [vars(cause) | {"cause": _cause(vars(cause))} for cause in report.causes]
+    causes = [cause | {"cause": _cause(cause)} for cause in report.causes]
     parts = [
         f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.",
         tell(
