@@ -1,6 +1,5 @@
 """One page per boat: the owner's answer, and folded below it how each number was made."""
 
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -8,7 +7,6 @@ from typing import Final, NamedTuple
 
 import polars as pl
 
-from dashboards.answer import Answer
 from dashboards.site.columns import json_by, json_of
 from dashboards.site.parts import (
     Chart,
@@ -21,14 +19,11 @@ from dashboards.site.parts import (
     methods_select,
     once_for_methods,
 )
+from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say
 from warehouse.queries.answers import (
-    answers,
     newest_edition,
-    own_races,
-    season_faults,
 )
-from warehouse.queries.documents import curve_of
 from warehouse.queries.views import DRAFT, Views
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
@@ -60,7 +55,7 @@ def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Call
     """Every boat that the archive lists, with what makes its page."""
     frames = _frames(views)
     editions = frames["register"]["edition"].unique().sort().to_list()
-    crews = _answers(views, newest_edition(editions, draft_of(methods)))
+    crews = answers_by_boat(views, newest_edition(editions, draft_of(methods)))
     frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
     for boats in frames["boats"].iter_slices(AT_ONCE):
         those = boats[["fsn_no"]]
@@ -137,27 +132,6 @@ def _places(keys: pl.Series) -> dict[str, tuple[int, int]]:
 
 ALIKE = ("wind", "line", "point", "declared", "stages", "assessments")
 """Frames of which most rows are the same under several methods."""
-
-
-def _answers(views: Views, edition: str) -> dict[str, list[Answer]]:
-    """What there is to say of each crew, by boat."""
-    lines = answers(views, edition)
-    compared = lines["from_edition"].drop_nulls()
-    races = own_races(views, compared[0] if compared.len() else None, edition)
-    crew = ["fsn_no", "rowers", "crew_class"]
-    by_crew = races.partition_by(crew, as_dict=True, maintain_order=True)
-    faults = season_faults(views) if edition.startswith(DRAFT) else {}  # an edition holds none
-    by_boat: dict[str, list[Answer]] = defaultdict(list)
-    for line in lines.to_dicts():
-        by_boat[line["fsn_no"]].append(
-            Answer(
-                line=line,
-                races=by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts(),
-                curve=curve_of(line),
-                faults=faults.get((line["method"], line["season"]), ()),
-            )
-        )
-    return by_boat
 
 
 def _frames(views: Views) -> dict[str, pl.DataFrame]:

@@ -6,7 +6,6 @@ from typing import Final
 
 import polars as pl
 
-from dashboards import headlines
 from dashboards.site.downloads import files_of
 from dashboards.site.parts import (
     Chart,
@@ -27,6 +26,8 @@ from dashboards.site.prose import edition_pages, guide_pages
 from dashboards.site.races import race_pages
 from dashboards.site.start import CARDS, methods_table, start_page, words_page
 from dashboards.site.types import type_pages, types_page
+from dashboards.statements import due as of_due
+from dashboards.statements import edition, season
 from pipeline.messages import Sentence, say, speaker
 from pipeline.tables.schemas import TABLES, summary_of
 from warehouse.derive.studies import JUDGEMENT
@@ -97,7 +98,7 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
         "register", lines, REGISTER_COLUMNS, say("Register"), ["edition"], search=True,
         cards=REGISTER_CARDS,
     )  # fmt: skip
-    headline = headlines.register(lines.filter(edition=chosen))
+    headline = edition.register(lines.filter(edition=chosen))
     return Page(
         "register.html",
         say("Register"),
@@ -167,10 +168,10 @@ def _due(views: Views, methods: Sequence[str]) -> Page:
         search=True,
         cards=DUE_CARDS,
     )
-    headline = headlines.due(rows.filter(method=default_method(methods)))
+    headline = of_due.due(rows.filter(method=default_method(methods)))
     choice = views.retow_choice()
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
-    retow, said = choice.hstack(sd), headlines.retow(choice)
+    retow, said = choice.hstack(sd), of_due.retow(choice)
     return Page(
         "due.html",
         say("Due to tow"),
@@ -232,7 +233,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
     steps = views.season_steps().with_columns(PART)
     ladder = views.table("season_ladder")
     options = views.table("option_summary").filter(study=JUDGEMENT)
-    said = headlines.log_factors(factors.filter(method=default_method(methods)))
+    said = season.log_factors(factors.filter(method=default_method(methods)))
     of_factors = Chart("log_factors", "log_factors", say("Log factor per season"))
     of_ladder = Chart("ladder", "ladder", say("What each step does"), {"to_method": "method"})
     of_seasons = Chart("season_change", "season_change", say("Relative to the published Cw"))
@@ -407,7 +408,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         "variance_components": views.table("variance_components").drop_nulls("sd_ratio"),
         "predicted_cw": with_page(views.predicted()),
     }
-    said = headlines.reproducibility(frames["reproducibility"], default_method(methods))
+    said = season.reproducibility(frames["reproducibility"], default_method(methods))
     sections: list[Section] = []
     for (name, frame), (figure, columns) in zip(frames.items(), AGREEMENT.items(), strict=True):
         section, shown = AGREEMENT_TEXTS[figure], columns.split()
@@ -462,7 +463,7 @@ def _changes(methods: Sequence[str], changes: pl.DataFrame) -> Page:
         {"to_edition": "to_edition"},
     )  # fmt: skip
     drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
-    headline = headlines.changes(changes.filter(to_edition=chosen))
+    headline = edition.changes(changes.filter(to_edition=chosen))
     return Page(
         "changes.html",
         say("Changes"),
@@ -562,7 +563,7 @@ def _quality(views: Views, methods: list[str]) -> Page:
         Section(
             "statuses",
             say("Status of the curves"),
-            headline=headlines.statuses(statuses.filter(method=default_method(methods))),
+            headline=season.statuses(statuses.filter(method=default_method(methods))),
             charts=[
                 Chart("statuses", "statuses", say("Status of the curves"), {"method": "method"})
             ],

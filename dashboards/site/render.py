@@ -21,7 +21,6 @@ import vl_convert
 from markupsafe import Markup
 
 from dashboards import fonts, labels
-from dashboards.answer import told
 from dashboards.html import as_json, environment
 from dashboards.kept import kept
 from dashboards.site.boats import boat_pages
@@ -191,7 +190,6 @@ class Edition:
             "column_text": labels.column,
             "speech": self.speech,
             "heading": cache(self._heading),
-            "told": lambda answer: told(answer, self.speech),
             "about": self.about,
         }
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from dashboards import headlines, labels
+from dashboards import labels
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -20,6 +20,7 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.site.slides import drawn_rows, sentences, told_charts
+from dashboards.statements.boat_type import homogeneity
 from pipeline.messages import say
 from warehouse.queries.chosen_tows import with_choices
 from warehouse.queries.views import Views
@@ -121,7 +122,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             say("Does it follow weight or speed?"),
             ["method", "tows"],
         )
-        verdict = headlines.homogeneity(tests.filter(own, method=default_method(methods)))
+        verdict = homogeneity(tests.filter(own, method=default_method(methods)))
         yield Page(
             type_path(boat_type),
             say("Types"),

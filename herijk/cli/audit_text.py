@@ -6,9 +6,9 @@ from typing import Any, Final
 
 import polars as pl
 
-from dashboards.answer import Answer, told
-from dashboards.headlines import homogeneity
 from dashboards.labels import candidate, code_in_words
+from dashboards.statements.boat import Answer, answers_by_boat
+from dashboards.statements.boat_type import homogeneity
 from herijk.cli.render import (
     cell,
     codes,
@@ -25,25 +25,26 @@ from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
 from warehouse.editions.lineage import Lineage, LineLineage
-from warehouse.queries.answers import answers, current_edition, own_races, season_faults
+from warehouse.queries.answers import current_edition
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import OneType, TypesAudit
-from warehouse.queries.documents import curve_of
-from warehouse.queries.views import DRAFT, Views
+from warehouse.queries.views import Views
 from warehouse.store.database import no_such_edition
 from warehouse.store.store import Store
 
 # A boat
 
 
-def boat_text(store: Store, report: BoatAudit, edition: str | None, steps: bool) -> str:
+def boat_text(report: BoatAudit, answers: Sequence[Answer], steps: bool) -> str:
     """What there is to say of each crew of a boat; how it came about where that is asked."""
-    speaks = speech()
     parts = [
-        "\n".join([f"{report.boat['fsn_no']} {report.boat['name']}, {one.crew}", one.headline])
-        + "\n"
-        + "\n".join(one.sentences)
-        for one in (told(answer, speaks) for answer in _answers(store, report.boat, edition))
+        "\n".join(
+            [
+                f"{report.boat['fsn_no']} {report.boat['name']}, {answer.crew(speech())}",
+                *(statement(speech()) for statement in answer.statements),
+            ]
+        )
+        for answer in answers
     ]
     if steps:
         parts += list(_boat_steps(report))
@@ -56,20 +57,18 @@ def _name(report: BoatAudit) -> str:
     return str(report.boat["fsn_no"])
 
 
-def _answers(store: Store, boat: Row, edition: str | None) -> Iterator[Answer]:
-    """The answers about the crews of a boat in an edition or draft."""
+def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
+    """The answers about the crews of a boat in an edition or draft, the newest where none is asked.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition.
+    """
     with Views(store) as views:
         chosen = edition or current_edition(views)
-        lines = answers(views, chosen)
-        if lines.is_empty():
+        by_boat = answers_by_boat(views, chosen)
+        if not by_boat:
             raise no_such_edition(chosen, views.table("register")["edition"].unique())
-        compared = lines["from_edition"].drop_nulls()
-        races = own_races(views, compared[0] if compared.len() else None, chosen)
-        faults = season_faults(views) if chosen.startswith(DRAFT) else {}
-        for line in lines.filter(fsn_no=boat["fsn_no"]).to_dicts():
-            crew = {name: line[name] for name in ("fsn_no", "rowers", "crew_class")}
-            own_faults = faults.get((line["method"], line["season"]), ())
-            yield Answer(line, races.filter(**crew).to_dicts(), curve_of(line), own_faults)
+        return by_boat.get(boat["fsn_no"], [])
 
 
 TOWS: Final = (

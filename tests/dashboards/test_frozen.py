@@ -2,10 +2,9 @@
 
 import datetime as dt
 
-from dashboards.answer import told
 from dashboards.documents import certificate
-from dashboards.site import boats
 from dashboards.speech import Speech
+from dashboards.statements.boat import answers_by_boat
 from pipeline.method.definition import shipped_method
 from warehouse.editions.publish import Terms, publish
 from warehouse.queries.register import register_report
@@ -19,10 +18,14 @@ OF_TODAY = ("tow_speed_m_s", "speed_reason")
 def shown(store):
     """Answers on the boats' pages without what is of today, the register and all certificates."""
     with Views(store) as views:
-        answers = [one for crews in boats._answers(views, EDITION).values() for one in crews]
+        answers = [one for crews in answers_by_boat(views, EDITION).values() for one in crews]
         for answer in answers:
             answer.line.update(dict.fromkeys(OF_TODAY))
-        pages = [told(answer, Speech("en")) for answer in answers]
+        english = Speech("en")
+        pages = [
+            [*(one(english) for one in answer.statements), answer.waterfall(english)]
+            for answer in answers
+        ]
         paper = certificate.certificates(views, EDITION, None, "en", as_page=True)
     return pages, register_report(store, EDITION), paper.decode()
 
@@ -44,7 +47,7 @@ def test_an_edition_stays_on_pages_register_and_certificates(bench):
     terms = Terms(EDITION, DAY, "besluit van de ALV", DAY)
     publish(bench.store, shipped_method(METHOD), terms)
     before, draft = shown(bench.store), register_report(bench.store, f"concept-{METHOD}")
-    assert any("the log read" in text for page in before[0] for text in page.sentences)
+    assert any("the log read" in text for page in before[0] for text in page)
     change_lists(bench.archive)
     bench.rebuild(("as-published", METHOD))
     assert register_report(bench.store, f"concept-{METHOD}") != draft
