@@ -1,51 +1,33 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
 import datetime as dt
-from collections.abc import Iterator, Mapping
+import logging
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any, Final
 
 import dagster as dg
 import polars as pl
 
-from assets.progress import Progress
 from assets.resources import Setup
 from assets.workers import read_season
 from pipeline.blocks.run_blocks import BLOCK_SCHEMA
 from pipeline.channels import SAMPLE_SCHEMA
-from warehouse.derive.inputs import OTHERS, state_of_table
+from pipeline.messages import say
+from warehouse.derive.inputs import state_of_table
 from warehouse.derive.mending import mending
 from warehouse.intake import seasons as intake
 from warehouse.store.code import ADDING, READING, code_hash
 from warehouse.store.store import Store, fingerprint
 
+LOG: Final = logging.getLogger("herijk")
+
 SEASONS: Final = dg.DynamicPartitionsDefinition(name="season")
 """Seasons are found in the archive, so a new campaign needs no change of code."""
 
-OUTSIDE: Final = {
-    "tow_lists": "rows of the tow lists, with the hashes of their files",
-    "method_options": "the options of the methods that are applied",
-    "register_rules": "titles of methods, and how long a tow counts",
-    "decisions": "decisions of people about tows",
-    "published": "editions that were published",
-    "failed_tows": "tows on which Herijk itself failed",
-}
-PEOPLE_AND_US: Final = ("decisions", "published", "failed_tows")
 VERSION_TAG: Final = "dagster/data_version"
-"""What no asset makes: it is looked at with the lists of the archive, and noted as observed."""
 
-OUTSIDE_SPECS: Final = [
-    dg.AssetSpec(
-        name,
-        description=meaning,
-        group_name="outside",
-        partitions_def=SEASONS if name == "tow_lists" else None,
-    )
-    for name, meaning in OUTSIDE.items()
-]
-
-OWNERS: Final = ["team:archive"]
-SUBJECT: Final = {"herijk/subject": "archive"}
+GROUP: Final = "archive"
 LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
     warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
 )
@@ -59,10 +41,7 @@ LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
             code_version=code_hash(*READING),
             description=f"{name}: of the lists of the archive",
             freshness_policy=LOOKED_AT if name == "listed_files" else None,
-            group_name="archive",
-            kinds={"parquet"},
-            owners=OWNERS,
-            tags=SUBJECT,
+            group_name=GROUP,
         )
         for name in intake.INDEXED
     ]
@@ -73,10 +52,7 @@ def archive_index(
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     look = partial(intake.index, setup.store, setup.archive_root)
     mending(setup.store, look, again=look)
-    context.instance.add_dynamic_partitions(
-        str(SEASONS.name), [str(season) for season in intake.listed_seasons(setup.store)]
-    )
-    observe(context.instance, setup)
+    know_seasons(context.instance, setup.store)
     for name in intake.INDEXED:
         yield dg.MaterializeResult(
             asset_key=name,
@@ -85,40 +61,13 @@ def archive_index(
         )
 
 
-def observe(instance: dg.DagsterInstance, setup: Setup) -> list[tuple[str, str | None]]:
-    """Notes what changed of all that no asset makes; gives its names, with the season."""
-    changed = []
-    for name, season, version in _seen(setup):
-        if version != _last_version(instance, name, season):
-            # Of what it does not make, Dagster compares these two kinds of events.
-            kind = dg.AssetMaterialization if season is None else dg.AssetObservation
-            seen = kind(name, partition=season, tags={VERSION_TAG: version})
-            instance.report_runless_asset_event(seen)
-            changed.append((name, season))
-    return changed
-
-
-def _last_version(instance: dg.DagsterInstance, name: str, season: str | None) -> str | None:
-    """The version under which something was last noted."""
-    here = dg.AssetRecordsFilter(
-        asset_key=dg.AssetKey(name), asset_partitions=None if season is None else [season]
-    )
-    fetch = instance.fetch_materializations if season is None else instance.fetch_observations
-    for record in fetch(here, limit=1).records:
-        event = record.asset_materialization or record.asset_observation
-        return None if event is None else (event.tags or {}).get(VERSION_TAG)
-    return None
-
-
-def _seen(setup: Setup) -> Iterator[tuple[str, str | None, str]]:
-    """Name, season and version of all that no asset makes."""
-    scope = setup.scope
-    for season, listed in intake.season_fingerprints(setup.store, setup.archive_root).items():
-        yield "tow_lists", str(season), listed
-    options = [(method.name, method.content_hash) for method in scope.methods]
-    yield "method_options", None, fingerprint(options)
-    for name, parameter in (("register_rules", "methods"), *((n, n) for n in PEOPLE_AND_US)):
-        yield name, None, fingerprint(OTHERS[parameter].state(scope))
+def know_seasons(instance: dg.DagsterInstance, store: Store) -> Sequence[str]:
+    """Makes the seasons of the archive those of Dagster; gives them in Dagster's order."""
+    kind, listed = str(SEASONS.name), list(map(str, intake.listed_seasons(store)))
+    instance.add_dynamic_partitions(kind, listed)
+    for season in set(instance.get_dynamic_partitions(kind)) - {*listed}:
+        instance.delete_dynamic_partition(kind, season)
+    return instance.get_dynamic_partitions(kind)
 
 
 def _columns(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
@@ -127,39 +76,27 @@ def _columns(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
 
 
 @dg.asset(
-    deps=["tow_lists"],
+    deps=["listed_tows", "listed_runs"],
     code_version=code_hash(*READING, *ADDING),
-    check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
     metadata=_columns(SAMPLE_SCHEMA),
     partitions_def=SEASONS,
-    group_name="archive",
-    kinds={"parquet"},
-    owners=OWNERS,
-    tags=SUBJECT,
+    group_name=GROUP,
 )
-def samples(
-    context: dg.AssetExecutionContext, setup: Setup, progress: dg.ResourceParam[Progress]
-) -> Iterator[dg.MaterializeResult]:
+def samples(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """The samples of the tows of seasons, in Parquet; faulty tows are set aside."""
     store, root = setup.store, setup.archive_root
     asked, read = setup.wanted(context.partition_keys), set()
 
     def work() -> None:
         stale = intake.stale_seasons(store, root, asked)
-        progress.expect(intake.count_listed(store, stale))
-        reading = partial(read_season, store.root, root)
-        if len(stale) == 1 and setup.settings.dask is None:
-            intake.read_season(store, root, stale[0], progress.tow_read)
-            read.update(stale)
-            return
-        for season, tows in setup.map(reading, stale):
+        LOG.info(say("reading {} tows", intake.count_listed(store, stale)))
+        for season, _ in setup.map(partial(read_season, store.root, root), stale):
             read.add(season)
-            for tow_id, is_set_aside in tows:
-                progress.tow_read(tow_id, is_set_aside)
+            LOG.info(say("season {} was read", season))
 
     intake.index(store, root)
     mending(store, work, again=partial(intake.index, store, root))
-    yield dg.MaterializeResult(check_results=[_most_tows_sound(store)])
+    yield dg.MaterializeResult()
     for season in asked:
         index = store.read("season_index", str(season))
         faulty = index.drop_nulls("reason_code")
@@ -173,43 +110,24 @@ def samples(
         _record(context, season, contents, metadata)
 
 
-def _most_tows_sound(store: Store) -> dg.AssetCheckResult:
-    """Of all seasons, not those of this run: a check's result is that of the whole asset."""
-    index = store.read_all("season_index")
-    faulty = index["reason_code"].count()
-    return dg.AssetCheckResult(
-        passed=2 * faulty <= index.height,
-        severity=dg.AssetCheckSeverity.WARN,
-        metadata={"set_aside": faulty, "listed": index.height},
-    )
-
-
 @dg.asset(
     deps=[samples],
     code_version=code_hash(*ADDING),
     metadata=_columns(BLOCK_SCHEMA),
     partitions_def=SEASONS,
-    group_name="archive",
-    kinds={"parquet"},
-    owners=OWNERS,
-    tags=SUBJECT,
+    group_name=GROUP,
 )
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """Sums over each second of each run of seasons."""
-    store = setup.store
-    asked, collected = setup.wanted(context.partition_keys), set()
-    for season in asked:
-        work = partial(intake.collect_blocks, store, season)
+    store, asked = setup.store, setup.wanted(context.partition_keys)
+    stale = {season for season in asked if intake.blocks_are_stale(store, season)}
+    for season in stale:
         again = partial(intake.read_season, store, setup.archive_root, season)
-        if intake.blocks_are_stale(store, season):
-            mending(store, work, again)
-            collected.add(season)
+        mending(store, partial(intake.collect_blocks, store, season), again)
     yield dg.MaterializeResult()
     for season in asked:
-        metadata = {
-            "dagster/row_count": store.count_rows("blocks", str(season)),
-            "new": season in collected,
-        }
+        rows = store.count_rows("blocks", str(season))
+        metadata = {"dagster/row_count": rows, "new": season in stale}
         _record(context, season, store.contents("blocks", str(season)), metadata)
 
 

@@ -3,7 +3,7 @@
 import os
 import shutil
 import sqlite3
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
@@ -14,23 +14,22 @@ import yaml  # type: ignore[import-untyped]
 from sqlalchemy import event
 from sqlalchemy.engine import Engine
 
-from assets.archive import SEASONS, observe
+from assets.archive import know_seasons
 from assets.location import assets_of
-from assets.progress import Progress
 from assets.report import Done
-from assets.resources import QUIET_LOG, Setup
-from assets.stale import Stale
+from assets.resources import Setup
 from pipeline.errors import MissingKnowledgeError
-from warehouse.intake import seasons as intake
 from warehouse.store.files import written_beside
-from warehouse.store.lock import nobody_writes
 from warehouse.store.store import Store
 
-INSTANCE_SETTINGS = Path(__file__).with_name("dagster.yaml")
+INSTANCE_SETTINGS: Final = Path(__file__).with_name("dagster.yaml")
 """Dagster's settings for a new data folder."""
 
 OF_A_COMMAND: Final = {"herijk/by": "rebuild"}
 """Marks runs that live and die with the process of a rebuild."""
+
+QUIET_LOG: Final = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
+"""Nothing on the terminal: what Dagster says is in its records."""
 
 
 @event.listens_for(Engine, "connect")
@@ -40,36 +39,25 @@ def _without_waiting_for_the_disk(connection: object, _: object) -> None:
         connection.execute("PRAGMA synchronous = OFF")
 
 
-def run_assets(
-    setup: Setup, progress: Progress, stale: Stale, done: Done
-) -> Sequence[dg.AssetCheckEvaluation]:
-    """Makes assets in one run; an error is raised as it is.
+def run_assets(setup: Setup, names: Sequence[str], done: Done) -> Sequence[dg.AssetCheckEvaluation]:
+    """Makes assets in one run, with all seasons that are wanted; an error is raised as it is.
 
     Seasons can be asked for as a range only: those between confirm that they are fresh.
 
     Returns:
         What the checks said.
     """
-    defs = assets_of(setup, progress)
-    graph = defs.resolve_asset_graph()
-    store = setup.store
-    with instance_of(store) as instance:
-        _end_lost_runs(instance)
-        known = _add_seasons(instance, [str(s) for s in intake.listed_seasons(store)])
-        changed = observe(instance, setup)
-        seasons = {*map(str, stale.seasons), *(season for _, season in changed)}
-        chosen = [s for s in known if s in seasons and setup.wanted([s])]
-        assets = {dg.AssetKey(name) for name in stale.assets}
-        for name, season in changed:
-            if season is None or season in chosen:
-                assets |= graph.get(dg.AssetKey(name)).child_keys
-        ends = {"start": chosen[0], "end": chosen[-1]} if chosen else {}
-        result = defs.resolve_implicit_global_asset_job_def().execute_in_process(
+    job = assets_of(setup).resolve_implicit_global_asset_job_def()
+    with instance_of(setup.store) as instance:
+        end_lost_runs(instance, OF_A_COMMAND)
+        seasons = [s for s in know_seasons(instance, setup.store) if setup.wanted([s])]
+        ends = {"start": seasons[0], "end": seasons[-1]} if seasons else {}
+        ranges = {f"dagster/asset_partition_range_{end}": season for end, season in ends.items()}
+        result = job.execute_in_process(
             instance=instance,
-            asset_selection=sorted(assets),
+            asset_selection=[dg.AssetKey(name) for name in names],
             run_config=QUIET_LOG,
-            tags=OF_A_COMMAND
-            | {f"dagster/asset_partition_range_{end}": season for end, season in ends.items()},
+            tags=OF_A_COMMAND | ranges,
         )
     for made in result.get_asset_materialization_events():
         _note(done, made.materialization, setup.methods)
@@ -90,47 +78,18 @@ def _note(done: Done, made: dg.AssetMaterialization, methods: Sequence[str]) -> 
             done.database = True
 
 
-def _add_seasons(instance: dg.DagsterInstance, listed: Sequence[str]) -> Sequence[str]:
-    """Makes the seasons of the archive those of Dagster; gives them in Dagster's order."""
-    kind = str(SEASONS.name)
-    instance.add_dynamic_partitions(kind, listed)
-    for season in set(instance.get_dynamic_partitions(kind)) - {*listed}:
-        instance.delete_dynamic_partition(kind, season)
-    return instance.get_dynamic_partitions(kind)
+def end_lost_runs(instance: dg.DagsterInstance, tags: Mapping[str, str]) -> None:
+    """Records runs as failed whose process was killed: nobody else would, and others wait.
 
-
-def taking_over(store: Store) -> Iterator[str]:
-    """Ends the runs of a server that was stopped or killed: later ones would wait for them.
-
-    Returns:
-        A sentence for anyone who starts the new server, about each kind of run.
+    Rebuilds ask it of their own kind, as holders of the lock; a new server of all that began.
     """
-    if not nobody_writes(store.root):
-        yield "A rebuild is at work; scheduled ones wait for it."
-        return
-    with instance_of(store) as instance:
-        dead = instance.get_runs(dg.RunsFilter(statuses=list(_BEGUN)))
-        for run in dead:
-            instance.report_run_failed(run, "The process it was part of was stopped or killed.")
-        waiting = instance.get_runs_count(dg.RunsFilter(statuses=[dg.DagsterRunStatus.QUEUED]))
-    if dead:
-        yield f"{len(dead)} runs that were stopped or killed are recorded as failed."
-    if waiting:
-        yield f"{waiting} runs wait in the queue, and are done now one by one."
-
-
-_BEGUN: Final = (
-    dg.DagsterRunStatus.STARTED,
-    dg.DagsterRunStatus.STARTING,
-    dg.DagsterRunStatus.CANCELING,
-)
-
-
-def _end_lost_runs(instance: dg.DagsterInstance) -> None:
-    """Records runs of killed rebuilds as failed; only the holder of the lock can tell."""
-    unfinished = dg.RunsFilter(tags=OF_A_COMMAND, statuses=[dg.DagsterRunStatus.STARTED])
-    for run in instance.get_runs(unfinished):
-        instance.report_run_failed(run, "The rebuild it was part of was killed.")
+    begun = [
+        dg.DagsterRunStatus.STARTED,
+        dg.DagsterRunStatus.STARTING,
+        dg.DagsterRunStatus.CANCELING,
+    ]
+    for run in instance.get_runs(dg.RunsFilter(tags=tags, statuses=begun)):
+        instance.report_run_failed(run, "The process it was part of was stopped or killed.")
 
 
 @contextmanager

@@ -5,16 +5,15 @@ that there is none takes a second, importing it two.
 """
 
 import datetime as dt
+import logging
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from assets import workers
-from assets.progress import Progress
 from assets.report import Done, Report, write_report
 from assets.settings import read_settings
-from assets.stale import Stale, look
+from assets.stale import stale_assets
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from warehouse.derive.mending import mending
@@ -28,22 +27,17 @@ if TYPE_CHECKING:
 
 
 def rebuild(
-    archive: Path,
-    data: Path,
-    methods: Sequence[str],
-    progress: Progress,
-    seasons: Collection[int] | None = None,
+    archive: Path, data: Path, methods: Sequence[str], seasons: Collection[int] | None = None
 ) -> Report:
     """Brings the data folder up to date with the archive, and reports what that changed.
 
     Files of ours that turn out to be damaged are made again. Where the archive changes during the
-    rebuild, it begins again.
+    rebuild, it begins again. The logger `herijk` says how far it is.
 
     Args:
         archive: the archive folder.
         data: the data folder; made if it is not there.
         methods: names of methods; the first is what the others are compared with.
-        progress: is told what happens.
         seasons: seasons to read; None for all. Others stay as they are.
 
     Raises:
@@ -52,42 +46,39 @@ def rebuild(
     """
     check_apart(archive, data)
     with machine_faults_explained(data):
-        read_settings(data)
+        dask = read_settings(data).dask
     with machine_faults_explained(data), only_writer(data):
         store, done = Store(data), Done()
         known = [KnownMethods.of(store).get(name) for name in methods]
         checks: list[dg.AssetCheckEvaluation] = []
 
         def work() -> None:
-            progress.step(say("looking at what the archive holds"))
-            stale = look(archive, store, known, seasons)
-            if stale.assets:
-                asked = Asked(str(archive), str(data), list(methods), sorted(seasons or ()))
-                checks[:] = make_assets(asked, progress, stale, done)
+            logging.getLogger("herijk").info(say("looking at what the archive holds"))
+            stale = stale_assets(archive, store, known, seasons)
+            if stale:
+                workers.get_ready(dask)
+                checks[:] = make_assets(archive, data, methods, seasons, stale, done)
 
         mending(store, work, again=lambda: None)
         return write_report(store, done, checks, dt.datetime.now().astimezone())
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What a rebuild is asked for: folders, names of methods, and seasons, none for all."""
-
-    archive: str
-    data: str
-    methods: list[str]
-    seasons: list[int]
-
-
 def make_assets(
-    asked: Asked, progress: Progress, stale: Stale, done: Done
+    archive: Path,
+    data: Path,
+    methods: Sequence[str],
+    seasons: Collection[int] | None,
+    stale: Sequence[str],
+    done: Done,
 ) -> "Sequence[dg.AssetCheckEvaluation]":
     """Has Dagster make assets, and notes what was done; gives what the checks said."""
-    workers.get_ready(read_settings(Path(asked.data)).dask)
     from assets.instance import run_assets  # noqa: PLC0415 - see above
     from assets.resources import Setup  # noqa: PLC0415
 
-    return run_assets(Setup(**vars(asked)), progress, stale, done)
+    setup = Setup(
+        archive=str(archive), data=str(data), methods=list(methods), seasons=sorted(seasons or ())
+    )
+    return run_assets(setup, stale, done)
 
 
 def check_apart(archive: Path, data: Path) -> None:

@@ -1,8 +1,7 @@
-"""What a rebuild leaves to be read: a page, JSON, and a message to anyone who wants one.
+"""What a rebuild leaves to be read: a page and JSON.
 
 They are under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
-about the last that changed something, with the day of the last one after it that changed nothing;
-and a dated JSON for each that changed something.
+about the last that changed something, and a dated JSON for each that did.
 """
 
 import datetime as dt
@@ -12,16 +11,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from assets.notify import Message, Notifier
 from dashboards.report import (
-    PAGES,
     Check,
     found_in_words,
     headlines,
-    mail,
-    with_later_rebuild,
 )
-from pipeline.messages import LANGUAGE, say, speaker
+from pipeline.messages import LANGUAGE, speaker
 from warehouse.derive.step import QUARANTINE
 from warehouse.queries.change_report import (
     ChangeSummary,
@@ -75,10 +70,7 @@ class Report(ChangeSummary):
 def write_report(
     store: Store, done: Done, evaluated: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
 ) -> Report:
-    """Finds out what changed, and writes page and JSON.
-
-    Where nothing changed, the page about the last change stays, and says so.
-    """
+    """Finds out what changed, and writes page and JSON; the page about the last change stays."""
     changes = change_report(store)
     about, summary = store.read("about_archive"), summary_of(changes)
     checks = [*(_check(one) for one in evaluated), *_unforeseen(store)]
@@ -100,12 +92,6 @@ def write_report(
         for name, page in report_pages(store, changes, checks, report.made_at).items():
             _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
-    else:
-        for language, name in PAGES.items():
-            path = folder / name
-            if path.exists():
-                shown = path.read_text(encoding="utf-8")
-                _write(path, with_later_rebuild(shown, report.made_at, speaker(language)))
     _write(folder / "latest.json", text)
     remember(store)
     return report
@@ -146,25 +132,3 @@ def failed_checks(checks: Sequence[Check]) -> list[str]:
         for check in checks
         if not check.passed and check.severity == ERROR
     ]
-
-
-def tell(notifier: Notifier, report: Report) -> list[str]:
-    """Sends the report to those who want it, where something changed or a check failed.
-
-    Returns:
-        A sentence for each message that could not be sent.
-    """
-    if report.nothing_changed and not failed_checks(report.checks):
-        return []
-    subject, text = mail(report, report.checks, report.simulated)
-    return notifier.send(Message(subject, text, asdict(report), _now()))
-
-
-def tell_failure(notifier: Notifier, failure: str) -> list[str]:
-    """Says that a rebuild that nobody watched could not be done."""
-    subject = speaker("nl")(say("The rebuild failed"))
-    return notifier.send(Message(subject, f"{failure}\n", {"failed": failure}, _now()))
-
-
-def _now() -> dt.datetime:
-    return dt.datetime.now().astimezone()

@@ -1,10 +1,11 @@
-"""What assets are given: the folders and the methods to apply, and who is told how far it is."""
+"""What assets are given: the folders, the methods to apply, and who helps."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import TypeVar
 
 import dagster as dg
 from pydantic import Field
@@ -21,9 +22,6 @@ from warehouse.store.store import Store
 
 T = TypeVar("T")
 R = TypeVar("R")
-
-QUIET_LOG: Final = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
-"""Nothing on the terminal: what Dagster says is in its records."""
 
 
 class Setup(dg.ConfigurableResource["Setup"]):
@@ -59,14 +57,14 @@ class Setup(dg.ConfigurableResource["Setup"]):
         return Path(self.archive)
 
     @property
-    def settings(self) -> Settings:
-        """What `beheer.toml` says."""
-        return read_settings(Path(self.data))
-
-    @property
     def store(self) -> Store:
         """The data folder."""
         return Store(Path(self.data))
+
+    @cached_property
+    def settings(self) -> Settings:
+        """What `beheer.toml` says."""
+        return read_settings(Path(self.data))
 
     @property
     def chosen_methods(self) -> list[Method]:
@@ -86,30 +84,3 @@ class Setup(dg.ConfigurableResource["Setup"]):
     def map(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R]]:
         """Each task with what came of it, done side by side."""
         return in_parallel(work, tasks, self.settings.dask)
-
-
-class LogProgress:
-    """Progress as lines in the log of a run."""
-
-    def __init__(self, log: dg.DagsterLogManager) -> None:
-        self._log = log
-
-    def expect(self, tows: int) -> None:
-        """How many tows will be read."""
-        self._log.info(f"{tows} tows to read")
-
-    def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        """A tow was read; only one set aside is worth a line."""
-        if set_aside:
-            self._log.warning(f"{tow_id} is set aside")
-
-    def step(self, what: str) -> None:
-        """A step begins."""
-        self._log.info(what)
-
-
-@dg.resource
-def progress_in_log(context: dg.InitResourceContext) -> LogProgress:
-    """Tells the log of a run how far it is."""
-    assert context.log is not None  # noqa: S101 - Dagster's type
-    return LogProgress(context.log)

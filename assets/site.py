@@ -1,10 +1,11 @@
 """The site of plain files, made from the database that is in place."""
 
+import logging
+
 import dagster as dg
 import polars as pl
 
 from assets import workers
-from assets.progress import Progress
 from assets.resources import Setup
 from assets.stale import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
 from pipeline.messages import say
@@ -15,16 +16,13 @@ from warehouse.store.code import code_hash
 @dg.asset(
     deps=[DATABASE_TABLE],
     group_name="site",
-    kinds={"html"},
-    owners=["team:register"],
-    tags={"herijk/subject": "site"},
     code_version=code_hash(*SITE_CODE),
 )
-def site(setup: Setup, progress: dg.ResourceParam[Progress]) -> dg.MaterializeResult:
+def site(setup: Setup) -> dg.MaterializeResult:
     """Pages people can look at, swapped in whole; pictures are drawn by who helps."""
     store = setup.store
     if is_stale := site_is_stale(store):
-        progress.step(say("making the site"))
+        logging.getLogger("herijk").info(say("making the site"))
         from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
 
         build_site(store, workers.workers(setup.settings.dask))

@@ -1,7 +1,6 @@
 """What a rebuild has to make, as fingerprints say. Dagster, slow to import, is not asked."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -18,31 +17,19 @@ from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.files import file_sha256
 from warehouse.store.store import Store, fingerprint
 
-SITE_CODE: Final = (
-    *("dashboards", "warehouse.queries", "warehouse.editions"),
-    *COMPUTING,
-)
+SITE_CODE: Final = ("dashboards", "warehouse.queries", "warehouse.editions", *COMPUTING)
 SITE_TABLE: Final = "site"
 """An empty table that remembers what the site was made from."""
 
 
-@dataclass(frozen=True)
-class Stale:
-    """What has to be made again, or may have to be as what it is made from is.
-
-    Attributes:
-        seasons: whose samples are to be read.
-        assets: names.
-    """
-
-    seasons: Sequence[int]
-    assets: Sequence[str]
-
-
-def look(
+def stale_assets(
     archive: Path, store: Store, methods: Sequence[Method], wanted: Collection[int] | None
-) -> Stale:
+) -> list[str]:
     """Looks through the archive, and at what was made of it.
+
+    Returns:
+        What has to be made again, or to be confirmed as what it is made from is; nothing where all
+        is as it should be.
 
     Raises:
         MissingKnowledgeError: there is no archive, or nothing of the seasons that are wanted.
@@ -51,9 +38,8 @@ def look(
     intake.forget_unlisted_seasons(store)
     forget_other_methods(store, {method.name for method in methods})
     _check_listed(wanted, intake.listed_seasons(store))
-    seasons = intake.stale_seasons(store, archive, wanted)
-    made: list[str] = ["samples", "blocks"] if seasons else []
-    again = {*intake.SEASON_TABLES} if seasons else set()
+    again = {*intake.SEASON_TABLES} if intake.stale_seasons(store, archive, wanted) else set()
+    made: list[str] = []
     others = _others_were_applied(store, methods)
     for step in STEPS:
         if others or not again.isdisjoint(step.reads) or step.stale(store, methods):
@@ -61,9 +47,9 @@ def look(
             made += step.outputs
     if again.isdisjoint(DATABASE.outputs) and not is_reported(store):
         made += DATABASE.outputs
-    if made or site_is_stale(store):
-        made += [*intake.INDEXED, SITE_TABLE]
-    return Stale(seasons, made)
+    if not (made or site_is_stale(store)):
+        return []
+    return [*intake.INDEXED, "samples", "blocks", *made, SITE_TABLE]
 
 
 def _others_were_applied(store: Store, methods: Sequence[Method]) -> bool:

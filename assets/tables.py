@@ -1,41 +1,34 @@
 """The steps of a build as assets: what `warehouse.derive.graph` declares, as Dagster sees it."""
 
+import logging
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Final
 
 import dagster as dg
 
-from assets.progress import Progress
 from assets.resources import Setup
 from assets.workers import make_step
 from pipeline.tables.declare import dy
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.graph import STEPS, catch_up
-from warehouse.derive.inputs import IN_DATABASE, Scope, state_of_table
+from warehouse.derive.inputs import IN_DATABASE, OTHERS, Scope, state_of_table
 from warehouse.derive.mending import mending
 from warehouse.derive.step import Step
 from warehouse.intake.seasons import SEASON_TABLES
 from warehouse.store.code import code_hash
 from warehouse.store.store import fingerprint
 
-KINDS = {"warehouse_database": "duckdb"}
-"""What an asset is stored as, where that is not Parquet."""
-
-ARCHIVE, METHOD, PUBLISHER = "team:archive", "team:method", "team:register"
-"""Who answers for a table."""
-OWNERS = {"archive": ARCHIVE} | dict.fromkeys(("method", "studies", "lines", "consistency"), METHOD)
-
 READ_AS: Final[Mapping[str, Sequence[str]]] = {
     **dict.fromkeys(SEASON_TABLES, ("samples",)),
+    **dict.fromkeys(OTHERS, ()),
     "blocks": ("blocks",),
-    "method": ("method_options",),
-    "first_method": ("method_options",),
-    "methods": ("method_options", "register_rules"),
     "all_tables": IN_DATABASE,
-    **dict.fromkeys(("run_cache", "quarantine_before", "today", "store"), ()),
 }
-"""The assets behind what a step reads, where that is no asset of the same name."""
+"""The assets behind what a step reads, where that is no asset of the same name.
+
+Methods, decisions and editions are no assets: the fingerprints know them.
+"""
 
 
 def step_asset(step: Step) -> dg.AssetsDefinition:
@@ -46,13 +39,13 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         description=step.compute.__doc__,
         specs=[_spec(step, table) for table in step.outputs],
     )
-    def asset(setup: Setup, progress: dg.ResourceParam[Progress]) -> Iterator[dg.MaterializeResult]:
-        yield from make(step, setup, progress)
+    def asset(setup: Setup) -> Iterator[dg.MaterializeResult]:
+        yield from make(step, setup)
 
     return asset
 
 
-def make(step: Step, setup: Setup, progress: Progress) -> Iterator[dg.MaterializeResult]:
+def make(step: Step, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """Makes the tables of a step, or confirms them where what they are made of is unchanged."""
     store, methods = setup.store, setup.chosen_methods
     new: list[str] = []
@@ -60,7 +53,7 @@ def make(step: Step, setup: Setup, progress: Progress) -> Iterator[dg.Materializ
     def work() -> None:
         stale = step.stale(store, methods)
         if stale:
-            progress.step(step.says)
+            logging.getLogger("herijk").info(str(step.compute.__doc__).partition("\n")[0])
         for scope, _ in setup.map(partial(make_step, step.name), stale):
             new.append(scope.at_hand.name)
 
@@ -87,9 +80,6 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
         description=(schema or step.compute).__doc__,
         metadata=None if schema is None else {"dagster/column_schema": _columns(schema)},
         group_name=step.group,
-        kinds={KINDS.get(table, "parquet"), "polars"},
-        owners=[OWNERS.get(step.group, PUBLISHER)],
-        tags={} if schema is None else {"herijk/subject": schema.__module__.rpartition(".")[2]},
         code_version=code_hash(*step.code),
     )
 

@@ -11,8 +11,6 @@ from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
-import polars as pl
-
 from pipeline.errors import MissingKnowledgeError, UnavailableError
 from warehouse.derive.graph import STEPS
 from warehouse.derive.inputs import Scope
@@ -89,10 +87,9 @@ def in_parallel(
         wait([future for _, future in asked if not future.cancel()])
 
 
-def read_season(data: Path, archive: Path, season: int) -> list[tuple[str, bool]]:
-    """Reads a season; gives its tows, and whether each is set aside."""
-    index = seasons.read_season(Store(data), archive, season)
-    return index.select("tow_id", pl.col("reason_code").is_not_null()).rows()
+def read_season(data: Path, archive: Path, season: int) -> None:
+    """Reads a season: its samples and blocks go into the lake."""
+    seasons.read_season(Store(data), archive, season)
 
 
 def make_step(name: str, scope: Scope) -> None:

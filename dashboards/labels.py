@@ -320,7 +320,6 @@ CODES: Final[dict[str, Sentence]] = {
     "unseparated": say("method and input"),
     "unexplained": say("unexplained"),
     "tables_fit_their_schemas": say("tables fit their schemas"),
-    "counts_agree": say("counts agree"),
     "few_tows_set_aside": say("few tows set aside"),
     "log_factors_stayed": say("log factors stayed"),
     "boats_stayed_within_their_intervals": say("boats stayed within their intervals"),
@@ -329,7 +328,6 @@ CODES: Final[dict[str, Sentence]] = {
     "every_tow_has_a_curve_row": say(
         "every tow has a row among the curves, even one without a curve"
     ),
-    "most_tows_sound": say("most tows are sound"),
     "steps_multiply_to_the_total": say("steps multiply to the total"),
     "nothing_unforeseen": say("nothing unforeseen"),
     "in_range": say("as declared"),

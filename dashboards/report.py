@@ -3,7 +3,6 @@
 What changed is found out in `warehouse.queries.change_report`; texts are in `words`.
 """
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -85,26 +84,13 @@ def in_short(changes: ChangeSummary, checks: Sequence[Check], say: Say) -> str:
     return " ".join(f"{line.rstrip('.')}." for line in headlines(changes, checks, say))
 
 
-def with_later_rebuild(page: str, made_at: str, say: Say) -> str:
-    """The page about a rebuild, saying that one after it changed nothing."""
-    text = say("The rebuild of {made_at} changed nothing after that.", made_at=minutes_of(made_at))
-    return _LATER.sub(f"{LATER}{text}", page)
-
-
 def minutes_of(made_at: str) -> str:
     """A moment as people read it, to the minute."""
     return made_at.replace("T", " ")[:16]
 
 
-LATER: Final = "<!-- later -->"
-"""Where the page about a rebuild says what came after it."""
-
-_LATER: Final = re.compile(f"{LATER}.*")
-
-
 FAILED: Final = {
     "tables_fit_their_schemas": say("tables do not fit their schemas"),
-    "counts_agree": say("counts do not agree"),
     "few_tows_set_aside": say("many tows are set aside"),
     "nothing_unforeseen": say(
         "Herijk itself failed; report this to whoever maintains it, with the folder unforeseen"
@@ -116,7 +102,6 @@ FAILED: Final = {
     ),
     "every_listed_tow_accounted_for": say("listed tows are not accounted for"),
     "every_tow_has_a_curve_row": say("tows have no row among the curves"),
-    "most_tows_sound": say("most tows are not sound"),
     "steps_multiply_to_the_total": say("steps do not multiply to the total"),
 }
 """What it means that a check failed."""

@@ -7,10 +7,8 @@ from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
-from markupsafe import Markup
 
 from dashboards.report import (
-    LATER,
     PAGES,
     Check,
     in_short,
@@ -26,8 +24,6 @@ from warehouse.queries.views import Views
 from warehouse.store.store import Store
 
 TO_SITE: Final = "../site/"
-
-_LATER: Final = Markup(LATER)  # noqa: S704 - a constant
 
 OF_A_CHECK: Final = ("check", "outcome", "quantity", "value")
 _TITLES: Final = {
@@ -88,9 +84,7 @@ def report_pages(
     in_words = Section(
         "report_summary",
         say("In short"),
-        headline=lambda speech: Markup("{} {}").format(
-            in_short(summary, checks, speech.say), _LATER
-        ),
+        headline=lambda speech: in_short(summary, checks, speech.say),
     )
     with Views(store) as views:
         return {

@@ -21,15 +21,11 @@ import assets.rebuild
 import assets.stale
 import assets.workers
 import dashboards.report_page
-from assets.progress import Progress
-from assets.rebuild import Asked
 from assets.report import Done, Report
-from assets.stale import Stale
 from hatch_build import compile_catalogues
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.tables.schemas import TABLES
-from tests.quiet import Quiet
 from warehouse.derive.graph import DATABASE, METHOD, STEPS
 from warehouse.intake import seasons as intake
 from warehouse.store.database import open_database
@@ -54,11 +50,18 @@ LEFT_OUT: Final = ("studies", "lines", "consistency")
 """Groups of steps that take two thirds of the time of a small rebuild."""
 
 
-def _make_directly(asked: Asked, _: Progress, stale: Stale, done: Done) -> list[object]:
+def _make_directly(
+    archive: Path,
+    data: Path,
+    methods: Sequence[str],
+    seasons: Collection[int] | None,
+    _: Sequence[str],
+    done: Done,
+) -> list[object]:
     """What a rebuild makes without Dagster, and with empty tables where they are left out."""
-    archive, store = Path(asked.archive), Store(Path(asked.data))
-    known = [KnownMethods.of(store).get(name) for name in asked.methods]
-    for season in stale.seasons:
+    store = Store(data)
+    known = [KnownMethods.of(store).get(name) for name in methods]
+    for season in intake.stale_seasons(store, archive, seasons):
         intake.read_season(store, archive, season)
         intake.collect_blocks(store, season)
         done.seasons = sorted({*done.seasons, season})
@@ -73,7 +76,7 @@ def _make_directly(asked: Asked, _: Progress, stale: Stale, done: Done) -> list[
                 step.make(scope)
             if step is METHOD:
                 applied = {*done.methods, scope.at_hand.name}
-                done.methods = [name for name in asked.methods if name in applied]
+                done.methods = [name for name in methods if name in applied]
             done.database |= step is DATABASE
     return []
 
@@ -122,7 +125,7 @@ class Workbench:
         pages; most tests do without, and without the page about the rebuild.
         """
         with in_one_process(), self.records_in_memory() if whole else directly(page):
-            return assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
+            return assets.rebuild.rebuild(self.archive, self.data, methods, seasons)
 
     @staticmethod
     def records_in_memory() -> AbstractContextManager[object]:

@@ -15,5 +15,5 @@ def bring_in(store: Store, root: Path) -> None:
     intake.index(store, root)
     intake.forget_unlisted_seasons(store)
     for season in intake.stale_seasons(store, root):
-        intake.read_season(store, root, season, lambda *_: None)
+        intake.read_season(store, root, season)
         intake.collect_blocks(store, season)

@@ -308,7 +308,7 @@ reden = "wind"
 wie = "TC"
 datum = 2026-05-08
 """
-_SETTINGS: Final = b'nightly = "0 3 * * *"\nwebhook = "https://example.org/"\nfactor_jump = 0.01\n'
+_SETTINGS: Final = b'nightly = "0 3 * * *"\nsmtp = "smtp://example.org"\nfactor_jump = 0.01\n'
 
 
 def _read_manifest(path: Path, _: bytes) -> None:

@@ -27,7 +27,6 @@ import dashboards.site.render  # noqa: F401 - takes a second, and victims are ki
 from assets.rebuild import rebuild
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from tests.quiet import Quiet
 from warehouse.store.database import open_database
 from warehouse.store.files import TEMPORARY_PREFIX
 from warehouse.store.store import Store, fingerprint, table_digest
@@ -107,7 +106,7 @@ def be_victim(archive: Path, data: Path) -> None:
     """Waits for the word, and rebuilds."""
     print("ready", flush=True)
     sys.stdin.readline()
-    rebuild(archive, data, METHODS, Quiet())
+    rebuild(archive, data, METHODS)
 
 
 class Ground:
@@ -138,7 +137,7 @@ class Ground:
     def rebuild(self, data: Path) -> str:
         """Rebuilds undisturbed and notes how long that took; gives the hash of the tables."""
         begin = time.monotonic()
-        rebuild(self.archive, data, METHODS, Quiet())
+        rebuild(self.archive, data, METHODS)
         self.seconds = time.monotonic() - begin
         return digests(data)
 

@@ -57,7 +57,7 @@ def simulate(
     as_json: bool,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
-    from herijk.cli.progress import TerminalProgress
+    from herijk.cli.progress import tows_counted
     from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
 
@@ -69,11 +69,8 @@ def simulate(
     settings = world_settings(
         world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    with machine_faults_explained(directory), TerminalProgress() as progress:
-        progress.expect(len(seasons) * tows_per_season)
-        truth = write_simulated_archive(
-            directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
-        )
+    with machine_faults_explained(directory), tows_counted() as counted:
+        truth = write_simulated_archive(directory, simulate_world(settings), counted)
     made = {"archive": str(directory), "truth": str(truth)}
     show(made, lambda m: tell("Simulated archive: {archive}\nIts truth: {truth}", **m), as_json)
 

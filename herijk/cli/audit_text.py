@@ -328,10 +328,5 @@ def _type_steps(report: TypesAudit) -> Iterator[str]:
     for name, (title, columns) in STEPS.items():
         rows = _rows(report, report.methods, name)
         yield section(tell(title), table(rows, f"boat_type method {columns}"))
-    fleet = [
-        row | {"method": method}
-        for method, known in report.fleet.items()
-        for row in known.reproducibility
-    ]
-    shown = table(fleet, "method scope within_sd_ratio sd_ratio lo hi n_pairs")
+    shown = table(report.reproducibility, "method scope within_sd_ratio sd_ratio lo hi n_pairs")
     yield section(tell("How well repeat tows of all types agree"), shown)

@@ -1,57 +1,40 @@
-"""Shows on a terminal how far a rebuild is; keeps quiet elsewhere."""
+"""Shows on a terminal how far a command is; keeps quiet elsewhere."""
 
+import logging
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TaskID,
-    TextColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import Progress
 
 from pipeline.messages import tell
 
 
-class TerminalProgress:
-    """Tows read and set aside, with the time left; a line per step. Writes to stderr."""
+class _OnStderr(logging.Handler):
+    """What the logger `herijk` says, on a line each."""
 
-    def __init__(self) -> None:
-        console = Console(stderr=True)
-        self._bar = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TextColumn(tell("tows, {task.fields[set_aside]} set aside,")),
-            TimeRemainingColumn(),
-            TextColumn(tell("left")),
-            console=console,
-            disable=not sys.stderr.isatty(),
-        )
-        self._task: TaskID | None = None
-        self._set_aside = 0
+    def emit(self, record: logging.LogRecord) -> None:
+        """Writes a line, in the language of the command where it has one."""
+        print(tell(record.msg), file=sys.stderr)  # noqa: T201 - a terminal
 
-    def __enter__(self) -> "TerminalProgress":
-        self._bar.start()
-        return self
 
-    def __exit__(self, *_: object) -> None:
-        self._bar.stop()
+@contextmanager
+def log_shown() -> Iterator[None]:
+    """Inside, a terminal shows what a rebuild is doing."""
+    log, handler = logging.getLogger("herijk"), _OnStderr(logging.INFO)
+    if sys.stderr.isatty():
+        log.setLevel(logging.INFO)
+        log.addHandler(handler)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
 
-    def expect(self, tows: int) -> None:
-        """So many tows are going to be handled."""
-        if tows:
-            self._task = self._bar.add_task(tell("tows"), total=tows, set_aside=0)
 
-    def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        """One tow is done."""
-        self._set_aside += set_aside
-        if self._task is not None:
-            self._bar.update(self._task, advance=1, set_aside=self._set_aside, description=tow_id)
-
-    def step(self, what: str) -> None:
-        """A step begins."""
-        if not self._bar.disable:
-            self._bar.console.print(tell(what), style="dim")
+@contextmanager
+def tows_counted() -> Iterator[Callable[[int, int], None]]:
+    """Gives what shows a number of tows done, out of so many."""
+    with Progress(console=Console(stderr=True), disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task(tell("tows"))
+        yield lambda done, total: bar.update(task, completed=done, total=total)

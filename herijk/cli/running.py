@@ -7,7 +7,7 @@ import click
 
 from herijk.cli.options import Seasons, archive_option, data_option, json_option, show
 from herijk.cli.speaking import Command, flag, option
-from pipeline.errors import BrokenPromiseError, HerijkError, unexpected
+from pipeline.errors import BrokenPromiseError
 from pipeline.messages import tell
 from warehouse.store.machine_faults import machine_faults_explained
 
@@ -29,12 +29,10 @@ def rebuild(
     archive: Path, data: Path, methods: tuple[str, ...], seasons: range | None, as_json: bool
 ) -> None:
     """From the archive to registers and tables; only what changed is done again."""
-    from assets.notify import notifier_of
     from assets.rebuild import rebuild as run
     from assets.report import failed_checks
-    from assets.report import tell as notify
-    from assets.settings import applied, read_settings
-    from herijk.cli.progress import TerminalProgress
+    from assets.settings import applied
+    from herijk.cli.progress import log_shown
     from herijk.cli.rebuild_text import Rebuilt, text
     from warehouse.queries.reports import rebuild_report
     from warehouse.store.methods import KnownMethods
@@ -42,29 +40,11 @@ def rebuild(
 
     known = KnownMethods.of(Store(data))
     chosen = applied(data, [known.kept(name) for name in methods])
-    try:
-        with TerminalProgress() as progress:
-            news = run(archive, data, chosen, progress, seasons)
-    except Exception as error:
-        _tell_failure(data, error)
-        raise
+    with log_shown():
+        news = run(archive, data, chosen, seasons)
     show(Rebuilt(rebuild_report(Store(data)), news), text, as_json)
-    for problem in notify(notifier_of(str(data), read_settings(data)), news):
-        click.echo(f"herijk: {problem}", err=True)
     if failed := failed_checks(news.checks):
         raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
-
-
-def _tell_failure(data: Path, error: Exception) -> None:
-    """Says to those who asked for it that a rebuild failed, as under `serve`."""
-    from assets.notify import notifier_of
-    from assets.report import tell_failure
-    from assets.settings import read_settings
-
-    what = str(error) if isinstance(error, HerijkError) else unexpected(error)
-    with suppress(HerijkError):  # settings that cannot be read are what failed
-        for problem in tell_failure(notifier_of(str(data), read_settings(data)), what):
-            click.echo(f"herijk: {problem}", err=True)
 
 
 @click.command(cls=Command)
@@ -80,24 +60,20 @@ def _tell_failure(data: Path, error: Exception) -> None:
 @flag("--may-start", help="Let Dagster's page start rebuilds and switch schedules.")
 def serve(archive: Path, data: Path, host: str, port: int, may_start: bool) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from assets.instance import prepare_home, taking_over
+    from assets.instance import end_lost_runs, instance_of, prepare_home
     from assets.rebuild import check_apart
     from assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
-    from warehouse.store.lock import only_server
     from warehouse.store.store import Store
-
-    def say_aloud(line: str) -> None:
-        click.echo(line, err=True)
 
     check_apart(archive, data)
     read_settings(data)
     store = Store(data)
-    with machine_faults_explained(data), only_server(data):
-        for line in taking_over(store):
-            say_aloud(line)
+    with machine_faults_explained(data):
+        with instance_of(store) as instance:
+            end_lost_runs(instance, {})
         served = Served(archive, data, host, port, may_start)
-        serve_until_stopped(served, prepare_home(store), say_aloud)
+        serve_until_stopped(served, prepare_home(store), lambda line: click.echo(line, err=True))
 
 
 @click.command(cls=Command)

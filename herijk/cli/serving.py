@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from starlette.applications import Starlette
 from starlette.responses import RedirectResponse
@@ -26,7 +26,6 @@ from assets.webserver import MAY_START, READ_ONLY
 from dashboards.guard import LOOPBACK, guarded, listen
 from pipeline.errors import UnavailableError
 from pipeline.messages import LANGUAGE, say
-from warehouse.store.files import WINDOWS
 
 SHOWN: Final = ("site", "report")
 """What of the data folder the site's address shows."""
@@ -145,7 +144,8 @@ def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[by
                 command,
                 cwd=home,  # the user's folder may have an `assets` of its own
                 env=environment,
-                **_TIED_TO_US,
+                start_new_session=True,
+                preexec_fn=_die_with_parent,  # noqa: PLW1509 - it only asks the system
             )
         yield children
     finally:
@@ -159,38 +159,16 @@ def _die_with_parent() -> None:
         library.prctl(_DIE_WITH_PARENT, signal.SIGTERM)
 
 
-_TIED_TO_US: Final[dict[str, Any]] = (
-    {} if WINDOWS else {"start_new_session": True, "preexec_fn": _die_with_parent}
-)
-"""How a child is started so that it, and what it starts, can be ended with us."""
-
-
-def _ask_to_end(child: subprocess.Popen[bytes]) -> None:
-    """As Ctrl-C would, where one process can send that to another."""
-    if WINDOWS:
-        child.terminate()
-    else:
-        child.send_signal(signal.SIGINT)
-
-
-def _make_end(child: subprocess.Popen[bytes]) -> None:
-    """Ends a process, and what it started."""
-    if WINDOWS:
-        child.kill()
-    else:
-        os.killpg(child.pid, signal.SIGKILL)
-
-
 def _end(children: Iterable[subprocess.Popen[bytes]]) -> None:
     """Asks the processes to end; after a while, makes them."""
     running = list(children)
     for child in running:
         if child.poll() is None:
-            _ask_to_end(child)
+            child.send_signal(signal.SIGINT)
     last = time.monotonic() + PATIENCE_S
     for child in running:
         with suppress(subprocess.TimeoutExpired):
             child.wait(max(0.1, last - time.monotonic()))
         with suppress(ProcessLookupError):
-            _make_end(child)
+            os.killpg(child.pid, signal.SIGKILL)
         child.wait()

@@ -101,15 +101,15 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
         limit: from which chance is ruled out.
         look: from which a single tow is unusual, judged when all clear shifts are taken out.
     """
-    left = _Left(seen, may)
-    shifts = left.take_out(limit, np.maximum(may.least, may.gross), clear=True)
-    scales = left.scales()
-    shifts += left.take_out(limit * scales, may.least, clear=True)
+    state = _MeanShifts(seen, may)
+    shifts = state.take_out(limit, np.maximum(may.least, may.gross), clear=True)
+    scales = state.scales()
+    shifts += state.take_out(limit * scales, may.least, clear=True)
     limits = np.where(may.single, look * scales, np.inf)
-    return shifts + left.take_out(limits, may.least, clear=False)
+    return shifts + state.take_out(limits, may.least, clear=False)
 
 
-class _Left:
+class _MeanShifts:
     """What the candidates show given all that was taken out before."""
 
     def __init__(self, seen: Observations, may: Candidates) -> None:
@@ -120,18 +120,18 @@ class _Left:
         self._weight = self._at_first.copy()
 
     @property
-    def told(self) -> BoolArray:
+    def open(self) -> BoolArray:
         """Which candidates are not taken out already, nor the same as one that is."""
         return np.asarray(self._weight > SAME_DIRECTION * self._at_first)
 
     def sizes(self) -> tuple[FloatArray, FloatArray]:
-        """Size of each shift and its standard deviation; meaningless where `told` is false."""
-        sd = 1.0 / np.sqrt(np.where(self.told, self._weight, 1.0))
+        """Size of each shift and its standard deviation; meaningless where `open` is false."""
+        sd = 1.0 / np.sqrt(np.where(self.open, self._weight, 1.0))
         return self._score * sd**2, sd
 
     def scales(self) -> FloatArray:
         """How much wider or narrower tows scatter than is assumed; groups never narrower."""
-        single = self._may.single & self.told
+        single = self._may.single & self.open
         if single.sum() < FEWEST_FOR_SCALE:
             return np.ones(len(single))
         z = self._score[single] / np.sqrt(self._weight[single])
@@ -146,7 +146,7 @@ class _Left:
         while True:
             size, sd = self.sizes()
             beyond = np.abs(size) / (sd * limits)
-            beyond[~self.told | (np.abs(size) < least)] = 0.0
+            beyond[~self.open | (np.abs(size) < least)] = 0.0
             best = int(first_largest(beyond))
             if beyond[best] < 1.0:
                 return taken

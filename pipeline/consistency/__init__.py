@@ -6,6 +6,6 @@ Belongs here: what a table of curves says about boats of a type (`compared`, `li
 curve is made, which differences matter to a race (`pipeline.register.changes`), and any judgement:
 tables say, people decide.
 
-`observed` joins the tables and carries the measuring errors; `mixed` is the one statistical model;
-`tables` puts it all together.
+`observed` joins the tables and carries the measuring errors; `mixed` describes what is fitted to
+`pipeline.model`; `tables` puts it all together.
 """

@@ -17,7 +17,6 @@ from pipeline.consistency.observed import (
     curve_at,
     ln_cw_unit_variance,
 )
-from pipeline.consistency.reml import Design, Problem
 from pipeline.tables.consistency import VarianceComponents
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
@@ -74,7 +73,7 @@ def _components(tows: Observed, scope: str) -> list[Row]:
     x = _fixed(tows, scope)
     if repeated < FEWEST_REPEATS or counts["n_seasons"] < 2 or counts["n_boats"] < x.shape[1] + 2:
         return _nothing(counts, "too_few_repeats")
-    problem = Problem.of(Design.of(x, boat, season), y, variance)
+    problem = mixed.Problem.of(y, variance, x, boat, season)
     try:
         shares = _shares(mixed.fit(problem, mixed.COMPONENTS), float(np.sqrt(variance.mean())))
     except mixed.NotSettledError:

@@ -19,7 +19,6 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.observed import UNKNOWN_TYPE, Observed, newest, q_at
-from pipeline.consistency.reml import Design, Problem
 from pipeline.tables.consistency import TypeHomogeneity
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
@@ -325,8 +324,10 @@ def _bend_priors(types: Sequence[tuple[Observed, float]]) -> list[tuple[float, f
     for boats, sigma in types:
         q, unit = q_at(boats, _middle_speed(boats))
         known = np.isfinite(q)
-        design = Design.of(np.ones(known.sum()), boats.table["hull"].to_numpy()[known])
-        problems.append(Problem.of(design, q[known], unit[known] * sigma**2))
+        hull = boats.table["hull"].to_numpy()[known]
+        problems.append(
+            mixed.Problem.of(q[known], unit[known] * sigma**2, np.ones(len(hull)), hull)
+        )
     fits = mixed.fit_all(problems, (mixed.BOAT,))
     return [(float(fit.beta[0]), fit.sd[0]) if fit else None for fit in fits]
 

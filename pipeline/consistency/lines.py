@@ -10,8 +10,7 @@ are drawn within men and within women too.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Final, NamedTuple, Self
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -20,6 +19,7 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.consistency import mixed
 from pipeline.consistency.eras import STEERED_STRAIGHT_FROM, season_ranges
+from pipeline.consistency.mixed import Problem
 from pipeline.consistency.observed import (
     UNKNOWN_TYPE,
     Observed,
@@ -29,7 +29,6 @@ from pipeline.consistency.observed import (
     newest,
     q_at,
 )
-from pipeline.consistency.reml import Design, Problem
 from pipeline.consistency.tow_speed import is_slow
 from pipeline.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
 from pipeline.tables.declare import dy
@@ -161,37 +160,45 @@ def type_lines(
         a crew, they are given per class; `crew_class` is `all` elsewhere.
     """
     rows: list[Row] = []
-    to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
+    lines: dict[tuple[str, ...], list[_Line]] = {}
     for choice, tows in chosen_tows(observed):
-        measured, shared = quantities(tows), _Shared(tows)
+        measured, designs = quantities(tows), _Designs(tows)
         run_variance = tows.column("run_sd_ratio") ** 2
         speeds = tows.column("standard_speed_m_s")
         for (method, boat_type), own in tows.rows_by("method", "boat_type"):
             for quantity, explaining, within in _kinds(choice):
-                names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
-                names |= {"quantity": quantity, "explaining": explaining}
                 y, unit = measured[quantity]
-                known = np.isfinite(y) & np.isfinite(shared.explaining[explaining])
-                mine = own[known[own] & shared.within[within][own]]
-                facts, across = shared.through(mine, boat_type, explaining)
-                about = {"within": within, "standard_speed_m_s": float(speeds[own[0]])}
-                row = names | about | facts
+                mine = own[np.isfinite(y[own])]
+                mine, facts, design = designs.of(mine, boat_type, explaining, within)
+                row: Row = {
+                    "method": method,
+                    "tows": choice.tows,
+                    "boat_type": boat_type,
+                    "quantity": quantity,
+                    "explaining": explaining,
+                    "within": within,
+                    "standard_speed_m_s": float(speeds[own[0]]),
+                    **facts,
+                }
                 rows.append(row)
-                if across is not None:
-                    line = _Line(across, quantity, y[mine], unit[mine] * run_variance[mine])
-                    to_fit.setdefault(choice.components, []).append((row, names, line))
+                if design is not None:
+                    variance = unit[mine] * run_variance[mine]
+                    problem = Problem.of(y[mine], variance, design.x, design.boat)
+                    noise = float(np.sqrt(variance.mean()))
+                    lines.setdefault(choice.components, []).append(
+                        _Line(row, design, problem, noise)
+                    )
     points: dict[str, list[object]] = {name: [] for name in TypeLinePoints.column_names()}
-    for components, lines in to_fit.items():
-        fits = mixed.fit_all([line.problem for *_, line in lines], components)
-        for (row, names, line), fit in zip(lines, fits, strict=True):
+    for components, of_choice in lines.items():
+        fits = mixed.fit_all([line.problem for line in of_choice], components)
+        for line, fit in zip(of_choice, fits, strict=True):
             if fit is None:
-                row["reason"] = "not_settled"
+                line.row["reason"] = "not_settled"
                 continue
-            ends = fit.line_at(line.across.at)
-            row.update(line.row(fit, ends))
-            drawn = row["within"] == ALL_CREWS
-            if drawn and (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
-                for column, values in line.points(names, ends).items():
+            ends = fit.line_at(line.design.at)
+            line.row.update(_numbers(line, fit, ends))
+            if line.is_drawn:
+                for column, values in _points(line, ends).items():
                     points[column] += values
     return frame_of(TypeLines, rows), TypeLinePoints.cast(pl.DataFrame(points))
 
@@ -215,53 +222,71 @@ def _pairs(choice: Choice) -> Iterator[tuple[str, str]]:
     yield LN_CW, LN_DISPLACEMENT
 
 
-@dataclass(frozen=True)
-class _Across:
+class _Design(NamedTuple):
     """What lines through the same tows on the same explaining variable have in common.
 
     Attributes:
-        design: the crews and x; x is scaled to one so that no power of a unit gets lost in
-            rounding.
-        width: what x is divided by.
-        names, places: class and x of each point that is drawn.
-        at: the same as rows of the design; the last row is the slope's.
+        x: the crews and the variable, which is scaled to one so that no power of a unit gets lost
+            in rounding.
+        boat: of each row.
+        width: what the variable is divided by.
+        names, places: class and place of each point that is drawn.
+        at: the same as rows of x; the last row is the slope's.
     """
 
-    design: Design
+    x: FloatArray
+    boat: IntArray
     width: float
     names: list[str]
     places: list[float]
     at: FloatArray
 
 
-class _Shared:
-    """What lines have in common: one design serves all methods and quantities with its tows."""
+class _Line(NamedTuple):
+    """A line to be fitted: its row of `type_lines`, and root mean square of measuring errors."""
+
+    row: Row
+    design: _Design
+    problem: Problem
+    noise: float
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether its points are in `type_line_points`."""
+        kind = self.row["quantity"], self.row["explaining"]
+        return self.row["within"] == ALL_CREWS and kind in SLIDE_PAIRS
+
+
+class _Designs:
+    """Designs of lines: one serves all methods and quantities with its tows."""
 
     def __init__(self, tows: Observed) -> None:
-        table = tows.table
-        self.explaining = {name: _explaining(tows, name) for name in (*EXPLAINING, LN_DISPLACEMENT)}
+        self._explaining = {n: _explaining(tows, n) for n in (*EXPLAINING, LN_DISPLACEMENT)}
         self._tow, self._boat, self._hull, self._crew = (
-            table.select(pl.struct(by).rank("dense")).to_series().to_numpy()
+            tows.table.select(pl.struct(by).rank("dense")).to_series().to_numpy()
             for by in (("tow_id",), ("fsn_no",), ("hull",), ("rowers", "crew_class"))
         )
-        self._class = table["crew_class"].to_numpy()
-        self.within = {name: self._class == code for name, code in WITHIN.items()}
-        self.within[ALL_CREWS] = np.ones(table.height, bool)
-        self._made: dict[tuple[str, str, bytes], tuple[Row, _Across | None]] = {}
+        self._class = tows.table["crew_class"].to_numpy()
+        self._made: dict[tuple[str, str, bytes], tuple[Row, _Design | None]] = {}
 
-    def through(
-        self, rows: IntArray, boat_type: str, explaining: str
-    ) -> tuple[Row, _Across | None]:
-        """How many tows lines through some of a type are of, and what they share, or why none."""
+    def of(
+        self, rows: IntArray, boat_type: str, explaining: str, within: str
+    ) -> tuple[IntArray, Row, _Design | None]:
+        """Which of some rows a line is through, how many they are, and the design or why none."""
+        known = np.isfinite(self._explaining[explaining][rows])
+        if within != ALL_CREWS:
+            known &= self._class[rows] == WITHIN[within]
+        rows = rows[known]
         key = boat_type, explaining, self._tow[rows].tobytes()
         if key not in self._made:
-            self._made[key] = self._across(rows, boat_type, explaining)
-        return self._made[key]
+            self._made[key] = self._design(rows, boat_type, explaining)
+        return rows, *self._made[key]
 
-    def _across(
+    def _design(
         self, rows: IntArray, boat_type: str, explaining: str
-    ) -> tuple[Row, _Across | None]:
-        crew = self._crew[rows] if explaining in OF_THE_BOAT else np.zeros(len(rows))
+    ) -> tuple[Row, _Design | None]:
+        of_boat = explaining in OF_THE_BOAT
+        crew = self._crew[rows] if of_boat else np.zeros(len(rows))
         crews = np.asarray(crew[:, None] == np.unique(crew), dtype=np.float64)
         n_boats = len(np.unique(self._boat[rows]))
         counts: Row = {"n": len(rows), "n_boats": n_boats}
@@ -269,74 +294,58 @@ class _Shared:
             return counts | {"reason": "no_type"}, None
         if n_boats < max(FEWEST_BOATS, crews.shape[1] + 2):
             return counts | {"reason": "few_boats"}, None
-        x = self.explaining[explaining][rows]
+        x = self._explaining[explaining][rows]
         centre = np.linalg.lstsq(crews, x)[0]
         centred = x - crews @ centre
         width = float(np.abs(centred).max())
         if width <= 1e-9 * np.abs(x).max():
             return counts | {"reason": "equal_values"}, None
-        design = Design.of(np.column_stack([crews, centred / width]), self._hull[rows])
         names, places, at = [], [], []
-        whose = self._class[rows] if explaining in OF_THE_BOAT else np.full(len(rows), "all")
+        whose = self._class[rows] if of_boat else np.full(len(rows), ALL_CREWS)
         for name in np.unique(whose):
             mine = whose == name
             some = np.unique(np.linspace(x[mine].min(), x[mine].max(), PLACES))
             mean = crews[mine].mean(axis=0)
-            at.append(
-                np.column_stack([np.tile(mean, (len(some), 1)), (some - mean @ centre) / width])
-            )
+            at += [[*mean, (place - mean @ centre) / width] for place in some]
             names += [str(name)] * len(some)
             places += some.tolist()
-        slope = np.eye(design.x.shape[1])[-1:]
-        across = _Across(design, width, names, places, np.concatenate([*at, slope]))
-        return counts | {"reason": ""}, across
+        at.append([*np.zeros(crews.shape[1]), 1.0])
+        columns = np.column_stack([crews, centred / width])
+        design = _Design(columns, self._hull[rows], width, names, places, np.array(at))
+        return counts | {"reason": ""}, design
 
 
-class _Line:
-    """A line of a quantity on an explaining variable, to be fitted.
+def _numbers(line: _Line, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
+    """The line and its spread, as in `type_lines`; `ends` are at `_Design.at`.
 
-    Attributes:
-        across: what it shares with others.
-        problem: the quantity.
-        noise: root mean square of the measuring errors.
-        level: what the spread is a share of.
+    Tows weigh on the line as they were measured. About the line as it is drawn they count alike in
+    its spread, and so in R2: beside that about the means of the crews.
     """
+    problem, level = line.problem, 1.0
+    if line.row["quantity"] != LN_CW:
+        level = float(abs(problem.y.mean()))
+    slope, lo, hi = (float(end[-1]) / line.design.width for end in ends)
+    about_line = float(((problem.y - problem.x @ fit.beta) ** 2).sum())
+    # The last column of x has no mean within a crew.
+    about_means = float(((problem.residual + problem.x[:, -1] * problem.plain[-1]) ** 2).sum())
+    return {
+        "slope": slope,
+        "slope_lo": lo,
+        "slope_hi": hi,
+        "r2": max(1.0 - about_line / about_means, 0.0) if about_means > 0 else None,
+        "residual_sd_ratio": float(np.sqrt(about_line / problem.rows_beyond)) / level,
+        "between_sd_ratio": fit.sd[0] / level,
+        "noise_sd_ratio": line.noise / level,
+    }
 
-    def __init__(self, across: _Across, quantity: str, y: FloatArray, variance: FloatArray) -> None:
-        self.across = across
-        self.problem = Problem.of(across.design, y, variance)
-        self.noise = float(np.sqrt(variance.mean()))
-        self.level = 1.0 if quantity == LN_CW else float(abs(y.mean()))
 
-    def row(self, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
-        """The line itself and its spread, as in `type_lines`; `ends` are at `across.at`.
-
-        Tows weigh on the line as they were measured. About the line as it is drawn they count alike
-        in its spread, and so in R2: beside that about the means of the crews.
-        """
-        problem, x = self.problem, self.problem.design.x
-        slope, lo, hi = (float(end[-1]) / self.across.width for end in ends)
-        about_line = float(((problem.y - x @ fit.beta) ** 2).sum())
-        # The last column of x has no mean within a crew.
-        about_means = float(((problem.residual + x[:, -1] * problem.plain[-1]) ** 2).sum())
-        spread = np.sqrt(about_line / problem.rows_beyond)
-        return {
-            "slope": slope,
-            "slope_lo": lo,
-            "slope_hi": hi,
-            "r2": max(1.0 - about_line / about_means, 0.0) if about_means > 0 else None,
-            "residual_sd_ratio": float(spread) / self.level,
-            "between_sd_ratio": fit.sd[0] / self.level,
-            "noise_sd_ratio": self.noise / self.level,
-        }
-
-    def points(self, names: Row, ends: mixed.Coefficients) -> dict[str, list[object]]:
-        """The line with its interval at some places; for each class at the mean of its crews."""
-        across = self.across
-        columns = {name: [value] * len(across.places) for name, value in names.items()}
-        columns |= {"crew_class": list(across.names), "x": list(across.places)}
-        value, lo, hi = (end[:-1].tolist() for end in ends)
-        return columns | {"y": value, "lo": lo, "hi": hi}
+def _points(line: _Line, ends: mixed.Coefficients) -> dict[str, list[object]]:
+    """The line with its interval at some places; for each class at the mean of its crews."""
+    names = ("method", "tows", "boat_type", "quantity", "explaining")
+    columns = {name: [line.row[name]] * len(line.design.places) for name in names}
+    columns |= {"crew_class": list(line.design.names), "x": list(line.design.places)}
+    value, lo, hi = (end[:-1].tolist() for end in ends)
+    return columns | {"y": value, "lo": lo, "hi": hi}
 
 
 def _explaining(boats: Observed, name: str) -> FloatArray:
@@ -374,74 +383,58 @@ def tow_outliers(observed: Observed) -> pl.DataFrame:
 
 def _outliers(tows: Observed, choice: Choice, names: tuple[str, ...]) -> pl.DataFrame:
     compared = [
-        one
+        (boats, quantity, problem)
         for (_, boat_type), group in tows.groups("method", "boat_type")
         if boat_type != UNKNOWN_TYPE
-        for one in (_Compared.of(group, choice, quantity) for quantity in names)
-        if one is not None
+        for quantity in names
+        for boats, problem in _compared(group, choice, quantity)
     ]
-    fits = mixed.fit_all([one.problem for one in compared], choice.components)
-    parts = [one.frame(fit) for one, fit in zip(compared, fits, strict=True) if fit]
+    fits = mixed.fit_all([problem for *_, problem in compared], choice.components)
+    parts = [
+        _deviations(boats, quantity, fit)
+        for (boats, quantity, _), fit in zip(compared, fits, strict=True)
+        if fit is not None
+    ]
     return _with_season(pl.concat([TypeOutliers.create_empty(), *parts]))
 
 
-@dataclass(frozen=True)
-class _Compared:
-    """A quantity of the boats of a type, to be compared with the others' of the type.
-
-    Attributes:
-        boats: those that have it.
-        quantity: its name.
-        problem: what is fitted; `problem.y` is the quantity.
-    """
-
-    boats: Observed
-    quantity: str
-    problem: Problem
-
-    @classmethod
-    def of(cls, boats: Observed, choice: Choice, quantity: str) -> Self | None:
-        """What is compared; None where too few boats have it."""
-        y, unit = quantities(boats)[quantity]
-        displacement = _explaining(boats, LN_DISPLACEMENT)
-        weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
-        known = np.flatnonzero(np.isfinite(y))
-        boats, y, displacement = boats.take(known), y[known], displacement[known]
-        if len(y) == 0:
-            return None
-        x = np.ones((len(y), 1))
-        if weighed and np.ptp(displacement) > 1e-9:
-            x = np.column_stack([x, displacement - displacement.mean()])
-        n_boats = boats.table["fsn_no"].n_unique()
-        if n_boats < x.shape[1] + FEWEST_BOATS:
-            return None
+def _compared(boats: Observed, choice: Choice, quantity: str) -> Iterator[tuple[Observed, Problem]]:
+    """The boats of a type that have a quantity, with what is fitted; nothing where too few have."""
+    y, unit = quantities(boats)[quantity]
+    displacement = _explaining(boats, LN_DISPLACEMENT)
+    weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
+    known = np.flatnonzero(np.isfinite(y))
+    boats, y, displacement = boats.take(known), y[known], displacement[known]
+    x = np.ones((len(y), 1))
+    if weighed and len(y) and np.ptp(displacement) > 1e-9:
+        x = np.column_stack([x, displacement - displacement.mean()])
+    if boats.table["fsn_no"].n_unique() >= x.shape[1] + FEWEST_BOATS:
         variance = unit[known] * boats.column("run_sd_ratio") ** 2
-        hull = boats.table["hull"].to_numpy()
         season = boats.table["season"].to_numpy() if mixed.OTHER in choice.components else None
-        design = Design.of(x, hull, season)
-        problem = Problem.of(design, y, variance)
-        return cls(boats, quantity, problem)
+        yield boats, Problem.of(y, variance, x, boats.table["hull"].to_numpy(), season)
 
-    def frame(self, fit: mixed.Fit) -> pl.DataFrame:
-        """Rows of the table `type_outliers`, without the candidate `season`."""
-        y, left_out = self.problem.y, fit.leave_boats_out()
-        deviation = left_out.error / np.sqrt(left_out.variance * left_out.scale)
-        chance = 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))
-        limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), chance))
-        return self.boats.table.select(
-            "method",
-            "tow_id",
-            *LINE,
-            "boat_type",
-            "season",
-            pl.lit(self.quantity).alias("quantity"),
-            "standard_speed_m_s",
-            pl.Series("value", y),
-            pl.Series("expected", y - left_out.error),
-            pl.Series("deviation_sd", deviation),
-            pl.Series("outside", np.abs(deviation) > limit),
-            pl.Series("candidates", _candidates(self.boats, self.quantity, left_out.error)),
-        )
+
+def _deviations(boats: Observed, quantity: str, fit: mixed.Fit) -> pl.DataFrame:
+    """Rows of the table `type_outliers`, without the candidate `season`."""
+    y = fit.problem.y
+    error, variance, scale = fit.leave_boats_out()
+    deviation = error / np.sqrt(variance * scale)
+    chance = 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))
+    limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), chance))
+    return boats.table.select(
+        "method",
+        "tow_id",
+        *LINE,
+        "boat_type",
+        "season",
+        pl.lit(quantity).alias("quantity"),
+        "standard_speed_m_s",
+        pl.Series("value", y),
+        pl.Series("expected", y - error),
+        pl.Series("deviation_sd", deviation),
+        pl.Series("outside", np.abs(deviation) > limit),
+        pl.Series("candidates", _candidates(boats, quantity, error)),
+    )
 
 
 def _candidates(boats: Observed, quantity: str, error: FloatArray) -> list[list[str]]:

@@ -18,7 +18,6 @@ from pipeline.consistency.observed import (
     ln_cw_variance,
     newest,
 )
-from pipeline.consistency.reml import Design, Problem
 from pipeline.quantiles import NORMAL, t_quantile
 from pipeline.tables.consistency import PredictedCw, PredictionError
 from pipeline.tables.declare import dy
@@ -81,13 +80,13 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
 def _second_opinion(
     fleet: Observed, x: FloatArray, cw: FloatArray, variance: FloatArray
 ) -> dict[str, FloatArray]:
-    design = Design.of(x, fleet.table["hull"].to_numpy(), _types(fleet))
-    problem = Problem.of(design, np.log(cw), variance)
+    hull = fleet.table["hull"].to_numpy()
+    problem = mixed.Problem.of(np.log(cw), variance, x, hull, _types(fleet))
     fit = mixed.fit(problem, (mixed.BOAT, mixed.OTHER))
-    left_out = fit.leave_boats_out()
-    known = np.isfinite(left_out.variance)
-    ratio = np.where(known, left_out.error, np.nan)
-    total = np.where(known, left_out.variance * fit.scale, np.nan)
+    error, error_variance, _ = fit.leave_boats_out()
+    known = np.isfinite(error_variance)
+    ratio = np.where(known, error, np.nan)
+    total = np.where(known, error_variance * fit.scale, np.nan)
     sd = np.sqrt(np.maximum(total - variance, 0.0))
     half = float(t_quantile(fit.dof)) * sd
     return {

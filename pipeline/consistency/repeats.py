@@ -108,7 +108,7 @@ def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
     return frame_of(Reproducibility, rows).drop("distinct_categories")
 
 
-def told_apart(reproducibility: pl.DataFrame, components: pl.DataFrame) -> pl.DataFrame:
+def with_categories(reproducibility: pl.DataFrame, components: pl.DataFrame) -> pl.DataFrame:
     """Adds `distinct_categories`: how many classes of boats of a type the test tells apart.
 
     1.41 s_boat / s_R (Measurement Systems Analysis, AIAG), with s_boat from `variance_components`

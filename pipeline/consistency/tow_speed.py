@@ -13,6 +13,7 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.homogeneity import height_given_bend, shared_bend
+from pipeline.consistency.mixed import Problem
 from pipeline.consistency.observed import (
     ALL_TYPES,
     UNKNOWN_TYPE,
@@ -22,7 +23,6 @@ from pipeline.consistency.observed import (
     newest,
     q_at,
 )
-from pipeline.consistency.reml import Design, Problem
 from pipeline.curve import LEAST_MARGIN, VALID_RATIO
 from pipeline.hull import hull_speed_m_s
 from pipeline.quantiles import NORMAL
@@ -116,8 +116,8 @@ def _trend(boats: Observed) -> tuple[Row, Problem | None]:
     if np.abs(centred).max() < 1e-9:
         return counts | {"reason": "equal_values"}, None
     variance = unit * boats.column("run_sd_ratio") ** 2
-    design = Design.of(np.column_stack([types, centred]), hull)
-    return counts | {"reason": ""}, Problem.of(design, q[known], variance[known])
+    columns = np.column_stack([types, centred])
+    return counts | {"reason": ""}, Problem.of(q[known], variance[known], columns, hull)
 
 
 def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:

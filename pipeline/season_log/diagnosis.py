@@ -236,27 +236,26 @@ def _boats_elsewhere(network: Network, season: int) -> int:
 def _rests_on(network: Network, season: int) -> str:
     """What tells: repeat boats, plain GPS, dGPS."""
     mine = network.numbers("season") == season
-    told = [f"{_boats_elsewhere(network, season)} boats towed in other seasons too"]
+    rests_on = [f"{_boats_elsewhere(network, season)} boats towed in other seasons too"]
     if np.isfinite(network.numbers("gps_ln_ratio")[mine & (network.group >= 0)]).any():
-        told.append("plain GPS")
+        rests_on.append("plain GPS")
     if (network.group[mine] < 0).any():
-        told.append("dGPS")
-    return ", ".join(told)
+        rests_on.append("dGPS")
+    return ", ".join(rests_on)
 
 
 def _confused_with(posterior: Posterior, mine: list[int], faults: list[int]) -> str | None:
     """Other faults that would explain as much, likeliest first; then what would pass for them."""
     problem = posterior.problem
-    chance: FloatArray = posterior.instead[faults].sum(axis=0) + posterior.instead[:, faults].sum(
-        axis=1
-    )
+    confusion = posterior.confusion
+    chance: FloatArray = confusion[faults].sum(axis=0) + confusion[:, faults].sum(axis=1)
     named: dict[str, float] = {}
     for fault, p in zip(problem.faults.tolist(), chance.tolist(), strict=True):
         named[_name(problem, fault)] = named.get(_name(problem, fault), 0.0) + p
     likely = [name for _, name in sorted((-p, n) for n, p in named.items() if p >= POSSIBLE)]
     hidden = ~posterior.shows
-    passes = [posterior.fit.active[posterior.taken_for[f]] for f in faults if hidden[f]]
-    passes += problem.faults[hidden & np.isin(posterior.taken_for, mine)].tolist()
+    passes = [posterior.fit.active[posterior.hidden_by[f]] for f in faults if hidden[f]]
+    passes += problem.faults[hidden & np.isin(posterior.hidden_by, mine)].tolist()
     names = dict.fromkeys([*likely, *(_name(problem, unknown) for unknown in passes)])
     own = {_name(problem, problem.faults[f]) for f in faults}
     own |= {_name(problem, posterior.fit.active[c]) for c in mine}

@@ -216,10 +216,10 @@ def _without_each_boat(posterior: Posterior) -> FloatArray:
     clusters = int(cluster.max()) + 1
     information = np.zeros((clusters, len(fit.active), len(fit.active)))
     score = np.zeros((clusters, len(fit.active)))
-    for told in fit.told:
-        whose = cluster[told.patterns.tow[:, 0]]
-        np.add.at(information, whose, told.information)
-        np.add.at(score, whose, np.einsum("bi,bip->bp", told.mean_pull, told.slope))
+    for boats in fit.boats:
+        whose = cluster[boats.rows[:, 0] // 3]
+        np.add.at(information, whose, boats.information)
+        np.add.at(score, whose, boats.score)
     left = np.linalg.inv(fit.covariance) - information
     return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
 

@@ -7,17 +7,17 @@ tows without a report, and any tow of the years before steering was aided may ha
 askew. At most one of these per boat: each, and that there is none, is a component of a normal
 mixture.
 
-Belongs here: that density with its slopes, per boat, as arrays. Does not: what moves the numbers of
-a tow (`effects`) and the search for the unknowns (`posterior`).
+Belongs here: the patterns and the covariance of a boat's numbers, as `pipeline.model` takes them.
+Does not: what moves the numbers of a tow (`effects`), the search for the unknowns (`posterior`).
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.model import Boats
 from pipeline.season_log.assumed import Settings
 
 LEVEL, BEND, GPS = range(3)
@@ -61,10 +61,14 @@ class Patterns:
         return np.array([self.altered.any(axis=0).sum(), self.askew.any(axis=0).sum()])
 
     def prior(self, shares: FloatArray) -> FloatArray:
-        """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
+        """Ln prior of each pattern but for a constant.
+
+        Args:
+            shares: of gaps with an alteration, and of tows askew.
+        """
         unchanged = self.possible - self.changes
         ln_prior = self.changes @ np.log(shares) + unchanged @ np.log1p(-shares)
-        return ln_prior - _normalised(ln_prior)[0]
+        return np.asarray(ln_prior)
 
 
 def patterns_of(
@@ -107,136 +111,76 @@ def _patterns(tow: IntArray, season: FloatArray, early: int, settings: Settings)
     )
 
 
-@dataclass(frozen=True)
-class Told:
-    """What boats with the same number of tows say, at given unknowns; 3 x tows numbers per boat.
-
-    Attributes:
-        ln_density: (boats,) of what was observed, over all patterns.
-        weight: (boats, patterns) posterior of each pattern.
-        pull: (boats, patterns, n) precision of the numbers times their residual.
-        mean_precision, mean_pull: that precision and pull, averaged over patterns.
-        drift: (boats, n, n) part of the covariance of the numbers that is the boats' drift.
-        slope: (boats, n, unknowns) of the numbers by the unknowns.
-    """
-
-    patterns: Patterns
-    ln_density: FloatArray
-    weight: FloatArray
-    pull: FloatArray
-    mean_precision: FloatArray
-    mean_pull: FloatArray
-    drift: FloatArray
-    slope: FloatArray
-
-    @property
-    def observed_precision(self) -> FloatArray:
-        """Precision of the numbers, less what the pattern being unknown takes off (Louis 1982)."""
-        off = self.pull - self.mean_pull[:, None]
-        return np.asarray(self.mean_precision - np.einsum("bp,bpi,bpj->bij", self.weight, off, off))
-
-    @property
-    def information(self) -> FloatArray:
-        """Observed information on the unknowns, per boat."""
-        return np.asarray(np.swapaxes(self.slope, 1, 2) @ self.observed_precision @ self.slope)
-
-    @property
-    def complete_information(self) -> FloatArray:
-        """The same as if the pattern of each boat were known."""
-        return np.asarray(np.swapaxes(self.slope, 1, 2) @ self.mean_precision @ self.slope)
-
-    @property
-    def score(self) -> FloatArray:
-        """Slope of the ln density, summed over boats."""
-        return np.asarray(np.einsum("bi,bip->p", self.mean_pull, self.slope))
-
-
-def tell(
+def boat_likelihoods(
     groups: list[Patterns],
     residual: FloatArray,
     covariance: FloatArray,
     state: FloatArray,
-    slope: FloatArray,
-    drift_variance: float,
+    design: FloatArray,
+    drifts: list[FloatArray],
     shares: FloatArray,
-) -> Iterator[Told]:
-    """The density of all boats.
+) -> list[Boats]:
+    """What the boats of each group say; 3 numbers per tow.
 
     Args:
         groups: boats by number of tows.
         residual: (tows, 3) observed less predicted, level centred per boat.
         covariance: (tows, 3, 3) of what is a tow's own.
         state: (tows, 3, 2) slope of the numbers by the boat's level and bend.
-        slope: (tows, 3, unknowns).
-        drift_variance: of the drift of a boat's level, per year.
+        design: (tows, 3, unknowns).
+        drifts: of each group, as `drift_of` gives it.
         shares: of gaps between tows in which a boat was altered without a report, and of early
             tows that were pulled askew.
     """
-    for group in groups:
+    said = []
+    for group, drift in zip(groups, drifts, strict=True):
         boats, tows = group.tow.shape
-        n = 3 * tows
-        full, drift = covariance_of(group, covariance, state, drift_variance)
-        precision = np.linalg.inv(full)
         own = np.repeat(residual[group.tow][:, None], len(group.askew), axis=1)
         own[..., LEVEL] -= group.excess
-        own = own.reshape(boats, -1, n)
-        pull = np.einsum("bpij,bpj->bpi", precision, own)
-        ln_density = -0.5 * ((pull * own).sum(axis=2) + np.linalg.slogdet(full)[1])
-        ln_joint = ln_density + group.prior(shares)
-        ln_all, weight = _normalised(ln_joint)
-        yield Told(
-            group,
-            ln_all,
-            weight,
-            pull,
-            np.einsum("bp,bpij->bij", weight, precision),
-            np.einsum("bp,bpi->bi", weight, pull),
-            drift,
-            slope[group.tow].reshape(boats, n, -1),
+        said.append(
+            Boats.of(
+                (3 * group.tow[..., None] + np.arange(3)).reshape(boats, 3 * tows),
+                design[group.tow].reshape(boats, 3 * tows, -1),
+                own.reshape(boats, -1, 3 * tows),
+                covariance_of(group, covariance, state, drift),
+                group.prior(shares),
+            )
         )
+    return said
+
+
+def drift_of(group: Patterns, state: FloatArray, drift_variance: float) -> FloatArray:
+    """Part of the covariance of the numbers that is the boats' drift, (boats, n, n).
+
+    Args:
+        drift_variance: of the drift of a boat's level, per year.
+    """
+    by_level = state[group.tow][..., 0].reshape(len(group.tow), -1)
+    return by_level[:, :, None] * by_level[:, None] * _per_number(drift_variance * group.drift)
 
 
 def covariance_of(
-    group: Patterns, covariance: FloatArray, state: FloatArray, drift_variance: float
-) -> tuple[FloatArray, FloatArray]:
-    """Covariance of the numbers of each boat.
+    group: Patterns, covariance: FloatArray, state: FloatArray, drift: FloatArray
+) -> FloatArray:
+    """Covariance of the numbers of each boat under each pattern, (boats, patterns, n, n).
 
     Args:
-        covariance, state, drift_variance: as `tell` takes them.
-
-    Returns:
-        Under each pattern, (boats, patterns, n, n), and the part of it that is drift, (boats, n,
-        n).
+        covariance, state, drift: as `boat_likelihoods` takes them.
     """
     boats, tows = group.tow.shape
     z = state[group.tow].reshape(boats, 3 * tows, 2)
     by_level, by_bend = (z[:, :, None, i] * z[:, None, :, i] for i in range(2))
     full = by_level[:, None] * _per_number(group.level)
     full += by_bend[:, None] * _per_number(group.bend)
-    drift = by_level * _per_number(drift_variance * group.drift)
     full += drift[:, None]
     of_pairs = full.reshape(boats, -1, tows, 3, tows, 3)
     each = np.arange(tows)
     # Indexing twice with one array puts that axis first.
     of_pairs[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
     of_pairs[:, :, each, LEVEL, each, LEVEL] += group.excess_variance * group.askew
-    return full, drift
+    return full
 
 
 def _per_number(of_tows: FloatArray) -> FloatArray:
     """What each pair of tows has, (..., tows, tows), for each pair of their numbers."""
     return np.repeat(np.repeat(of_tows, 3, axis=-1), 3, axis=-2)
-
-
-def _normalised(ln_weight: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Ln of the sum of weights along the last axis, and the weights with a sum of 1.
-
-    What others add to the largest counts in full, as in `scipy.special.logsumexp`, which takes ten
-    times as long on arrays as small as these.
-    """
-    top: FloatArray = ln_weight.max(axis=-1, keepdims=True)
-    weight, largest = np.exp(ln_weight - top), ln_weight == top
-    often = largest.sum(axis=-1)
-    others = np.where(largest, 0.0, weight).sum(axis=-1) / often
-    ln_sum = np.log1p(others) + np.log(often) + top[..., 0]
-    return ln_sum, weight / weight.sum(axis=-1, keepdims=True)

@@ -8,13 +8,14 @@ and stays by its own fit or not at all.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
 from pipeline.choice import first_largest
+from pipeline.model import Boats, Scores
 from pipeline.season_log.assumed import Settings
 from pipeline.season_log.effects import (
     OF_BOATS,
@@ -28,10 +29,10 @@ from pipeline.season_log.effects import (
 from pipeline.season_log.likelihood import (
     GPS,
     Patterns,
-    Told,
+    boat_likelihoods,
     covariance_of,
+    drift_of,
     patterns_of,
-    tell,
 )
 from pipeline.season_log.network import Network
 
@@ -206,7 +207,7 @@ class Fit:
             of boats per year.
         covariance: (k, k) of the values.
         ln_variance_covariance: of the ln variances.
-        told: what the boats say there.
+        groups: boats by number of tows; boats: what each group says there.
         slopes: of the numbers of each tow.
         own: (n, 3, 3) covariance of what is a tow's own.
         parts: (variances but that of drift, n, 3, 3) slope of `own` by each ln variance.
@@ -217,7 +218,8 @@ class Fit:
     state: _State
     covariance: FloatArray
     ln_variance_covariance: FloatArray
-    told: list[Told]
+    groups: list[Patterns]
+    boats: list[Boats]
     slopes: Slopes
     own: FloatArray
     parts: FloatArray
@@ -228,10 +230,10 @@ class Fit:
         """Values of the active unknowns, (k,)."""
         return self.state.value
 
-    def precision(self, told: Told) -> FloatArray:
+    def precision(self, group: Patterns) -> FloatArray:
         """Of the numbers of boats, (boats, patterns, n, n): too large to keep of every fit."""
-        by_state = self.slopes.state, self.state.drift_variance
-        return np.asarray(np.linalg.inv(covariance_of(told.patterns, self.own, *by_state)[0]))
+        drift = drift_of(group, self.slopes.state, self.state.drift_variance)
+        return np.asarray(np.linalg.inv(covariance_of(group, self.own, self.slopes.state, drift)))
 
     def dof(self, direction: FloatArray) -> FloatArray:
         """Satterthwaite's degrees of freedom of combinations of the active unknowns.
@@ -249,14 +251,14 @@ class Fit:
     def moved(self) -> FloatArray:
         """Slope of the covariance of the scores by each ln variance, (variances, k, k)."""
         k = len(self.active)
-        by_tow = np.zeros((len(self.own), 3, k))
-        by_drift = np.zeros((k, k))
-        for told in self.told:
-            weighed = told.mean_precision @ told.slope
-            by_drift += np.einsum("bik,bil->kl", weighed, told.drift @ weighed, optimize=True)
-            by_tow[told.patterns.tow] = weighed.reshape(*told.patterns.tow.shape, 3, k)
-        rows = by_tow.reshape(-1, k)
-        by_parts = [rows.T @ (part @ by_tow).reshape(-1, k) for part in self.parts]
+        by_number, by_drift = np.zeros((3 * len(self.own), k)), np.zeros((k, k))
+        for group, boats in zip(self.groups, self.boats, strict=True):
+            weighed = boats.weighed
+            drift = drift_of(group, self.slopes.state, self.state.drift_variance)
+            by_drift += (np.swapaxes(weighed, 1, 2) @ drift @ weighed).sum(axis=0)
+            by_number[boats.rows] = weighed
+        by_tow = by_number.reshape(-1, 3, k)
+        by_parts = [by_number.T @ (part @ by_tow).reshape(-1, k) for part in self.parts]
         return np.stack([*by_parts, by_drift])
 
 
@@ -303,20 +305,31 @@ def _step(problem: Problem, active: IntArray, now: _State, changes: bool) -> tup
     own, parts = _own(problem, tangent, now.ln_variance)
     design = problem.design(tangent, active)
     shares = now.shares if changes else NO_CHANGE
-    drift = now.drift_variance
-    told = list(tell(problem.groups, residual, own, tangent.state, design, drift, shares))
-    full = np.sum([t.complete_information.sum(axis=0) for t in told], axis=0)
-    seen = np.sum([t.information.sum(axis=0) for t in told], axis=0) if changes else full
+    drifts = [drift_of(g, tangent.state, now.drift_variance) for g in problem.groups]
+    boats = boat_likelihoods(problem.groups, residual, own, tangent.state, design, drifts, shares)
+    full = np.sum([b.complete_information.sum(axis=0) for b in boats], axis=0)
+    seen = np.sum([b.information.sum(axis=0) for b in boats], axis=0) if changes else full
     covariance: FloatArray = np.linalg.inv(_positive(seen, full, precision)).astype(np.float64)
-    score = np.sum([t.score for t in told], axis=0)
+    score = np.sum([b.score.sum(axis=0) for b in boats], axis=0)
     step = covariance @ (score - precision * (now.value - mean))
-    slope, fisher = _variance_slopes(told, covariance, parts)
+    slope, fisher = _variance_slopes(boats, covariance, parts, drifts)
     # A variance that shrinks takes its own slope with it: that bends the density of its logarithm.
     fisher += np.diag(prior_precision + np.maximum(-slope, 0.0))
     ln_variance_covariance: FloatArray = np.linalg.inv(fisher).astype(np.float64)
     move = ln_variance_covariance @ (slope - prior_precision * (now.ln_variance - prior))
-    gain = scipy.special.logit(_shares(told, problem.settings)) - scipy.special.logit(now.shares)
-    fitted = Fit(active, now, covariance, ln_variance_covariance, told, tangent, own, parts)
+    found = _shares(problem.groups, boats, problem.settings)
+    gain = scipy.special.logit(found) - scipy.special.logit(now.shares)
+    fitted = Fit(
+        active,
+        now,
+        covariance,
+        ln_variance_covariance,
+        problem.groups,
+        boats,
+        tangent,
+        own,
+        parts,
+    )
     return fitted, np.concatenate([step, np.clip(move, -1.0, 1.0), gain])
 
 
@@ -387,37 +400,35 @@ def _own(
 
 
 def _variance_slopes(
-    told: list[Told], covariance: FloatArray, parts: FloatArray
+    boats: list[Boats], covariance: FloatArray, parts: FloatArray, drifts: list[FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
     """Slope of the restricted ln likelihood by the ln variances, and their information."""
     variances = len(parts) + 1
     slope, fisher = np.zeros(variances), np.zeros((variances, variances))
-    for t in told:
-        boats, tows = t.patterns.tow.shape
-        design = t.mean_precision @ t.slope
-        excess = np.einsum("bp,bpi,bpj->bij", t.weight, t.pull, t.pull) - t.mean_precision
-        excess += design @ covariance @ np.swapaxes(design, 1, 2)
-        each = np.arange(tows)
-        blocks = excess.reshape(boats, tows, 3, tows, 3)[:, each, :, each, :]
-        part = parts[:, t.patterns.tow]
+    for some, drift in zip(boats, drifts, strict=True):
+        b, n = some.rows.shape
+        tow, each = some.rows[:, ::3] // 3, np.arange(n // 3)
+        excess = some.excess(covariance[None])
+        blocks = excess.reshape(b, n // 3, 3, n // 3, 3)[:, each, :, each, :]
+        part = parts[:, tow]
         slope[:-1] += 0.5 * np.einsum("tbij,abtji->a", blocks, part, optimize=True)
-        slope[-1] += 0.5 * np.einsum("bij,bij->", excess, t.drift)
-        precision = t.mean_precision.reshape(boats, tows, 3, tows, 3)
+        slope[-1] += 0.5 * (excess * drift).sum()
+        precision = some.precision.reshape(b, n // 3, 3, n // 3, 3)
         across = np.einsum("bkilj,abljm->abkilm", precision, part, optimize=True)
-        across = across.reshape(-1, boats, 3 * tows, 3 * tows)
-        across = np.concatenate([across, (t.mean_precision @ t.drift)[None]])
+        across = across.reshape(-1, b, n, n)
+        across = np.concatenate([across, (some.precision @ drift)[None]])
         turned = np.ascontiguousarray(across.swapaxes(2, 3)).reshape(variances, -1)
         fisher += 0.5 * across.reshape(variances, -1) @ turned.T
     return slope, fisher
 
 
-def _shares(told: list[Told], settings: Settings) -> FloatArray:
+def _shares(groups: list[Patterns], boats: list[Boats], settings: Settings) -> FloatArray:
     """Shares of gaps with an alteration and of tows askew: their priors and what was found."""
     possible = np.array(settings.change_counts)
     changes = possible * settings.change_shares
-    for t in told:
-        changes += (t.weight @ t.patterns.changes).sum(axis=0)
-        possible += len(t.patterns.tow) * t.patterns.possible
+    for group, some in zip(groups, boats, strict=True):
+        changes += (some.weight @ group.changes).sum(axis=0)
+        possible += len(group.tow) * group.possible
     return np.asarray(changes / possible)
 
 
@@ -430,18 +441,18 @@ class Posterior:
         fit: with the faults that are likelier than not.
         chance: (faults,) probability of each fault, in the order of `Problem.faults`; 0 where its
             own fit did not bear out what one step promised.
-        instead: (faults, faults) probability that the one is there and would have been taken for
+        confusion: (faults, faults) probability that the one is there and would have been taken for
             the other: what it could be confused with.
         shows: (faults,) whether a fault of the usual size would be likelier than not.
-        taken_for: (faults,) unknown of the fit that would move most, in standard deviations.
+        hidden_by: (faults,) unknown of the fit that would move most, in standard deviations.
     """
 
     problem: Problem
     fit: Fit
     chance: FloatArray
-    instead: FloatArray
+    confusion: FloatArray
     shows: BoolArray
-    taken_for: IntArray
+    hidden_by: IntArray
 
     @property
     def places(self) -> IntArray:
@@ -523,15 +534,16 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
     return replace(fitted, settled=False)
 
 
-@dataclass(frozen=True)
-class _More:
-    """What one more fault would do to a fit: `ln_odds` of it, its value and variance, (faults,).
+class Candidates(NamedTuple):
+    """What each candidate fault, by itself, would do to a fit.
 
-    `shift` (k, faults) is how much the unknowns of the fit fall per unit of the fault.
+    Attributes:
+        ln_odds: of it, (faults,).
+        variance: of its size, (faults,).
+        shift: how much the unknowns of the fit fall per unit of the fault, (k, faults).
     """
 
     ln_odds: FloatArray
-    value: FloatArray
     variance: FloatArray
     shift: FloatArray
 
@@ -549,37 +561,22 @@ def _faults_prior(problem: Problem) -> tuple[FloatArray, FloatArray]:
     return np.array([u.sd for u in faults]) ** 2, np.array([u.chance for u in faults])
 
 
-def _candidates(problem: Problem, fitted: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Information of every fault with the fit's unknowns and itself, and its score."""
+def _scores(problem: Problem, fitted: Fit) -> Scores:
+    """The scores of all candidate faults."""
     design = problem.design(fitted.slopes, problem.faults)
-    across = np.zeros((len(fitted.active), len(problem.faults)))
-    itself, score = np.zeros(len(problem.faults)), np.zeros(len(problem.faults))
-    for t in fitted.told:
-        boats, n = t.mean_pull.shape
-        by = design[t.patterns.tow].reshape(boats, n, -1)
-        weighted = t.observed_precision @ by
-        across += np.einsum("bik,bif->kf", t.slope, weighted, optimize=True)
-        itself += (by * weighted).sum(axis=(0, 1))
-        score += np.einsum("bi,bif->f", t.mean_pull, by, optimize=True)
-    return across, itself, score
+    return Scores.of(fitted.boats, design.reshape(-1, design.shape[2]))
 
 
-def _more(
-    problem: Problem,
-    candidates: tuple[FloatArray, FloatArray, FloatArray],
-    covariance: FloatArray,
-    away: FloatArray,
-) -> _More:
+def _candidates(
+    problem: Problem, scores: Scores, covariance: FloatArray, away: FloatArray
+) -> Candidates:
     """Each fault added by itself to a normal posterior whose mean is `away` from the fit's."""
-    across, itself, score = candidates
     prior, chance = _faults_prior(problem)
-    shift = covariance @ across
-    information = np.maximum(itself - (across * shift).sum(axis=0), 0.0)
-    pull = score - across.T @ away
-    variance = prior / (1.0 + prior * information)
+    pull = scores.pull - scores.across.T @ away
+    variance = prior / (1.0 + prior * scores.information(covariance))
     ln_odds = 0.5 * (pull**2 * variance + np.log(variance / prior))
     ln_odds += scipy.special.logit(chance)
-    return _More(ln_odds, variance * pull, variance, shift)
+    return Candidates(ln_odds, variance, covariance @ scores.across)
 
 
 def _in_fit(problem: Problem, fitted: Fit) -> tuple[IntArray, FloatArray]:
@@ -609,7 +606,8 @@ def _better(problem: Problem, fitted: Fit, fitted_before: set[tuple[int, ...]]) 
     if len(places) and ln_odds.min() < 0.0:
         return np.delete(fitted.active, places[int(ln_odds.argmin())])
     nothing = np.zeros(len(fitted.active))
-    more = _more(problem, _candidates(problem, fitted), fitted.covariance, nothing).ln_odds
+    scores = _scores(problem, fitted)
+    more = _candidates(problem, scores, fitted.covariance, nothing).ln_odds
     more[np.isin(problem.faults, fitted.active)] = -np.inf
     there = _kinds_in(problem, fitted.active)
     left = [tuple(sorted((*there, kind))) in fitted_before for kind in problem.kinds.tolist()]
@@ -620,25 +618,26 @@ def _better(problem: Problem, fitted: Fit, fitted_before: set[tuple[int, ...]]) 
 
 def _posterior(problem: Problem, fitted: Fit) -> Posterior:
     """The fit, with how likely each fault is beside it or in place of one of its own."""
-    candidates = _candidates(problem, fitted)
+    scores = _scores(problem, fitted)
     places, ln_odds = _in_fit(problem, fitted)
     own = np.searchsorted(problem.faults, fitted.active[places])
-    more = _more(problem, candidates, fitted.covariance, np.zeros(len(fitted.active)))
+    more = _candidates(problem, scores, fitted.covariance, np.zeros(len(fitted.active)))
     # What the search has tried and rejected by its own fit has odds of one step still.
     chance = np.where(more.ln_odds > 0.0, 0.0, scipy.special.expit(more.ln_odds))
     chance[own] = scipy.special.expit(ln_odds)
-    instead = np.zeros((len(problem.faults), len(problem.faults)))
+    confusion = np.zeros((len(problem.faults), len(problem.faults)))
     for place, fault, odds in zip(places.tolist(), own.tolist(), ln_odds.tolist(), strict=True):
         along = fitted.covariance[:, place] / fitted.covariance[place, place]
         without = fitted.covariance - np.outer(along, fitted.covariance[place])
-        others = _more(problem, candidates, without, -along * fitted.value[place]).ln_odds - odds
+        away = -along * fitted.value[place]
+        others = _candidates(problem, scores, without, away).ln_odds - odds
         others[own] = -np.inf
-        instead[fault] = scipy.special.expit(others)
+        confusion[fault] = scipy.special.expit(others)
     return Posterior(
         problem,
         fitted,
         chance,
-        instead,
+        confusion,
         more.shows(problem),
         first_largest(np.abs(more.shift) / np.sqrt(np.diag(fitted.covariance))[:, None]),
     )

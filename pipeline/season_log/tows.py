@@ -12,9 +12,10 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray
+from pipeline.model import Boats
 from pipeline.quantiles import LEVEL as INTERVAL_LEVEL
 from pipeline.season_log.effects import FORCE, ZERO, ZERO_DRIFT, slopes
-from pipeline.season_log.likelihood import LEVEL, Told
+from pipeline.season_log.likelihood import LEVEL, Patterns
 from pipeline.season_log.posterior import Fit, Posterior, Problem
 
 BISECTIONS: Final = 40
@@ -72,16 +73,15 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
 def _askew(fit: Fit, tows: int) -> FloatArray:
     """Root mean square of what being pulled askew added to ln Cw of each tow."""
     square = np.zeros(tows)
-    for t in fit.told:
-        boats, of_boat = t.patterns.tow.shape
-        pull = t.pull.reshape(boats, -1, of_boat, 3)[..., LEVEL]
-        own = np.einsum("bpkk->bpk", fit.precision(t))[..., LEVEL::3]
-        variance = t.patterns.excess_variance
-        mean = t.patterns.excess + variance * pull
-        weight = t.weight[:, :, None] * t.patterns.askew
+    for group, boats in zip(fit.groups, fit.boats, strict=True):
+        pull = boats.pull[..., LEVEL::3]
+        own = np.einsum("bpkk->bpk", fit.precision(group))[..., LEVEL::3]
+        variance = group.excess_variance
+        mean = group.excess + variance * pull
+        weight = boats.weight[:, :, None] * group.askew
         weight *= weight.sum(axis=1, keepdims=True) > LIKELY
         there = (weight * (mean**2 + variance - variance**2 * own)).sum(axis=1)
-        square[t.patterns.tow] = there
+        square[group.tow] = there
     return np.sqrt(square)
 
 
@@ -107,14 +107,14 @@ def best_estimates(
     true_level = np.where(posterior.of_boats, posterior.design[:, LEVEL], 0.0)
     numbers = np.zeros((len(problem.q), 4))
     shares = []
-    for told in posterior.fit.told:
-        numbers[told.patterns.tow], weight = _of_boats(told, posterior, true_level)
-        tows = told.patterns.tow.shape[1]
+    for group, boats in zip(posterior.fit.groups, posterior.fit.boats, strict=True):
+        numbers[group.tow], weight = _of_boats(group, boats, posterior, true_level)
+        tows = group.tow.shape[1]
         shares.append(
             pl.DataFrame(
                 {
-                    "tow": np.repeat(told.patterns.tow, tows, axis=1).ravel(),
-                    "other": np.tile(told.patterns.tow, (1, tows)).ravel(),
+                    "tow": np.repeat(group.tow, tows, axis=1).ravel(),
+                    "other": np.tile(group.tow, (1, tows)).ravel(),
                     "weight": weight.ravel(),
                 }
             )
@@ -168,31 +168,31 @@ def _as_measured(problem: Problem, errors: pl.DataFrame) -> FloatArray:
 
 
 def _of_boats(
-    told: Told, posterior: Posterior, true_level: FloatArray
+    group: Patterns, boats: Boats, posterior: Posterior, true_level: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Boats with the same number of tows: (boats, tows, 4) numbers, (boats, tows, tows) shares."""
-    tow = told.patterns.tow
-    boats, tows = tow.shape
+    tow = group.tow
+    count, tows = tow.shape
     state = posterior.fit.slopes.state[tow][..., 0]
     # Covariance of the level at each tow with every number of the boat, per pattern.
-    drift = posterior.fit.state.drift_variance * told.patterns.drift
-    level = told.patterns.level + drift[:, None]
+    drift = posterior.fit.state.drift_variance * group.drift
+    level = group.level + drift[:, None]
     with_level = np.einsum("bpkl,bli->bpkli", level, state)
-    with_level = with_level.reshape(boats, -1, tows, 3 * tows)
-    gain = with_level @ posterior.fit.precision(told)
+    with_level = with_level.reshape(count, -1, tows, 3 * tows)
+    gain = with_level @ posterior.fit.precision(group)
     prior = np.einsum("bpkk->bpk", level)
     variance = prior - (gain * with_level).sum(axis=3)
-    by = true_level[tow][:, None] - gain @ posterior.design[tow].reshape(boats, 1, 3 * tows, -1)
-    mean = np.einsum("bpkn,bpn->bpk", with_level, told.pull)
+    by = true_level[tow][:, None] - gain @ boats.design[:, None]
+    mean = np.einsum("bpkn,bpn->bpk", with_level, boats.pull)
     shared = np.einsum("bpkf,fg,bpkg->bpk", by, posterior.covariance, by, optimize=True)
     variance = np.maximum(variance + shared, 1e-12)
-    weight = np.repeat(told.weight[:, :, None], tows, axis=2)
+    weight = np.repeat(boats.weight[:, :, None], tows, axis=2)
     average = (weight * mean).sum(axis=1)
     spread = (weight * (variance + (mean - average[:, None]) ** 2)).sum(axis=1)
     bounds = _quantiles(weight, mean, np.sqrt(variance))
     numbers = np.stack([average, np.sqrt(spread), *bounds], axis=2)
-    on_level = gain.reshape(boats, -1, tows, tows, 3)[..., LEVEL]
-    return numbers, np.einsum("bp,bpkl->bkl", told.weight, on_level)
+    on_level = gain.reshape(count, -1, tows, tows, 3)[..., LEVEL]
+    return numbers, np.einsum("bp,bpkl->bkl", boats.weight, on_level)
 
 
 def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> list[FloatArray]:

@@ -1,174 +1,206 @@
-"""What starts a rebuild by itself: schedules and sensor; with real processes: `test_served`."""
+"""What starts a rebuild by itself, and whom it mails; with real processes: `test_served`."""
 
-import datetime as dt
+import base64
+import shutil
+import socketserver
 import subprocess
 import sys
+import threading
+from contextlib import contextmanager
 from pathlib import Path
+from typing import ClassVar
 
 import dagster as dg
 import pytest
 
-from assets.automation import (
-    ASK_AGAIN_S,
-    TRIES,
-    archive_sensor,
-    rebuild_job,
-    schedules,
-)
-from assets.definitions import build_defs, defs
-from assets.settings import Settings
-from tests.conftest import METHODS
+from assets.automation import archive_changed, rebuild_failed
+from assets.definitions import build_defs
+from assets.mail import send_mail
+from assets.settings import Settings, read_settings
+from pipeline.errors import MissingKnowledgeError
+from tests.assets.test_rebuild import samples_files, spoil
+from tests.conftest import METHODS, directly, in_one_process
 
 ROOT = Path(__file__).parents[2]
-
-
-@pytest.fixture
-def archive(tmp_path):
-    """A folder with three files; the sensor opens none."""
-    for name in ("sleeplijsten/sleeplijst_2009.csv", "meetdata_2009/a.csv", "meetdata_2009/b.csv"):
-        path = tmp_path / "archive" / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text("x")
-    return tmp_path / "archive"
 
 
 class Ticks:
     """The sensor, asked again and again with the cursor it gave."""
 
-    def __init__(self, archive, instance):
-        self.sensor, self.cursor = archive_sensor(archive, is_served=True), None
-        self.instance = instance
+    def __init__(self, archive):
+        self.sensor, self.cursor = archive_changed(archive, is_served=True), None
 
     def tick(self):
         """How many rebuilds a tick asks for."""
-        context = dg.build_sensor_context(self.instance, cursor=self.cursor)
-        found = self.sensor.evaluate_tick(context)
+        with dg.DagsterInstance.ephemeral() as instance:
+            found = self.sensor.evaluate_tick(dg.build_sensor_context(instance, self.cursor))
         self.cursor = found.cursor or self.cursor
-        self.requests = found.run_requests or []
-        self.said = found.skip_message
-        assert len(self.cursor or "") < 200  # it is kept for every tick
-        return len(self.requests)
+        return len(found.run_requests or [])
 
 
 @pytest.fixture
-def ticks(archive):
-    """The sensor after it saw the archive for the first time."""
-    with dg.DagsterInstance.ephemeral() as instance:
-        found = Ticks(archive, instance)
-        assert found.tick() == 0
-        assert found.tick() == 1
-        yield found
+def archive(tmp_path):
+    """A folder with two files; the sensor opens none."""
+    (tmp_path / "archive").mkdir()
+    for name in ("a.csv", "b.csv"):
+        (tmp_path / "archive" / name).write_text("x")
+    return tmp_path / "archive"
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("change", "asked"),
     [
-        lambda root: (root / "meetdata_2009/c.csv").write_text("y"),
-        lambda root: (root / "meetdata_2009/a.csv").write_text("mended"),
-        lambda root: (root / "meetdata_2009/b.csv").unlink(),
+        (lambda root: (root / "c.csv").write_text("y"), 1),
+        (lambda root: (root / "a.csv").write_text("mended"), 1),
+        (lambda root: (root / "b.csv").unlink(), 1),
+        (lambda root: (root / ".lock").write_text(""), 0),
+        (lambda root: root.rename(root.with_name("away")), 0),
     ],
-    ids=["came", "changed", "went"],
+    ids=["came", "changed", "went", "hidden", "disk away"],
 )
-def test_a_file_that_came_changed_or_went_asks_for_one_rebuild(ticks, archive, change):
-    assert ticks.tick() == 0
-    assert ticks.said == "no file of the archive changed"
+def test_a_file_that_came_changed_or_went_asks_for_one_rebuild(archive, change, asked):
+    sensor = Ticks(archive)
+    assert [sensor.tick() for _ in range(3)] == [0, 1, 0]
     change(archive)
-    assert ticks.tick() == 0
-    assert "waiting until the archive is left alone" in ticks.said
-    assert ticks.tick() == 1
-    assert ticks.tick() == 0
+    assert [sensor.tick() for _ in range(3)] == [0, asked, 0]
 
 
-def test_while_files_are_copied_nothing_is_asked(ticks, archive):
+def test_while_files_are_copied_nothing_is_asked(archive):
+    sensor = Ticks(archive)
     for number in range(3):
-        (archive / f"meetdata_2009/new{number}.csv").write_text("z")
-        assert ticks.tick() == 0
-    assert ticks.tick() == 1
+        (archive / f"new{number}.csv").write_text("z")
+        assert sensor.tick() == 0
+    assert sensor.tick() == 1
 
 
-def test_an_archive_whose_disk_is_gone_asks_for_nothing(ticks, archive):
-    archive.rename(archive.with_name("away"))
-    assert ticks.tick() == 0
-    assert "is its disk there?" in ticks.said
-    archive.with_name("away").rename(archive)
-    assert ticks.tick() == 0
-    assert ticks.said == "no file of the archive changed"
+class MailServer(socketserver.StreamRequestHandler):
+    """Takes mail as SMTP says, from who logs in with the right password."""
+
+    PASSWORD: ClassVar[bytes] = base64.b64encode(b"\0tc@x.org\0secret")
+    taken: ClassVar[list[str]] = []
+
+    def handle(self):
+        self.wfile.write(b"220 here\r\n")
+        while line := self.rfile.readline().strip():
+            self.wfile.write(self.answer(line.split()) + b"\r\n")
+
+    def answer(self, words):
+        match words[0].upper():
+            case b"EHLO":
+                return b"250-here\r\n250 AUTH PLAIN"
+            case b"AUTH":
+                return b"235 yes" if words[-1] == self.PASSWORD else b"535 no"
+            case b"QUIT":
+                return b"221 bye"
+            case b"DATA":
+                self.wfile.write(b"354 go on\r\n")
+                lines = iter(self.rfile.readline, b".\r\n")
+                self.taken.append(b"".join(lines).decode())
+        return b"250 ok"
 
 
-def test_a_change_stays_open_until_a_run_succeeded(ticks, archive, monkeypatch):
-    (archive / "meetdata_2009/c.csv").write_text("y")
-    assert (ticks.tick(), ticks.tick()) == (0, 1)
-    (request,) = ticks.requests
-    clock = dt.datetime(2026, 11, 21, 3, tzinfo=dt.UTC).timestamp()
-    monkeypatch.setattr("time.time", lambda: clock)
-    run = ticks.instance.create_run_for_job(rebuild_job, tags=request.tags)
-    assert ticks.tick() == 0  # it is in the queue
-    ticks.instance.report_run_failed(run)
-    assert ticks.tick() == 0
-    clock += ASK_AGAIN_S + 1
-    assert ticks.tick() == 1
-    run = ticks.instance.create_run_for_job(rebuild_job, tags=ticks.requests[0].tags)
-    ticks.instance.handle_new_event(_ended_well(run))
-    clock += ASK_AGAIN_S + 1
-    assert ticks.tick() == 0
-
-
-def _ended_well(run):
-    event = dg.DagsterEvent(dg.DagsterEventType.RUN_SUCCESS.value, run.job_name)
-    return dg.EventLogEntry(None, "info", "", run.run_id, 0.0, dagster_event=event)
-
-
-def test_a_run_whose_archive_is_away_is_tried_again(tmp_path, monkeypatch):
-    monkeypatch.setattr("assets.automation.TRY_AGAIN_S", 0)
-    location = build_defs(str(tmp_path / "gone"), str(tmp_path / "data"), Settings(methods=METHODS))
-    with dg.DagsterInstance.ephemeral() as instance:
-        result = location.resolve_job_def("rebuild").execute_in_process(
-            instance=instance, raise_on_error=False
+@pytest.fixture
+def mailed(tmp_path, monkeypatch):
+    """Settings that mail to a server on this machine, and what that takes."""
+    monkeypatch.setattr(MailServer, "taken", [])
+    (tmp_path / "password").write_text("secret\n")
+    with socketserver.TCPServer(("127.0.0.1", 0), MailServer) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        address = f"smtp://tc%40x.org@127.0.0.1:{server.server_address[1]}"
+        yield (
+            Settings(
+                methods=METHODS,
+                mail_to="tc@example.org",
+                smtp=address,
+                smtp_password_file=tmp_path / "password",
+            ),
+            MailServer.taken,
         )
-    assert len([e for e in result.all_events if e.event_type_value == "STEP_UP_FOR_RETRY"]) == TRIES
+        server.shutdown()
 
 
-def test_hidden_files_and_links_are_not_followed(ticks, archive, tmp_path):
-    (archive / ".lock").write_text("")
-    assert ticks.tick() == 0
-    assert ticks.said == "no file of the archive changed"
+def test_mail_goes_by_the_mail_server_with_the_password(mailed, monkeypatch):
+    settings, taken = mailed
+    send_mail(settings, "onderwerp", "tekst")
+    (mail,) = taken
+    assert "To: tc@example.org" in mail
+    assert "Subject: onderwerp" in mail
+    monkeypatch.setenv("HERIJK_SMTP_PASSWORD", "wrong")
+    with pytest.raises(OSError, match="535") as refused:
+        send_mail(settings, "onderwerp", "tekst")
+    assert "wrong" not in str(refused.value)
+    with pytest.raises(ValueError, match="linefeed"):
+        send_mail(settings.model_copy(update={"mail_to": "a@b.c\nBcc: x@y.z"}), "s", "t")
 
 
-def test_a_night_without_a_change_does_no_work_and_says_so(bench):
-    """The job itself, as the schedule runs it."""
+@contextmanager
+def run_job(bench, settings):
+    """The job as the schedule runs it: its result, and Dagster's records."""
+    location = build_defs(str(bench.archive), str(bench.data), settings)
+    with dg.DagsterInstance.ephemeral() as instance, directly(), in_one_process():
+        job = location.resolve_job_def("rebuild")
+        yield job.execute_in_process(instance=instance, raise_on_error=False), instance
+
+
+def test_a_night_without_a_change_does_no_work_and_mails_nothing(bench, mailed):
+    settings, taken = mailed
     bench.rebuild()
     before = bench.lake_files(), bench.store.database.stat().st_mtime_ns
-    location = build_defs(str(bench.archive), str(bench.data), Settings(methods=METHODS))
-    with dg.DagsterInstance.ephemeral() as instance, bench.records_in_memory():
-        result = location.resolve_job_def("rebuild").execute_in_process(instance=instance)
-    (output,) = [e for e in result.all_events if e.event_type_value == "STEP_OUTPUT"]
-    said = output.step_output_data.metadata
-    assert said["nothing_changed"].value is True
-    assert said["headlines"].value == ["Nothing changed since the last report."]
+    with run_job(bench, settings) as (result, _):
+        (output,) = [e for e in result.all_events if e.event_type_value == "STEP_OUTPUT"]
+    assert output.step_output_data.metadata["nothing_changed"].value is True
     assert (bench.lake_files(), bench.store.database.stat().st_mtime_ns) == before
+    assert taken == []
 
 
-def test_schedules_run_the_rebuild_at_night_and_in_the_season():
-    settings = Settings(campaign="0 12 * 4-9 *", timezone="Europe/Amsterdam")
-    nightly, campaign = schedules(settings, is_served=True)
-    assert (nightly.job_name, campaign.job_name) == ("rebuild", "rebuild")
-    when = dt.datetime(2026, 5, 8, 12, tzinfo=dt.UTC)
-    with dg.DagsterInstance.ephemeral() as instance:
-        context = dg.build_schedule_context(instance, scheduled_execution_time=when)
-        (request,) = campaign.evaluate_tick(context).run_requests
-        (night,) = nightly.evaluate_tick(context).run_requests
-    assert request.run_config["ops"]["rebuild_archive"]["config"] == {"seasons": [2026]}
-    assert night.run_config == {}
+def test_a_night_with_news_mails_it(bench, mailed, monkeypatch):
+    settings, taken = mailed
+    monkeypatch.setattr("assets.resources.read_settings", lambda _: settings)
+    bench.rebuild()
+    spoil(samples_files(bench, 2009)[3])
+    with run_job(bench, settings) as (result, _):
+        assert result.success
+    (mail,) = taken
+    assert "1 nieuw" in mail
+    assert "GESIMULEERD" in mail
+
+
+def test_a_night_that_fails_is_mailed_with_why(bench, mailed):
+    settings, taken = mailed
+    shutil.rmtree(bench.archive)
+    with run_job(bench, settings) as (result, instance):
+        failed = result.get_run_failure_event()
+        context = dg.build_run_status_sensor_context(
+            "rebuild_failed", failed, instance, result.dagster_run
+        ).for_run_failure()
+        rebuild_failed(settings, is_served=True)(context)
+    (mail,) = taken
+    assert f"There is no archive at {bench.archive}" in mail.replace("=\r\n", "")
 
 
 def test_no_job_publishes():
     """The code that publishes is not even loaded where jobs run."""
-    jobs = {job.name for job in defs.resolve_all_job_defs()} - {"__ASSET_JOB"}
-    assert jobs == {"rebuild"}
     found = subprocess.run(
         [sys.executable, "-c", "import assets.definitions, sys; print(*sys.modules)"],
         cwd=ROOT, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    loaded = found.stdout.split()
-    assert "warehouse.editions.verify" in loaded
-    assert "warehouse.editions.publish" not in loaded
+    assert "warehouse.editions.verify" in found.stdout.split()
+    assert "warehouse.editions.publish" not in found.stdout.split()
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("nightly = 3", "nightly"),
+        ('nightly = "at three"', "nightly"),
+        ('smtp = "smtp://me:secret@host"', "smtp"),
+        ("night = 1", "night"),
+        ("=", "TOML"),
+    ],
+)
+def test_settings_that_are_not_understood_say_which(tmp_path, text, word):
+    assert read_settings(tmp_path).nightly == "0 3 * * *"
+    (tmp_path / "beheer.toml").write_text(text)
+    with pytest.raises(MissingKnowledgeError, match=word) as refused:
+        read_settings(tmp_path)
+    assert "secret" not in str(refused.value)

@@ -104,13 +104,6 @@ def test_a_second_rebuild_does_nothing(bench, files_read):
     assert (after.st_ino, after.st_mtime_ns) == (database.st_ino, database.st_mtime_ns)
 
 
-def test_touching_every_file_does_nothing_either(bench, files_read):
-    for file in bench.archive.rglob("*"):
-        file.touch()
-    assert bench.rebuild().done == Done()
-    assert files_read == []
-
-
 def test_a_spoiled_file_leaves_alone_and_a_mended_one_comes_back_by_itself(
     bench, built, files_read
 ):
@@ -209,12 +202,6 @@ def test_made_elsewhere_season_by_season_the_tables_are_the_same(
         assert table_digest(found[name]) == table_digest(frame), name
 
 
-def test_seasons_that_are_not_asked_for_stay_as_they_are(bench, built):
-    spoil(samples_files(bench, 2009)[3])
-    assert bench.rebuild(seasons=[2014]).done == Done()
-    assert_same_tables(bench.tables(), built.tables())
-
-
 def test_one_method_gives_one_methods_rows(bench, built, files_read):
     done = bench.rebuild(methods=["rebased-2015"]).done
     assert (done.seasons, done.methods, done.database) == ([], [], True)
@@ -223,16 +210,6 @@ def test_one_method_gives_one_methods_rows(bench, built, files_read):
     for name in ("curves", "run_points", "log_factors", "register", "methods"):
         assert_frame_equal(found[name], built.table(name).filter(method="rebased-2015"))
     assert found["register_changes"].height == 0
-
-
-def test_leftovers_of_a_killed_rebuild_are_ignored(bench, built):
-    folders = {f.parent for f in (bench.data / "lake").rglob("*.parquet")} | {bench.data}
-    for folder in folders:
-        (folder / ".herijk-killed.parquet").write_bytes(b"half")
-        (folder / ".herijk-killed.duckdb").write_bytes(b"half")
-    spoil(samples_files(bench, 2009)[3])
-    assert bench.rebuild(ONE).done.seasons == [2009]
-    assert bench.table("tows").height == built.table("tows").height - 1
 
 
 def test_lost_lake_files_are_made_again_when_their_season_is_read(bench, built):
@@ -274,15 +251,6 @@ def test_an_archive_of_which_no_tow_can_be_used_says_so_and_changes_nothing(benc
     with pytest.raises(MissingKnowledgeError, match=r"no tow can be used: 40 .* set aside"):
         bench.rebuild()
     assert_same_tables(bench.tables(), built.tables())
-
-
-def test_lists_without_any_sound_row_say_so(bench, tmp_path):
-    for path in (bench.archive / "sleeplijsten").iterdir():
-        path.write_text(path.read_text("cp1252").split("\n")[0] + "\n", "utf-8")
-    fresh = Workbench(bench.archive, tmp_path / "fresh")
-    with pytest.raises(MissingKnowledgeError, match="no tow can be used"):
-        fresh.rebuild()
-    assert fresh.table("tows").is_empty()
 
 
 def test_seasons_that_the_archive_does_not_have_are_refused(bench):

@@ -6,7 +6,13 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
+from pipeline.consistency.components import variance_components
+from pipeline.consistency.eras import era_shifts
 from pipeline.consistency.lines import newest_lines, type_lines
+from pipeline.consistency.observed import observe
+from pipeline.consistency.repeats import repeat_pairs, reproducibility, with_categories
+from pipeline.consistency.tables import type_tables
+from pipeline.consistency.tow_speed import slow_tows
 from pipeline.tables.lake import ListedRaces
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
@@ -123,3 +129,16 @@ def _fitted(speed, cw, v0):
 def type_consistency(observed):
     """Rows of the table `type_consistency`, those within a class apart."""
     return newest_lines(type_lines(observed)[0]).filter(within="all")
+
+
+def consistency_tables(curves, tows, boats, run_points):
+    """All tables of the analysis but the lines, without races."""
+    observed, pairs = observe(curves, tows, boats, run_points), repeat_pairs(curves, tows)
+    components = variance_components(observed)
+    return type_tables(observed) | {
+        "slow_tows": slow_tows(observed, NO_RACES),
+        "repeat_pairs": pairs,
+        "era_shifts": era_shifts(pairs, boats),
+        "reproducibility": with_categories(reproducibility(pairs, observed), components),
+        "variance_components": components,
+    }

@@ -1,17 +1,15 @@
 """Consistency of boats: against independent implementations, known truth, and degenerate input."""
 
 import datetime as dt
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
-from scipy import optimize, stats
-from scipy.stats import binom
 
-from pipeline.consistency import mixed, reml, repeats, tow_speed
+from pipeline import model
+from pipeline.consistency import tow_speed
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.components import variance_components
 from pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
@@ -22,222 +20,20 @@ from pipeline.consistency.lines import (
     type_outliers,
 )
 from pipeline.consistency.observed import newest, observe
-from pipeline.consistency.reml import Design, Problem, Stack, Whitened
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
-from pipeline.consistency.tables import consistency_tables, line_tables
+from pipeline.consistency.tables import line_tables
 from pipeline.consistency.tow_speed import slow_tows, speed_trend
 from pipeline.tables.schemas import conform
-from tests.pipeline.consistency_fleet import NO_RACES, fleet, type_consistency
+from tests.pipeline.consistency_fleet import (
+    consistency_tables,
+    fleet,
+    type_consistency,
+)
 
 
 def within(observed, expected, trials):
     """Whether a share of trials lies within four standard errors of what is expected."""
     return abs(observed - expected) <= 4.0 * np.sqrt(expected * (1 - expected) / trials)
-
-
-# The mixed model
-
-
-def grouped_data(seed=1, n=60, boats=20, others=5):
-    rng = np.random.default_rng(seed)
-    boat, other = rng.integers(0, boats, n), rng.integers(0, others, n)
-    boat[:boats], other[:others] = np.arange(boats), np.arange(others)
-    x = np.column_stack([np.ones(n), rng.normal(size=n)])
-    known = rng.uniform(0.5, 2.0, n) ** 2
-    y = x @ [1.0, 0.5] + 2.0 * rng.normal(size=boats)[boat] + rng.normal(size=others)[other]
-    return Problem.of(Design.of(x, boat, other), y + np.sqrt(known) * rng.normal(size=n), known)
-
-
-def deviance(problem, sd):
-    return Stack.of([problem]).likelihood(np.square([sd])).deviance[0]
-
-
-def fit_at(problem, free, sd):
-    """The model with these standard deviations."""
-    return mixed.Fit(problem, free, sd, Whitened(Stack.of([problem]), np.square([sd])), 0)
-
-
-def dense_deviance(problem, sd):
-    """-2 log restricted likelihood from the whole covariance matrix, as in the textbooks."""
-    v = np.diag(problem.variance + sd[2] ** 2)
-    v += sd[0] ** 2 * (problem.design.boat[:, None] == problem.design.boat)
-    v += sd[1] ** 2 * (problem.design.other[:, None] == problem.design.other)
-    inverse, x = np.linalg.inv(v), problem.design.x
-    information = x.T @ inverse @ x
-    beta = np.linalg.solve(information, x.T @ inverse @ problem.y)
-    r = problem.y - x @ beta
-    return np.linalg.slogdet(v)[1] + np.linalg.slogdet(information)[1] + r @ inverse @ r
-
-
-@pytest.mark.parametrize("sd", [(0.0, 0.0, 0.0), (2.0, 1.0, 0.5), (0.3, 0.0, 1.5)])
-def test_deviance_equals_the_dense_formula(sd):
-    problem = grouped_data()
-    assert deviance(problem, sd) == pytest.approx(dense_deviance(problem, sd), rel=1e-10)
-
-
-def test_a_tow_without_any_error_keeps_the_fit_exact():
-    """Runs that lie exactly on their curve: beside a spread of boats no digit was left."""
-    y = np.array([0.367, 0.464, 0.569, 0.481, 0.508, 0.516])
-    x = np.array(
-        [[1, 0, 0], [0, 1, 0.009], [0, 1, -0.091], [0, 1, 0.023], [0, 1, 0.059], [1, 0, 0]]
-    )
-    variance = [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6]
-    problem = Problem.of(Design.of(x, range(6), [0] * 6), y, variance)
-    for sd in (0.001, 0.1, 10.0):
-        dense = dense_deviance(problem, (sd, 0.0, 0.0))
-        assert deviance(problem, (sd, 0.0, 0.0)) == pytest.approx(dense, abs=1e-4)
-    assert np.isfinite(mixed.fit(problem, (mixed.BOAT,)).coefficients()).all()
-
-
-def test_fit_finds_the_minimum_that_another_optimiser_finds():
-    problem = grouped_data()
-    found = mixed.fit(problem, mixed.COMPONENTS)
-    other = optimize.minimize(
-        lambda v: dense_deviance(problem, np.sqrt(v)), [1.0] * 3, bounds=[(0, 50)] * 3
-    )
-    assert deviance(problem, found.sd) == pytest.approx(other.fun, abs=1e-3)
-    # The likelihood is flat at its top, so the components agree less closely than its height.
-    assert found.sd == pytest.approx(np.sqrt(other.x), abs=0.02 * problem.spread)
-
-
-def test_a_large_problem_carries_few_empty_rows():
-    for n, rows in ((1, 1), (1020, 1024), (1025, 2048), (10_200, 10_240)):
-        assert Design.of(np.ones(n), range(n)).size[:2] == (rows, rows)
-
-
-@pytest.mark.parametrize(
-    ("boat_sd", "other_sd", "error"), [(2.0, 1.0, 1.0), (0.1, 0.1, 1e-5), (0.0, 1.0, 1.0)]
-)
-def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd, error):
-    rng = np.random.default_rng(4)
-    n, boat, other = 60, np.r_[np.arange(20), rng.integers(0, 20, 40)], np.arange(60) % 6
-    y = 3.4 + boat_sd * rng.normal(size=20)[boat] + other_sd * rng.normal(size=6)[other]
-    y += np.sqrt(error) * rng.normal(size=n)
-    x = np.column_stack([np.ones(n), rng.normal(size=n)])
-    design = Design.of(x, boat, other)
-    fits = [
-        mixed.fit(Problem.of(design, y * noise, np.full(n, error**2)), mixed.COMPONENTS)
-        for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
-    ]
-    sds, intervals = (
-        np.array([getter(f) for f in fits], dtype=np.float64)
-        for getter in (lambda f: f.sd, lambda f: list(f.intervals().values()))
-    )
-    spread = fits[0].problem.spread
-    assert sds[0] == pytest.approx(sds[1], abs=1e-10 * spread)
-    assert intervals[0] == pytest.approx(intervals[1], abs=1e-10 * spread, nan_ok=True)
-    # A variance on its bound is none at all, not almost none.
-    assert ((sds == 0.0) | (sds > 1e-3 * spread)).all()
-
-
-def one_row_a_boat(variance, true_sd=0.0, seed=3):
-    rng = np.random.default_rng(seed)
-    x = np.column_stack([np.ones(12), rng.normal(size=12)])
-    y = x @ [1.0, 2.0] + np.sqrt(variance + true_sd**2) * rng.normal(size=12)
-    return Problem.of(Design.of(x, range(12)), y, variance)
-
-
-def assert_same_line(fit, other):
-    """Coefficients and 95 % intervals of a fitted line are those of a result of statsmodels."""
-    found = fit.coefficients()
-    assert found.value == pytest.approx(other.params, rel=1e-9)
-    assert np.column_stack([found.lo, found.hi]) == pytest.approx(other.conf_int(), rel=1e-9)
-
-
-def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
-    from statsmodels.regression.linear_model import OLS  # noqa: PLC0415 - takes seconds to import
-
-    problem = one_row_a_boat(np.full(12, 1e-6), true_sd=1.0)
-    assert_same_line(mixed.fit(problem, (mixed.BOAT,)), OLS(problem.y, problem.design.x).fit())
-
-
-def test_known_variances_give_the_line_and_interval_of_weighted_least_squares():
-    from statsmodels.regression.linear_model import WLS  # noqa: PLC0415 - takes seconds to import
-
-    problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
-    other = WLS(problem.y, problem.design.x, weights=1 / problem.variance).fit()
-    assert_same_line(mixed.fit(problem, ()), other)
-
-
-def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
-    from statsmodels.stats.meta_analysis import combine_effects  # noqa: PLC0415 - takes seconds to import
-
-    # At the same spread: statsmodels estimates it by Paule and Mandel, not by likelihood.
-    problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
-    other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
-    only_mean = replace(problem, design=Design.of(np.ones(12), range(12)))
-    found = fit_at(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
-    assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
-    half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
-    assert found.coefficients().hi[0] - found.beta[0] == pytest.approx(half, rel=1e-6)
-
-
-def test_variance_components_are_those_of_another_program():
-    problem = grouped_data()
-    problem = replace(problem, variance=np.full(len(problem.y), 1e-9))
-    groups = [
-        np.eye(group.max() + 1)[group] for group in (problem.design.boat, problem.design.other)
-    ]
-    from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec  # noqa: PLC0415 - takes seconds to import
-
-    crossed = VCSpec(
-        ["boat", "other"],
-        [[[str(i) for i in range(g.shape[1])]] for g in groups],
-        [[g] for g in groups],
-    )
-    whole = np.zeros(len(problem.y))
-    other = MixedLM(problem.y, problem.design.x, whole, exog_vc=crossed).fit(reml=True)
-    found = mixed.fit(problem, mixed.COMPONENTS)
-    assert found.beta == pytest.approx(other.fe_params, rel=1e-3)
-    assert found.sd == pytest.approx(np.sqrt([*other.vcomp, other.scale]), rel=1e-3)
-    # The likelihood is flat at its top, so its height agrees more closely than the components.
-    assert deviance(problem, found.sd) == pytest.approx(
-        deviance(problem, np.sqrt([*other.vcomp, other.scale])), abs=1e-4
-    )
-
-
-def test_problems_side_by_side_are_fitted_as_each_alone():
-    rng = np.random.default_rng(4)
-    first = grouped_data()
-    ones = [replace(first, y=first.y + s * rng.normal(size=len(first.y))) for s in (0.0, 0.5, 20)]
-    problems = [*ones, replace(first, design=replace(first.design, other=None))]
-    together = mixed.fit_all(problems, (mixed.BOAT, mixed.CELL))
-    for problem, fit in zip(problems, together, strict=True):
-        assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)
-
-
-def test_a_mask_takes_the_problems_that_it_names():
-    """`[False, True]` equals the places `[0, 1]`: such a mask once took both."""
-    problem = grouped_data()
-    stack = Stack.of([replace(problem, y=problem.y * scale) for scale in (1.0, 2.0)])
-    for mask in ([False, True], [True, False], [True, True]):
-        assert stack.take(np.array(mask)).spread.tolist() == stack.spread[mask].tolist()
-
-
-def test_leaving_a_boat_out_equals_fitting_without_it():
-    problem = grouped_data()
-    sd = (2.0, 1.0, 0.5)
-    fit = fit_at(problem, mixed.COMPONENTS, sd)
-    found = fit.leave_boats_out()
-    v = np.diag(problem.variance + sd[2] ** 2)
-    v += sd[0] ** 2 * (problem.design.boat[:, None] == problem.design.boat)
-    v += sd[1] ** 2 * (problem.design.other[:, None] == problem.design.other)
-    out = problem.design.boat == 3
-    inverse, x = np.linalg.inv(v[np.ix_(~out, ~out)]), problem.design.x[~out]
-    information = x.T @ inverse @ x
-    beta = np.linalg.solve(information, x.T @ inverse @ problem.y[~out])
-    gain = v[np.ix_(out, ~out)] @ inverse
-    predicted = problem.design.x[out] @ beta + gain @ (problem.y[~out] - x @ beta)
-    rest = problem.design.x[out] - gain @ x
-    variance = v[np.ix_(out, out)] - gain @ v[np.ix_(~out, out)]
-    variance = variance + rest @ np.linalg.inv(information) @ rest.T
-    assert found.error[out] == pytest.approx(problem.y[out] - predicted, rel=1e-8)
-    assert found.variance[out] == pytest.approx(np.diag(variance), rel=1e-8)
-    of_others = problem.y[~out] - x @ beta
-    own = fit.misfit - of_others @ inverse @ of_others
-    rows = problem.rows_beyond
-    scale = (fit.scale * rows - own) / (rows - out.sum())
-    assert found.scale[out] == pytest.approx(np.full(out.sum(), scale), rel=1e-8)
 
 
 # Equal boats, equal B?
@@ -284,16 +80,6 @@ def test_power_is_what_is_stated_and_enough(boats, cv, least):
     assert abs(rejected - stated) < 3 * np.sqrt(stated * (1 - stated) / TRIALS) + 0.01
 
 
-def test_of_like_boats_noise_gives_the_whole_spread_and_a_and_b_go_together():
-    found = type_homogeneity(observe(*fleet(10, 40, weights_kg=np.full(12, 1000.0))))
-    assert found["noise_share"].median() > 0.8
-    assert found["ab_correlation"].mean() == pytest.approx(
-        found["ab_noise_correlation"].mean(), abs=0.1
-    )
-    # Linearised spread of B against the spread seen; the second is skewed upwards.
-    assert found["b_noise_sd_ratio"].mean() == pytest.approx(found["b_sd_ratio"].mean(), rel=0.2)
-
-
 def test_pooling_halves_the_error_of_the_bend_of_like_boats(like_boats):
     found = pooled_curves(like_boats)
     s = pl.col("q") / (1 + pl.col("q")) / pl.col("standard_speed_m_s") ** 2
@@ -303,11 +89,6 @@ def test_pooling_halves_the_error_of_the_bend_of_like_boats(like_boats):
     }
     assert error["partial"] <= 0.5 * error["own"]
     assert error["shared"] <= 0.5 * error["own"]
-
-
-def test_sharing_the_bend_hardly_moves_cw_at_the_declared_speed(like_boats):
-    found = pooled_curves(like_boats).pivot("pooling", index=["method", "tow_id"], values="cw_kg_m")
-    assert (found["shared"] / found["own"] - 1).abs().max() < 0.03
 
 
 # Lines, outliers, tow speed
@@ -324,14 +105,6 @@ def test_a_line_of_a_type_is_that_of_weighted_least_squares():
     other = WLS(y, x, weights=1 / variance).fit()
     assert row["slope"] == pytest.approx(other.params[1], rel=1e-6)
     assert [row["slope_lo"], row["slope_hi"]] == pytest.approx(other.conf_int()[1], rel=1e-6)
-
-
-def test_boats_of_a_type_are_compared_at_one_speed_whatever_methods_lose_a_curve():
-    curves, *rest = fleet(31, 2, boats=8, speeds_m_s=np.linspace(2.2, 3.2, 8))
-    fewer = curves.filter((pl.col("method") == "m0000") | (pl.col("fsn_no") > "FSN003"))
-    alone = [observe(fewer.filter(method=name), *rest) for name in ("m0000", "m0001")]
-    speeds = {seen.table["standard_speed_m_s"][0] for seen in (*alone, observe(curves, *rest))}
-    assert len(speeds) == 1
 
 
 def of_two_classes(tables):
@@ -364,34 +137,6 @@ def test_r2_and_spread_are_those_of_the_line_as_drawn():
     assert row["residual_sd_ratio"] == pytest.approx(spread, rel=1e-9)
 
 
-def test_a_slope_that_comes_from_the_class_is_none_within_men_and_within_women():
-    """Men are heavier and towed faster; among men, and among women, speed says nothing of Cw."""
-    speeds = np.concatenate([np.linspace(2.1, 2.3, 8), np.linspace(2.5, 2.7, 8)])
-    weights = np.repeat([900.0, 1300.0], 8) + np.arange(16) * 1e-3
-    of = {"boats": 16, "speeds_m_s": speeds, "weights_kg": weights, "height_sd": 0.02}
-    lines, points = type_lines(observe(*of_two_classes(fleet(29, TRIALS_OF_LINES, **of))))
-    found = lines.filter(tows="newest", quantity="cw_standard_kg_m")
-    by_speed = found.filter(explaining="declared_speed_m_s").partition_by("within", as_dict=True)
-    assert (by_speed["all",]["slope_lo"] > 0).all()
-    for name in ("men", "women"):
-        rows = by_speed[name,]
-        assert rows["n"].unique().to_list() == rows["n_boats"].unique().to_list() == [8]
-        inside = ((rows["slope_lo"] <= 0) & (rows["slope_hi"] >= 0)).mean()
-        assert within(inside, 0.95, TRIALS_OF_LINES)
-    assert found.filter(pl.col("explaining") != "declared_speed_m_s")["within"].unique()[0] == "all"
-    drawn = points.filter(tows="newest", quantity="cw_standard_kg_m").group_by("method")
-    assert drawn.len()["len"].unique().to_list() == [21]
-
-
-def test_within_a_class_of_too_few_boats_no_line_is_drawn():
-    lines, _ = type_lines(observe(*fleet(30, boats=6)))
-    women = lines.filter(within="women", tows="newest")
-    assert women["n"].unique().to_list() == [0]
-    assert women["reason"].unique().to_list() == ["few_boats"]
-    same = [lines.filter(within=name, explaining="declared_speed_m_s") for name in ("men", "all")]
-    assert_frame_equal(*(frame.drop("within") for frame in same), check_row_order=False)
-
-
 def test_intervals_of_slopes_cover_the_truth():
     lines = type_consistency(
         observe(*fleet(13, TRIALS_OF_LINES, boats=8, b_cv=0.05, height_sd=0.02))
@@ -404,21 +149,6 @@ def test_intervals_of_slopes_cover_the_truth():
         row = lines.filter((pl.col("quantity") == quantity) & (pl.col("explaining") == explaining))
         inside = ((row["slope_lo"] <= truth) & (truth <= row["slope_hi"])).mean()
         assert within(inside, 0.95, TRIALS_OF_LINES)
-
-
-def test_the_finding_of_2015():
-    # B and A do not follow weight, Cw at one speed does.
-    lines = type_consistency(observe(*fleet(14, 10, boats=12, height_sd=0.01)))
-    by_weight = lines.filter(pl.col("explaining") == "weight_kg")
-    r2 = dict(by_weight.group_by("quantity").agg(pl.col("r2").mean()).iter_rows())
-    assert r2["b_m_s"] < 0.2
-    assert r2["cw_standard_kg_m"] > 0.7
-
-
-def test_two_tows_of_a_boat_are_one_boat():
-    lines = type_consistency(observe(*fleet(15, boats=6, seasons=(2014, 2016))))
-    assert lines["n"].unique().to_list() == [6]
-    assert lines["n_boats"].unique().to_list() == [6]
 
 
 def with_run_points(tables, tow_id, factor):
@@ -448,16 +178,6 @@ def test_no_boat_is_called_outside_too_often(b_cv):
         assert alarms["outside"].mean() <= 0.05 + 4 * np.sqrt(0.05 * 0.95 / TRIALS)
 
 
-def test_the_spread_about_the_line_of_ln_cw_is_that_of_cw():
-    found = type_consistency(observe(*fleet(26, 40, boats=12, height_sd=0.05, noise=0.01)))
-    lines = found.filter(pl.col("quantity") == "ln_cw_standard")
-    # Noise of a tow at the standard speed: near 1 % / sqrt(6) in the middle of its runs.
-    assert lines["noise_sd_ratio"].mean() == pytest.approx(0.01 / np.sqrt(6), rel=0.3)
-    assert np.sqrt((lines["residual_sd_ratio"] ** 2).mean()) == pytest.approx(
-        np.hypot(0.05, 0.01 / np.sqrt(6)), rel=4 / np.sqrt(2 * 40 * 10)
-    )
-
-
 def test_a_bend_that_follows_tow_speed_is_seen_and_none_is_not_claimed():
     speeds = np.linspace(2.1, 2.7, 12)
     plain = speed_trend(observe(*fleet(18, speeds_m_s=speeds)))
@@ -472,32 +192,6 @@ def test_a_bend_that_follows_tow_speed_is_seen_and_none_is_not_claimed():
         ** (3 * (2.7 - pl.col("declared_speed_m_s")))
     )
     assert (speed_trend(observe(curves, tows, boats, points))["slope_hi"] < 0).all()
-
-
-def test_slow_tows_are_singled_out_with_their_effect_on_power():
-    speeds = np.full(8, 2.5)
-    speeds[2] = 2.0
-    tables = fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)
-    found = slow_tows(observe(*tables), NO_RACES).filter("slow")
-    assert found["tow_id"].to_list() == ["2016-002"]
-    assert found["power_w"][0] < 60
-    # The same hyperbola for all: a slow tow does no harm.
-    assert found["rowed_speed_m_s"][0] == 2.5
-    assert found["power_ratio_rowed"][0] == pytest.approx(1.0, abs=0.005)
-
-
-def test_a_slow_tow_whose_bend_is_too_steep_asks_too_much_power_where_it_is_rowed():
-    speeds = np.full(8, 2.5)
-    speeds[2] = 2.0
-    curves, tows, boats, points = fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)
-    steeper = pl.when(tow_id="2016-002").then((pl.col("speed_m_s") / 2.0) ** 0.5).otherwise(1.0)
-    points = points.with_columns(pl.col("cw_kg_m") * steeper)
-    found = (
-        slow_tows(observe(curves, tows, boats, points), NO_RACES).filter("slow").row(0, named=True)
-    )
-    # Cw grows by another (2.5 / 2)^0.5 = 12 %, and more as the hyperbola bends away.
-    assert found["power_ratio_rowed"] > 1.12
-    assert 1.0 < found["power_ratio_rowed_lo"] < found["power_ratio_rowed"]
 
 
 def raced(tables, tow_id, speed_m_s):
@@ -593,27 +287,6 @@ def test_every_choice_of_tows_has_its_line_with_its_own_count(three_seasons):
     assert (drawn["lo"] < drawn["y"]).all()
 
 
-def test_repeats_of_few_boats_do_not_narrow_a_line():
-    tables = fleet(7, boats=6, seasons=tuple(range(2009, 2019)), noise=0.005, height_sd=0.05)
-    lines, _ = type_lines(observe(*tables))
-    width = lines.filter(quantity="cw_standard_kg_m", explaining="weight_kg").select(
-        "tows", width=pl.col("slope_hi") - pl.col("slope_lo")
-    )
-    of = dict(width.iter_rows())
-    assert of["all"] > 0.5 * of["newest"]
-
-
-def test_a_tow_far_too_slow_for_the_standard_speed_is_there_and_marked():
-    speeds = np.full(8, 2.5)
-    speeds[2] = 2.0
-    found = compared_tows(observe(*fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)))
-    assert found.filter("beyond_curve")["tow_id"].to_list() == ["2016-002"]
-    assert found.filter("slow")["tow_id"].to_list() == ["2016-002"]
-    one = found.filter("slow").row(0, named=True)
-    assert one["standard_speed_m_s"] == 2.5
-    assert one["cw_standard_kg_m"] == pytest.approx(one["expected_cw_kg_m"], rel=0.02)
-
-
 def test_one_tow_pulled_askew_is_named_among_all_tows(three_seasons):
     curves, tows, boats, points = three_seasons
     askew = pl.when(tow_id="2014-004").then(1.2).otherwise(1.0)
@@ -651,15 +324,6 @@ def test_reproducibility_recovers_the_spread_of_a_tow():
     assert found["run_sd_ratio"] == pytest.approx(0.001, rel=4 / np.sqrt(2 * 720))
 
 
-def test_e_n_is_the_difference_in_both_intervals():
-    curves, tows, *_ = fleet(21, boats=1, seasons=(2014, 2016), speeds_m_s=[2.5])
-    pair = repeat_pairs(curves, tows).row(0, named=True)
-    old, new = curves.sort("season").iter_rows(named=True)
-    half = [0.5 * np.log(c["cw_hi_kg_m"] / c["cw_lo_kg_m"]) for c in (old, new)]
-    difference = np.log(new["cw_kg_m"] / old["cw_kg_m"])
-    assert pair["e_n"] == pytest.approx(difference / np.hypot(*half))
-
-
 def test_a_pair_is_compared_by_the_instruments_of_other_boats():
     curves, tows, *_ = fleet(21, boats=1, seasons=(2014, 2016), speeds_m_s=[2.5])
     by_others = curves.with_columns(
@@ -669,22 +333,6 @@ def test_a_pair_is_compared_by_the_instruments_of_other_boats():
     )
     own, others = (repeat_pairs(c, tows)["ln_ratio"][0] for c in (curves, by_others))
     assert others == pytest.approx(own - np.log(1.01))
-
-
-def test_pairs_that_share_a_tow_are_not_counted_as_independent():
-    """Ten tows of one boat: as independent pairs the interval covered 92 %."""
-    rng = np.random.default_rng(32)
-    tow_id = [f"{year}-1" for year in range(2009, 2019)]
-    truth, trials, covered = 0.01, 1000, 0
-    for _ in range(trials):
-        ln_ratio = np.diff(truth * rng.normal(size=10))
-        pairs = pl.DataFrame(
-            {"tow_id_before": tow_id[:-1], "tow_id": tow_id[1:], "ln_ratio": ln_ratio, "e_n": 0.0}
-        )
-        spread = repeats._spread(pairs)
-        covered += spread["lo"] <= truth <= spread["hi"]
-    low, high = binom.ppf([0.001, 0.999], trials, 0.95)
-    assert low <= covered <= high
 
 
 def test_no_pair_across_an_alteration():
@@ -715,15 +363,6 @@ def test_a_boat_ends_at_an_alteration_in_lines_too():
     assert not slopes(renamed=True, altered=False).equals(apart)
 
 
-def test_a_falling_curve_is_compared_at_its_own_height():
-    curves, tows, *_ = fleet(23, boats=1, seasons=(2014, 2016), speeds_m_s=[2.5])
-    falling = curves.with_columns(
-        pl.lit(None, pl.Float64).alias("b_m_s"), (1.1 * pl.col("cw_kg_m")).alias("a_kg_m")
-    )
-    old, new = falling.sort("season")["cw_kg_m"]
-    assert repeat_pairs(falling, tows)["ln_ratio"][0] == pytest.approx(np.log(new / old))
-
-
 def test_variance_components_recover_the_truth():
     tables = fleet(
         24,
@@ -740,26 +379,6 @@ def test_variance_components_recover_the_truth():
         assert row["sd_ratio"] == pytest.approx(sd, rel=4 / np.sqrt(2 * dof))
         assert row["lo"] < row["sd_ratio"] < row["hi"]
     assert found["share"].sum() == pytest.approx(1.0)
-
-
-def test_boats_are_told_apart_at_one_speed():
-    # Cw grows with the speed of comparison; boats that differ in nothing else do not differ.
-    tables = fleet(
-        27, seasons=(2014, 2016, 2018), weights_kg=np.full(12, 1000.0),
-        speeds_m_s=np.linspace(2.1, 2.7, 12),
-    )  # fmt: skip
-    found = variance_components(observe(*tables)).filter(pl.col("component") == "boat")
-    assert found["sd_ratio"].max() < 0.01
-
-
-def test_the_classes_told_apart_are_the_boats_spread_over_that_of_their_tows():
-    tables = fleet(28, boats=40, seasons=(2014, 2016), height_sd=0.05, noise=0.02)
-    found = consistency_tables(*tables, NO_RACES)
-    boats = found["variance_components"].filter(scope="within_type", component="boat")
-    row = found["reproducibility"].filter(scope="2014-").row(0, named=True)
-    expected = 1.41 * boats["sd_ratio"].item() / row["sd_ratio"]
-    assert row["distinct_categories"] == pytest.approx(expected)
-    assert found["reproducibility"].filter(scope="2009-2011")["distinct_categories"].item() is None
 
 
 # Degenerate input: nulls and a reason, never NaN, never a warning (warnings are errors here)
@@ -784,7 +403,7 @@ CASES = {
 
 
 def everything(*tables):
-    return line_tables(observe(*tables)) | consistency_tables(*tables, NO_RACES)
+    return line_tables(observe(*tables)) | consistency_tables(*tables)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -804,7 +423,6 @@ def test_degenerate_input_gives_no_nan_and_fits_the_schemas(case):
         ("no type", "cw_kg_m", "weight_kg", "no_type", 12),
         ("equal weights", "cw_kg_m", "weight_kg", "equal_values", 12),
         ("no weights", "cw_kg_m", "weight_kg", "few_boats", 0),
-        ("no weights", "ln_cw_standard", "ln_displacement", "few_boats", 0),
         ("no B", "b_m_s", "weight_kg", "few_boats", 0),
     ],
 )
@@ -825,25 +443,18 @@ SEARCHED = {
 }
 
 
-@pytest.mark.parametrize(
-    ("module", "limit", "unsettled"),
-    [
-        (reml, "MAX_ITERATIONS", {*SEARCHED}),
-        (reml, "MAX_HALVINGS", {*SEARCHED}),
-        (mixed, "MAX_STEPS", {"variance_components"}),
-    ],
-)
-def test_a_search_that_does_not_come_to_rest_says_so(module, limit, unsettled, monkeypatch):
+@pytest.mark.parametrize("limit", ["MAX_ITERATIONS", "MAX_HALVINGS"])
+def test_a_search_that_does_not_come_to_rest_says_so(limit, monkeypatch):
     """No number that rests on it is given, and every table fits its schema."""
     tables = fleet(41, boats=24, seasons=(2014, 2016, 2018), height_sd=0.03, season_sd=0.02)
     settled = everything(*tables)
-    monkeypatch.setattr(module, limit, 0)
+    monkeypatch.setattr(model, limit, 0)
     forced = {name: conform(name, frame) for name, frame in everything(*tables).items()}
     for name, number in SEARCHED.items():
         assert settled[name].filter(reason="not_settled").is_empty()
         assert settled[name][number].count() > 0
         mute = forced[name].filter(reason="not_settled")
-        assert (mute.height > 0) == (name in unsettled), name
+        assert mute.height > 0, name
         assert mute[number].count() == 0
 
 

@@ -10,11 +10,10 @@ import polars as pl
 import pytest
 
 from herijk.simulate import WorldSettings, simulate_world
-from pipeline.consistency.tables import consistency_tables
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.numbers import unequal
-from tests.pipeline.consistency_fleet import NO_RACES
+from tests.pipeline.consistency_fleet import consistency_tables
 from tests.worlds import measure
 
 SETTINGS = WorldSettings((2009, 2012, 2014), 12, 10, 3)
@@ -28,7 +27,7 @@ def everything(tows, blocks, boats):
     names = [field.name for field in fields(made[0]) if field.name != "factors"]
     tables = {name: pl.concat([getattr(one, name) for one in made]) for name in names}
     curves, points = tables["curves"], tables["run_points"]
-    return tables | consistency_tables(curves, tows, boats, points, NO_RACES)
+    return tables | consistency_tables(curves, tows, boats, points)
 
 
 @pytest.fixture(scope="module")

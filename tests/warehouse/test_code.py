@@ -5,7 +5,6 @@ import pytest
 from tests.architecture.repository import ROOT
 from warehouse.derive.graph import DATABASE, STEPS
 from warehouse.store import code
-from warehouse.store.code import code_version
 
 USED = {"samples": code.READING, "blocks": code.ADDING} | {s.name: s.code for s in STEPS}
 """The packages with which everything is computed that a rebuild keeps."""
@@ -61,10 +60,6 @@ def test_the_hash_is_of_the_bytes(monkeypatch, tmp_path):
     before = code.code_hash.__wrapped__("any")
     (tmp_path / "b.py").write_text("y = 3\n")
     assert code.code_hash.__wrapped__("any") != before
-
-
-def test_a_register_line_names_what_computed_it():
-    assert code_version().endswith(code.code_hash(*code.READING, *code.COMPUTING))
 
 
 def test_steps_come_after_those_whose_tables_they_read():

@@ -15,7 +15,7 @@ from pipeline.method.definition import parse_method, shipped_method
 from pipeline.register.replay import RaceRules
 from pipeline.tables.keys import LINE
 from tests.warehouse.edition_bench import terms
-from warehouse.editions.compare import compare, diff, report, report_with_races
+from warehouse.editions.compare import diff, report, report_with_races
 from warehouse.editions.publish import publish_printed
 from warehouse.intake import seasons as intake
 from warehouse.store.decisions import FILE_NAME
@@ -135,19 +135,6 @@ def stretch(bench, tow_id, factor):
     bench.stretch_force(tow["samples_path"], factor)
 
 
-def test_where_tows_share_a_coefficient_the_others_say_so(bench_of_editions):
-    bench = bench_of_editions
-    bench.publish("a", "rebased")
-    tow = line_with_season(bench, "a", 2009)
-    stretch(bench, tow, 1.02)
-    bench.rebuild((shipped_method("rebased"),))
-    bench.publish("b", "rebased")
-    lines = diff(bench.store, "a", "b").lines
-    assert names(lines.filter(pl.col("new_tow_id") == tow)) == {("input", None)}
-    others = names(lines.filter(pl.col("new_tow_id") != tow))
-    assert others == {("other_input", None)}
-
-
 def test_the_code_alone_shows_as_code(bench_of_editions, monkeypatch):
     bench = bench_of_editions
     bench.publish("a")
@@ -233,14 +220,6 @@ def test_races_are_replayed_under_both(bench_of_editions):
     assert all(0 <= winner["change_probability"] <= 1 for winner in replayed.winners)
 
 
-def test_without_races_there_is_no_effect(published_copy):
-    empty_races(published_copy)
-    intake.index(published_copy.store, published_copy.archive)
-    edition = read_edition(published_copy.store, "2014-1")
-    alone = compare(published_copy.store, edition, edition)
-    assert report_with_races(published_copy.store, alone, RaceRules()).races is None
-
-
 def empty_races(bench):
     folder = bench.archive / "wedstrijden"
     shutil.rmtree(folder, ignore_errors=True)
@@ -294,12 +273,3 @@ def test_a_printed_line_of_an_earlier_tow_is_told_apart_from_the_newer_tow(bench
     on_curve = before["a_kg_m"] / (1 - (2.35 / before["b_m_s"]) ** 2)
     ((_, _, factor), _) = causes(lines)[0]
     assert factor == pytest.approx(on_curve / (31.6 / (1 - (2.35 / 4.44) ** 2)), rel=1e-9)
-
-
-def test_a_printed_line_of_a_tow_that_is_lost_says_that_both_may_be_why(bench_of_editions):
-    bench = bench_of_editions
-    bench.publish("a")
-    line, _ = towed_twice(bench)
-    publish_printed_row(bench, line, dt.date(2008, 3, 8))
-    lines = diff(bench.store, "printed", "a").lines.filter(change="changed")
-    assert names(lines) == {("printed_and_tow", None)}

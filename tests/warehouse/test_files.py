@@ -1,10 +1,7 @@
 """A folder is put in place of another at once."""
 
-import os
 import threading
-from pathlib import Path
 
-from warehouse.store import files
 from warehouse.store.files import put_in_place
 
 
@@ -45,23 +42,3 @@ def test_a_reader_always_finds_a_whole_folder(tmp_path):
     stop.set()
     reader.join()
     assert missed == []
-
-
-def test_all_is_written_where_folders_cannot_be_synced_nor_names_exchanged(tmp_path, monkeypatch):
-    """As on Windows, where opening a folder is an error."""
-    opened = os.open
-
-    def open_no_folder(path, flags, *rest, **more):
-        if Path(path).is_dir():
-            raise PermissionError(path)
-        return opened(path, flags, *rest, **more)
-
-    monkeypatch.setattr(files, "WINDOWS", True)
-    monkeypatch.setattr("os.open", open_no_folder)
-    files.write_new(tmp_path / "new.txt", "text")
-    with files.written_beside(tmp_path / "new.txt") as beside:
-        beside.write_text("other")
-    for text in ("first", "second"):
-        files.put_in_place(filled(tmp_path / f"beside-{text}", text), tmp_path / "site")
-    assert (tmp_path / "new.txt").read_text() == "other"
-    assert (tmp_path / "site" / "page.html").read_text() == "second"

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.errors import UnavailableError
-from warehouse.store.lock import LOCK_FILE, OWNER_SUFFIX, only_writer
+from warehouse.store.lock import OWNER_FILE, only_writer
 
 HOLD = """
 import sys, time
@@ -39,7 +39,7 @@ def holder(tmp_path):
 
 
 def _owner(folder: Path) -> Path:
-    return (folder / LOCK_FILE).with_suffix(OWNER_SUFFIX)
+    return folder / OWNER_FILE
 
 
 def test_the_second_says_who_holds_the_lock_and_touches_nothing(holder, tmp_path):
@@ -57,13 +57,6 @@ def test_the_lock_dies_with_its_owner_and_the_next_clears_up(holder, tmp_path):
         assert not (tmp_path / "lake" / ".herijk-half.parquet").exists()
         assert _owner(tmp_path).read_text().split()[0] == str(os.getpid())
     assert not _owner(tmp_path).exists()
-
-
-def test_a_step_inside_a_rebuild_needs_no_lock_of_its_own(tmp_path):
-    with only_writer(tmp_path), only_writer(tmp_path):
-        pass
-    with only_writer(tmp_path):
-        pass
 
 
 def test_leftovers_of_publications_are_left_to_publishing(tmp_path):

@@ -94,12 +94,6 @@ def test_a_damaged_file_is_noticed_and_described_again(tmp_path):
     assert package_is_whole(tmp_path)
 
 
-def test_the_lake_holds_the_only_copy(built: Workbench):
-    """No table is a Parquet file twice."""
-    paths = [f for f in built.data.rglob("*.parquet") if f.name.startswith("register")]
-    assert {f.parent for f in paths} == {built.store.table_folder}
-
-
 def test_without_a_declared_licence_none_is_given(tmp_path):
     package = described(tmp_path)
     assert "licenses" not in package

@@ -25,7 +25,7 @@ from warehouse.archive.plausibility.run import Run
 
 TINY = WorldSettings(seasons=(2010, 2014), tows_per_season=11, rate_hz=10, seed=5)
 TOW = "2014-004"
-SEEDED = 60
+SEEDED = 20
 ROOMS = (pipeline, warehouse.archive)
 TODAY = ("first_seen", "code_version", "content_hash")
 

@@ -71,7 +71,9 @@ def archive_tables(
     tables = {
         "boats": listed_boats.unique("fsn_no", keep="last", maintain_order=True),
         "seasons": _seasons(season_tows, sound, losses),
-        "tows": _with_lost_runs(tows, losses),
+        "tows": tows.join(
+            _lost_of_tows(losses).drop("lost_s"), on="tow_id", how="left", maintain_order="left"
+        ).with_columns(pl.col("runs_set_aside").fill_null(0)),
         "tow_runs": _with_lost_seconds(runs, losses),
         "hand_windows": windows.join(beyond, on=["path", "line"], how="anti"),
         "quarantine": _dated(set_aside, quarantine_before, today),
@@ -106,15 +108,11 @@ def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame
     )
 
 
-def _with_lost_runs(tows: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
-    """Adds how many of the runs to be used are set aside."""
-    lost = (
-        losses.filter(lost="run")
-        .group_by("tow_id", maintain_order=True)
-        .agg(pl.len().alias("runs_set_aside"))
-    )
-    return tows.join(lost, on="tow_id", how="left", maintain_order="left").with_columns(
-        pl.col("runs_set_aside").fill_null(0)
+def _lost_of_tows(losses: pl.DataFrame) -> pl.DataFrame:
+    """Per tow how many of the runs to be used are set aside, and the seconds that are left out."""
+    return losses.group_by("tow_id", maintain_order=True).agg(
+        (pl.col("lost") == "run").sum().alias("runs_set_aside"),
+        pl.col("lost_s").filter(pl.col("lost") == "seconds").sum(),
     )
 
 
@@ -150,13 +148,9 @@ def judged_tows(
 
 def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
     """How many tows each season lists, how many can be used, and what is lost of those."""
-    lost = losses.group_by("tow_id", maintain_order=True).agg(
-        (pl.col("lost") == "run").sum().alias("runs_set_aside"),
-        pl.col("lost_s").filter(pl.col("lost") == "seconds").sum(),
-    )
     is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
     return (
-        listed.join(lost, on="tow_id", how="left", maintain_order="left")
+        listed.join(_lost_of_tows(losses), on="tow_id", how="left", maintain_order="left")
         .group_by("season", maintain_order=True)
         .agg(
             pl.len().alias("listed"),

@@ -59,7 +59,7 @@ def reproducibility(
 ) -> pl.DataFrame:
     """How far a measurement can be repeated."""
     spread = repeats.reproducibility(repeat_pairs, _observed(curves, run_points, tows, boats))
-    return repeats.told_apart(spread, variance_components)
+    return repeats.with_categories(spread, variance_components)
 
 
 def _of(method: Method, frame: pl.DataFrame) -> pl.DataFrame:

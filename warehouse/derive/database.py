@@ -31,10 +31,10 @@ MEANINGS: Final = str(
 
 
 def warehouse_database(
-    all_tables: Mapping[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
+    all_tables: dict[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
 ) -> pl.DataFrame:
     """All tables in one DuckDB file, swapped in whole; then those of the lake are described."""
-    tables = {name: ordered(name, all_tables[name]) for name in all_tables}
+    tables = {name: ordered(name, all_tables.pop(name)) for name in tuple(all_tables)}
     tables["about"] = _about(about_archive)
     tables["contents"] = _contents(tables)
     build_database(store.database, tables)

@@ -24,31 +24,22 @@ from warehouse.intake import seasons as intake
 from warehouse.store.code import COMPUTING
 from warehouse.store.store import Store
 
-ARCHIVE: Final = Step(
-    "archive", "collecting boats, tows and what was set aside", archive_tables, ARCHIVE_TABLES
-)
-METHOD: Final = Step("method", "applying methods to all tows", method_tables, METHOD_TABLES)
+ARCHIVE: Final = Step("archive", archive_tables, ARCHIVE_TABLES)
+METHOD: Final = Step("method", method_tables, METHOD_TABLES)
 STUDIES: Final = Step(
     "studies",
-    "finding what each step changes, and how much choices matter",
     study_tables,
     STUDY_TABLES,
 )
-LINES: Final = Step(
-    "lines", "drawing lines through boats of the same type", consistency.line_tables, LINE_TABLES
-)
-TYPES: Final = Step(
-    "consistency", "comparing boats of the same type", consistency.type_tables, TYPE_TABLES
-)
+LINES: Final = Step("lines", consistency.line_tables, LINE_TABLES)
+TYPES: Final = Step("consistency", consistency.type_tables, TYPE_TABLES)
 REGISTERS: Final = Step(
     "register",
-    "making registers",
     registers.register_tables,
     ("register", "register_history", "editions", "register_changes", "lineage", "methods"),
 )
 DATABASE: Final = Step(
     "database",
-    "making the database",
     database.warehouse_database,
     (database.DATABASE_TABLE,),
     code=(*COMPUTING, "warehouse.store.database", "warehouse.store.package"),
@@ -60,13 +51,12 @@ STEPS: Final = (
     ARCHIVE,
     Step(
         "recordings",
-        "averaging what the instruments said",
         summaries.recording_tables,
         ("trace_seconds", "run_statistics"),
     ),
     *(METHOD, STUDIES, LINES, TYPES),
     *(
-        Step("consistency", "comparing boats of the same type", compute, (compute.__name__,))
+        Step("consistency", compute, (compute.__name__,))
         for compute in (
             consistency.slow_tows,
             consistency.repeat_pairs,
@@ -75,9 +65,9 @@ STEPS: Final = (
         )
     ),
     REGISTERS,
-    Step("register", "finding who is due", registers.due_list, ("due_list",)),
+    Step("register", registers.due_list, ("due_list",)),
     *(
-        Step("summaries", "summing up", compute, (compute.__name__,))
+        Step("summaries", compute, (compute.__name__,))
         for compute in (
             summaries.race_changes,
             summaries.season_changes,
@@ -88,9 +78,7 @@ STEPS: Final = (
             promise,
         )
     ),
-    Step(
-        "summaries", "summing up", summaries.print_tables, ("print_reproduction", "print_summary")
-    ),
+    Step("summaries", summaries.print_tables, ("print_reproduction", "print_summary")),
     DATABASE,
 )
 """Every step comes after those whose tables it reads."""

@@ -5,7 +5,7 @@ fingerprint of what is made from it is said beside how it is read.
 """
 
 import datetime as dt
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Final, NamedTuple
@@ -124,22 +124,6 @@ class Blocks:
         return stack_blocks(self.columns(*PLACE), runs, lambda name: self.columns(name)[name])
 
 
-@dataclass(frozen=True)
-class AllTables(Mapping[str, pl.DataFrame]):
-    """The tables of the database, each read when it is asked for."""
-
-    scope: Scope
-
-    def __getitem__(self, name: str) -> pl.DataFrame:
-        return read_table(self.scope, name)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(IN_DATABASE)
-
-    def __len__(self) -> int:
-        return len(IN_DATABASE)
-
-
 class Other(NamedTuple):
     """How something that is no table is read, and what of it is in a fingerprint."""
 
@@ -234,7 +218,8 @@ OTHERS: Final[Mapping[str, Other]] = {
         lambda scope: published_made_from(scope.store),
     ),
     "all_tables": Other(
-        AllTables, lambda scope: {name: state_of_table(scope, name) for name in IN_DATABASE}
+        lambda scope: {name: read_table(scope, name) for name in IN_DATABASE},
+        lambda scope: {name: state_of_table(scope, name) for name in IN_DATABASE},
     ),
     "run_cache": Other(_run_cache),
     "quarantine_before": Other(_quarantine_before),

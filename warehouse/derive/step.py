@@ -43,7 +43,6 @@ class Step:
 
     Attributes:
         group: what it is about.
-        says: what happens, for people who wait.
         compute: makes the outputs, by name, or the only one; its docstring says what they are, its
             parameters what it reads.
         outputs: names of the tables it makes.
@@ -53,7 +52,6 @@ class Step:
     """
 
     group: str
-    says: str
     compute: Callable[..., Made]
     outputs: tuple[str, ...]
     code: tuple[str, ...] = COMPUTING

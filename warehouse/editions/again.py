@@ -7,7 +7,6 @@ head of the chain knows (see `verify`).
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Final
 
 import polars as pl
@@ -42,8 +41,6 @@ Other processors leave other last bits, which come to no more in any table (docs
 
 INPUT_TABLES: Final = ("tows", "tow_runs")
 CANNOT: Final = (HerijkError, ValidationError, OSError, ValueError, pl.exceptions.PolarsError)
-MOST_CELLS: Final = 20
-"""Cells of a sheet that are named one by one."""
 
 
 @dataclass(frozen=True)
@@ -172,8 +169,9 @@ def _files(store: Store, edition: Edition) -> Iterator[Finding]:
         if file.endswith(PARQUET):
             continue
         found = (path / file).read_bytes() if (path / file).exists() else b""
-        for where, said in _unlike(file, expected.get(file, b""), found):
-            yield Finding(manifest.edition, "differs", where, said)
+        if _is_unlike(file, expected.get(file, b""), found):
+            message = say("{} does not say what the tables of the edition say", file)
+            yield Finding(manifest.edition, "differs", file, message)
 
 
 def _made_from(stated: list[tuple[str, str, str]], tows: pl.DataFrame | None) -> pl.DataFrame:
@@ -183,29 +181,11 @@ def _made_from(stated: list[tuple[str, str, str]], tows: pl.DataFrame | None) ->
     return files if tows is None else input_files(tows, files.filter(pl.col("kind") != SAMPLES))
 
 
-def _unlike(file: str, was: bytes, now: bytes) -> list[tuple[str, str]]:
-    """Where a file says something else than it should: of a sheet the cells."""
-    if was == now:
-        return []
-    read = {".csv": sheets.read_csv_cells, ".xlsx": sheets.read_xlsx_cells}.get(Path(file).suffix)
-    otherwise: list[tuple[str, str]] = [
-        (file, say("{} does not say what the tables of the edition say", file))
-    ]
-    if read is None or not was or not now:
-        return otherwise
-    one, other = read(was), read(now)
-    if one == other:  # a workbook packed by another version of its library is none
-        return [] if file == XLSX else otherwise
-    places = [place for place in one.keys() | other.keys() if one.get(place) != other.get(place)]
-    named: list[tuple[str, str]] = [
-        (
-            f"{file}, cell {place}",
-            say("it says {!r}; it was {!r}", other.get(place, ""), one.get(place, "")),
-        )
-        for place in sorted(places)[:MOST_CELLS]
-    ]
-    more = len(places) - len(named)
-    return [*named, (file, say("and {} more places differ", more))] if more else named
+def _is_unlike(file: str, was: bytes, now: bytes) -> bool:
+    """Whether a file says something else; a workbook packed otherwise says the same."""
+    if was == now or file != XLSX:
+        return was != now
+    return not now or sheets.read_xlsx_cells(was) != sheets.read_xlsx_cells(now)
 
 
 def _differences(

@@ -19,7 +19,6 @@ from typing import Any, Final, Literal
 import polars as pl
 import python_calamine
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
-from xlsxwriter.utility import xl_rowcol_to_cell  # type: ignore[import-untyped,unused-ignore]
 
 from pipeline.register.register import NO_EMPTY_THWART
 from warehouse.editions.words import STATUSES
@@ -114,9 +113,6 @@ INPUT_FIELDS: Final = (
 
 Cells = list[list[str]]
 
-Places = dict[str, object]
-"""What is in the filled cells of a sheet, by place ("B3")."""
-
 
 def printed_cells(frame: pl.DataFrame, fields: Sequence[Field]) -> Cells:
     """The cells of a sheet as they are printed, without the header."""
@@ -150,31 +146,13 @@ def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
     return (BOM + text.getvalue()).encode("utf-8")
 
 
-def read_csv_cells(content: bytes) -> Places:
-    """The filled cells of such a CSV."""
-    return _places(_csv_rows(content))
-
-
-def _csv_rows(content: bytes) -> Cells:
-    text = content.decode("utf-8-sig", errors="replace")
-    return list(csv.reader(io.StringIO(text, newline=""), delimiter=";"))
-
-
-def _places(grid: Sequence[Sequence[object]], sheet: str = "") -> Places:
-    return {
-        sheet + xl_rowcol_to_cell(row, place): cell
-        for row, cells in enumerate(grid)
-        for place, cell in enumerate(cells)
-        if cell != ""
-    }
-
-
 def read_inputs(edition: Path) -> list[tuple[str, str, str]]:
     """File, kind and SHA-256 of what an edition was made from.
 
     A row of another width was changed, which is found where the files themselves are looked at.
     """
-    rows = _csv_rows((edition / INPUTS).read_bytes())[1:]
+    text = (edition / INPUTS).read_bytes().decode("utf-8-sig", errors="replace")
+    rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=";"))[1:]
     return [(row[0], row[1], row[2]) for row in rows if len(row) == len(INPUT_FIELDS)]
 
 
@@ -233,18 +211,17 @@ def _said(manifest: Manifest) -> dict[str, str]:
     }
 
 
-def read_xlsx_cells(content: bytes) -> Places:
-    """The filled cells of all sheets, by sheet and place ("register!B3").
+def read_xlsx_cells(content: bytes) -> dict[str, list[list[Any]]]:
+    """The cells of all sheets, by the sheet's name.
 
     Raises:
         ValueError: this is no XLSX.
     """
     try:
         book = python_calamine.load_workbook(io.BytesIO(content))
-        grids = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
+        return {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
     except python_calamine.CalamineError as error:
         raise ValueError(f"no XLSX: {error}") from error
-    return {k: v for name, grid in grids.items() for k, v in _places(grid, f"{name}!").items()}
 
 
 def package_bytes(

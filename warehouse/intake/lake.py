@@ -8,7 +8,7 @@ files look like is known to `warehouse.archive`, and which sums there are to
 """
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Final
@@ -53,8 +53,6 @@ SAMPLE_FACTS: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
 """What the index says of the samples of a tow that can be used."""
 
 Tow = Row
-Report = Callable[[str, bool], None]
-"""Called after each tow with its id and whether it was set aside."""
 
 
 def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonProfile) -> str:
@@ -70,7 +68,6 @@ def read_season(
     tows: pl.DataFrame,
     runs: pl.DataFrame,
     profile: SeasonProfile,
-    report: Report,
 ) -> pl.DataFrame:
     """Brings the samples and blocks of a season's tows into the lake.
 
@@ -80,7 +77,6 @@ def read_season(
         tows: listed tows of one season.
         runs: their runs.
         profile: how that season's files are written.
-        report: called after each tow.
 
     Returns:
         The season's index, `SeasonIndex`, sorted by tow.
@@ -97,7 +93,6 @@ def read_season(
             row = known
         else:
             row = _bring_in(store, root, tow, listed_runs, profile, key, hashes, known)
-        report(tow["tow_id"], row["reason_code"] is not None)
         return row | {"tow_id": tow["tow_id"]}
 
     workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads

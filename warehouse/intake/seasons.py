@@ -181,9 +181,7 @@ def forget_unlisted_seasons(store: Store) -> None:
             store.remove(table, str(season))
 
 
-def read_season(
-    store: Store, root: Path, season: int, report: lake.Report = lambda *_: None
-) -> pl.DataFrame:
+def read_season(store: Store, root: Path, season: int) -> pl.DataFrame:
     """Brings one season's samples into the lake; keeps its index and the list it was read by.
 
     Returns:
@@ -191,7 +189,7 @@ def read_season(
     """
     tows, runs = _listed(store, season)
     profile = read_profiles(root).for_season(season)
-    season_index = lake.read_season(store, root, tows, runs, profile, report)
+    season_index = lake.read_season(store, root, tows, runs, profile)
     made_from = lake.season_fingerprint(tows, runs, profile)
     kept = {"season_tows": tows, "season_runs": runs, "season_index": season_index}
     for name, frame in kept.items():

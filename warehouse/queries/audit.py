@@ -81,13 +81,18 @@ def audit(
     with open_results(store.database) as db:
         methods = _methods(db, method)
         usual: list[str] = [name for name in TYPE_METHODS if name in methods]
-        chosen = methods if method or not usual else usual
-        boat = _boat_named(db, names[0]) if len(names) == 1 else None
-        choose(db, tows, methods if boat else chosen)
-        if boat:
+        of_types = methods if method or not usual else usual
+        types = {plain(row["boat_type"]): row for row in rows(db, _TYPES)}
+        asked = {name: types.get(plain(name)) for name in names}
+        if len(names) == 1 and asked[names[0]] is None and (boat := _boat(db, names[0])):
+            choose(db, tows, methods)
             return _boat_audit(db, boat, methods, tows)
-        types = list(dict.fromkeys(_type_named(db, name) for name in names))
-        return types_audit(db, types, chosen, tows)
+        for name, found in asked.items():
+            if found is None:
+                raise _no_such_type(db, name, list(types.values()))
+        choose(db, tows, of_types)
+        known = dict.fromkeys(row["boat_type"] for row in asked.values() if row)
+        return types_audit(db, list(known), of_types, tows)
 
 
 def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
@@ -101,42 +106,33 @@ def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
     return [method]
 
 
-def _boat_named(db: duckdb.DuckDBPyConnection, name: str) -> Row | None:
-    """The boat of that number or name; a type goes before a boat of the same name."""
+def _boat(db: duckdb.DuckDBPyConnection, name: str) -> Row | None:
+    """The boat of that number or name."""
     boats = db.sql("SELECT * FROM boats").pl()
-    if not boats_named(boats, name) or _is_type(db, name):
+    if not boats_named(boats, name):
         return None
     return rows(db, "SELECT * FROM boats WHERE fsn_no = ?", the_boat(boats, name))[0]
 
 
-def _is_type(db: duckdb.DuckDBPyConnection, name: str) -> bool:
-    types = rows(db, "SELECT DISTINCT boat_type FROM boats WHERE boat_type IS NOT NULL")
-    return any(plain(row["boat_type"]) == plain(name) for row in types)
-
-
-def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
-    query = f"SELECT {TYPE} AS boat_type, count(*) AS n FROM boats AS b GROUP BY ALL ORDER BY ALL"  # noqa: S608
-    types = rows(db, query)
-    for row in types:
-        if plain(row["boat_type"]) == plain(name):
-            return str(row["boat_type"])
-    boat = _boat_named(db, name)
-    if boat:
-        raise MissingKnowledgeError(
+def _no_such_type(
+    db: duckdb.DuckDBPyConnection, name: str, types: list[Row]
+) -> MissingKnowledgeError:
+    if boat := _boat(db, name):
+        return MissingKnowledgeError(
             "{} is a boat, not a type; a boat has a page of its own: herijk audit {}",
             boat["fsn_no"],
             boat["fsn_no"],
         )
-    example = rows(db, "SELECT min(fsn_no) AS fsn_no FROM tows")[0]["fsn_no"]
-    known = ", ".join(f"{row['boat_type']} ({row['n']})" for row in types)
-    raise MissingKnowledgeError(
+    return MissingKnowledgeError(
         "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by "
         "FSN number or name, for example {}",
         name,
-        known,
-        example,
+        ", ".join(f"{row['boat_type']} ({row['n']})" for row in types),
+        rows(db, "SELECT min(fsn_no) AS fsn_no FROM tows")[0]["fsn_no"],
     )
 
+
+_TYPES = f"SELECT {TYPE} AS boat_type, count(*) AS n FROM boats AS b GROUP BY ALL ORDER BY ALL"  # noqa: S608
 
 # A boat ------------------------------------------------------------------------------------------
 

@@ -56,55 +56,33 @@ class TypeFacts:
 
 
 @dataclass(frozen=True)
-class Closest:
-    """Whether Cw at one speed spreads less about the line on weight than A and than B."""
-
-    n: int
-    cw_closest: bool | None
-    reason: str
-
-
-@dataclass(frozen=True)
-class Repeats:
-    """How repeat pairs of a type spread, how many have an E_n, and of how many it is above 1."""
-
-    n_pairs: int
-    sd_ratio: float | None
-    n_e_n: int
-    n_disagree: int
-
-
-@dataclass(frozen=True)
 class TypeStatistics:
     """All statistics of a type under one method.
 
     Attributes:
         lines: rows of `type_consistency` with `follows`.
-        all_tows: rows of `type_lines` over all tows with `follows`.
         bends: the row of `type_homogeneity` with `equal_possible`, or `n` and `reason`.
         speed_trend: the row of that table with `follows`, or `n` and `reason`.
         shared: per pooling, what sharing a bend does to B and Cw.
-        judged: per quantity, how many tows were judged.
+        repeats: how repeat pairs spread, how many have an E_n, and of how many it is above 1.
         eras: a row of `era_shifts` each, or `era`, `n`, `apart` and `reason`.
         prediction: how far `predicted_cw` is off.
-        hull_speed, tows_outside, outside, slow_tows, disagreeing: rows of their tables.
+        cw_closest: whether Cw at one speed spreads less about the line on weight than A and than B.
+        hull_speed, tows_outside, outside, slow_tows: rows of their tables.
     """
 
     lines: list[Row]
-    closest: Closest
-    all_tows: list[Row]
     hull_speed: list[Row]
     tows_outside: list[Row]
     bends: Row
     speed_trend: Row
     shared: list[Row]
-    judged: list[Row]
     outside: list[Row]
     slow_tows: list[Row]
-    repeats: Repeats
+    repeats: Row
     eras: list[Row]
     prediction: Row
-    disagreeing: list[Row]
+    cw_closest: bool | None
 
 
 @dataclass(frozen=True)
@@ -114,24 +92,20 @@ class OneType(TypeFacts):
     under: dict[str, TypeStatistics]
 
 
-@dataclass(frozen=True)
-class Fleet:
-    """What holds for all types together under a method: rows of the tables, eras by name."""
-
-    reproducibility: list[Row]
-    components: list[Row]
-    eras: dict[str, Row]
-    prediction_error: Row | None
-
-
 @dataclass(frozen=True, kw_only=True)
 class TypesAudit(Audit):
-    """The page of types: each, what differs between them, and all types, by method."""
+    """The page of types.
+
+    Attributes:
+        types: each of them.
+        differences: what differs between them, by method.
+        reproducibility: rows of that table, for all types together.
+    """
 
     about: str = "types"
     types: list[OneType]
     differences: dict[str, list[str]]
-    fleet: dict[str, Fleet]
+    reproducibility: list[Row]
 
 
 def types_audit(
@@ -148,51 +122,37 @@ def types_audit(
         methods=methods,
         types=audited,
         differences={m: differences(*(one.under[m] for one in audited)) for m in methods},
-        fleet={method: _fleet(db, method) for method in methods},
+        reproducibility=rows(db, _REPRODUCIBILITY, methods),
     )
 
 
 def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> TypeFacts:
     """How many boats and tows there are of a type, and how they differ."""
-    (facts,) = rows(
-        db,
-        f"""SELECT {TYPE} AS boat_type, count(DISTINCT b.fsn_no) AS n_boats,
-                   count(DISTINCT t.fsn_no) AS n_towed, count(t.tow_id) AS n_tows,
-                   min(t.season) AS first_season, max(t.season) AS last_season,
-                   min(t.weight_kg) AS lightest_kg, max(t.weight_kg) AS heaviest_kg,
-                   min(t.declared_speed_m_s) AS slowest_m_s,
-                   max(t.declared_speed_m_s) AS fastest_m_s
-            FROM boats AS b LEFT JOIN tows AS t USING (fsn_no)
-            WHERE {TYPE} = ? GROUP BY ALL""",  # noqa: S608
-        boat_type,
-    )
-    return TypeFacts(**facts)
+    return TypeFacts(**rows(db, _FACTS, boat_type)[0])
 
 
 def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> TypeStatistics:
     """All statistics of a type under one method."""
     own = (method, boat_type)
+    reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
+    absent = [{"n": 0, "reason": reason, "equal_possible": None, "follows": None}]
+    eras = {row["era"]: row for row in rows(db, _ERAS, *own)}
+    no_era = {"n": 0, "apart": None, "reason": "few_pairs"}
     lines = rows(db, _LINES, *own)
     return TypeStatistics(
-        lines=[_judged_line(line) for line in lines],
-        closest=closest(lines),
-        all_tows=[_judged_line(line) for line in rows(db, _ALL_TOWS, *own)],
+        lines=lines,
         hull_speed=rows(db, _HULL_SPEED, *own),
-        tows_outside=_named(db, "compared_tows", "outside", _FURTHEST, *own),
-        bends=_bends(_one(db, "type_homogeneity", *own)),
-        speed_trend=_trend(_one(db, "speed_trend", *own)),
+        tows_outside=_named(db, "compared_tows", "outside", "abs(deviation_sd) DESC", *own),
+        bends=(rows(db, _BENDS, *own) or absent)[0],
+        speed_trend=(rows(db, _TREND, *own) or absent)[0],
         shared=rows(db, _SHARED, *own),
-        judged=rows(db, _JUDGED, *own),
-        outside=_named(db, "type_outliers", "outside", _FURTHEST, *own),
+        outside=_named(db, "type_outliers", "outside", "abs(deviation_sd) DESC", *own),
         slow_tows=_named(db, "slow_tows", "slow", "power_w", *own),
-        repeats=_repeats(rows(db, _PAIRS, *own)),
-        eras=[_era(db, *own, era.name) for era in ERAS[:-1]],
+        repeats=rows(db, _REPEATS, *own)[0],
+        eras=[eras.get(era.name, {"era": era.name} | no_era) for era in ERAS[:-1]],
         prediction=rows(db, _PREDICTION, *own)[0],
-        disagreeing=_named(db, "predicted_cw", "disagrees", "abs(ln_ratio) DESC", *own),
+        cw_closest=cw_closest(lines),
     )
-
-
-_FURTHEST: Final = "abs(deviation_sd) DESC"
 
 
 def _named(
@@ -205,75 +165,29 @@ def _named(
     return rows(db, query, method, boat_type)
 
 
-def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str) -> Row:
-    """The one row of a method and type; there is none without a curve, or where types are asked."""
-    query = f"SELECT * FROM {table} WHERE method = ? AND boat_type = ?"  # noqa: S608
-    matching = rows(db, query, method, boat_type)
-    reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
-    return matching[0] if matching else {"n": 0, "reason": reason}
-
-
-def _judged_line(line: Row) -> Row:
-    """A line with its verdict: whether the interval of its slope leaves out zero."""
-    follows = None if line["slope"] is None else line["slope_lo"] > 0 or line["slope_hi"] < 0
-    return line | {"follows": follows}
-
-
-def closest(lines: list[Row]) -> Closest:
+def cw_closest(lines: list[Row]) -> bool | None:
     """Whether Cw at one speed spreads less about the line on weight than A and than B.
 
-    `cw_closest` is None where the variances differ no more than an F test at 5 % lets them. The
-    three come from the same runs, so the test is on the safe side.
+    None where the variances differ no more than an F test at 5 % lets them, or one is not known.
+    The three come from the same runs, so the test is on the safe side.
     """
-    on_weight = {line["quantity"]: line for line in lines if line["explaining"] == "weight_kg"}
-    unknown = {"n": 0, "reason": "no_curves"}
-    three = [on_weight.get(name, unknown) for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s")]
-    for line in three:
-        if line["reason"]:
-            return Closest(line["n"], None, line["reason"])
-    cw, a, b = ((line["n_boats"] - 2, line["residual_sd_ratio"] ** 2) for line in three)
-    closer = all(_larger(other, cw) for other in (a, b))
-    further = any(_larger(cw, other) for other in (a, b))
-    verdict = False if further else True if closer else None
-    return Closest(min(line["n"] for line in three), verdict, "")
+    on_weight = {
+        line["quantity"]: (line["n_boats"] - 2, line["residual_sd_ratio"] ** 2)
+        for line in lines
+        if line["explaining"] == "weight_kg" and not line["reason"]
+    }
+    if not {"cw_standard_kg_m", "a_kg_m", "b_m_s"} <= on_weight.keys():
+        return None
+    cw, *others = (on_weight[name] for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s"))
+    if any(_larger(cw, other) for other in others):
+        return False
+    return True if all(_larger(other, cw) for other in others) else None
 
 
 def _larger(one: tuple[int, float], other: tuple[int, float]) -> bool:
     """Whether a variance, with its degrees of freedom, is larger than another at 5 %."""
     dof = max(one[0], 1), max(other[0], 1)
     return one[1] > float(scipy.special.fdtri(*dof, 1.0 - LEVEL)) * other[1]
-
-
-def _bends(test: Row) -> Row:
-    """The test of equal bends with its verdict: None where it could not have seen a difference."""
-    if test["reason"]:
-        return test | {"equal_possible": None}
-    different = test["p_value"] < LEVEL
-    strong = (test["power_at_10pct"] or 0.0) >= ENOUGH_POWER
-    return test | {"equal_possible": False if different else True if strong else None}
-
-
-def _trend(trend: Row) -> Row:
-    return trend | {"follows": None} if trend["reason"] else _judged_line(trend)
-
-
-def _repeats(pairs: list[Row]) -> Repeats:
-    squares = [pair["ln_ratio"] ** 2 for pair in pairs]
-    known = [abs(pair["e_n"]) for pair in pairs if pair["e_n"] is not None]
-    return Repeats(
-        n_pairs=len(pairs),
-        sd_ratio=(sum(squares) / len(pairs) / 2) ** 0.5 if pairs else None,
-        n_e_n=len(known),
-        n_disagree=sum(e_n > 1 for e_n in known),
-    )
-
-
-def _era(db: duckdb.DuckDBPyConnection, method: str, boat_type: str, era: str) -> Row:
-    """Whether an era stands apart; the table has no row where a type has no pair at all."""
-    matching = rows(db, _ERA, method, boat_type, era)
-    if matching:
-        return matching[0]
-    return {"era": era, "n": 0, "apart": None, "reason": "few_pairs"}
 
 
 def differences(first: TypeStatistics, *others: TypeStatistics) -> list[str]:
@@ -285,17 +199,16 @@ def differences(first: TypeStatistics, *others: TypeStatistics) -> list[str]:
         `quantity explaining` of lines, `speed_trend`, the names of eras, `bends`, `closest`; of one
         type, nothing.
     """
-    return [name for second in others for name in _differing(first, second)]
-
-
-def _differing(first: TypeStatistics, second: TypeStatistics) -> list[str]:
-    intervals = [_intervals(first), _intervals(second)]
-    verdicts = [
-        {"bends": one.bends["equal_possible"], "closest": one.closest.cw_closest}
-        for one in (first, second)
-    ]
-    apart = [n for n in intervals[0] if n in intervals[1] and _apart(*(i[n] for i in intervals))]
-    return apart + [n for n in verdicts[0] if {v[n] for v in verdicts} == {True, False}]
+    found = []
+    for second in others:
+        own, other = _intervals(first), _intervals(second)
+        found += [name for name in own if name in other and _apart(own[name], other[name])]
+        verdicts = {
+            "bends": {one.bends["equal_possible"] for one in (first, second)},
+            "closest": {one.cw_closest for one in (first, second)},
+        }
+        found += [name for name, both in verdicts.items() if both == {True, False}]
+    return found
 
 
 def _intervals(under: TypeStatistics) -> dict[str, tuple[float, float, float]]:
@@ -308,10 +221,10 @@ def _intervals(under: TypeStatistics) -> dict[str, tuple[float, float, float]]:
         for name, line in slopes.items()
         if not line["reason"]
     }
-    shifts = {era["era"]: era for era in under.eras if not era["reason"]}
     return intervals | {
-        name: (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
-        for name, era in shifts.items()
+        era["era"]: (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
+        for era in under.eras
+        if not era["reason"]
     }
 
 
@@ -320,32 +233,31 @@ def _apart(one: tuple[float, float, float], other: tuple[float, float, float]) -
     return abs(one[0] - other[0]) > half
 
 
-def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Fleet:
-    error = rows(db, "SELECT * FROM prediction_error WHERE method = ?", method)
-    return Fleet(
-        reproducibility=rows(
-            db, "SELECT * FROM reproducibility WHERE method = ? ORDER BY scope", method
-        ),
-        components=rows(
-            db,
-            "SELECT * FROM variance_components WHERE method = ? AND scope = 'within_type' "
-            "ORDER BY component",
-            method,
-        ),
-        eras={row["era"]: row for row in rows(db, _ERAS_OF_ALL, method)},
-        prediction_error=error[0] if error else None,
-    )
+_FACTS = f"""
+SELECT {TYPE} AS boat_type, count(DISTINCT b.fsn_no) AS n_boats,
+       count(DISTINCT t.fsn_no) AS n_towed, count(t.tow_id) AS n_tows,
+       min(t.season) AS first_season, max(t.season) AS last_season,
+       min(t.weight_kg) AS lightest_kg, max(t.weight_kg) AS heaviest_kg,
+       min(t.declared_speed_m_s) AS slowest_m_s, max(t.declared_speed_m_s) AS fastest_m_s
+FROM boats AS b LEFT JOIN tows AS t USING (fsn_no) WHERE {TYPE} = ? GROUP BY ALL
+"""  # noqa: S608
 
+_FOLLOWS = "CASE WHEN slope IS NOT NULL THEN slope_lo > 0 OR slope_hi < 0 END AS follows"
+"""Whether the interval of a slope leaves out zero."""
 
-_LINES = """
-SELECT * FROM type_consistency WHERE method = ? AND boat_type = ?
+_LINES = f"""
+SELECT *, {_FOLLOWS} FROM type_consistency WHERE method = ? AND boat_type = ?
 ORDER BY quantity, explaining, within
-"""
+"""  # noqa: S608
 
-_ALL_TOWS = """
-SELECT * FROM type_lines
-WHERE method = ? AND boat_type = ? AND tows = 'all' AND explaining = 'weight_kg' ORDER BY quantity
-"""
+_TREND = f"SELECT *, {_FOLLOWS} FROM speed_trend WHERE method = ? AND boat_type = ?"  # noqa: S608
+
+_BENDS = f"""
+SELECT *, CASE WHEN reason != '' THEN NULL WHEN p_value < {LEVEL} THEN false
+          WHEN power_at_10pct >= {ENOUGH_POWER} THEN true END AS equal_possible
+FROM type_homogeneity WHERE method = ? AND boat_type = ?
+"""  # noqa: S608
+"""With a verdict: None where the test could not have seen a difference."""
 
 _HULL_SPEED = "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'"
 
@@ -361,22 +273,13 @@ FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
 WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
 """
 
-_JUDGED = """
-SELECT quantity, count(*) AS n, count(DISTINCT fsn_no) AS n_boats,
-       any_value(standard_speed_m_s) AS standard_speed_m_s
-FROM type_outliers WHERE method = ? AND boat_type = ? GROUP BY quantity ORDER BY quantity
-"""
-
-_PAIRS = f"""
-SELECT p.* FROM repeat_pairs AS p JOIN boats AS b USING (fsn_no)
-WHERE p.method = ? AND {TYPE} = ? ORDER BY p.tow_id
+_REPEATS = f"""
+SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
+       count(p.e_n) AS n_e_n, count(*) FILTER (WHERE abs(p.e_n) > 1) AS n_disagree
+FROM repeat_pairs AS p JOIN boats AS b USING (fsn_no) WHERE p.method = ? AND {TYPE} = ?
 """  # noqa: S608
 
-_ERA = "SELECT * FROM era_shifts WHERE method = ? AND boat_type = ? AND era = ?"
-
-_ERAS_OF_ALL = """
-SELECT * FROM era_shifts WHERE method = ? AND boat_type = 'all' ORDER BY era
-"""
+_ERAS = "SELECT * FROM era_shifts WHERE method = ? AND boat_type = ?"
 
 _PREDICTION = """
 SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
@@ -384,4 +287,8 @@ SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
        sqrt(avg(cw_sd_ratio * cw_sd_ratio)) AS tow_sd_ratio,
        count(*) FILTER (WHERE disagrees) AS n_disagree
 FROM predicted_cw WHERE method = ? AND boat_type = ?
+"""
+
+_REPRODUCIBILITY = """
+SELECT * FROM reproducibility WHERE list_contains(?, method) ORDER BY method, scope
 """

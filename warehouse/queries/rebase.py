@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import polars as pl
 
 from pipeline.method.definition import Method
-from pipeline.register.changes import register_changes
 from pipeline.register.register import LINE
 from pipeline.studies.ladder import START, ladder
 from pipeline.tables.row import Row
 from warehouse.editions.compare import NO_STEPS
 from warehouse.queries.history import Draft, History
+from warehouse.queries.scenario import largest_first
 from warehouse.store.editions import Edition
 from warehouse.store.store import Store
 
@@ -68,15 +68,29 @@ def against_print(store: Store, method: Method, printed: Edition) -> RebaseRepor
 
 def _report(new: Draft, old: pl.DataFrame, against: str, rungs: pl.DataFrame) -> RebaseReport:
     history, method = new.history, new.method
-    changes = register_changes(old, new.register)
+    lines = largest_first(old, new.register)
+    most = (
+        lines.drop_nulls("cw_ratio")
+        .head(MOST_AFFECTED)
+        .join(new.register.select(*LINE, "tow_id"), on=LINE, maintain_order="left")
+        .join(
+            history.boats.select("fsn_no", "name"), on="fsn_no", how="left", maintain_order="left"
+        )
+        .join(
+            rungs.pivot("step", index="tow_id", values="factor"),
+            on="tow_id",
+            how="left",
+            maintain_order="left",
+        )
+    )
     return RebaseReport(
         method=method.name,
         method_hash=method.content_hash,
         against=against,
         simulated=history.simulated,
         by_season=_by_season(rungs, history.tows).to_dicts(),
-        changes=changes["change"].value_counts(sort=True).to_dicts(),
-        boats=_most_affected(changes, new.register, rungs, history.boats).to_dicts(),
+        changes=lines["change"].value_counts(sort=True).to_dicts(),
+        boats=most.drop("from_edition", "to_edition").to_dicts(),
     )
 
 
@@ -95,22 +109,3 @@ def _by_season(rungs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     )
     wide = medians.pivot("step", index="season", values="factor").select("season", *steps)
     return wide.join(total, on="season", maintain_order="left").sort("season")
-
-
-def _most_affected(
-    changes: pl.DataFrame, register: pl.DataFrame, rungs: pl.DataFrame, boats: pl.DataFrame
-) -> pl.DataFrame:
-    """The register lines that change most, with the factor of each step on their tow."""
-    largest = (
-        changes.drop_nulls("cw_ratio")
-        .with_columns(pl.col("cw_ratio").log().abs().alias("size"))
-        .sort("size", *LINE, descending=[True, *(False for _ in LINE)])
-        .head(MOST_AFFECTED)
-    )
-    factors = rungs.pivot("step", index="tow_id", values="factor")
-    return (
-        largest.join(register.select(*LINE, "tow_id"), on=LINE, maintain_order="left")
-        .join(boats.select("fsn_no", "name"), on="fsn_no", how="left", maintain_order="left")
-        .join(factors, on="tow_id", how="left", maintain_order="left")
-        .drop("size", "causes", "from_edition", "to_edition")
-    )

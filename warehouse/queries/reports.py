@@ -10,7 +10,6 @@ from pipeline.tables.row import Row
 from warehouse.store.database import is_simulated, open_database, open_results, rows
 from warehouse.store.store import Store
 
-BIGGEST = 10
 FIRST_FAULTS = 10
 _FAULTS_BY_REASON = """
 SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY lost, reason_code
@@ -40,8 +39,6 @@ class RebuildReport:
         seasons: `season` and `tows`.
         set_aside: `lost`, `reason_code` and their `number`.
         first_faults: one line per cause: its first place and sentence, and how many there are.
-        curves: `method`, `status` and their `number`.
-        by_season, biggest_changes: what the newest method changes.
     """
 
     database: str
@@ -51,9 +48,6 @@ class RebuildReport:
     seasons: list[Row]
     set_aside: list[Row]
     first_faults: list[Row]
-    curves: list[Row]
-    by_season: list[Row]
-    biggest_changes: list[Row]
 
 
 @dataclass(frozen=True)
@@ -76,7 +70,7 @@ class LogErrorReport:
 
 
 def rebuild_report(store: Store) -> RebuildReport:
-    """What the warehouse holds: seasons, set-aside rows, curves by status, biggest changes."""
+    """What the warehouse holds: tows by season, and what is set aside."""
     with open_database(store.database) as db:
         return RebuildReport(
             database=str(store.database),
@@ -88,13 +82,6 @@ def rebuild_report(store: Store) -> RebuildReport:
             ),
             set_aside=rows(db, _FAULTS_BY_REASON),
             first_faults=rows(db, _FIRST_FAULTS, FIRST_FAULTS),
-            curves=rows(
-                db,
-                "SELECT method, status, count(*) AS number FROM curves "
-                "GROUP BY method, status ORDER BY method, status",
-            ),
-            by_season=rows(db, _BY_SEASON),
-            biggest_changes=rows(db, _BIGGEST_CHANGES, BIGGEST),
         )
 
 
@@ -141,18 +128,4 @@ SELECT season, part, instrument, unit, estimate, lo, hi, p_fault, distance_sd, v
 FROM season_diagnosis
 WHERE method = ? AND verdict NOT IN ('sound', 'estimated')
 ORDER BY season, part, instrument
-"""
-
-_BY_SEASON = """
-SELECT method, season, tows, median_ratio, lowest_ratio, highest_ratio,
-       'concept-' || from_method AS compared_with
-FROM season_changes ORDER BY method, season
-"""
-
-_BIGGEST_CHANGES = """
-SELECT c.from_edition, c.to_edition, c.fsn_no, b.name, c.rowers, c.crew_class,
-       c.cw_ratio, c.time_ratio, c.change
-FROM register_changes AS c LEFT JOIN boats AS b USING (fsn_no)
-WHERE c.cw_ratio IS NOT NULL
-ORDER BY abs(ln(c.cw_ratio)) DESC, c.to_edition, c.fsn_no LIMIT ?
 """

@@ -33,6 +33,20 @@ CURVE_COLUMNS: Final = (
 )
 
 
+def largest_first(before: pl.DataFrame, after: pl.DataFrame) -> pl.DataFrame:
+    """Every line of two registers: `register_changes` and `side_by_side`, most changed on top."""
+    return (
+        register_changes(before, after)
+        .drop("causes")
+        .join(side_by_side(before, after), on=LINE, maintain_order="left")
+        .sort(
+            pl.col("cw_ratio").log().abs().fill_null(float("inf")),
+            *LINE,
+            descending=[True, *(False for _ in LINE)],
+        )
+    )
+
+
 @dataclass(frozen=True)
 class Scenario:
     """Two drafts of one history, compared."""
@@ -48,18 +62,8 @@ class Scenario:
             Columns of `register_changes` and `side_by_side`, with `name` and `boat_type`. A line
             that appears or disappears comes before all that change.
         """
-        drafts = self.before.register, self.after.register
-        return (
-            register_changes(*drafts)
-            .drop("causes")
-            .join(side_by_side(*drafts), on=LINE, maintain_order="left")
-            .join(self._names, on="fsn_no", how="left", maintain_order="left")
-            .sort(
-                pl.col("cw_ratio").log().abs().fill_null(float("inf")),
-                *LINE,
-                descending=[True, *(False for _ in LINE)],
-            )
-        )
+        lines = largest_first(self.before.register, self.after.register)
+        return lines.join(self._names, on="fsn_no", how="left", maintain_order="left")
 
     def summary(self) -> dict[str, object]:
         """How many lines change, who gains and loses, and by how much."""

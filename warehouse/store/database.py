@@ -170,18 +170,13 @@ def open_results(path: Path) -> duckdb.DuckDBPyConnection:
     return connection
 
 
-def choice_of(names: Iterable[str]) -> str:
-    """What can be chosen, for a sentence: names, or why there is none."""
-    known = ", ".join(sorted(names))
-    return say("there are {}", known) if known else say("there is none: {}", NO_TOW)
-
-
 def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError:
     """What to say of an edition or draft that the database does not hold."""
     return MissingKnowledgeError(
-        "the last rebuild has no edition {}; {}. One published since is there after herijk rebuild",
+        "the last rebuild has no edition {}; it has {}. One published since is there after herijk "
+        "rebuild",
         edition,
-        choice_of(known),
+        ", ".join(sorted(known)) or NO_TOW,
     )
 
 

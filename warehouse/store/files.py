@@ -12,8 +12,6 @@ from pathlib import Path
 TEMPORARY_PREFIX = ".herijk-"
 """Begins the name of every file that is still being written."""
 
-WINDOWS = os.name == "nt"
-
 AT_FDCWD, RENAME_EXCHANGE = -100, 2
 """Arguments of `renameat2(2)`: paths are relative to where we are; exchange the two."""
 
@@ -99,8 +97,6 @@ def put_in_place(beside: Path, target: Path) -> None:
 
 def _exchange(one: Path, other: Path) -> bool:
     """Exchanges two names in one step; False where system or file system cannot."""
-    if WINDOWS:
-        return False
     renameat2 = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
     if renameat2 is None:
         return False
@@ -109,13 +105,8 @@ def _exchange(one: Path, other: Path) -> bool:
 
 
 def sync(path: Path) -> None:
-    """Has the system write a file, or the names in a folder, to disk.
-
-    Windows knows no such thing for folders, and wants the right to write for a file.
-    """
-    if WINDOWS and path.is_dir():
-        return
-    handle = os.open(path, os.O_RDWR if WINDOWS else os.O_RDONLY)
+    """Has the system write a file, or the names in a folder, to disk."""
+    handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
     finally:

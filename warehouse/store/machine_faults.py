@@ -4,7 +4,6 @@ Libraries wrap the system's errors in their own. What tells them is the system's
 anywhere in the chain of causes, or the few words by which SQLite, DuckDB and Polars pass one on.
 """
 
-import importlib
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,11 +13,10 @@ from typing import Final, NamedTuple
 
 from pipeline.errors import HerijkError, UnavailableError
 from pipeline.messages import Sentence, say
-from warehouse.store.files import WINDOWS
 
 
 class _Fault(NamedTuple):
-    """A fault of the machine: what to say of it, and how it is told by number or in words."""
+    """A fault of the machine: what to say of it, and how it is known, by number or in words."""
 
     sentence: Sentence
     numbers: tuple[int, ...]
@@ -33,25 +31,6 @@ _FULL: Final = _Fault(
     (ENOSPC, EDQUOT),
     ("no space left", "disk is full", "quota exceeded"),
 )
-_FORBIDDEN: Final = _Fault(
-    say(
-        "{path} cannot be read or written. Give the user who runs this the right to it, or name "
-        "another"
-    ),
-    (EROFS, EACCES, EPERM),
-    ("read-only file system", "readonly database", "permission denied"),
-)
-_LIMITED: Final = _Fault(
-    say(
-        "this process may not open more files, or none as large as it needs. Allow more (ulimit -n "
-        "1024 -f unlimited; in systemd LimitNOFILE=1024, LimitFSIZE=infinity) and run it again"
-    ),
-    (EMFILE, ENFILE, EFBIG),
-    (
-        *("too many open files", "unable to open database file", "file too large"),
-        "receiver is gone",  # the library that draws, when it gets no file
-    ),
-)
 _BROKEN_DISK: Final = _Fault(
     say("the disk under {root} gives errors. Look in the system's log, and replace it"),
     (EIO,),
@@ -65,15 +44,42 @@ _NO_MEMORY: Final = _Fault(
     (ENOMEM,),
     ("out of memory", "cannot allocate memory", "failed to map segment", "can't start new thread"),
 )
-_DAMAGED_RECORDS: Final = _Fault(
-    say(
-        "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no table, "
-        "only the history of runs"
+_FAULTS: Final = (
+    _FULL,
+    _Fault(
+        say(
+            "{path} cannot be read or written. Give the user who runs this the right to it, or "
+            "name another"
+        ),
+        (EROFS, EACCES, EPERM),
+        ("read-only file system", "readonly database", "permission denied"),
     ),
-    (),
-    ("file is not a database", "disk image is malformed", "no such table"),
+    _Fault(
+        say(
+            "this process may not open more files, or none as large as it needs. Allow more "
+            "(ulimit -n 1024 -f unlimited; in systemd LimitNOFILE=1024, LimitFSIZE=infinity) and "
+            "run it again"
+        ),
+        (EMFILE, ENFILE, EFBIG),
+        # The last is of the library that draws, when it gets no file.
+        (
+            "too many open files",
+            "unable to open database file",
+            "file too large",
+            "receiver is gone",
+        ),
+    ),
+    _BROKEN_DISK,
+    _NO_MEMORY,
+    _Fault(
+        say(
+            "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no "
+            "table, only the history of runs"
+        ),
+        (),
+        ("file is not a database", "disk image is malformed", "no such table"),
+    ),
 )
-_FAULTS: Final = (_FULL, _FORBIDDEN, _LIMITED, _BROKEN_DISK, _NO_MEMORY, _DAMAGED_RECORDS)
 
 _LITTLE: Final = 1 << 20
 """Bytes: with less a disk is full."""
@@ -96,19 +102,11 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
         fault = _machine_fault(error)
         if fault is None:
             raise
-        if fault is _BROKEN_DISK:  # what SQLite calls a full disk and a limit to files, too
-            fault = _FULL if _is_full(root) else _LIMITED if _is_limited() else fault
+        if fault is _BROKEN_DISK and shutil.disk_usage(root).free < _LITTLE:
+            fault = _FULL  # SQLite calls that an error of the disk
         named = (e.filename for e in _causes(error) if isinstance(e, OSError) and e.filename)
         said = say(fault.sentence, root=root, path=next(named, root))
         raise UnavailableError("{}. {}", said, REASSURANCE) from error
-
-
-def _is_limited() -> bool:
-    """Whether the system lets this process write files of some size only."""
-    if WINDOWS:
-        return False
-    resource = importlib.import_module("resource")  # not every system has it
-    return bool(resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY)
 
 
 def is_machine_fault(error: BaseException) -> bool:
@@ -126,12 +124,6 @@ def _machine_fault(error: BaseException) -> _Fault | None:
             if number in fault.numbers or any(words in text for words in fault.words):
                 return fault
     return None
-
-
-def _is_full(root: Path) -> bool:
-    """Whether no room is left."""
-    folder = next((p for p in (root, *root.absolute().parents) if p.is_dir()), None)
-    return folder is not None and shutil.disk_usage(folder).free < _LITTLE
 
 
 def _causes(error: BaseException | None) -> Iterator[BaseException]:

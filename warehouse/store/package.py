@@ -23,6 +23,15 @@ if TYPE_CHECKING:
 DESCRIPTOR: Final = "datapackage.json"
 _NO_LICENCE: Final = "The archive declares no licence. Ask its owner before passing this on."
 _SIMULATED: Final = "Simulated: these are not the federation's measurements."
+_TYPES: Final[Mapping[type[pl.DataType], str]] = {
+    **dict.fromkeys((pl.Int8, pl.Int16, pl.Int32, pl.Int64, pl.UInt32), "integer"),
+    pl.Float64: "number",
+    pl.String: "string",
+    pl.Boolean: "boolean",
+    pl.Date: "date",
+    pl.List: "array",
+}
+"""The names of types in a data package."""
 
 
 @dataclass(frozen=True)
@@ -125,27 +134,15 @@ def _resource(folder: Path, path: Path, schema: "type[dy.Schema]") -> dict[str, 
 
 def _field(name: str, column: "dy.Column") -> dict[str, object]:
     unit = (column.metadata or {}).get("unit")
-    limits = {
-        key: getattr(column, limit, None)
-        for key, limit in (("minimum", "min"), ("maximum", "max"), ("pattern", "regex"))
-    }
-    constraints = {"required": not column.nullable, **limits}
+    limits = {"minimum": "min", "maximum": "max", "pattern": "regex"}
+    constraints = {key: getattr(column, limit, None) for key, limit in limits.items()}
     return {
         "name": name,
-        "type": _field_type(column.dtype),
+        "type": _TYPES[column.dtype.base_type()],
         "description": column.description,
         **({"unit": unit} if unit else {}),
-        "constraints": {key: value for key, value in constraints.items() if value is not None},
+        "constraints": {
+            "required": not column.nullable,
+            **{key: value for key, value in constraints.items() if value is not None},
+        },
     }
-
-
-def _field_type(dtype: pl.DataType) -> str:
-    """The name of a type in a data package.
-
-    Raises:
-        KeyError: a table has a column of a type that has no name here yet.
-    """
-    if dtype.is_integer():
-        return "integer"
-    names = {pl.Float64: "number", pl.String: "string", pl.Boolean: "boolean", pl.Date: "date"}
-    return "array" if isinstance(dtype, pl.List) else names[dtype.base_type()]

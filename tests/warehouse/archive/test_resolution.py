@@ -33,10 +33,6 @@ def test_a_force_in_kilograms_has_steps_of_one():
     assert steps_of(samples(SPEED, force))["force_step_n"] == pytest.approx(9.80665, rel=1e-4)
 
 
-def test_a_fine_channel_has_steps_that_do_not_matter():
-    assert all(step < 1e-3 for step in steps_of(samples(SPEED, FORCE)).values())
-
-
 def test_samples_left_out_and_a_channel_that_is_not_there_tell_nothing():
     gaps = np.where(np.arange(len(FORCE)) % 3 == 0, np.nan, np.floor(FORCE / 5) * 5)
     found = steps_of(samples(None, gaps))

@@ -19,11 +19,9 @@ from warehouse.archive.samples.binary_files import BINARY, next_line, read_binar
 from warehouse.archive.samples.columns import check_nothing_misspelt
 from warehouse.archive.samples.frame import (
     check_runs,
-    check_time,
     to_schema,
-    turned_back,
+    with_checked_times,
     with_runs,
-    without_runs,
 )
 from warehouse.archive.samples.labview import read_tdms
 from warehouse.archive.samples.text_files import HEAD_BYTES, find_body, read_text
@@ -64,10 +62,7 @@ def read_samples(
     samples = to_schema(with_runs(raw, run), line_of, profile.wind_zero_deg)
     check_runs(samples["run"], line_of)
     if "time" in raw.columns:
-        time_s = raw["time"].to_numpy()
-        turned = turned_back(samples["run"], time_s)
-        check_time(samples["run"], time_s, sample_rate_hz, line_of, turned)
-        samples = without_runs(samples, turned)
+        return with_checked_times(samples, raw["time"], sample_rate_hz, line_of)
     return samples
 
 

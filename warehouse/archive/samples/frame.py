@@ -98,11 +98,11 @@ def _at(line: int, reason_code: str, what: str) -> DefectiveInputError:
 def check_runs(run: pl.Series, line_of: LineOf) -> None:
     """Every run must be one piece."""
     starts = run_starts(run.to_numpy())
-    numbers = run.to_numpy()[starts]
-    for position, number in enumerate(numbers):
-        if number in numbers[:position]:
-            what = say("run {run} begins again; its rows must be together.", run=int(number))
-            raise _at(line_of(int(starts[position])), "split_run", what)
+    again = starts[(~run.gather(starts).is_first_distinct()).to_numpy()]
+    if len(again):
+        first = int(again[0])
+        what = say("run {run} begins again; its rows must be together.", run=run[first])
+        raise _at(line_of(first), "split_run", what)
 
 
 def run_starts(run: NDArray[np.int8]) -> NDArray[np.intp]:
@@ -110,57 +110,47 @@ def run_starts(run: NDArray[np.int8]) -> NDArray[np.intp]:
     return np.flatnonzero(np.concatenate(([True], run[1:] != run[:-1])))
 
 
-def turned_back(run: pl.Series, time_s: NDArray[np.float64]) -> NDArray[np.int8]:
-    """Runs within which the clock jumps back, where it does not in most."""
-    number = run.to_numpy()
-    back = (np.diff(time_s) <= 0) & (number[1:] == number[:-1])
-    turned = np.unique(number[1:][back])
-    return turned if 2 * len(turned) < run.n_unique() else turned[:0]
-
-
-def without_runs(samples: pl.DataFrame, runs: NDArray[np.int8]) -> pl.DataFrame:
-    """The samples without the numbers of some runs.
+def with_checked_times(
+    samples: pl.DataFrame, time_s: pl.Series, rate_hz: int | None, line_of: LineOf
+) -> pl.DataFrame:
+    """The samples without the numbers of runs in which the clock jumps back, where most do not.
 
     Nothing says whether the clock was wrong there, or rows are there twice.
+
+    Raises:
+        DefectiveInputError: `bad_time`, where the time does not rise in half of the runs or more,
+            or in one of the others at another rate.
     """
-    if not len(runs):
-        return samples
-    lost, channel = pl.col("run").is_in(runs.tolist()), pl.selectors.float()
-    nothing = pl.when(channel.is_not_null()).then(float("nan"))
-    return samples.with_columns(pl.when(lost).then(nothing).otherwise(channel).name.keep())
-
-
-def check_time(
-    run: pl.Series,
-    time_s: NDArray[np.float64],
-    rate_hz: int | None,
-    line_of: LineOf,
-    turned: NDArray[np.int8],
-) -> None:
-    """Every run's time must rise at the rate, but of those that turn back (`turned`)."""
-    starts = run_starts(run.to_numpy())
-    ends = np.append(starts[1:], len(run))
-    step = np.diff(time_s)
-    step[starts[1:] - 1] = np.inf
-    step[np.isin(run.to_numpy()[1:], turned)] = np.inf
-    if (step <= 0).any():
+    within = pl.col("run") == pl.col("run").shift()
+    step_s = pl.when(within).then(pl.col("time").diff())
+    steps = pl.DataFrame({"run": samples["run"], "time": time_s}).select("run", step_s=step_s)
+    stops = (steps["step_s"] <= 0).fill_null(value=False)
+    turned = steps.filter(stops)["run"].unique()
+    if len(turned) and 2 * len(turned) >= steps["run"].n_unique():
         what = say("the time does not increase within the run.")
-        raise _at(line_of(int(np.argmax(step <= 0)) + 1), "bad_time", what)
-    if rate_hz is None:
-        return
-    for start, end in zip(starts, ends, strict=True):
-        samples = int(end - start)
-        if samples < 2 or run[int(start)] in turned:
-            continue
-        # The usual step: a gap costs its seconds, which `plausibility` counts.
-        observed = 1.0 / float(np.nanmedian(step[start : end - 1]))
-        if abs(observed / rate_hz - 1) > TIME_TOLERANCE:
-            said = say(
-                "Run {run}: by its times it has {observed:g} samples per second, by the list or "
-                "the profile {rate}; they may differ by {most:.0%}.",
-                run=run[int(start)],
-                observed=observed,
-                rate=rate_hz,
-                most=TIME_TOLERANCE,
-            )
-            raise DefectiveInputError("bad_time", said, line=line_of(int(start)))
+        raise _at(line_of(int(stops.arg_max() or 0)), "bad_time", what)
+    is_turned = pl.col("run").is_in(turned.implode())
+    if rate_hz is not None:
+        _check_rate(steps.with_row_index("row").filter(~is_turned), rate_hz, line_of)
+    if not len(turned):
+        return samples
+    channel = pl.selectors.float()
+    nothing = pl.when(channel.is_not_null()).then(float("nan"))
+    return samples.with_columns(pl.when(is_turned).then(nothing).otherwise(channel).name.keep())
+
+
+def _check_rate(steps: pl.DataFrame, rate_hz: int, line_of: LineOf) -> None:
+    """The usual step of every run must be that of the rate; a gap costs its seconds elsewhere."""
+    usual_s = pl.col("step_s").fill_nan(None).median()
+    rates = steps.group_by("run", maintain_order=True).agg(pl.col("row").first(), hz=1 / usual_s)
+    wrong = rates.filter((pl.col("hz") / rate_hz - 1).abs() > TIME_TOLERANCE)
+    for run, row, hz in wrong.rows():
+        said = say(
+            "Run {run}: by its times it has {observed:g} samples per second, by the list or "
+            "the profile {rate}; they may differ by {most:.0%}.",
+            run=run,
+            observed=hz,
+            rate=rate_hz,
+            most=TIME_TOLERANCE,
+        )
+        raise DefectiveInputError("bad_time", said, line=line_of(row))

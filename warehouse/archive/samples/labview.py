@@ -6,6 +6,7 @@ channels and what they mean are the business of the modules that read such table
 
 import logging
 import re
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -19,7 +20,10 @@ from warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
 
 _END_OF_HEADER: Final = "***End_of_Header***"
 _SEPARATORS: Final = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " "}
+_SEPARATOR: Final = re.compile(r"(?im)^separator[\t,][ \t,]*(\w+)")
 _NUMBER_IN_NAME: Final = re.compile(r"([0-9]{1,2})[^0-9]*$")
+_NONE: Final = ("", "comment")
+"""What is no channel."""
 _INDEX_COLUMN: Final = "X_Value"
 
 
@@ -32,7 +36,7 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
     """A LabVIEW measurement file as a table of text with one header.
 
     Each segment (a header of its own, with samples below it) becomes a run where there is none:
-    column `run` is put before the others.
+    column `run` is put before the others. All segments have the same columns.
 
     Returns:
         The table, with the separator and decimal mark of the file; and the line in the file of
@@ -42,60 +46,28 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
         DefectiveInputError: `unreadable_file`.
     """
     lines = [line.rstrip("\r") for line in text.split("\n")]
-    about = _about(lines)
-    separator = _SEPARATORS.get(about.get("separator", "tab").casefold(), "\t")
     starts = [i for i, line in enumerate(lines) if line.strip().startswith(_END_OF_HEADER)]
-    if len(starts) < 2:
+    named = _SEPARATOR.search("\n".join(lines[: starts[0]] if starts else []))
+    separator = _SEPARATORS.get(named[1].casefold(), "\t") if named else "\t"
+    cells = [line.split(separator) for line in [*lines, ""]]
+    headers = [[cell.strip() for cell in cells[start + 1]] for start in starts[1:]]
+    columns = [[i for i, name in enumerate(x) if name.casefold() not in _NONE] for x in headers]
+    if not columns or [] in columns or columns != columns[:1] * len(columns):
         said = say("This LabVIEW file has no segment header.")
         raise DefectiveInputError("unreadable_file", said)
-    rows: list[str] = []
-    places: list[int] = []
-    for run, start in enumerate(starts[1:], start=1):
-        header, kept = _segment_header(lines, start, separator)
-        if not rows:
-            rows.append(separator.join(["run", *(header[i] for i in kept)]))
-            places.append(start + 2)
-        end = starts[run + 1] if run + 1 < len(starts) else len(lines)
+    names, kept = headers[0], columns[0]
+    of_units = next((c for c in cells[: starts[1]] if c[0].strip() == "Y_Unit_Label"), [])
+    units = {place: unit.strip() for place, unit in enumerate(of_units)}
+    header = [_with_unit(names[i], units.get(i, "")) for i in kept]
+    rows, places = [separator.join(["run", *header])], [starts[1] + 2]
+    for run, (start, end) in enumerate(pairwise([*starts[1:], len(lines)]), start=1):
         for number in range(start + 2, end):
-            fields = lines[number].split(separator)
-            if not lines[number].strip() or not _is_number(fields[kept[0]] if fields else ""):
+            fields = dict(enumerate(cells[number]))
+            if not lines[number].strip() or not _is_number(fields.get(kept[0], "")):
                 break
-            chosen = (fields[i] if i < len(fields) else "" for i in kept)
-            rows.append(separator.join([str(run), *chosen]))
+            rows.append(separator.join([str(run), *(fields.get(i, "") for i in kept)]))
             places.append(number + 1)
     return "\n".join(rows), places
-
-
-def _about(lines: list[str]) -> dict[str, str]:
-    """What the head of the file says, by name."""
-    properties = {}
-    for line in lines[:40]:
-        if line.strip().startswith(_END_OF_HEADER):
-            break
-        name, _, value = line.replace("\t", ",", 1).partition(",")
-        properties[name.strip().casefold()] = value.strip(", \t")
-    return properties
-
-
-def _segment_header(lines: list[str], start: int, separator: str) -> tuple[list[str], list[int]]:
-    """The header of a segment with units, and which columns hold a channel."""
-    names = (
-        [cell.strip() for cell in lines[start + 1].split(separator)]
-        if start + 1 < len(lines)
-        else []
-    )
-    units: list[str] = []
-    for line in lines[max(0, start - 15) : start]:
-        cells = line.split(separator)
-        if cells[0].strip() == "Y_Unit_Label":
-            units = [cell.strip() for cell in cells]
-    kept = [i for i, name in enumerate(names) if name and name.casefold() != "comment"]
-    if not kept:
-        said = say("This LabVIEW file has no segment header.")
-        raise DefectiveInputError("unreadable_file", said, start + 1)
-    return [
-        _with_unit(name, units[i] if i < len(units) else "") for i, name in enumerate(names)
-    ], kept
 
 
 def _with_unit(name: str, unit: str) -> str:

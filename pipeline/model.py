@@ -1,0 +1,355 @@
+"""One linear Gaussian mixed model: what boats, seasons and tows say of unknowns and variances.
+
+    y = A u + e
+
+The numbers e of different boats are independent; those of one have any covariance, which may depend
+on which of a few patterns the boat follows (a normal mixture). The unknowns u are fixed (a flat
+prior) or random (a normal one). So no matrix is larger than a boat's numbers or than the unknowns,
+however many tows there are (Woodbury). Several problems of such a kind lie side by side.
+
+Belongs here: the likelihood of boats, the posterior of the unknowns, the restricted likelihood of
+variances and its maximum, scores of candidates, leaving boats out. Does not: what the numbers,
+unknowns and variances mean (`consistency.mixed`, `season_log.posterior`, `assessment.mean_shift`).
+
+Sources: Patterson & Thompson 1971 (REML); Gilmour, Thompson & Cullis 1995 (average information);
+Louis 1982 (information of mixtures); Cook & Weisberg 1982, 2.2 (leaving out).
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+
+from pipeline.arrays import BoolArray, FloatArray, IntArray
+
+MAX_ITERATIONS: Final = 100
+MAX_HALVINGS: Final = 40
+TOLERANCE: Final = 1e-11
+"""A search is done when a step changes no variance by more than this share of its size."""
+NEGLIGIBLE: Final = 1e-3
+"""Share of the spread's variance below which a variance need not be known as a share of itself."""
+ROUNDING: Final = 1e-11
+"""Share of a deviance, or 1 if that is larger, that is lost in its sums."""
+UNFELT: Final = 1e-10
+"""Information, in units of the spread, below which it is rounding: boats of one type have none of
+what differs between types."""
+
+
+@dataclass(frozen=True)
+class Boats:
+    """What boats with n numbers each say at given unknowns and variances; b boats, k unknowns.
+
+    Attributes:
+        rows: (b, n) places of their numbers.
+        design: (b, n, k) slope of the numbers by the unknowns.
+        residual: (b, patterns, n) of the numbers under each pattern.
+        pull: (b, patterns, n) precision of the numbers times their residual.
+        weight: (b, patterns) posterior of each pattern.
+        precision: (b, n, n) of the numbers, averaged over patterns.
+        ln_determinant: (b, patterns) of their covariance.
+        problem: (b,) which problem they are of, sorted.
+    """
+
+    rows: IntArray
+    design: FloatArray
+    residual: FloatArray
+    pull: FloatArray
+    weight: FloatArray
+    precision: FloatArray
+    ln_determinant: FloatArray
+    problem: IntArray
+
+    @classmethod
+    def of(
+        cls,
+        rows: IntArray,
+        design: FloatArray,
+        residual: FloatArray,
+        covariance: FloatArray,
+        ln_prior: FloatArray,
+    ) -> Self:
+        """What boats of one problem say, each of which follows one of a few patterns.
+
+        Args:
+            rows, design, residual: as the attributes.
+            covariance: (b, patterns, n, n) of the numbers, without what the unknowns add.
+            ln_prior: (patterns,) of each pattern.
+        """
+        inverse: FloatArray = np.linalg.inv(covariance).astype(np.float64)
+        determinant = np.linalg.slogdet(covariance)[1]
+        pull = np.einsum("bpij,bpj->bpi", inverse, residual)
+        ln_density = -0.5 * ((pull * residual).sum(axis=2) + determinant)
+        weight = shares(ln_density + ln_prior)
+        precision = np.einsum("bp,bpij->bij", weight, inverse)
+        problem = np.zeros(len(rows), np.int64)
+        return cls(rows, design, residual, pull, weight, precision, determinant, problem)
+
+    @classmethod
+    def alike(
+        cls,
+        rows: IntArray,
+        design: FloatArray,
+        residual: FloatArray,
+        covariance: FloatArray,
+        problem: IntArray,
+    ) -> Self:
+        """The same of boats of several problems that all follow the same pattern.
+
+        Args:
+            rows, design, problem: as the attributes.
+            residual: (b, n).
+            covariance: (b, n, n).
+        """
+        precision: FloatArray = np.linalg.inv(covariance).astype(np.float64)
+        determinant = np.linalg.slogdet(covariance)[1][:, None]
+        pull = (precision @ residual[..., None])[:, None, :, 0]
+        weight = np.ones((len(rows), 1))
+        own = residual[:, None]
+        return cls(rows, design, own, pull, weight, precision, determinant, problem)
+
+    def moved(self, unknowns: FloatArray) -> Self:
+        """The boats where the unknowns have moved by so much, (problems, k); of one pattern."""
+        residual = self.residual[:, 0] - (self.design @ unknowns[self.problem, :, None])[..., 0]
+        pull = (self.precision @ residual[..., None])[:, None, :, 0]
+        return replace(self, residual=residual[:, None], pull=pull)
+
+    @cached_property
+    def begins(self) -> IntArray:
+        """The first boat of each problem."""
+        return np.flatnonzero(self.problem != np.concatenate([[-1], self.problem[:-1]]))
+
+    @property
+    def misfit(self) -> FloatArray:
+        """Squares of the residuals in units of their covariance, (b, patterns)."""
+        return np.asarray((self.pull * self.residual).sum(axis=2))
+
+    @cached_property
+    def mean_pull(self) -> FloatArray:
+        """Pull, averaged over patterns, (b, n)."""
+        return np.asarray((self.weight[..., None] * self.pull).sum(axis=1))
+
+    @cached_property
+    def weighed(self) -> FloatArray:
+        """Precision of the numbers times the design, (b, n, k)."""
+        return np.asarray(self.precision @ self.design)
+
+    @cached_property
+    def observed_precision(self) -> FloatArray:
+        """Precision, less what the pattern being unknown takes off (Louis 1982), (b, n, n)."""
+        if self.weight.shape[1] == 1:
+            return self.precision
+        off = self.pull - self.mean_pull[:, None]
+        return self.precision - np.swapaxes(self.weight[..., None] * off, 1, 2) @ off
+
+    @property
+    def information(self) -> FloatArray:
+        """Observed information on the unknowns, per boat, (b, k, k)."""
+        return np.asarray(np.swapaxes(self.design, 1, 2) @ self.observed_precision @ self.design)
+
+    @property
+    def complete_information(self) -> FloatArray:
+        """The same as if the pattern of each boat were known."""
+        return np.asarray(np.swapaxes(self.design, 1, 2) @ self.weighed)
+
+    @property
+    def score(self) -> FloatArray:
+        """Slope of the ln density by the unknowns, per boat, (b, k)."""
+        return np.asarray((np.swapaxes(self.design, 1, 2) @ self.mean_pull[..., None])[..., 0])
+
+    def excess(self, covariance: FloatArray) -> FloatArray:
+        """By how much residuals differ more than they should, as pulls, (b, n, n).
+
+        Half its sum over what a variance adds to the covariance of the numbers is the slope of the
+        restricted ln likelihood by that variance.
+
+        Args:
+            covariance: of the unknowns, (problems, k, k).
+        """
+        squares = np.swapaxes(self.weight[..., None] * self.pull, 1, 2) @ self.pull
+        of_boats = covariance if len(covariance) == 1 else covariance[self.problem]
+        known = self.weighed @ of_boats @ np.swapaxes(self.weighed, 1, 2)
+        return np.asarray(squares - self.precision + known)
+
+
+def total(boats: Sequence[Boats], parts: Iterable[FloatArray], problems: int) -> FloatArray:
+    """Sum over the boats of each problem of what `parts` holds per boat, (problems, ...)."""
+    sums: FloatArray | float = 0.0
+    for some, values in zip(boats, parts, strict=True):
+        if problems == 1:
+            sums = sums + values.sum(axis=0, keepdims=True)
+            continue
+        added = np.zeros((problems, *values.shape[1:]))
+        added[some.problem[some.begins]] = np.add.reduceat(values, some.begins, axis=0)
+        sums = sums + added
+    return np.asarray(sums)
+
+
+def shares(ln_weight: FloatArray) -> FloatArray:
+    """Weights along the last axis, with a sum of 1, from their logarithms."""
+    weight = np.exp(ln_weight - ln_weight.max(axis=-1, keepdims=True))
+    return np.asarray(weight / weight.sum(axis=-1, keepdims=True))
+
+
+class Scores(NamedTuple):
+    """What candidates, each by itself, would add to a fitted model; c candidates.
+
+    Attributes:
+        across: (k, c) information of each with the unknowns of the model.
+        itself: (c,) of each with itself, were those unknowns known.
+        pull: (c,) slope of the ln density by each.
+    """
+
+    across: FloatArray
+    itself: FloatArray
+    pull: FloatArray
+
+    @classmethod
+    def of(cls, boats: Iterable[Boats], design: FloatArray) -> Self:
+        """The scores of candidates in one problem.
+
+        Args:
+            design: slope of every number by each, (all numbers, c).
+        """
+        size = design.shape[1]
+        parts = []
+        for some in boats:
+            by = design[some.rows]
+            weighed = some.observed_precision @ by
+            across = np.tensordot(some.design, weighed, axes=([0, 1], [0, 1]))
+            pull = np.tensordot(some.mean_pull, by, axes=([0, 1], [0, 1]))
+            parts.append((across, (by * weighed).sum(axis=(0, 1)), pull))
+        k, at = len(parts[0][0]), zip(*parts, strict=True)
+        across, itself, pull = (np.sum(part, axis=0) for part in at)
+        return cls(across.reshape(k, size), itself, pull)
+
+    def information(self, covariance: FloatArray) -> FloatArray:
+        """Of each candidate, the unknowns not being known, (c,)."""
+        known = (self.across * (covariance @ self.across)).sum(axis=0)
+        return np.asarray(np.maximum(self.itself - known, 0.0))
+
+
+class LeftOut(NamedTuple):
+    """Numbers as those of all other boats predict them, in the order of the numbers.
+
+    Attributes:
+        error: (numbers,) what they have above the prediction.
+        variance: of that; infinite where the others do not determine it.
+        own: misfit of the boat's numbers.
+    """
+
+    error: FloatArray
+    variance: FloatArray
+    own: FloatArray
+
+
+def leave_boats_out(boats: Sequence[Boats], covariance: FloatArray, numbers: int) -> LeftOut:
+    """Predicts the numbers of each boat from those of the others, without fitting again.
+
+    With P the precision of all numbers less what the unknowns take up, the errors of a boat's are
+    (P_bb)^-1 (P y)_b with the variance (P_bb)^-1. One problem, one pattern, at its best unknowns.
+    """
+    error, variance, own = np.zeros(numbers), np.full(numbers, np.inf), np.zeros(numbers)
+    for some in boats:
+        block = some.precision - some.weighed @ covariance @ np.swapaxes(some.weighed, 1, 2)
+        largest = np.diagonal(some.precision, axis1=1, axis2=2).max(axis=1)
+        determined = np.linalg.eigvalsh(block)[:, 0] > 1e-9 * largest
+        inverse, pull = np.linalg.inv(block[determined]), some.mean_pull[determined]
+        missed, rows = (inverse @ pull[..., None])[..., 0], some.rows[determined]
+        error[rows], variance[rows] = missed, np.diagonal(inverse, axis1=1, axis2=2)
+        own[rows] = (missed * pull).sum(axis=1, keepdims=True)
+    return LeftOut(error, variance, own)
+
+
+class Likelihood(NamedTuple):
+    """The restricted likelihood of m problems at some variances, v of each.
+
+    Attributes:
+        deviance: (m,) -2 ln of it but for a constant.
+        gradient: (m, v) slope of the deviance by each variance.
+        information: (m, v, v) average of observed and expected second derivative of the deviance.
+    """
+
+    deviance: FloatArray
+    gradient: FloatArray
+    information: FloatArray
+
+
+LikelihoodOf = Callable[[IntArray, FloatArray], Likelihood]
+"""Of some problems, by their places, the restricted likelihood at variances, (some, v)."""
+
+
+def most_likely(
+    likelihood: LikelihoodOf,
+    free: BoolArray,
+    start: FloatArray,
+    unit: FloatArray,
+    tolerance: float = TOLERANCE,
+) -> tuple[FloatArray, Likelihood, BoolArray]:
+    """Least deviance of each problem over some of its variances, the others fixed.
+
+    Newton's method with the average information, on variances that are not negative: one that is 0
+    and would fall stays 0. A step is halved until the deviance does not rise. The slope, not the
+    deviance, says when it is done: the least of a smooth function is flat over the root of its
+    rounding, its slope crosses 0 there.
+
+    Args:
+        free: (m, v) which variances are searched.
+        start: (m, v) where to begin; those that are not free stay so.
+        unit: (m,) size of a variance.
+        tolerance: share of its size by which the last step may change a variance.
+
+    Returns:
+        The variances, (m, v), the likelihood there, and whether each search came to rest, (m,).
+    """
+    at, now = start.copy(), likelihood(np.arange(len(start)), start)
+    busy, settled = np.arange(len(at)), np.ones(len(at), bool)
+    for _ in range(MAX_ITERATIONS):
+        loose = free & ((at > 0.0) | (now.gradient < 0.0))
+        busy = busy[loose[busy].any(axis=1)]
+        if not len(busy):
+            break
+        last = at[busy]
+        step = _newton(now.gradient[busy], now.information[busy], loose[busy], unit[busy])
+        settled[_descend(likelihood, busy, step, at, now)] = False
+        size = np.maximum(at[busy], NEGLIGIBLE * unit[busy, None])
+        busy = busy[(np.abs(at[busy] - last) > tolerance * size).any(axis=1)]
+    settled[busy] = False
+    return at, now, settled
+
+
+def _newton(
+    gradient: FloatArray, information: FloatArray, loose: BoolArray, unit: FloatArray
+) -> FloatArray:
+    """Steps of the loose variances, (m, v); one that the data do not feel goes nowhere."""
+    size = np.diagonal(information, axis1=-2, axis2=-1)
+    felt = loose & (size > UNFELT / unit[:, None] ** 2)
+    size = np.sqrt(np.where(felt, size, 1.0))
+    both = felt[:, :, None] & felt[:, None, :]
+    scaled = np.where(both, information / (size[:, :, None] * size[:, None, :]), 0.0)
+    slope = np.where(felt, gradient, 0.0) / size
+    inverse = np.linalg.pinv(scaled, rcond=UNFELT, hermitian=True)
+    return np.where(felt, -(inverse @ slope[..., None])[..., 0] / size, 0.0)
+
+
+def _descend(
+    likelihood: LikelihoodOf, rows: IntArray, step: FloatArray, at: FloatArray, now: Likelihood
+) -> IntArray:
+    """Steps some rows of `at`, cut off at 0; each is halved until the deviance does not rise.
+
+    Returns:
+        The rows that stay where they were, as it rises however short the step is.
+    """
+    limit = now.deviance[rows] + ROUNDING * np.maximum(1.0, np.abs(now.deviance[rows]))
+    for _ in range(MAX_HALVINGS):
+        trial = np.maximum(at[rows] + step, 0.0)
+        there = likelihood(rows, trial)
+        lower = there.deviance <= limit
+        at[rows[lower]] = trial[lower]
+        for mine, other in zip(now, there, strict=True):
+            mine[rows[lower]] = other[lower]
+        rows, step, limit = rows[~lower], 0.5 * step[~lower], limit[~lower]
+        if not len(rows):
+            break
+    return rows

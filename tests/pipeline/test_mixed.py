@@ -1,0 +1,201 @@
+"""The mixed model: against the formulas of textbooks, another optimiser and another program."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import optimize, stats
+
+from pipeline.consistency import mixed
+from pipeline.consistency.mixed import Problem
+
+ONE = np.zeros(1, np.int64)
+
+
+def grouped_data(seed=1, n=60, boats=20, others=5):
+    rng = np.random.default_rng(seed)
+    boat, other = rng.integers(0, boats, n), rng.integers(0, others, n)
+    boat[:boats], other[:others] = np.arange(boats), np.arange(others)
+    x = np.column_stack([np.ones(n), rng.normal(size=n)])
+    known = rng.uniform(0.5, 2.0, n) ** 2
+    y = x @ [1.0, 0.5] + 2.0 * rng.normal(size=boats)[boat] + rng.normal(size=others)[other]
+    return Problem.of(y + np.sqrt(known) * rng.normal(size=n), known, x, boat, other)
+
+
+def likelihood(problem, sd):
+    return mixed._SideBySide([problem]).likelihood(ONE, np.square([sd]))
+
+
+def deviance(problem, sd):
+    return likelihood(problem, sd).deviance[0]
+
+
+def fit_at(problem, sd):
+    """The model with these standard deviations."""
+    at = mixed._SideBySide([problem]).at(ONE, np.square([sd]))
+    k = problem.others.shape[1]
+    beta, covariance = problem.plain + at.unknowns[0, k:], at.covariance[0, k:, k:]
+    return mixed.Fit(problem, mixed.COMPONENTS, sd, beta, covariance, at.misfit[0])
+
+
+def covariance_of(problem, sd):
+    v = np.diag(problem.variance + sd[2] ** 2)
+    v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
+    return v + sd[1] ** 2 * problem.others @ problem.others.T
+
+
+def dense_deviance(problem, sd):
+    """-2 log restricted likelihood from the whole covariance matrix, as in the textbooks."""
+    v, x = covariance_of(problem, sd), problem.x
+    inverse = np.linalg.inv(v)
+    information = x.T @ inverse @ x
+    r = problem.y - x @ np.linalg.solve(information, x.T @ inverse @ problem.y)
+    return np.linalg.slogdet(v)[1] + np.linalg.slogdet(information)[1] + r @ inverse @ r
+
+
+@pytest.mark.parametrize("sd", [(0.0, 0.0, 0.0), (2.0, 1.0, 0.5), (0.3, 0.0, 1.5)])
+def test_deviance_and_its_slope_equal_the_dense_formula(sd):
+    problem = grouped_data()
+    found = likelihood(problem, sd)
+    assert found.deviance[0] == pytest.approx(dense_deviance(problem, sd), rel=1e-10)
+    slope = optimize.approx_fprime(
+        np.square(sd) + 1e-3, lambda v: dense_deviance(problem, np.sqrt(v)), 1e-6
+    )
+    at = likelihood(problem, np.sqrt(np.square(sd) + 1e-3))
+    assert at.gradient[0] == pytest.approx(slope, rel=1e-3, abs=1e-3)
+
+
+def test_a_tow_without_any_error_keeps_the_fit_exact():
+    """Runs that lie exactly on their curve: beside a spread of boats no digit was left."""
+    y = np.array([0.367, 0.464, 0.569, 0.481, 0.508, 0.516])
+    x = np.array(
+        [[1, 0, 0], [0, 1, 0.009], [0, 1, -0.091], [0, 1, 0.023], [0, 1, 0.059], [1, 0, 0]]
+    )
+    variance = [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6]
+    problem = Problem.of(y, variance, x, range(6), [0] * 6)
+    for sd in (0.001, 0.1, 10.0):
+        dense = dense_deviance(problem, (sd, 0.0, 0.0))
+        assert deviance(problem, (sd, 0.0, 0.0)) == pytest.approx(dense, abs=1e-4)
+    assert np.isfinite(mixed.fit(problem, (mixed.BOAT,)).coefficients()).all()
+
+
+def test_fit_finds_the_minimum_that_another_optimiser_finds():
+    problem = grouped_data()
+    found = mixed.fit(problem, mixed.COMPONENTS)
+    other = optimize.minimize(
+        lambda v: dense_deviance(problem, np.sqrt(v)), [1.0] * 3, bounds=[(0, 50)] * 3
+    )
+    assert deviance(problem, found.sd) == pytest.approx(other.fun, abs=1e-3)
+    # The likelihood is flat at its top, so the components agree less closely than its height.
+    assert found.sd == pytest.approx(np.sqrt(other.x), abs=0.02 * problem.spread)
+
+
+@pytest.mark.parametrize(
+    ("boat_sd", "other_sd", "error"), [(2.0, 1.0, 1.0), (0.1, 0.1, 1e-5), (0.0, 1.0, 1.0)]
+)
+def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd, error):
+    rng = np.random.default_rng(4)
+    n, boat, other = 60, np.r_[np.arange(20), rng.integers(0, 20, 40)], np.arange(60) % 6
+    y = 3.4 + boat_sd * rng.normal(size=20)[boat] + other_sd * rng.normal(size=6)[other]
+    y += np.sqrt(error) * rng.normal(size=n)
+    x = np.column_stack([np.ones(n), rng.normal(size=n)])
+    fits = [
+        mixed.fit(Problem.of(y * noise, np.full(n, error**2), x, boat, other), mixed.COMPONENTS)
+        for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
+    ]
+    sds, intervals = (
+        np.array([getter(f) for f in fits], dtype=np.float64)
+        for getter in (lambda f: f.sd, lambda f: list(f.intervals().values()))
+    )
+    spread = fits[0].problem.spread
+    assert sds[0] == pytest.approx(sds[1], abs=1e-9 * spread)
+    assert intervals[0] == pytest.approx(intervals[1], abs=1e-7 * spread, nan_ok=True)
+    # A variance on its bound is none at all, not almost none.
+    assert ((sds == 0.0) | (sds > 1e-3 * spread)).all()
+
+
+def one_row_a_boat(variance, true_sd=0.0, seed=3):
+    rng = np.random.default_rng(seed)
+    x = np.column_stack([np.ones(12), rng.normal(size=12)])
+    y = x @ [1.0, 2.0] + np.sqrt(variance + true_sd**2) * rng.normal(size=12)
+    return Problem.of(y, variance, x, range(12))
+
+
+def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
+    from statsmodels.regression.linear_model import OLS, WLS  # noqa: PLC0415 - takes seconds to import
+
+    equal = one_row_a_boat(np.full(12, 1e-6), true_sd=1.0)
+    known = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
+    for problem, free, other in (
+        (equal, (mixed.BOAT,), OLS(equal.y, equal.x).fit()),
+        (known, (), WLS(known.y, known.x, weights=1 / known.variance).fit()),
+    ):
+        found = mixed.fit(problem, free).coefficients()
+        assert found.value == pytest.approx(other.params, rel=1e-9)
+        assert np.column_stack([found.lo, found.hi]) == pytest.approx(other.conf_int(), rel=1e-9)
+
+
+def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
+    from statsmodels.stats.meta_analysis import combine_effects  # noqa: PLC0415 - takes seconds to import
+
+    # At the same spread: statsmodels estimates it by Paule and Mandel, not by likelihood.
+    problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
+    other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
+    only_mean = Problem.of(problem.y, problem.variance, np.ones(12), range(12))
+    found = fit_at(only_mean, (np.sqrt(other.tau2), 0.0, 0.0))
+    assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
+    half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
+    assert found.coefficients().hi[0] - found.beta[0] == pytest.approx(half, rel=1e-6)
+
+
+def test_variance_components_are_those_of_another_program():
+    problem = grouped_data()
+    problem = replace(problem, variance=np.full(len(problem.y), 1e-9))
+    groups = [np.eye(problem.boat.max() + 1)[problem.boat], problem.others]
+    from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec  # noqa: PLC0415 - takes seconds to import
+
+    crossed = VCSpec(
+        ["boat", "other"],
+        [[[str(i) for i in range(g.shape[1])]] for g in groups],
+        [[g] for g in groups],
+    )
+    whole = np.zeros(len(problem.y))
+    other = MixedLM(problem.y, problem.x, whole, exog_vc=crossed).fit(reml=True)
+    found = mixed.fit(problem, mixed.COMPONENTS)
+    assert found.beta == pytest.approx(other.fe_params, rel=1e-3)
+    assert found.sd == pytest.approx(np.sqrt([*other.vcomp, other.scale]), rel=1e-3)
+    # The likelihood is flat at its top, so its height agrees more closely than the components.
+    assert deviance(problem, found.sd) == pytest.approx(
+        deviance(problem, np.sqrt([*other.vcomp, other.scale])), abs=1e-4
+    )
+
+
+def test_problems_side_by_side_are_fitted_as_each_alone():
+    rng = np.random.default_rng(4)
+    first = grouped_data()
+    problems = [replace(first, y=first.y + s * rng.normal(size=60)) for s in (0.0, 0.5, 20)]
+    problems += [replace(first, others=np.zeros((60, 0)), x=first.x[:, :1]), grouped_data(2, 30)]
+    together = mixed.fit_all(problems, (mixed.BOAT, mixed.CELL))
+    for problem, fit in zip(problems, together, strict=True):
+        assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)
+
+
+def test_leaving_a_boat_out_equals_fitting_without_it():
+    problem, sd = grouped_data(), (2.0, 1.0, 0.5)
+    fit = fit_at(problem, sd)
+    error, variances, scales = fit.leave_boats_out()
+    v, out = covariance_of(problem, sd), problem.boat == 3
+    inverse, x = np.linalg.inv(v[np.ix_(~out, ~out)]), problem.x[~out]
+    information = x.T @ inverse @ x
+    beta = np.linalg.solve(information, x.T @ inverse @ problem.y[~out])
+    gain = v[np.ix_(out, ~out)] @ inverse
+    predicted = problem.x[out] @ beta + gain @ (problem.y[~out] - x @ beta)
+    rest = problem.x[out] - gain @ x
+    variance = v[np.ix_(out, out)] - gain @ v[np.ix_(~out, out)]
+    variance = variance + rest @ np.linalg.inv(information) @ rest.T
+    assert error[out] == pytest.approx(problem.y[out] - predicted, rel=1e-8)
+    assert variances[out] == pytest.approx(np.diag(variance), rel=1e-8)
+    of_others = problem.y[~out] - x @ beta
+    own = fit.misfit - of_others @ inverse @ of_others
+    scale = (fit.scale * problem.rows_beyond - own) / (problem.rows_beyond - out.sum())
+    assert scales[out] == pytest.approx(np.full(out.sum(), scale), rel=1e-8)
