@@ -171,7 +171,7 @@ def _due(views: Views, methods: Sequence[str]) -> Page:
     headline = of_due.due(rows.filter(method=default_method(methods)))
     choice = views.retow_choice()
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
-    retow, said = choice.hstack(sd), of_due.retow(choice)
+    retow, said = choice.hstack(sd), of_due.retow(choice) if choice.height else None
     return Page(
         "due.html",
         say("Due to tow"),
