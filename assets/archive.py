@@ -2,6 +2,7 @@
 
 import datetime as dt
 import logging
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any, Final
@@ -89,10 +90,13 @@ def samples(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.Mate
 
     def work() -> None:
         stale = intake.stale_seasons(store, root, asked)
-        LOG.info(say("reading {} tows", intake.count_listed(store, stale)))
+        tows, began = intake.count_listed(store, stale), time.monotonic()
+        LOG.info(say("reading {} tows", tows))
         for season, _ in setup.map(partial(read_season, store.root, root), stale):
             read.add(season)
-            LOG.info(say("season {} was read", season))
+            done = intake.count_listed(store, read)
+            left_s = (time.monotonic() - began) * (tows - done) / done
+            LOG.info(say("{} of {} tows were read; {:.0f} s left", done, tows, left_s))
 
     intake.index(store, root)
     mending(store, work, again=partial(intake.index, store, root))

@@ -4,13 +4,12 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, Final
+from typing import Final
 
 import altair as alt
 import vl_convert
 
 from dashboards import fonts
-from pipeline.tables.row import Row
 
 VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
 """The version of the charts."""
@@ -44,12 +43,15 @@ with _only_our_fonts():
 
 CONFIG: Final = {
     "font": fonts.FAMILY,
-    "legend": {"orient": "top", "columns": 3, "offset": 26, "labelLimit": 0, "titleLimit": 0},
+    "legend": {
+        "orient": "top", "columns": 3, "offset": 26, "labelLimit": 0, "titleLimit": 0,
+        "labelFontSize": 12, "titleFontSize": 12,
+    },
     "axis": {"labelFontSize": 12, "titleFontSize": 12, "titleFontWeight": "normal"},
     "axisY": {"titleAngle": 0, "titleAlign": "left", "titleX": -30, "titleY": -8},
     "header": {"labelFontSize": 12, "titleFontSize": 12, "labelPadding": 24},
     "view": {"stroke": None},
-}
+}  # fmt: skip
 """What all charts look like: the title of an axis at the side lies above it."""
 
 
@@ -63,19 +65,3 @@ def svg(spec: dict[str, object], language: str) -> str:
             format_locale=LOCALES[language],
         )
     )
-
-
-def compiled(spec: dict[str, object]) -> dict[str, object]:
-    """A chart's Vega: what follows from the chart alone, without its data.
-
-    No text of an axis is shortened: to see whether one is too long costs a tenth of a drawing.
-    """
-    config = CONFIG | {"axis": {"labelLimit": 0}}
-    return dict(vl_convert.vegalite_to_vega(spec, vl_version=VEGA_LITE, config=config))
-
-
-def compiled_svg(vega: dict[str, Any], rows: list[Row], language: str) -> str:
-    """The same picture as `svg` makes of the chart, with these rows as its data `rows`."""
-    data = [part | {"values": rows} if part["name"] == "rows" else part for part in vega["data"]]
-    text = json.dumps(vega | {"data": data}, default=str)
-    return str(vl_convert.vega_to_svg(text, format_locale=LOCALES[language]))

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from markupsafe import Markup, escape
 
-from dashboards.figures.style import GREY, OKABE_ITO
+from dashboards.colours import GREY, OKABE_ITO
 from dashboards.speech import Speech
 from pipeline.tables.row import Row
 from warehouse.queries.documents import Curve

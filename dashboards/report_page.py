@@ -97,6 +97,6 @@ def report_pages(
                     site=TO_SITE,
                     others=PAGES,
                 )
-            )[0]
+            )
             for language in LANGUAGES
         }

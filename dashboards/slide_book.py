@@ -26,7 +26,7 @@ from dashboards.slide_rows import (
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import Say, Sentence, ngettext, say
-from pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
+from pipeline.studies.options import AS_READ, SPEEDS, TICKS
 from pipeline.tables.row import Row
 from warehouse.queries.chosen_tows import ALL, STATED, rows_of, spoken_range, with_choices
 from warehouse.queries.views import Views

@@ -42,7 +42,7 @@ OPTIONS = {
 
 HEADS = {
     "| check | what is observed | source of the limit |": "asks | limit |",
-    "| option | meaning | source |": "values | default |",
+    "| option | meaning |": "status | source | values | default |",
 }
 
 CONTENTS = """
@@ -69,7 +69,8 @@ def _add_contents(_app: Any, name: str, text: list[str]) -> None:
         text[0] += "".join(_tables())
     if name == "method-details":
         for head, added in HEADS.items():
-            text[0] = text[0].replace(f"{head}\n| --- |", f"{head} {added}\n| --- | --- | --- |")
+            lines = "| --- " * added.count("|")
+            text[0] = text[0].replace(f"{head}\n", f"{head} {added}\n{lines}")
         text[0] = re.sub(r"^\| .*\|$", lambda row: _with_columns(row[0]), text[0], flags=re.M)
 
 
@@ -90,7 +91,8 @@ def _with_columns(row: str) -> str:
         return f"{row} {_one(c.severity for c in checks)} | {_one(map(_limit, checks))} |"
     if names and set(names) <= set(OPTIONS):
         fields = [OPTIONS[name] for name in names]
-        return f"{row} {_one(map(_values, fields))} | {_one(map(_default, fields))} |"
+        given = (_status, _source, _values, _default)
+        return " ".join([row, *(f"{_one(map(of, fields))} |" for of in given)])
     return row
 
 
@@ -109,6 +111,14 @@ def _limit(check: Check) -> str:
     men, women = map(of_class, "HD")
     limit = men if men == women else f"H {men}, D {women}"
     return limit if check.unit == "1" else f"{limit} {check.unit}"
+
+
+def _status(field: FieldInfo) -> str:
+    return str(field.json_schema_extra["status"])
+
+
+def _source(field: FieldInfo) -> str:
+    return str(field.json_schema_extra["source"])
 
 
 def _values(field: FieldInfo) -> str:

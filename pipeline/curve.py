@@ -192,6 +192,11 @@ def s_of_b(b_m_s: ArrayLike) -> FloatArray:
     return 1.0 / (b * b)
 
 
+def s_of_height(a_kg_m: FloatArray, cw_kg_m: FloatArray, speed_m_s: FloatArray) -> FloatArray:
+    """S = 1/B^2 [s2/m2] of the curve with that A and that Cw at a speed; 0 or less without a B."""
+    return (1.0 - a_kg_m / cw_kg_m) / speed_m_s**2
+
+
 def to_c0_q(
     a_kg_m: ArrayLike, s_s2_m2: ArrayLike, reference_speed_m_s: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:

@@ -13,6 +13,7 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
+from dashboards.colours import OKABE_ITO
 from dashboards.figures import boat, slides, style, tool
 from dashboards.figures.charts import (
     CHANGE,
@@ -25,11 +26,10 @@ from dashboards.figures.charts import (
     curves,
     scatter,
 )
-from dashboards.figures.style import OKABE_ITO, WIDTH, Column, Drawing, named, tips
+from dashboards.figures.style import WIDTH, Column, Drawing, named, tips
 from pipeline.messages import Say, say
 from pipeline.studies.ladder import STEP_ORDER
-from pipeline.studies.options import CHOICES
-from pipeline.studies.tool_options import SPEEDS, TICKS
+from pipeline.studies.options import CHOICES, SPEEDS, TICKS
 from pipeline.uncertainty.propagation import COMPONENTS
 
 alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
@@ -139,7 +139,7 @@ def _gains(frame: pl.DataFrame, say: Say) -> Drawing:
     )
 
 
-JUDGED: Final = tuple(choice.name for choice in CHOICES)
+JUDGED: Final = tuple(CHOICES)
 RUN_TIPS: Final = ("run:O", "speed_m_s:Q", "cw_kg_m:Q")
 STAGES: Final = ("gross", "net")
 SCOPES: Final = ("fleet", "within_type")

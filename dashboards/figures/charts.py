@@ -10,10 +10,9 @@ from typing import Any, Final
 import altair as alt
 import polars as pl
 
+from dashboards.colours import GREY, OKABE_ITO
 from dashboards.figures.style import (
-    GREY,
     HEIGHT,
-    OKABE_ITO,
     WIDTH,
     Column,
     Drawing,

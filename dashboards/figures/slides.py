@@ -13,8 +13,8 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
+from dashboards.colours import GREY
 from dashboards.figures.style import (
-    GREY,
     Drawing,
     colour,
     crews,
@@ -27,8 +27,7 @@ from pipeline.consistency.compared import ROWED_RATIO
 from pipeline.consistency.tow_speed import HIGH, LOW, MIDDLE
 from pipeline.messages import Say, say
 from pipeline.studies.claims import CHANNELS
-from pipeline.studies.options import CHOICES
-from pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
+from pipeline.studies.options import CHOICES, SPEED_NAMES, SPEEDS, TICKS
 
 METHODS: Final = ("as-published", "corrected-2013", "rebased-2015", "rebased")
 """The four that are compared, in the order of history."""
@@ -40,7 +39,7 @@ _ORDER: Final = ("as-published-2014", *METHODS)
 
 CODES: Final = (
     *("unknown", *TICKS, *SPEEDS, *SPEED_NAMES, LOW, MIDDLE, HIGH),
-    *(choice.name for choice in CHOICES),
+    *CHOICES,
     *(f"channel.{name}" for name in CHANNELS),
 )
 """Codes that the charts of the slides show in words."""

@@ -4,10 +4,11 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
+from dashboards.colours import OKABE_ITO
 from dashboards.figures.slides import SIDE, in_words, small
-from dashboards.figures.style import OKABE_ITO, Drawing, number
+from dashboards.figures.style import Drawing, number
 from pipeline.messages import Say
-from pipeline.studies.tool_options import SPEED_NAMES, TICKS
+from pipeline.studies.options import SPEED_NAMES, TICKS
 
 
 def ticks(frame: pl.DataFrame, say: Say) -> Drawing:

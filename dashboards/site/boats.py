@@ -1,9 +1,9 @@
 """One page per boat: the owner's answer, and folded below it how each number was made."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import polars as pl
 
@@ -15,15 +15,14 @@ from dashboards.site.parts import (
     Select,
     Table,
     boat_path,
+    default_method,
     draft_of,
     methods_select,
     once_for_methods,
 )
 from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say
-from warehouse.queries.answers import (
-    newest_edition,
-)
+from warehouse.queries.answers import newest_edition
 from warehouse.queries.views import DRAFT, Views
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
@@ -47,30 +46,36 @@ EXTRA_TEXTS = {
     ),
 }
 
-AT_ONCE: Final = 64
-"""Boats whose rows are formatted in one go: each go costs time, and each boat memory."""
-
 
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Callable[[], Page]]]:
     """Every boat that the archive lists, with what makes its page."""
     frames = _frames(views)
     editions = frames["register"]["edition"].unique().sort().to_list()
     crews = answers_by_boat(views, newest_edition(editions, draft_of(methods)))
+    frames = _of_methods(frames, {methods[0], default_method(methods), *_of_editions(views)})
     frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
-    for boats in frames["boats"].iter_slices(AT_ONCE):
-        those = boats[["fsn_no"]]
-        some = _Boats(
-            {
-                n: f.join(those, on="fsn_no", how="semi", maintain_order="left")
-                for n, f in frames.items()
-            }
-        )
-        for fsn_no in boats["fsn_no"]:
-            yield fsn_no, partial(_page, fsn_no, some, methods, crews.get(fsn_no, ()))
+    boats = _Boats(frames)
+    for fsn_no in frames["boats"]["fsn_no"]:
+        yield fsn_no, partial(_page, fsn_no, boats, methods, crews.get(fsn_no, ()))
+
+
+def _of_editions(views: Views) -> list[str]:
+    """Methods of published editions."""
+    return views.table("editions")["method"].drop_nulls().to_list()
+
+
+def _of_methods(
+    frames: dict[str, pl.DataFrame], methods: Collection[str]
+) -> dict[str, pl.DataFrame]:
+    """Rows of these methods: what a boat is compared by, as published and as decided."""
+    return {
+        name: frame.filter(pl.col("method").is_in(methods)) if "method" in frame.columns else frame
+        for name, frame in frames.items()
+    }
 
 
 class _Boats:
-    """Everything that the pages of some boats show, split by boat."""
+    """Everything that the pages of boats show, split by boat."""
 
     def __init__(self, frames: dict[str, pl.DataFrame]) -> None:
         drawn = {part for parts in DRAWN.values() for part in parts}
@@ -116,11 +121,10 @@ class _Own(NamedTuple):
         columns: Sequence[str],
         caption: Sentence,
         follows: Sequence[str] = (),
-        exact: bool = True,
     ) -> Table:
         """The table of these rows."""
         within = self.whole, self.start
-        return Table(name, self.rows, columns, caption, follows, exact=exact, within=within)
+        return Table(name, self.rows, columns, caption, follows, within=within)
 
 
 def _places(keys: pl.Series) -> dict[str, tuple[int, int]]:
@@ -130,7 +134,7 @@ def _places(keys: pl.Series) -> dict[str, tuple[int, int]]:
     return dict(zip(runs["value"], zip(starts, runs["len"], strict=True), strict=True))
 
 
-ALIKE = ("wind", "line", "point", "declared", "stages", "assessments")
+ALIKE = ("runs", "wind", "line", "point", "declared", "stages", "assessments")
 """Frames of which most rows are the same under several methods."""
 
 
@@ -161,7 +165,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "register": _once(register),
         "curves": curves,
         "history": curves.select("fsn_no", *HISTORY),
-        "runs": once_for_methods(points.select("fsn_no", *FOLLOWS, *RUN_COLUMNS)).sort(
+        "runs": points.select("fsn_no", *FOLLOWS, *RUN_COLUMNS).sort(
             "tow_id", "run", maintain_order=True
         ),
         "wind": points.select("fsn_no", *WIND),
@@ -192,7 +196,10 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
 POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
 WINDOW = ["window_start_s", "window_end_s", "run_end_s", "cut_reason"]
 WIND = ["method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg"]
-HISTORY = ["method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s", "interval"]
+HISTORY = [
+    *("method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s", "power_w"),
+    *("weight_kg", "altered", "status", "interval"),
+]
 NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
 
 
@@ -227,11 +234,6 @@ LINE_COLUMNS = (
     *("edition", "rowers", "crew_class", "tow_date", "valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
     *("verification_code", "method"),
-)
-CURVE_COLUMNS = (
-    *("tow_date", "rowers", "crew_class", "method", "declared_speed_m_s", "a_kg_m"),
-    *("b_m_s", "b_lo_m_s", "b_hi_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "power_w"),
-    *("weight_kg", "altered", "runs_used", "status", "flags"),
 )
 RUN_COLUMNS = (
     *(
@@ -272,7 +274,7 @@ def _page(fsn_no: str, boats: _Boats, methods: Sequence[str], told: Sequence[Ans
     tows = list(named)
     selects = [
         Select("tow_id", say("Tow"), tows, tows[-1], named=lambda tow, _: named[tow]),
-        methods_select(methods),
+        methods_select([m for m in methods if m in curves["method"].unique()]),
     ]
     return Page(
         boat_path(fsn_no),
@@ -307,8 +309,7 @@ def _sections(own: dict[str, _Own]) -> list[Section]:
         Chart("out_and_back", "stages", say("Out against back, and the wind"), OF_THE_CURVE),
         Chart("wind", "runs", say("Apparent wind [m/s]"), OF_THE_CURVE),
     ]
-    curves = own["curves"].table("curves", CURVE_COLUMNS, say("Through the years"), exact=False)
-    runs = own["runs"].table("run_points", RUN_COLUMNS, say("Runs"), FOLLOWS, exact=False)
+    runs = own["runs"].table("run_points", RUN_COLUMNS, say("Runs"), FOLLOWS)
     lines = own["register"].table("register", LINE_COLUMNS, say("In the register"))
     sections = [
         Section("boat_lines", say("In the register"), tables=[lines]),
@@ -321,7 +322,6 @@ def _sections(own: dict[str, _Own]) -> list[Section]:
                 "not in it."
             ),
             [history],
-            [curves],
         ),
         Section(
             "boat_curve",
@@ -377,7 +377,7 @@ def _sections(own: dict[str, _Own]) -> list[Section]:
         if rows is not None and rows.number:
             follows = [c for c in FOLLOWS if c in rows.whole.columns]
             title, note = EXTRA_TEXTS[name]
-            table = rows.table(name, columns, title, follows, exact=False)
+            table = rows.table(name, columns, title, follows)
             sections.append(Section(name, title, note, tables=[table]))
     lineage = own["lineage"].table("lineage", LINEAGE_COLUMNS, say("Lineage"))
     if own["lineage"].number:

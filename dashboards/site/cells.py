@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import repeat
 from typing import Any, Final
 
 import polars as pl
@@ -22,12 +21,9 @@ DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
     ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_percent", 3), ("after_percent", 3),
     ("slope", 5), ("slope_lo", 5), ("slope_hi", 5), ("_percent", 1), ("size", 1), ("size_lo", 1),
-    ("size_hi", 1),
+    ("size_hi", 1), ("_1pct", 2), ("_2pct", 2),
 )  # fmt: skip
 """Decimals shown by the ending of a column's name; 4 otherwise."""
-
-KEPT: Final = 7
-"""Significant digits in downloads and charts; the database holds all."""
 
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
@@ -50,25 +46,17 @@ EDITIONS: Final = {"edition", "from_edition", "to_edition", "previous"}
 Show = Callable[[Any], Markup]
 Key = tuple[object, ...]
 
-_SHORT = Markup("<td class=t>")
-"""A cell of text. End tags are left out: HTML closes a cell and a row by itself, and a boat's page
-has thousands. For the same reason a number is what has no class, and text that may be wide is `w`
-alone; a number that shows fewer digits than it holds has it in `data-v`."""
-_LONG = Markup("<td class=w>")
-
 
 @dataclass(frozen=True)
 class Rows:
     """The rows of a table as HTML.
 
     Attributes:
-        first: what the selectors show at first.
-        others: all others, which a page does not hold but brings in when they are chosen.
+        html: all rows; those that the selectors do not show at first are hidden.
         keys: the values that selectors choose by; a row has the place of its own.
     """
 
-    first: Markup
-    others: str
+    html: Markup
     keys: Sequence[Key]
 
 
@@ -81,34 +69,28 @@ class Cells:
         self._text = cache(self._made)
         self._of_many: dict[str, tuple[pl.DataFrame, list[str]]] = {}
 
-    def _made(self, name: str, root: str, value: object) -> Markup:
+    def _made(self, name: str, root: str, value: object) -> str:
         """The cell of a text in a column of this name; the same value comes often."""
-        return (_LONG if name in LONG else _SHORT) + self._shower(name, root)(value)
+        kind = "w" if name in LONG else "t"
+        return f"<td class={kind}>{self._shower(name, root)(value)}</td>"
 
     def rows(self, page: Page, table: Table) -> Rows:
         """The rows of a table on a page."""
-        frame, follows = table.frame, list(table.follows)
-        cells = self._cells_by_row(page, table)
-        boats = (
-            [f' data-boat="{escape(n)}"' for n in frame["fsn_no"]] if table.linked else repeat("")
-        )
-        keys = zip(*(hashable(frame[name]) for name in follows), strict=True)
-        places: dict[Key, int] = {}
-
-        @cache
-        def marked(key: Key) -> tuple[list[str], str]:
-            """Where rows of a key stand, and how they name it."""
-            own = zip(follows, key, strict=True)
-            is_first = all(is_chosen(value, page.chosen[name]) for name, value in own)
-            place = places.setdefault(key, len(places))
-            return first if is_first else others, f" data-k={place}" if follows else ""
-
-        first: list[str] = []
-        others: list[str] = []
-        for row, boat, key in zip(cells, boats, keys if follows else repeat(()), strict=False):
-            place, marks = marked(key)
-            place.append(f"<tr{boat}{marks}>{row}")
-        return Rows(Markup("\n".join(first)), "\n".join(others), list(places))  # noqa: S704 - escaped parts
+        height = table.frame.height
+        columns = [hashable(table.frame[name]) for name in table.follows]
+        keys: list[Key] = list(zip(*columns, strict=True)) if columns else [()] * height
+        distinct = list(dict.fromkeys(keys))
+        chosen = [page.chosen.get(name, "") for name in table.follows]
+        marks = {
+            key: f" data-k={place}{'' if all(map(is_chosen, key, chosen)) else ' hidden'}"
+            for place, key in enumerate(distinct)
+        }
+        boats = [""] * height
+        if table.linked:
+            boats = [f' data-boat="{escape(number)}"' for number in table.frame["fsn_no"]]
+        rows = zip(self._cells_by_row(page, table), keys, boats, strict=True)
+        lines = (f"<tr{boat}{marks[key]}>{cells}</tr>" for cells, key, boat in rows)
+        return Rows(Markup("\n".join(lines)), distinct)  # noqa: S704 - escaped parts
 
     def _cells_by_row(self, page: Page, table: Table) -> list[str]:
         """The cells of each row, one text; of rows of many pages they are made once."""
@@ -116,29 +98,25 @@ class Cells:
         known, rows = self._of_many.get(table.name, (None, []))
         if known is not whole:
             # Column by column, because the cells of a column are made in one way.
-            cells = (self._cells(whole[c], page.root, table.exact) for c in table.columns)
+            cells = (self._cells(whole[c], page.root) for c in table.columns)
             rows = list(map("".join, zip(*cells, strict=True)))
         if table.within:
             self._of_many[table.name] = whole, rows
         return rows[start : start + table.frame.height]
 
-    def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[str]:
+    def _cells(self, column: pl.Series, root: str) -> Sequence[str]:
+        """Cells of a column; a number is what has no class, and text that may be wide is `w`."""
         name = column.name
         if name == "rowing_time_s":
-            return [_SHORT if v is None else _SHORT + duration(v) for v in column]
+            return [f"<td class=t>{'' if v is None else duration(v)}</td>" for v in column]
         if column.dtype.is_float():
-            return self._numbers(column, exact)
+            digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
+            values = [math.nan if v is None else v for v in column.to_list()]
+            return [f"<td>{text}</td>" for text in self.speech.numbers(values, digits)]
         if column.dtype.is_integer() and name != "direction":
-            return ["<td>" if v is None else f"<td>{v}" for v in column.to_list()]
-        return [_SHORT if v is None else self._text(name, root, v) for v in hashable(column)]
-
-    def _numbers(self, column: pl.Series, exact: bool) -> list[str]:
-        digits = next((d for ending, d in DIGITS if column.name.endswith(ending)), 4)
-        values = [math.nan if v is None else v for v in column.to_list()]
-        shown = self.speech.numbers(values, digits)
-        if not exact:
-            return [f"<td>{text}" for text in shown]
-        return [_exact(*both) for both in zip(values, shown, strict=True)]
+            return [f"<td>{'' if v is None else v}</td>" for v in column.to_list()]
+        empty = "<td class=t></td>"
+        return [empty if v is None else self._text(name, root, v) for v in hashable(column)]
 
     def _shower(self, name: str, root: str) -> Show:
         """How values of a column are shown."""
@@ -201,12 +179,6 @@ def hashable(column: pl.Series) -> list[Any]:
     """Its values; lists as tuples."""
     values = column.to_list()
     return [tuple(v) if isinstance(v, list) else v for v in values]
-
-
-def _exact(value: float, shown: str) -> str:
-    """A number that shows fewer digits than it holds, with both."""
-    held = f"{value:.{KEPT}g}"
-    return f"<td>{shown}" if not shown or shown == held else f"<td data-v={held}>{shown}"
 
 
 def _hash(value: str) -> Markup:

@@ -1,6 +1,7 @@
 """Which page shows what. A section is there only if its table is, and holds rows."""
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import cache, partial
 from typing import Final
 
@@ -19,22 +20,21 @@ from dashboards.site.parts import (
     editions_select,
     listed,
     methods_select,
-    once_for_methods,
+    race_path,
     with_page,
 )
-from dashboards.site.prose import edition_pages, guide_pages
+from dashboards.site.prose import edition_pages, guide_links, guide_pages
 from dashboards.site.races import race_pages
-from dashboards.site.start import CARDS, methods_table, start_page, words_page
+from dashboards.site.start import ABOUT, CARDS, start_page, words_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
-from pipeline.messages import Sentence, say, speaker
-from pipeline.tables.schemas import TABLES, summary_of
+from pipeline.messages import Sentence, say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
 
-MENU: Final = {"index": say("Start")} | {name: title for name, (title, _) in CARDS.items()}
+MENU: Final = {name: title for name, (title, _) in CARDS.items()}
 
 
 def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
@@ -44,14 +44,13 @@ def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
     return {
         "start": lambda: [start_page(views, methods, changes())],
         "register": lambda: [_register(views, methods)],
-        "due": lambda: [_due(views, methods)],
+        "boats": lambda: [_boats(views, methods)],
         "types": lambda: [types_page(views, methods)],
         "of types": lambda: type_pages(views, methods),
-        "compare": lambda: [_compare(views, methods)],
+        "seasons": lambda: [_seasons(views, methods)],
+        "changes": lambda: [_changes(views, methods, changes())],
         "races": lambda: race_pages(views, methods),
-        "corrections": lambda: [_corrections(views, methods)],
-        "reproducibility": lambda: [_reproducibility(views, methods)],
-        "changes": lambda: [_changes(methods, changes())],
+        "about": lambda: [_about(views)],
         "quality": lambda: [_quality(views, methods)],
         "words": lambda: [words_page()],
         "guides": guide_pages,
@@ -59,10 +58,13 @@ def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
     }
 
 
+AS_PRINTED: Final = "as-published-2014"
+"""A method that only reproduces what was first printed of 2014; pages do not compare it."""
+
+
 def method_names(views: Views) -> list[str]:
     """Names of the methods, in the order of the database."""
-    names: list[str] = views.table("methods")["method"].to_list()
-    return names
+    return [name for name in views.table("methods")["method"] if name != AS_PRINTED]
 
 
 def _whole(views: Views, name: str, title: Sentence, columns: Sequence[str] = ()) -> list[Section]:
@@ -85,8 +87,8 @@ REGISTER_CARDS = (
     *("cw_hi_kg_m", "valid_until", "status"),
 )
 EDITION_COLUMNS = (
-    *("edition", "kind", "method", "valid_from", "published_on", "decision", "previous"),
-    *("method_hash", "code_version", "seal"),
+    *("edition", "method", "valid_from", "published_on", "decision", "previous"),
+    *("code_version", "seal"),
 )
 
 
@@ -156,193 +158,222 @@ CHOICE_COLUMNS = (
 )
 
 
-def _due(views: Views, methods: Sequence[str]) -> Page:
-    """Who has to tow again, at what speed, and which boats to tow again."""
-    rows = views.due_list().rename({"tow_date": "last_tow"})
-    due = Table(
-        "due_list",
-        rows,
-        DUE_COLUMNS,
-        say("Who has to tow again"),
-        ["method"],
-        search=True,
-        cards=DUE_CARDS,
-    )
-    headline = of_due.due(rows.filter(method=default_method(methods)))
-    choice = views.retow_choice()
+def _boats(views: Views, methods: Sequence[str]) -> Page:
+    """Who has to tow again, at what speed, which boats to tow again, and two boats compared."""
+    rows = views.due_list().filter(method=default_method(methods))
+    rows = rows.rename({"tow_date": "last_tow"})
+    title = say("Who has to tow again")
+    due = Table("due_list", rows, DUE_COLUMNS, title, search=True, cards=DUE_CARDS)
+    choice = views.retow_choice().filter(method=default_method(methods))
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
-    retow, said = choice.hstack(sd), of_due.retow(choice) if choice.height else None
-    return Page(
-        "due.html",
-        say("Due to tow"),
-        [
+    curves = _curves(views, methods)
+    crews = curves["crew"].unique().sort().to_list()
+    first, second = PAIR_OF_BOATS
+    can_compare = len(crews) >= len(PAIR_OF_BOATS)
+    sections = [
+        Section(
+            "due_list",
+            title,
+            say(
+                "Until when each tow counts, as judged on the day of the last tow or race (As "
+                "of), and the speed of the next one. Lowest and Highest: 70 to 90 W per rower "
+                "(men) or 40 to 55 W (women) on the known curve. Beyond the curve: outside 85 "
+                "to 115 % of the declared speed."
+            ),
+            tables=[due],
+            headline=of_due.due(rows),
+        ),
+        *listed(
             Section(
-                "due_list",
-                say("Who has to tow again"),
-                say(
-                    "Until when each tow counts, as judged on the day of the last tow or race (As "
-                    "of), and the speed of the next one. Lowest and Highest: 70 to 90 W per rower "
-                    "(men) or 40 to 55 W (women) on the known curve. Beyond the curve: outside 85 "
-                    "to 115 % of the declared speed."
-                ),
-                tables=[due],
-                headline=headline,
-            ),
-            *listed(
-                Section(
-                    "retow_choice",
-                    say("Which boats to tow again"),
-                    say(
-                        "Boats that, towed again with dGPS, reduce the uncertainty of the log "
-                        "factors most; the first one most. Sd: standard deviation of a factor, "
-                        "before and after."
-                    ),
-                ),
                 "retow_choice",
-                retow,
-                CHOICE_COLUMNS,
-                headline=said,
+                say("Which boats to tow again"),
+                say(
+                    "Boats that, towed again with dGPS, reduce the uncertainty of the log "
+                    "factors most; the first one most. Sd: standard deviation of a factor, "
+                    "before and after."
+                ),
             ),
-        ],
-        selects=[methods_select(methods)],
+            "retow_choice",
+            choice.hstack(sd),
+            CHOICE_COLUMNS,
+            follows=(),
+            headline=of_due.retow(choice) if choice.height else None,
+        ),
+    ]
+    if can_compare:
+        chart = Chart(
+            "boats_compared", "curves", say("Two boats compared"), {"crew": PAIR_OF_BOATS}
+        )
+        note = say(
+            "The curves under the best method, each with its 95 % band. Where bands touch, "
+            "the data do not say which boat runs easier."
+        )
+        sections.append(Section("compare_boats", say("Two boats compared"), note, [chart]))
+    return Page(
+        "boats.html",
+        say("Boats"),
+        sections,
+        selects=[
+            Select(first, say("Compare"), crews, crews[0]),
+            Select(second, say("with"), crews, _another(crews)),
+        ]
+        if can_compare
+        else [],
+        data={"curves": [curves]} if can_compare else {},
     )
+
+
+def _curves(views: Views, methods: Sequence[str]) -> pl.DataFrame:
+    """The curve of every boat and crew, by the tow that counts."""
+    lines = views.register().filter(edition=draft_of(methods)).drop_nulls("cw_kg_m")
+    called = pl.format("{} · {} · {}{}", "name", "fsn_no", "rowers", "crew_class")
+    points = views.table("curve_points").filter(method=default_method(methods))
+    return (
+        lines.select("tow_id", crew=called)
+        .join(points, on="tow_id", maintain_order="left")
+        .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", kind=pl.lit("line"))
+        .sort("crew", "speed_m_s")
+    )
+
+
+def _another(crews: Sequence[str]) -> str:
+    """The first crew of another boat than the first, if there is one."""
+    boat = crews[0].rpartition(" · ")[0]
+    return next((crew for crew in crews if not crew.startswith(boat)), crews[1])
+
+
+PAIR_OF_BOATS = ("boat_first", "boat_second")
 
 
 PART = pl.col("part") + 1
 """Parts of a season as people count them."""
 
 LINK_COLUMNS = (
-    *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
+    *("method", "season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat"),
 )
 STEP_COLUMNS = (
-    *("method", "season", "part", "log", "n_boats", "level_step_percent"),
+    *("method", "season", "part", "n_boats", "level_step_percent"),
     *("level_sd_percent", "force_step_percent", "force_sd_percent", "cause"),
 )
 
 
-FACTOR_COLUMNS = ("method", "season", "factor", "lo", "hi", "source")
-LADDER_COLUMNS = ("from_method", "to_method", "season", "step", "factor", "tows")
-SEASON_COLUMNS = ("method", "season", "tows", "median_ratio", "lowest_ratio", "highest_ratio")
-OPTION_COLUMNS = ("option", "tows", "median_ratio", "lo_ratio", "hi_ratio")
-
-
-def _corrections(views: Views, methods: list[str]) -> Page:
-    factors, changes = views.table("log_factors"), views.table("season_changes")
+def _seasons(views: Views, methods: list[str]) -> Page:
+    """What was wrong with the instruments of each season, and how well repeat tows agree."""
+    shown = pl.col("method").is_in(methods)
+    frames = {
+        "season_change": views.table("season_changes").filter(shown),
+        "log_factors": views.table("log_factors").filter(shown),
+        "ladder": views.table("season_ladder"),
+        "options": views.table("option_summary").filter(study=JUDGEMENT),
+        "reproducibility": views.table("reproducibility").filter(shown),
+        "era_shifts": views.table("era_shifts")
+        .drop_nulls("shift_ratio")
+        .filter(shown, boat_type="all"),
+        "repeat_pairs": with_page(views.repeat_pairs().filter(shown)),
+        "variance_components": views.table("variance_components")
+        .drop_nulls("sd_ratio")
+        .filter(shown),
+        "predicted_cw": with_page(views.predicted().filter(shown)),
+    }
+    first = default_method(methods)
+    said = {
+        "log_factors": season.log_factors(frames["log_factors"].filter(method=first)),
+        "reproducibility": season.reproducibility(frames["reproducibility"], first),
+    }
     links = views.table("season_links").with_columns(PART)
     steps = views.season_steps().with_columns(PART)
-    ladder = views.table("season_ladder")
-    options = views.table("option_summary").filter(study=JUDGEMENT)
-    said = season.log_factors(factors.filter(method=default_method(methods)))
-    of_factors = Chart("log_factors", "log_factors", say("Log factor per season"))
-    of_ladder = Chart("ladder", "ladder", say("What each step does"), {"to_method": "method"})
-    of_seasons = Chart("season_change", "season_change", say("Relative to the published Cw"))
-    of_options = Chart("options", "options", say("Sensitivity to choices"))
-    to_method = ladder.with_columns(method="to_method")
+    shares = frames["reproducibility"].select(*SHARE_COLUMNS)
+    sections: list[Section] = []
+    for name, (figure, follows) in SEASON_FIGURES.items():
+        if frames[name].height:
+            chart = Chart(figure, name, SEASON_TEXTS[name].title, follows)
+            is_folded = name not in said and name != "season_change"
+            sections.append(
+                replace(
+                    SEASON_TEXTS[name],
+                    charts=[chart],
+                    headline=said.get(name),
+                    folded=is_folded,
+                    tables=[Table(name, shares, SHARE_COLUMNS, SEASON_TEXTS[name].title)]
+                    if name == "reproducibility"
+                    else [],
+                )
+            )
+    told = (
+        *listed(LINKS, "season_links", links, LINK_COLUMNS),
+        *listed(STEPS, "season_steps", steps, STEP_COLUMNS),
+        *_season_diagnosis(views),
+    )
     return Page(
-        "corrections.html",
-        say("Corrections"),
-        [
-            *listed(
-                Section(
-                    "log_factors",
-                    say("Log factor per season"),
-                    say(
-                        "True speed = log speed x factor. A factor without a bar has no known "
-                        "interval."
-                    ),
-                ),
-                "log_factors",
-                factors,
-                FACTOR_COLUMNS,
-                [of_factors],
-                headline=said,
-            ),
-            *listed(
-                Section(
-                    "season_links",
-                    say("What a log factor rests on"),
-                    say(
-                        "Where a log was replaced within a season each part has its own factor; "
-                        "the chart above shows their mean. Largest influence: how far the factor "
-                        "moves at most when one boat is left out."
-                    ),
-                ),
-                "season_links",
-                links,
-                LINK_COLUMNS,
-            ),
-            *listed(
-                Section(
-                    "season_steps",
-                    say("Log or load cell?"),
-                    say(
-                        "A season may differ from the other tows of the same boats because the log "
-                        "or because the load cell was wrong. The bend of the curves tells the two "
-                        "apart. Steps of Cw in per cent, with their standard deviation (sd); for a "
-                        "step below 3 % or below twice its sd no cause is looked for."
-                    ),
-                ),
-                "season_steps",
-                steps,
-                STEP_COLUMNS,
-                exact=False,
-            ),
-            *listed(
-                Section(
-                    "ladder",
-                    say("What each step does"),
-                    say(
-                        "Factor on Cw of each step, geometric mean over a season's tows. The "
-                        "factors of a season multiply to the total."
-                    ),
-                ),
-                "season_ladder",
-                to_method,
-                LADDER_COLUMNS,
-                [of_ladder],
-            ),
-            *listed(
-                Section(
-                    "season_change",
-                    say("Relative to the published Cw"),
-                    say(
-                        "Cw by the method / Cw as published, of the same tow: median, and lowest "
-                        "to highest."
-                    ),
-                ),
-                "season_changes",
-                changes,
-                SEASON_COLUMNS,
-                [of_seasons],
-            ),
-            *listed(
-                Section(
-                    "options",
-                    say("Sensitivity to choices"),
-                    say(
-                        "How Cw would change if one choice were made otherwise: median and the "
-                        "middle 90 % of tows."
-                    ),
-                ),
-                "option_summary",
-                options,
-                OPTION_COLUMNS,
-                [of_options],
-                (),
-            ),
-        ],
+        "seasons.html",
+        say("Seasons"),
+        [*sections, *(replace(section, folded=True) for section in told)],
         selects=[methods_select(methods)],
-        data={
-            "log_factors": [factors],
-            "ladder": [ladder],
-            "season_change": [changes],
-            "options": [options],
-        },
+        data={name: [frame] for name, frame in frames.items()},
     )
 
 
-AGREEMENT_TEXTS = {
+SHARE_COLUMNS = ("method", "scope", "n_pairs", "share_within_1pct", "share_within_2pct")
+LINKS = Section(
+    "season_links",
+    say("What a log factor rests on"),
+    say(
+        "Where a log was replaced within a season each part has its own factor; "
+        "the chart above shows their mean. Largest influence: how far the factor "
+        "moves at most when one boat is left out."
+    ),
+)
+STEPS = Section(
+    "season_steps",
+    say("Log or load cell?"),
+    say(
+        "A season may differ from the other tows of the same boats because the log "
+        "or because the load cell was wrong. The bend of the curves tells the two "
+        "apart. Steps of Cw in per cent, with their standard deviation (sd); for a "
+        "step below 3 % or below twice its sd no cause is looked for."
+    ),
+)
+SEASON_FIGURES = {
+    "season_change": ("season_change", {}),
+    "log_factors": ("log_factors", {}),
+    "reproducibility": ("reproducibility", {}),
+    "ladder": ("ladder", {"to_method": "method"}),
+    "options": ("options", {}),
+    "era_shifts": ("eras", {}),
+    "repeat_pairs": ("repeats", {}),
+    "variance_components": ("components", {}),
+    "predicted_cw": ("predicted", {"method": "method"}),
+}
+"""Figure of each section, and what its selectors choose."""
+
+SEASON_TEXTS = {
+    "season_change": Section(
+        "season_change",
+        say("Relative to the published Cw"),
+        say("Cw by the method / Cw as published, of the same tow: median, and lowest to highest."),
+    ),
+    "log_factors": Section(
+        "log_factors",
+        say("Log factor per season"),
+        say("True speed = log speed x factor. A factor without a bar has no known interval."),
+    ),
+    "ladder": Section(
+        "ladder",
+        say("What each step does"),
+        say(
+            "Factor on Cw of each step, geometric mean over a season's tows. The "
+            "factors of a season multiply to the total."
+        ),
+    ),
+    "options": Section(
+        "options",
+        say("Sensitivity to choices"),
+        say(
+            "How Cw would change if one choice were made otherwise: median and the "
+            "middle 90 % of tows."
+        ),
+    ),
     "reproducibility": Section(
         "repro",
         say("Spread of one tow"),
@@ -351,16 +382,15 @@ AGREEMENT_TEXTS = {
             "interval. Lower is better."
         ),
     ),
-    "eras": Section(
+    "era_shifts": Section(
         "eras",
         say("Does an era differ?"),
         say(
             "Next tow of the same boats, in a later era, against that in the era itself, "
-            "without ageing: median of n pairs with 95 % interval. The chart has all types "
-            "together."
+            "without ageing: median of n pairs with 95 % interval, all types together."
         ),
     ),
-    "repeats": Section(
+    "repeat_pairs": Section(
         "repeats",
         say("Every pair"),
         say(
@@ -370,7 +400,7 @@ AGREEMENT_TEXTS = {
             "the boat."
         ),
     ),
-    "components": Section(
+    "variance_components": Section(
         "components",
         say("Where the spread comes from"),
         say(
@@ -380,7 +410,7 @@ AGREEMENT_TEXTS = {
             "counts as a boat, and again after an alteration."
         ),
     ),
-    "predicted": Section(
+    "predicted_cw": Section(
         "predicted",
         say("Predicted without towing"),
         say(
@@ -390,68 +420,27 @@ AGREEMENT_TEXTS = {
         ),
     ),
 }
-AGREEMENT = {
-    "reproducibility": "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
-    "eras": "method boat_type era n shift_percent lo_percent hi_percent apart ageing_per_year",
-    "repeats": "name fsn_no rowers crew_class season_before season cw_ratio e_n",
-    "components": "method scope component n n_boats sd_ratio lo hi share",
-    "predicted": "name fsn_no boat_type rowers crew_class cw_kg_m predicted_cw_kg_m disagrees",
-}
-"""Columns of the table below each figure of agreement."""
 
 
-def _reproducibility(views: Views, methods: list[str]) -> Page:
-    frames = {
-        "reproducibility": views.table("reproducibility"),
-        "era_shifts": _in_per_cent(views.table("era_shifts").drop_nulls("shift_ratio")),
-        "repeat_pairs": with_page(views.repeat_pairs()),
-        "variance_components": views.table("variance_components").drop_nulls("sd_ratio"),
-        "predicted_cw": with_page(views.predicted()),
-    }
-    said = season.reproducibility(frames["reproducibility"], default_method(methods))
-    sections: list[Section] = []
-    for (name, frame), (figure, columns) in zip(frames.items(), AGREEMENT.items(), strict=True):
-        section, shown = AGREEMENT_TEXTS[figure], columns.split()
-        rows = frame if "method" in shown else once_for_methods(frame.select("method", *shown))
-        follows = {"method": "method"} if figure == "predicted" else {}
-        chart = Chart(figure, name, section.title, follows)
-        sections += listed(
-            section,
-            name,
-            rows,
-            shown,
-            [chart],
-            exact=False,
-            headline=said if figure == name else None,
-        )
-    drawn = frames | {"era_shifts": frames["era_shifts"].filter(boat_type="all")}
-    return Page(
-        "reproducibility.html",
-        say("Reproducibility"),
-        sections,
-        selects=[methods_select(methods)],
-        data={name: [frame] for name, frame in drawn.items()},
-    )
-
-
-def _in_per_cent(eras: pl.DataFrame) -> pl.DataFrame:
-    """With the change of Cw from an era to later in per cent, as it is said everywhere."""
-    ends = {"shift_percent": "shift_ratio", "lo_percent": "lo", "hi_percent": "hi"}
-    return eras.with_columns(**{name: 100 * (pl.col(of) - 1) for name, of in ends.items()})
-
-
-def _changes(methods: Sequence[str], changes: pl.DataFrame) -> Page:
+def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
+    """What changes from one edition to the next, and the races computed again by both."""
     changed = changes.filter(pl.col("change") != "same")
-    if changed.is_empty():
-        return Page(
-            "changes.html",
-            say("Changes"),
-            [
-                Section(
-                    "changes_list", say("Changed lines"), empty=say("There are no changed lines.")
-                )
-            ],
+    days = views.race_days() if views.has("race_changes") else []
+    races = Section(
+        "races",
+        say("Races"),
+        say("Every result computed again by the old and the new edition; choose a race."),
+        pages=[(race_path(race, day), f"{race} {day}") for race, day in days],
+    )
+    if not days:
+        races = Section(
+            "races", say("Races"), empty=say("The archive holds no races to compute again.")
         )
+    if changed.is_empty():
+        empty = Section(
+            "changes_list", say("Changed lines"), empty=say("There are no changed lines.")
+        )
+        return Page("changes.html", CARDS["changes"][0], [empty, races])
     editions = changed["to_edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     table = Table(
@@ -463,10 +452,9 @@ def _changes(methods: Sequence[str], changes: pl.DataFrame) -> Page:
         {"to_edition": "to_edition"},
     )  # fmt: skip
     drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
-    headline = edition.changes(changes.filter(to_edition=chosen))
     return Page(
         "changes.html",
-        say("Changes"),
+        CARDS["changes"][0],
         [
             Section(
                 "changes_list",
@@ -479,8 +467,9 @@ def _changes(methods: Sequence[str], changes: pl.DataFrame) -> Page:
                 ),
                 [chart],
                 [table],
-                headline=headline,
-            )
+                headline=edition.changes(changes.filter(to_edition=chosen)),
+            ),
+            races,
         ],
         selects=[editions_select("to_edition", editions, chosen)],
         data={"changes": [drawn]},
@@ -506,55 +495,23 @@ CHANGE_CARDS = (
 DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_in_two_hours_s")
 
 
-def _compare(views: Views, methods: Sequence[str]) -> Page:
-    """Any two boats over each other, by the tow that counts."""
-    method = default_method(methods)
-    lines = views.register().filter(edition=draft_of(methods)).drop_nulls("cw_kg_m")
-    called = pl.format("{} · {} · {}{}", "name", "fsn_no", "rowers", "crew_class")
-    curves = (
-        lines.select("tow_id", crew=called)
-        .join(views.table("curve_points").filter(method=method), on="tow_id", maintain_order="left")
-        .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", kind=pl.lit("line"))
-        .sort("crew", "speed_m_s")
-    )
-    crews = curves["crew"].unique().sort().to_list()
-    if len(crews) < len(PAIR_OF_BOATS):
-        return Page(
-            "compare.html",
-            say("Compare"),
-            [Section("compare", say("Compare"), empty=say("no values"))],
-        )
-    chart = Chart("boats_compared", "curves", say("Compare"), {"crew": PAIR_OF_BOATS})
-    first, second = PAIR_OF_BOATS
-    return Page(
-        "compare.html",
-        say("Compare"),
-        [
-            Section(
-                "compare_boats",
-                say("Two boats compared"),
-                say(
-                    "The curves under the best method, each with its 95 % band. Where bands touch, "
-                    "the data do not say which boat runs easier."
-                ),
-                [chart],
-            )
-        ],
-        selects=[
-            Select(first, say("Compare"), crews, crews[0]),
-            Select(second, say("with"), crews, _another(crews)),
-        ],
-        data={"curves": [curves]},
-    )
-
-
-def _another(crews: Sequence[str]) -> str:
-    """The first crew of another boat than the first, if there is one."""
-    boat = crews[0].rpartition(" · ")[0]
-    return next((crew for crew in crews if not crew.startswith(boat)), crews[1])
-
-
-PAIR_OF_BOATS = ("boat_first", "boat_second")
+def _about(views: Views) -> Page:
+    """The method, what the words mean, how the data fared, and what the rebuild read."""
+    links = [*guide_links(), *((f"{name}.html", *texts) for name, texts in ABOUT.items())]
+    editions = [(edition_page(name), name) for name in views.table("editions")["edition"]]
+    seasons = views.table("seasons")
+    table = Table("seasons", seasons, seasons.columns, say("Seasons"))
+    sections = [
+        Section("about_pages", say("Where to find what"), links=links),
+        *([Section("editions", say("Published editions"), pages=editions)] if editions else []),
+        Section(
+            "seasons",
+            say("Seasons"),
+            say("Tows per season that the tow list holds and that were used."),
+            tables=[table],
+        ),
+    ]
+    return Page("about.html", CARDS["about"][0], sections)
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
@@ -567,14 +524,8 @@ def _quality(views: Views, methods: list[str]) -> Page:
             charts=[
                 Chart("statuses", "statuses", say("Status of the curves"), {"method": "method"})
             ],
-            tables=[
-                Table(
-                    "statuses", statuses, statuses.columns, say("Status of the curves"), ["method"]
-                ),
-            ],
         ),
         _set_aside(views),
-        *_season_diagnosis(views),
     ]
     for kind, name, title, note in (
         (
@@ -604,7 +555,6 @@ def _quality(views: Views, methods: list[str]) -> Page:
             ),
             tables=[table],
         ),
-        _rebuilt(views),
     ]
     return Page(
         "quality.html",
@@ -632,7 +582,7 @@ def _season_diagnosis(views: Views) -> list[Section]:
         PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
     )
     title = say("Instruments by season")
-    table = Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, title, ["method"], exact=False)
+    table = Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, title, ["method"])
     note = say(
         "What may be wrong in a season with log, GPS, load cell, anemometer or "
         "temperature. Fault: likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 "
@@ -672,27 +622,4 @@ def _set_aside(views: Views) -> Section:
         say("Set aside"),
         say("Files, lines and tows not used, with the reason."),
         tables=[table],
-    )
-
-
-def _rebuilt(views: Views) -> Section:
-    """What the rebuild read, applied and made."""
-    seasons, tables = views.table("seasons"), views.table("contents")
-    in_dutch = speaker("nl")
-    dutch = pl.col("table").replace(
-        {name: in_dutch(summary_of(schema)) for name, schema in TABLES.items()}
-    )
-    tables = tables.with_columns(meanings=pl.concat_list(dutch, "meaning"))
-    return Section(
-        "rebuilt",
-        say("What the rebuild did"),
-        say(
-            "Tows per season that the tow list holds and that were used; the methods "
-            "applied; and the tables made of them."
-        ),
-        tables=[
-            Table("seasons", seasons, seasons.columns, say("Seasons")),
-            methods_table(views),
-            Table("contents", tables, ("table", "rows", "meanings"), say("Tables in the database")),
-        ],
     )

@@ -32,7 +32,6 @@ class Table:
         follows: columns that a selector of the page filters on.
         search: whether it has a search box.
         linked: whether a selection in a chart filters it by boat.
-        exact: whether cells carry more digits than they show, for the download.
         cards: on a narrow screen, the columns of a card: its name, then its numbers.
         within: the rows of many pages, and at which of them `frame` begins: their cells are made
             at once.
@@ -45,7 +44,6 @@ class Table:
     follows: Sequence[str] = ()
     search: bool = False
     linked: bool = False
-    exact: bool = True
     cards: Sequence[str] = ()
     within: tuple[pl.DataFrame, int] | None = None
 
@@ -179,13 +177,12 @@ def listed(
     columns: Sequence[str],
     charts: Sequence[Chart] = (),
     follows: Sequence[str] = ("method",),
-    exact: bool = True,
     headline: Headline | None = None,
 ) -> list[Section]:
     """A section with one table, called as the section is; none where there are no rows."""
     if frame.is_empty():
         return []
-    table = Table(name, frame, columns, section.title, follows, exact=exact)
+    table = Table(name, frame, columns, section.title, follows)
     return [replace(section, charts=charts, tables=[table], headline=headline)]
 
 

@@ -1,4 +1,4 @@
-"""The races computed again: a list, and a page for each."""
+"""The races computed again: a page for each."""
 
 from collections.abc import Iterator, Sequence
 
@@ -25,37 +25,14 @@ CARDS = ("name", "fsn_no", "new_power_w", "old_rank", "new_rank")
 
 
 def race_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
-    """The list of races, and a page for each."""
+    """A page for each race."""
     races = views.races() if views.has("race_changes") else pl.DataFrame()
     if races.is_empty():
-        yield Page(
-            "races.html",
-            say("Races"),
-            [
-                Section(
-                    "races", say("Races"), empty=say("The archive holds no races to compute again.")
-                )
-            ],
-        )
         return
     editions = races["to_edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
-    days = views.race_days()
-    links = [(race_path(race, day), f"{race} {day}") for race, day in days]
-    yield Page(
-        "races.html",
-        say("Races"),
-        [
-            Section(
-                "races",
-                say("Races"),
-                say("Every result computed again by the old and the new edition; choose a race."),
-                pages=links,
-            )
-        ],
-    )
     chances = race_chances(views, races.filter(to_edition=chosen)["from_edition"][0], chosen)
-    for race, day in days:
+    for race, day in views.race_days():
         own = races.filter(race=race, race_date=day)
         yield _race(race_path(race, day), f"{race} {day}", own, editions, chosen, chances)
 

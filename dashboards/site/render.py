@@ -8,12 +8,9 @@ import base64
 import datetime as dt
 import shutil
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, partial
-from importlib.metadata import version
 from pathlib import Path
-from types import MappingProxyType
 from typing import Final
 
 import jinja2
@@ -22,7 +19,6 @@ from markupsafe import Markup
 
 from dashboards import fonts, labels
 from dashboards.html import as_json, environment
-from dashboards.kept import kept
 from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
 from dashboards.site.columns import json_of
@@ -32,7 +28,7 @@ from dashboards.site.parts import Page, boat_path, race_path, type_path
 from dashboards.site.slides import slides_page
 from dashboards.site.specifications import chart_specifications
 from dashboards.site.start import TERMS
-from dashboards.site.still import Stills, first_chart, stills
+from dashboards.site.still import first_chart, still
 from dashboards.speech import Speech
 from pipeline.messages import LANGUAGES, speaker
 from warehouse.queries.views import Views
@@ -43,7 +39,6 @@ from warehouse.store.unforeseen import Border, border
 HERE: Final = Path(__file__).parent
 QUICK: Final = 4
 """How hard data are deflated: a tenth larger than by default, in half the time."""
-NO_STILLS: Final[Mapping[str, Markup]] = MappingProxyType({})
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -80,31 +75,22 @@ POLICY: Final = "; ".join(
 is in the style sheet, because some browsers keep fonts of another folder from such a page."""
 
 
-def build_site(store: Store, other: Executor | None = None) -> dict[str, int]:
-    """Makes all pages from the database and swaps them in.
-
-    Args:
-        store: the data folder.
-        other: a second process, which draws the pictures meanwhile; without, all is done here.
-
-    Returns:
-        Files and bytes of the site.
-    """
-    return build_pages(store, store.root / "site", other=other)
+def build_site(store: Store) -> dict[str, int]:
+    """Makes all pages from the database and swaps them in; gives files and bytes of the site."""
+    return build_pages(store, store.root / "site")
 
 
 def build_pages(
     store: Store,
     target: Path,
     as_of: dt.date | None = None,
-    other: Executor | None = None,
     bordered: Border | None = None,
 ) -> dict[str, int]:
     """The same in another folder, and as of a day; what stood in the folder is replaced."""
     bordered = bordered or partial(border, store.root)
     with folder_written_beside(target) as beside:
         with Views(store, as_of) as views:
-            _write_pages(bordered, views, beside, other)
+            _write_pages(bordered, views, beside)
             _write_shared(views, beside)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
@@ -124,45 +110,26 @@ def _write_shared(views: Views, folder: Path) -> None:
     (static / "find.js").write_text(_search_script(views), encoding="utf-8")
 
 
-def _write_pages(border: Border, views: Views, folder: Path, other: Executor | None) -> None:
-    """Writes every page; those with a picture last, when the other process has drawn it."""
+def _write_pages(border: Border, views: Views, folder: Path) -> None:
+    """Writes every page in both languages."""
     editions = [Edition(views, language) for language in LANGUAGES]
     methods = method_names(views)
-    shared: list[Page] = []
     makers = shared_pages(views) | {"slides": lambda: [slides_page(views, methods)]}
     for name, make in makers.items():
         with border(f"pages {name}"):
-            shared += make()
-    drawn = [_draw(page, editions, other) for page in shared]
+            for page in make():
+                with border(f"page {page.path}"):
+                    _write_page(folder, page, editions)
     for fsn_no, make_page in boat_pages(views, methods):
         with border(f"page {fsn_no}"):
-            _write_page(folder, make_page(), editions, {})
-    for page, pictures in zip(shared, drawn, strict=True):
-        with border(f"page {page.path}"):
-            _write_page(folder, page, editions, pictures())
+            _write_page(folder, make_page(), editions)
 
 
-def _draw(
-    page: Page, editions: Sequence["Edition"], other: Executor | None
-) -> Callable[[], Stills]:
-    """Has the picture of a page drawn, if it has one; gives what waits for it."""
-    first = first_chart(page)
-    if first is None:
-        return dict
-    chart, rows = first
-    captions = {e.speech.language: e.speech.say(chart.caption) for e in editions}
-    task = chart.figure, rows, captions
-    return other.submit(stills, *task).result if other else partial(stills, *task)
-
-
-def _write_page(folder: Path, page: Page, editions: Sequence["Edition"], drawn: Stills) -> None:
-    others = {}
+def _write_page(folder: Path, page: Page, editions: Sequence["Edition"]) -> None:
     for edition in editions:
-        language = edition.speech.language
-        html, others[language] = edition.html(page, drawn.get(language, {}))
-        _put(folder / edition.address(page), html)
-    if page.data or page.json or any(others.values()):
-        _put(folder / _data_path(page), _data_script(page, others))
+        _put(folder / edition.address(page), edition.html(page))
+    if page.data or page.json:
+        _put(folder / _data_path(page), _data_script(page))
 
 
 def _put(path: Path, text: str) -> None:
@@ -209,38 +176,32 @@ class Edition:
         """Where the page lies within the site."""
         return FOLDERS[self.speech.language] + page.path
 
-    def html(
-        self, page: Page, stills: Mapping[str, Markup] = NO_STILLS
-    ) -> tuple[str, dict[str, str]]:
-        """The page, and by the number of a table its rows that the selectors hide at first.
-
-        Args:
-            page: what it shows.
-            stills: pictures of its charts, by the name of the figure.
-        """
+    def html(self, page: Page) -> str:
+        """The page; one of the menu with its first chart as a picture, to be seen at once."""
         language = self.speech.language
-        depth = self.address(page).count("/")
-        site = page.site or "../" * depth
+        site = page.site or "../" * self.address(page).count("/")
         other = next(name for name in LANGUAGES if name != language)
-        tables = {
-            f"{place}-{number}": self._cells.rows(page, table)
-            for place, section in enumerate(page.sections, 1)
-            for number, table in enumerate(section.tables, 1)
-        }
-        others = {number: rows.others for number, rows in tables.items() if rows.others}
-        html = _template().render(
+        return _template().render(
             **self._names,
             page=page,
-            stills=stills,
-            tables=tables,
+            stills=self._still(page) if page.data and "/" not in page.path else {},
+            rows_of=partial(self._cells.rows, page),
             language=language,
             site=site,
             root=(site + FOLDERS[language]) if page.site else page.root,
             other=other,
             other_page=page.others.get(other) or f"{site}{FOLDERS[other]}{page.path}",
-            data_path=_data_path(page) if page.data or page.json or others else "",
+            data_path=_data_path(page) if page.data or page.json else "",
         )
-        return html, others
+
+    def _still(self, page: Page) -> dict[str, Markup]:
+        """The picture of the page's first chart, by the name of its figure."""
+        first = first_chart(page)
+        if first is None:
+            return {}
+        chart, rows = first
+        caption = self.speech.say(chart.caption)
+        return {chart.figure: still(chart.figure, rows, self.speech.language, caption)}
 
 
 def _data_path(page: Page) -> str:
@@ -248,18 +209,17 @@ def _data_path(page: Page) -> str:
     return f"data/{page.path.removesuffix('.html')}.js"
 
 
-def _data_script(page: Page, others: Mapping[str, Mapping[str, str]]) -> str:
-    """A script and not JSON, as a page from disk may load nothing else; deflated, a seventh of it.
-
-    Args:
-        page: gives the data of its charts.
-        others: rows of tables as HTML, by language and number of the table.
-    """
+def _data_script(page: Page) -> str:
+    """A script and not JSON, as a page from disk may load nothing else."""
     charts = {name: ",".join(map(json_of, frames)) for name, frames in page.data.items()}
-    named = ",".join(f"{as_json(name)}:[{text}]" for name, text in {**charts, **page.json}.items())
-    text = f'{{"charts":{{{named}}},"rows":{as_json(others)}}}'
-    packed = base64.b64encode(zlib.compress(text.encode(), QUICK)).decode("ascii")
-    return f'window.HERIJK_DATA = "{packed}";\n'
+    return data_script({**charts, **page.json})
+
+
+def data_script(charts: Mapping[str, str]) -> str:
+    """What charts draw, as JSON by name; deflated, a seventh of it."""
+    named = ",".join(f"{as_json(name)}:[{text}]" for name, text in charts.items())
+    packed = base64.b64encode(zlib.compress(f'{{"charts":{{{named}}}}}'.encode(), QUICK))
+    return f'window.HERIJK_DATA = "{packed.decode("ascii")}";\n'
 
 
 def _search_script(views: Views) -> str:
@@ -290,8 +250,7 @@ def _by_column(comments: dict[str, str]) -> dict[str, str]:
 @cache
 def vega_bundle() -> str:
     """Vega, Vega-Lite and Vega-Embed in one script, as Altair's own converter ships them."""
-    bundle = vl_convert.javascript_bundle
-    return kept("vega", version("vl-convert-python"), lambda: str(bundle()))  # type: ignore[call-arg]  # its stub lacks the default
+    return str(vl_convert.javascript_bundle())  # type: ignore[call-arg]  # its stub lacks the default
 
 
 def charts_script(language: str) -> str:
@@ -301,8 +260,7 @@ def charts_script(language: str) -> str:
         "yes": say("yes"),
         "no": say("no"),
         "no_values": say("no values"),
-        "from": say("from"),
-        "to": say("to"),
+        "picture": say("Save as a picture"),
     }
     figures = as_json(chart_specifications(language))
     return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"

@@ -11,11 +11,8 @@ from dashboards.site.parts import (
     Chart,
     Page,
     Section,
-    Table,
     draft_of,
-    methods_select,
 )
-from dashboards.site.prose import guide_links
 from dashboards.speech import Headline, Speech
 from dashboards.statements import edition
 from pipeline.messages import Sentence, pgettext, say
@@ -28,33 +25,33 @@ CARDS: Final = {
         say("Register"),
         say("Every boat and crew with A, B and Cw; search, sort, download."),
     ),
-    "due": (
-        say("Due to tow"),
-        say("Who has to tow again, by when, and at what speed?"),
+    "boats": (
+        say("Boats"),
+        say("Your boat: its number, why it changed, and when it has to tow again."),
     ),
     "types": (
         say("Types"),
         say("Are equal boats equal? A, B and Cw against weight and tow speed, before and after."),
     ),
-    "compare": (
-        say("Compare"),
-        say("Two boats compared: which runs easier, and at what speed?"),
-    ),
-    "races": (
-        say("Races"),
-        say("Every race computed again: is there another winner, and how likely is that?"),
-    ),
-    "corrections": (
-        say("Corrections"),
-        say("Log factors per season, and what each step of a method does to Cw."),
-    ),
-    "reproducibility": (
-        say("Reproducibility"),
-        say("How well do two tests of one unaltered boat agree?"),
+    "seasons": (
+        say("Seasons"),
+        say("What was wrong with the logs of each season, and how well repeat tows agree."),
     ),
     "changes": (
-        say("Changes"),
-        say("What changes between two editions of the register, and why."),
+        say("Changes and races"),
+        say("The vote: what changes between two editions, for whom, and who would win."),
+    ),
+    "about": (
+        say("About"),
+        say("The method, the words, what was set aside, the presentation of 2015."),
+    ),
+}
+"""The menu: title of each page, and a sentence about it."""
+
+ABOUT: Final = {
+    "words": (
+        say("Glossary"),
+        say("What the words and signs mean."),
     ),
     "quality": (
         say("Quality"),
@@ -67,12 +64,15 @@ CARDS: Final = {
             "and after."
         ),
     ),
-    "words": (
-        say("Glossary"),
-        say("What the words and signs mean."),
-    ),
 }
-"""Title of each page, and a sentence about it."""
+"""The same of the pages that `About` leads to."""
+
+DOORS: Final = (
+    ("boats", say("Your boat")),
+    ("changes", say("The vote")),
+    ("types", say("Are equal boats equal?")),
+)
+"""What people come for: the page of each, and its name on the start page."""
 
 TERMS: Final = {
     "tow": (
@@ -168,54 +168,36 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
     """The edition in force, key figures, what changes, the years, and where to go."""
     editions = changes["to_edition"].unique().sort().to_list() if changes.height else []
     chosen = newest_edition(editions, draft_of(methods))
-    links = [*((f"{name}.html", *texts) for name, texts in CARDS.items()), *guide_links()]
-    years = views.table("season_changes")
+    links = [(f"{name}.html", title, CARDS[name][1]) for name, title in DOORS]
+    years = views.table("season_changes").filter(pl.col("method").is_in(methods))
     sections = [
         Section(
-            "now",
-            say("The current state"),
+            "index_pages",
+            say("Where to find what"),
             say(
                 "The resistance of rowing sloops is measured with a tow test. These pages show "
                 "the results of all tests, recomputed with one method: the register, every "
                 "boat with its measurements, and what each step changes."
             ),
+            links=links,
+        ),
+        Section(
+            "now",
+            say("The current state"),
             key_figures=_figures(views),
             headline=edition.changes(changes.filter(to_edition=chosen)) if editions else None,
         ),
-        *_last_rebuild(views),
-        Section("index_pages", say("Where to find what"), links=links),
     ]
     if years.height:
-        chart = Chart(
-            "season_change", "years", say("Relative to the published Cw"), {"method": "method"}
+        chart = Chart("season_change", "years", say("Relative to the published Cw"))
+        note = say(
+            "Cw by the method / Cw as published, of the same tow: median, and lowest to highest."
         )
-        sections.append(
-            Section(
-                "years",
-                say("Through the seasons"),
-                say(
-                    "Cw by the method / Cw as published, of the same tow: median, and lowest to "
-                    "highest."
-                ),
-                [chart],
-            )
-        )
-    sections.append(
-        Section(
-            "methods",
-            say("Methods"),
-            say(
-                "Every number depends on a method, and names it. Two equal hashes are two "
-                "equal methods."
-            ),
-            tables=[methods_table(views)],
-        )
-    )
+        sections.append(Section("years", say("Through the seasons"), note, [chart]))
     return Page(
         "index.html",
         say("Start"),
-        sections,
-        selects=[methods_select(methods)] if years.height else [],
+        [*sections, *_last_rebuild(views)],
         data={"years": [years]} if years.height else {},
     )
 
@@ -232,12 +214,6 @@ def _last_rebuild(views: Views) -> list[Section]:
             headline=lambda speech: in_short(changes, (), speech.say),
         )
     ]
-
-
-def methods_table(views: Views) -> Table:
-    """The methods, with the title in the language of the page."""
-    frame = views.table("methods").with_columns(titles=pl.concat_list("title", "title_en"))
-    return Table("methods", frame, ["method", "titles", "content_hash"], say("Methods"))
 
 
 def _figures(views: Views) -> list[tuple[Sentence, str | Headline]]:

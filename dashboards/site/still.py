@@ -1,19 +1,16 @@
 """A page's first chart as a picture made with the page, to be seen before any script is there."""
 
+import copy
 import re
-from collections import Counter
-from collections.abc import Mapping
-from typing import Final
+from collections.abc import Iterable
 
 import polars as pl
 from markupsafe import Markup
 
 from dashboards import drawn
+from dashboards.figures import drop
 from dashboards.site.parts import Chart, Page, is_chosen
-from dashboards.site.specifications import picture_specification
-
-Stills = Mapping[str, Mapping[str, Markup]]
-"""Pictures by language and name of the figure."""
+from dashboards.site.specifications import chart_specifications
 
 
 def first_chart(page: Page) -> tuple[Chart, pl.DataFrame] | None:
@@ -25,22 +22,12 @@ def first_chart(page: Page) -> tuple[Chart, pl.DataFrame] | None:
     return None if rows.is_empty() else (chart, rows)
 
 
-def stills(figure: str, rows: pl.DataFrame, captions: Mapping[str, str]) -> Stills:
-    """A figure in every language that has a caption."""
-    return {
-        language: {figure: still(figure, rows, language, caption)}
-        for language, caption in captions.items()
-    }
-
-
 def still(figure: str, rows: pl.DataFrame, language: str, caption: str) -> Markup:
     """A figure as SVG; a screen reader says its caption."""
-    vega = picture_specification(figure, language)
-    text = str(vega)
-    seen = rows.select(name for name in rows.columns if name in text)
-    svg = drawn.compiled_svg(vega, seen.to_dicts(), language)
-    bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", _renumbered(svg))
-    bare = _marks_once(DIGITS.sub("", bare))
+    spec = copy.deepcopy(chart_specifications(language)[figure])
+    drop(spec, "href", "tooltip")
+    svg = drawn.svg(spec | {"datasets": {"rows": rows.to_dicts()}}, language)
+    bare = _renumbered(re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", svg))
     named = Markup('<svg role="img" aria-label="{}" ').format(caption)
     return Markup(bare.replace("<svg ", named, 1))  # noqa: S704 - Vega escapes texts
 
@@ -52,33 +39,18 @@ def _renumbered(svg: str) -> str:
     return re.sub(r"\bclip\d+\b", lambda name: places[name[0]], svg)
 
 
-def _marks_once(svg: str) -> str:
-    """What marks look like once, then where each of them is: a third of the characters to load."""
-    looks = Counter(mark["look"] for mark in MARK.finditer(svg))
-    names = {look: f"mark{n}" for n, (look, often) in enumerate(looks.items()) if often > 1}
-
-    def placed(mark: re.Match[str]) -> str:
-        name = names.get(mark["look"])
-        return f'<use href="#{name}" x="{mark["x"]}" y="{mark["y"]}"/>' if name else mark[0]
-
-    once = "".join(f'<path id="{name}" {look}/>' for look, name in names.items())
-    return MARK.sub(placed, svg).replace(">", f"><defs>{once}</defs>", 1)
-
-
-MARK: Final = re.compile(
-    r'<path transform="translate\((?P<x>[-\d.]+),(?P<y>[-\d.]+)\)" (?P<look>d="[^>]*")/>'
-)
-DIGITS: Final = re.compile(r"(?<=\.\d\d)\d+(?=[^<>]*>)")
-"""Digits within a tag that nobody can see: of where something lies, how wide or light it is."""
-
-
 def _shown(page: Page, chart: Chart) -> pl.DataFrame:
     """The rows that the selectors show at first, as `site.js` chooses them."""
     rows = pl.concat(page.data[chart.data], how="diagonal_relaxed")
     for column, names in chart.follows.items():
         wanted = [page.chosen[name] for name in ([names] if isinstance(names, str) else names)]
-        values = rows[column].unique()
-        is_shown = [v is None or is_chosen(v, *wanted) for v in values.to_list()]
-        shown = values.filter(pl.Series(is_shown, dtype=pl.Boolean)).to_frame()
-        rows = rows.join(shown, on=column, how="semi", nulls_equal=True, maintain_order="left")
+        rows = rows.filter(pl.Series(_are_chosen(rows[column], wanted), dtype=pl.Boolean))
     return rows
+
+
+def _are_chosen(values: Iterable[object], wanted: list[str]) -> list[bool]:
+    return [
+        value is None
+        or is_chosen(value.to_list() if isinstance(value, pl.Series) else value, *wanted)
+        for value in values
+    ]

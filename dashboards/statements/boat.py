@@ -68,16 +68,19 @@ class Answer:
         return f"{self.line['name']} {self.crew(speech)}"
 
 
-def answers_by_boat(views: Views, edition: str) -> dict[str, list[Answer]]:
-    """The answers about all crews in an edition or draft, by boat."""
+def answers_by_boat(views: Views, edition: str, only: str | None = None) -> dict[str, list[Answer]]:
+    """The answers about crews in an edition or draft, by boat.
+
+    Args:
+        only: the number of the one boat that is asked for; all when left out.
+    """
     lines = answers(views, edition)
-    compared = lines["from_edition"].drop_nulls()
-    races = own_races(views, compared[0] if compared.len() else None, edition)
+    races = own_races(views, next(iter(lines["from_edition"].drop_nulls()), None), edition)
     crew = ["fsn_no", "rowers", "crew_class"]
     by_crew = races.partition_by(crew, as_dict=True, maintain_order=True)
     faults = season_faults(views) if edition.startswith(DRAFT) else {}  # an edition holds none
     by_boat: dict[str, list[Answer]] = defaultdict(list)
-    for line in lines.to_dicts():
+    for line in (lines if only is None else lines.filter(fsn_no=only)).to_dicts():
         own = by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts()
         of_season = faults.get((line["method"], line["season"]), ())
         by_boat[line["fsn_no"]].append(Answer(line, own, curve_of(line), of_season))

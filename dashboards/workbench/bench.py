@@ -13,7 +13,7 @@ import polars.selectors as cs
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from dashboards.figures.style import SCENARIO
-from dashboards.site.cells import DIGITS, KEPT, LONG
+from dashboards.site.cells import DIGITS, LONG
 from dashboards.workbench.form import controls
 from pipeline.errors import HerijkError
 from pipeline.method.definition import (
@@ -37,6 +37,8 @@ Answer = dict[str, object]
 DEFAULT_BASE: Final = "rebased"
 DEFAULT_AGAINST: Final = "as-published"
 DRAFTS_KEPT: Final = 8
+KEPT: Final = 7
+"""Significant digits in an answer; the database holds all."""
 
 REGISTER_COLUMNS: Final = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "change", "old_cw_kg_m"),

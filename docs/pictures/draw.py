@@ -10,7 +10,7 @@ HERE: Final = Path(__file__).parent
 SITE: Final = HERE.parents[1] / "demo" / "data" / "site" / "en"
 PICTURES: Final = {
     "boat.png": ("boats/FSN106.html", "section.answer"),
-    "seasons.png": ("corrections.html", "#season-change .chart"),
+    "seasons.png": ("seasons.html", "#season-change .chart"),
 }
 """Each picture: the page of the site, and what of it is shown."""
 

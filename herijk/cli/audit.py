@@ -1,7 +1,7 @@
 """`herijk audit`: the answer about a boat or a type, and with --steps all that is behind it."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import click
 
@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from warehouse.queries.audit import BoatAudit
     from warehouse.queries.audit_types import TypesAudit
     from warehouse.store.store import Store
-
-MOST_TYPES: Final = 2
 
 
 @click.command(cls=Command)
@@ -59,7 +57,7 @@ def audit(
     from warehouse.store.methods import KnownMethods
     from warehouse.store.store import Store
 
-    if len(names) > MOST_TYPES:
+    if len(names) > 2:
         raise click.UsageError(tell("give a boat, or one or two types; quote a name with blanks"))
     store = Store(data)
     behind = None

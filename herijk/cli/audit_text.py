@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from math import exp
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import polars as pl
 
@@ -24,13 +24,15 @@ from herijk.cli.render import (
 from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
-from warehouse.editions.lineage import Lineage, LineLineage
 from warehouse.queries.answers import current_edition
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import OneType, TypesAudit
 from warehouse.queries.views import Views
 from warehouse.store.database import no_such_edition
 from warehouse.store.store import Store
+
+if TYPE_CHECKING:
+    from warehouse.editions.lineage import Lineage, LineLineage
 
 # A boat
 
@@ -49,12 +51,10 @@ def boat_text(report: BoatAudit, answers: Sequence[Answer], steps: bool) -> str:
     if steps:
         parts += list(_boat_steps(report))
     else:
-        parts.append(tell("All methods, tows and runs: herijk audit {} --steps", _name(report)))
+        parts.append(
+            tell("All methods, tows and runs: herijk audit {} --steps", report.boat["fsn_no"])
+        )
     return page(parts, report.simulated)
-
-
-def _name(report: BoatAudit) -> str:
-    return str(report.boat["fsn_no"])
 
 
 def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
@@ -65,10 +65,10 @@ def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
     """
     with Views(store) as views:
         chosen = edition or current_edition(views)
-        by_boat = answers_by_boat(views, chosen)
-        if not by_boat:
-            raise no_such_edition(chosen, views.table("register")["edition"].unique())
-        return by_boat.get(boat["fsn_no"], [])
+        known = views.table("register")["edition"].unique()
+        if chosen not in known:
+            raise no_such_edition(chosen, known)
+        return answers_by_boat(views, chosen, boat["fsn_no"]).get(boat["fsn_no"], [])
 
 
 TOWS: Final = (
@@ -170,7 +170,7 @@ def _alike(curves: Sequence[Row]) -> dict[str, str]:
     return {", ".join(names): runs for runs, names in methods.items()}
 
 
-def lineage_text(report: Lineage) -> str:
+def lineage_text(report: "Lineage") -> str:
     """From the lines of a published edition to files, runs and seconds."""
     about = report.about
     head = tell(
@@ -185,7 +185,7 @@ def lineage_text(report: Lineage) -> str:
     return "\n\n".join([head, *map(_line_history, report.lines)])
 
 
-def _line_history(line: LineLineage) -> str:
+def _line_history(line: "LineLineage") -> str:
     printed = "; ".join(f"{header} {cell}" for header, cell in line.printed.items() if cell)
     head = tell("Verification code {}", line.code)
     if line.tow is None:

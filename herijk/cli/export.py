@@ -10,8 +10,6 @@ from herijk.cli.speaking import Group, argument, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGE, tell
 
-MOST_TYPES = 2
-
 
 @click.group(cls=Group)
 def export() -> None:
@@ -114,7 +112,7 @@ def slides(
     from warehouse.store.store import Store
     from warehouse.store.unforeseen import documents
 
-    if len(types) > MOST_TYPES:
+    if len(types) > 2:
         raise click.UsageError(tell("give one or two types"))
     store, asked = Store(data), Asked(types, tows, boats)
     with documents(store.root, "slides") as border:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from dashboards.workbench.texts import text
 from herijk.cli.render import table
 from pipeline.messages import LANGUAGE, say, tell
-from pipeline.method.definition import Method
+from pipeline.method.definition import Method, basis_of
 from pipeline.method.variant import Difference, differences
 from pipeline.method.writing import range_text
 from pipeline.tables.row import Row
@@ -89,8 +89,9 @@ def options_text(options: Sequence[Difference], old: str, new: str) -> str:
             "before": ", ".join(map(json.dumps, one.before)),
             "after": json.dumps(one.after),
             "in_words": tell(text(f"{one.step}.{one.option}")),
+            "status": tell(text(f"status.{basis_of(one.step, one.option).status}")),
         }
         for one in options
     ]
     heads = {"option": say("option"), "seasons": say("seasons"), "before": old, "after": new}
-    return table(rows, f"option seasons {'before ' if old else ''}after in_words", heads)
+    return table(rows, f"option seasons {'before ' if old else ''}after in_words status", heads)

@@ -2,7 +2,7 @@
 
 import datetime as dt
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -13,6 +13,10 @@ from pipeline.messages import tell
 
 if TYPE_CHECKING:
     from warehouse.store.store import Store
+
+
+BEST: Final = "rebased"
+"""The method of the best draft, whose factors and due list are shown where none is named."""
 
 
 @click.command(cls=Command)
@@ -30,34 +34,35 @@ def register(
 ) -> None:
     """The register: every line with its sizes, and whether it is valid on a day."""
     from herijk.cli import registers_text as text
-    from warehouse.queries.register import register_report
     from warehouse.store.store import Store
 
     store = Store(data)
-    if not due:
-        show(register_report(store, edition, as_of), text.register, as_json)
-        return
-    from warehouse.queries.due import due_report
+    if due:
+        from warehouse.queries.due import due_report
 
-    show(due_report(store, _method_of(store, edition), as_of), text.due, as_json)
+        show(due_report(store, _method_of(store, edition), as_of), text.due, as_json)
+    else:
+        from warehouse.queries.register import register_report
+
+        show(register_report(store, edition, as_of), text.register, as_json)
 
 
 def _method_of(store: "Store", edition: str | None) -> str:
     """The method of an edition or draft; that of the best draft without one."""
+    if edition is None:
+        return BEST
     from pipeline.register.register import draft_name
-    from warehouse.derive.studies import STUDIED_METHOD
     from warehouse.store.editions import edition_names, method_of_edition
     from warehouse.store.methods import KnownMethods
 
     if edition in edition_names(store):
-        return method_of_edition(store, str(edition)).name
-    asked = (edition or STUDIED_METHOD).removeprefix(draft_name(""))
-    return KnownMethods.of(store).get(asked).name
+        return method_of_edition(store, edition).name
+    return KnownMethods.of(store).get(edition.removeprefix(draft_name(""))).name
 
 
 @click.command(cls=Command)
 @data_option
-@option("--method", default="rebased", help="Method whose factors are shown.")
+@option("--method", default=BEST, help="Method whose factors are shown.")
 @json_option
 def seasons(data: Path, method: str, as_json: bool) -> None:
     """What was wrong with log, force and wind in each season, and how sure that is."""

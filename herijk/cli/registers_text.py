@@ -1,7 +1,7 @@
 """Registers, due lists, seasons and editions as text for a person."""
 
 from collections.abc import Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
@@ -10,12 +10,14 @@ from dashboards.statements import edition, season
 from herijk.cli.render import codes, page, section, speech, table
 from pipeline.messages import ngettext, say, tell
 from pipeline.tables.row import Row
-from warehouse.editions.chain import Finding
-from warehouse.editions.publish import Published
-from warehouse.editions.verify import Verification
-from warehouse.queries.due import DueReport
-from warehouse.queries.register import RegisterReport
-from warehouse.queries.reports import LogErrorReport
+
+if TYPE_CHECKING:
+    from warehouse.editions.chain import Finding
+    from warehouse.editions.publish import Published
+    from warehouse.editions.verify import Verification
+    from warehouse.queries.due import DueReport
+    from warehouse.queries.register import RegisterReport
+    from warehouse.queries.reports import LogErrorReport
 
 
 def _frame(rows: Sequence[Row]) -> pl.DataFrame:
@@ -36,7 +38,7 @@ DUE: Final = (
 RETOW: Final = "position fsn_no name crew seasons valid_until tow_speed_m_s factor_sd_after_percent"
 
 
-def register(report: RegisterReport) -> str:
+def register(report: "RegisterReport") -> str:
     """The lines of an edition, and the day on which their validity was judged."""
     parts = [
         f"{speech().edition(report.edition)}: {edition.register(_frame(report.lines))(speech())}",
@@ -58,7 +60,7 @@ URGENCIES: Final = {
 }
 
 
-def due(report: DueReport) -> str:
+def due(report: "DueReport") -> str:
     """Who is due, at what speed, and which boats to tow again."""
     by_urgency = (
         section(tell(title), table([row for row in report.lines if row["urgency"] == urgency], DUE))
@@ -84,17 +86,14 @@ def _retow(choice: list[Row]) -> str:
         return tell(
             "{}: nobody, this method estimates no log error, so no tow would narrow it.", title
         )
-    rows = [row | {SD_AFTER: 100 * row["factor_sd_after_ratio"]} for row in choice]
+    rows = [row | {"factor_sd_after_percent": 100 * row["factor_sd_after_ratio"]} for row in choice]
     return section(title + ":", of_due.retow(_frame(choice))(speech()), table(rows, RETOW))
-
-
-SD_AFTER: Final = "factor_sd_after_percent"
 
 
 # Seasons
 
 
-def seasons(report: LogErrorReport) -> str:
+def seasons(report: "LogErrorReport") -> str:
     """The log factors of all seasons, and what else may be wrong with instruments."""
     factor = "factor lo hi source n_tows n_links"
     furthest = season.log_factors(_frame(report.factors)) if report.factors else None
@@ -115,7 +114,7 @@ def seasons(report: LogErrorReport) -> str:
             tell("Each log, and each part of a season in which one was replaced:"),
             table(
                 [row | {"part": row["part"] + 1} for row in report.parts],
-                f"season log part {factor}",
+                f"season part {factor}",
             ),
         ),
         section(
@@ -169,7 +168,7 @@ def _or_else(confused_with: str | None) -> str:
 # Editions
 
 
-def published(report: Published) -> str:
+def published(report: "Published") -> str:
     """An edition that was just published."""
     about = report.manifest
     statuses = ", ".join(f"{n} {codes(status)}" for status, n in report.statuses.items())
@@ -237,7 +236,7 @@ KINDS: Final = {
 """What a check of editions can find."""
 
 
-def verify(report: Verification) -> str:
+def verify(report: "Verification") -> str:
     """What was checked and what is wrong."""
     if not report.editions and not report.findings:
         return tell("No edition has been published yet; nothing to verify.")
@@ -267,7 +266,7 @@ def verify(report: Verification) -> str:
     return page(parts, simulated=False)
 
 
-def _verdict(findings: list[Finding]) -> str:
+def _verdict(findings: "list[Finding]") -> str:
     wrong = sum(f.wrong for f in findings)
     if wrong and all(f.kind == "differs" for f in findings if f.wrong):
         return tell(

@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
+from pipeline.history import SLOW_POWER_W, STEERED_STRAIGHT_FROM
 from pipeline.tables.severity import Severity
 
 Limit: TypeAlias = float | Mapping[str, float] | None
@@ -88,7 +89,7 @@ CHECKS: Final = (
         unit="W",
         severity="note",
     ),
-    Check("slow_tow", lowest={"H": 60.0, "D": 34.0}, unit="W"),
+    Check("slow_tow", lowest=SLOW_POWER_W, unit="W"),
     # The boat of the day
     Check("crew_weight", lowest={"H": 81.0, "D": 64.0}, highest={"H": 114.0, "D": 90.0}, unit="kg"),
     Check("heavier_after", highest=0.02),
@@ -102,7 +103,7 @@ CHECKS: Final = (
     # The curve against others
     Check("curve_changed", lowest=-0.05, highest=0.05, severity="note"),
     Check("curve_change_unexplained", lowest=-0.05, highest=0.05),
-    Check("pulled_askew", highest=0.05, last_season=2013),
+    Check("pulled_askew", highest=0.05, last_season=STEERED_STRAIGHT_FROM - 1),
 )
 """Every check, in the order in which flags are listed."""
 

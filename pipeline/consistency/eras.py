@@ -42,9 +42,6 @@ ERAS: Final = (
 )
 """Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017)."""
 
-STEERED_STRAIGHT_FROM: Final = 2014
-"""First season in which a tow pulled askew would have been seen."""
-
 
 def season_ranges(seasons: Iterable[int]) -> dict[str, tuple[int, int]]:
     """First and last season of each era that has several of these seasons, but not all.

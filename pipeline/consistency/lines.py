@@ -18,7 +18,7 @@ import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.consistency import mixed
-from pipeline.consistency.eras import STEERED_STRAIGHT_FROM, season_ranges
+from pipeline.consistency.eras import season_ranges
 from pipeline.consistency.mixed import Problem
 from pipeline.consistency.observed import (
     UNKNOWN_TYPE,
@@ -30,6 +30,7 @@ from pipeline.consistency.observed import (
     q_at,
 )
 from pipeline.consistency.tow_speed import is_slow
+from pipeline.history import STEERED_STRAIGHT_FROM
 from pipeline.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of

@@ -176,7 +176,7 @@ def curve_anywhere(observed: Observed, speed_m_s: FloatArray | float) -> FloatAr
     The curve is read from Cw and A, which also holds where there is no B (a falling curve).
     """
     declared = observed.column("declared_speed_m_s")
-    s = bend_of_curve(observed.column("a_kg_m"), observed.column("cw_kg_m"), declared)
+    s = curve.s_of_height(observed.column("a_kg_m"), observed.column("cw_kg_m"), declared)
     cw = curve.cw(observed.column("a_kg_m"), s, speed_m_s)
     return np.where(np.isfinite(cw), cw, np.nan)
 
@@ -186,11 +186,6 @@ def counts_at(observed: Observed, speed_m_s: FloatArray | float) -> BoolArray:
     ratio = speed_m_s / observed.column("declared_speed_m_s")
     low, high = VALID_RATIO
     return np.asarray((ratio >= low - 1e-9) & (ratio <= high + 1e-9))
-
-
-def bend_of_curve(a_kg_m: FloatArray, cw_kg_m: FloatArray, speed_m_s: FloatArray) -> FloatArray:
-    """S = 1/B^2 of the curve with that A and that Cw at a speed; 0 or less without a B."""
-    return (1.0 - a_kg_m / cw_kg_m) / speed_m_s**2
 
 
 def ln_cw_unit_variance(observed: Observed, speed_m_s: FloatArray | float) -> FloatArray:

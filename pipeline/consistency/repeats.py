@@ -13,7 +13,8 @@ import scipy
 from pipeline.arrays import FloatArray
 from pipeline.consistency.components import DISTINCT, WITHIN_TYPE
 from pipeline.consistency.eras import ERAS
-from pipeline.consistency.observed import Observed, bend_of_curve
+from pipeline.consistency.observed import Observed
+from pipeline.curve import s_of_height
 from pipeline.quantiles import LEVEL
 from pipeline.tables.consistency import RepeatPairs, Reproducibility
 from pipeline.tables.frames import frame_of
@@ -69,7 +70,7 @@ def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
         pairs[name].to_numpy().astype(np.float64)
         for name in ("a_kg_m", "cw_kg_m", "declared_speed_m_s", "declared_speed_m_s_before")
     )
-    left = 1.0 - bend_of_curve(a, cw, v) * old**2
+    left = 1.0 - s_of_height(a, cw, v) * old**2
     return np.where(left > 0, a / np.where(left > 0, left, 1.0), 0.0)
 
 

@@ -24,6 +24,7 @@ from pipeline.consistency.observed import (
     q_at,
 )
 from pipeline.curve import LEAST_MARGIN, VALID_RATIO
+from pipeline.history import SLOW_POWER_W
 from pipeline.hull import hull_speed_m_s
 from pipeline.quantiles import NORMAL
 from pipeline.races.race import mean_speed_m_s, power_per_rower_w
@@ -32,10 +33,6 @@ from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.keys import LINE
 from pipeline.tables.row import Row
-
-SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
-"""Power per rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
-2015). Women tow at 40-55 W instead of 70-90 W: the same share of their range (inferred)."""
 
 BORDERLINE_POWER_W: Final = {"H": 70.0, "D": 40.0}
 RACED_POWER_W: Final = {"H": 100.0, "D": 57.0}

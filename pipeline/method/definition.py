@@ -21,6 +21,7 @@ from pydantic import (
     BaseModel,
     ConfigDict,
     Field,
+    JsonValue,
     ValidationError,
     WithJsonSchema,
 )
@@ -28,6 +29,7 @@ from pydantic import (
 from pipeline.assessment.checks import CODES
 from pipeline.errors import HerijkError, MissingKnowledgeError
 from pipeline.messages import Sentence, say
+from pipeline.method.constants import ONCE_OPTIONS
 from pipeline.toml_text import parse_toml, problem_in_words
 
 LAST_SEASON: Final = 9999
@@ -42,75 +44,121 @@ class _Options(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-def _later(default: object, ge: float | None = None, le: float | None = None) -> Any:
-    """An option added later: its default stays out of the hash, so that no older method changes."""
-    return Field(default=default, ge=ge, le=le, exclude_if=lambda value: value == default)
+Status = Literal["decided", "proposed", "inferred"]
+"""In a text of the federation; put forward by somebody; our reading where the texts are silent."""
+
+
+class Basis(NamedTuple):
+    """Where an option comes from."""
+
+    status: Status
+    source: str
+
+
+def _option(
+    status: Status,
+    source: str,
+    default: object = ...,
+    ge: float | None = None,
+    le: float | None = None,
+) -> Any:
+    """An option with its basis; without a default every method has to name it."""
+    basis: dict[str, JsonValue] = {"status": status, "source": source}
+    return Field(default=default, ge=ge, le=le, json_schema_extra=basis)
 
 
 class Speed(_Options):
     """What is known to be wrong with the speed through the water, which is that of log 1."""
 
-    correction: Literal["none", "prescribed", "estimated"]
-    factor: float = Field(default=1.0, ge=0.85, le=1.2)
+    correction: Literal["none", "prescribed", "estimated"] = _option(
+        "proposed", 'P2015, "Meten van de sleepsnelheid"; the estimate: this project'
+    )
+    factor: float = _option(
+        "proposed",
+        "P2015: up to 6 %; to multiply, not to divide by 0.94, is inferred",
+        1.0,
+        0.85,
+        1.2,
+    )
 
 
 class Calibration(_Options):
-    """The factor that brings the log to ground speed, and what a tow without GPS gets instead."""
+    """The factor that brings the log to ground speed."""
 
-    rule: Literal["none", "gps_per_tow"]
-    without_gps: Literal["no_curve", "estimated"] = _later("no_curve")
+    rule: Literal["none", "gps_per_tow"] = _option("decided", 'S2017, "IJking snelheid"')
 
 
 class Window(_Options):
-    """Which part of a run counts."""
+    """Which part of a run counts; a window that a person gave goes before the steady part."""
 
-    rule: Literal["all", "steady", "by_hand"]
-    minimum_s: float = Field(default=30.0, ge=5.0, le=50.0)
-    speed_drift_m_s: float = Field(default=0.1, gt=0.0, le=0.2)
-    force_ends_ratio: float = Field(default=0.1, gt=0.0, le=0.2)
+    rule: Literal["all", "steady"] = _option("decided", 'S2017, "Knippen"')
 
 
 class Wind(_Options):
     """How the resistance in air is taken off."""
 
-    model: Literal["head", "oblique"]
-    coefficients: Literal["fixed", "per_run", "archive"] = "fixed"
-    ahead: float = Field(default=0.5, ge=0.0, le=2.0)
-    behind: float = Field(default=0.5, ge=0.0, le=2.0)
-    side: float = Field(default=0.2, ge=0.0, le=2.0)
-    averaging_s: int = Field(default=0, ge=0, le=15)
-    anemometer: Literal["as_read", "estimated"] = "as_read"
-    reading: Literal["as_felt", "cw_vac_2014", "cw_opt_2014"] = "as_felt"
-    unmeasured: Literal["still_air", "expected"] = _later("still_air")
+    model: Literal["head", "oblique"] = _option("proposed", 'P2015, "Dwarse tegenwind"')
+    coefficients: Literal["fixed", "per_run", "archive"] = _option(
+        "proposed", "P2015; one for the archive: this project", "fixed"
+    )
+    ahead: float = _option("proposed", 'P2015, "Windweerstand"', 0.5, 0.0, 2.0)
+    behind: float = _option("proposed", 'P2015, "Windweerstand"', 0.5, 0.0, 2.0)
+    side: float = _option("proposed", 'P2015, "Dwarse tegenwind"', 0.2, 0.0, 2.0)
+    averaging_s: int = _option(
+        "proposed", "this project: the vane swings (method details, 5)", 0, 0, 15
+    )
+    anemometer: Literal["as_read", "estimated"] = _option(
+        "proposed", "this project: runs out and back (method details, 5)", "as_read"
+    )
 
 
 class RunPoint(_Options):
     """How the samples of a window become one point."""
 
-    estimator: Literal["mean_of_ratios", "ratio_of_means"]
-    inertia: Literal["none", "end_speeds"] = "none"
+    estimator: Literal["mean_of_ratios", "ratio_of_means"] = _option(
+        "decided", "S2017: mean of ratios; the ratio of means: this project"
+    )
+    inertia: Literal["none", "end_speeds"] = _option(
+        "proposed", "this project (method details, 6)", "none"
+    )
 
 
 class Temperature(_Options):
     """Whether resistance is brought to one water temperature."""
 
-    rule: Literal["none", "ittc57"]
-    reference_c: float = Field(default=15.0, ge=0.0, le=30.0)
-    unrecorded: Literal["unchanged", "expected"] = _later("unchanged")
+    rule: Literal["none", "ittc57"] = _option(
+        "decided", "correction of 9 May 2018; the formula is inferred"
+    )
+
+
+class Unrecorded(_Options):
+    """What is taken for a wind, a water temperature or a GPS that nobody recorded.
+
+    As it is: still air, no change to the reference temperature, no curve where GPS is asked for.
+    Expected: the wind and water of other tows, and the log's factor by other tows.
+    """
+
+    rule: Literal["as_is", "expected"] = Field(
+        default="as_is",
+        exclude_if=lambda value: value == "as_is",
+        json_schema_extra={"status": "inferred", "source": "method details, 4 to 6"},
+    )
 
 
 class Runs(_Options):
     """Which runs count."""
 
-    highest_target_ratio: float = Field(default=1.15, ge=1.0, le=1.5)
-    minimum: int = Field(default=4, ge=3, le=6)
+    highest_target_ratio: float = _option(
+        "proposed", 'P2015: "Geen v = +20% runs meer uitvoeren"', 1.15, 1.0, 1.5
+    )
 
 
 class Curve(_Options):
-    """How the hyperbola is fitted."""
+    """How the hyperbola is fitted: with B free, or at most `constants.CAP_HULL_SPEEDS`."""
 
-    b: Literal["free", "capped", "hull_speed"]
-    cap_hull_speeds: float = Field(default=3.0, ge=1.0, le=10.0)
+    b: Literal["free", "capped"] = _option(
+        "proposed", 'P2015: "B-waarden maximeren aan 3x rompsnelheid"'
+    )
 
 
 def _known_check(code: str) -> str:
@@ -129,7 +177,7 @@ class Assessment(_Options):
             WithJsonSchema({"type": "string", "enum": sorted(CODES)}),
         ],
         ...,
-    ] = ()
+    ] = _option("decided", "S2017; which checks is the method's choice", ())
 
 
 class Steps(_Options):
@@ -141,14 +189,31 @@ class Steps(_Options):
     wind: Wind
     run_point: RunPoint
     temperature: Temperature
+    unrecorded: Unrecorded
     runs: Runs
     curve: Curve
     assessment: Assessment
 
     @property
+    def expects_unrecorded(self) -> bool:
+        """Whether other tows say what nobody recorded."""
+        return self.unrecorded.rule == "expected"
+
+    @property
+    def estimates_without_gps(self) -> bool:
+        """Whether a tow that lacks the GPS to calibrate it gets its log's estimated factor."""
+        return self.expects_unrecorded and self.calibration.rule == "gps_per_tow"
+
+    @property
     def estimates_logs(self) -> bool:
         """Whether the factor of any tow's log is estimated from other tows."""
-        return "estimated" in (self.speed.correction, self.calibration.without_gps)
+        return self.speed.correction == "estimated" or self.estimates_without_gps
+
+
+def basis_of(step: str, option: str) -> Basis:
+    """Where an option comes from."""
+    options: Any = Steps.model_fields[step].annotation
+    return Basis(**options.model_fields[option].json_schema_extra)
 
 
 class RegisterRule(_Options):
@@ -226,12 +291,23 @@ class Method(_Options):
     def definition(self) -> str:
         """Everything that can change a curve, as canonical JSON; the register's rule cannot."""
         blocks = [r.model_dump(mode="json") for r in self.ranges]
+        for block in blocks:
+            block["steps"] = _with_constants(block["steps"])
         return json.dumps(blocks, sort_keys=True, separators=(",", ":"))
 
     @property
     def content_hash(self) -> str:
         """SHA-256 of `definition`, in hex: equal for methods that give equal curves."""
         return hashlib.sha256(self.definition.encode()).hexdigest()
+
+
+def _with_constants(steps: dict[str, Any]) -> dict[str, Any]:
+    """Options of a season with the constants that once were options of them.
+
+    Editions name their methods by the hash of both, which does not change with what is an option.
+    """
+    once = {step: options | ONCE_OPTIONS.get(step, {}) for step, options in steps.items()}
+    return {step: options for step, options in once.items() if options}
 
 
 def shipped_methods() -> tuple[str, ...]:

@@ -66,7 +66,11 @@ def override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]]) -> 
 
 def step_lines(steps: Mapping[str, Mapping[str, object]]) -> list[str]:
     """One line per step, with its options."""
-    return [f"{step} = {{ {', '.join(key_lines(options))} }}" for step, options in steps.items()]
+    return [
+        f"{step} = {{ {', '.join(key_lines(options))} }}"
+        for step, options in steps.items()
+        if options
+    ]
 
 
 def key_lines(values: Mapping[str, object]) -> list[str]:

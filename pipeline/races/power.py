@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
-from pipeline.curve import cw, s_of_b
+from pipeline.curve import cw, s_of_b, s_of_height
 
 BISECTIONS: Final = 60
 FASTEST_M_S: Final = 20.0
@@ -28,8 +28,8 @@ def curve_of_lines(lines: pl.DataFrame, suffix: str = "") -> tuple[FloatArray, F
         for name in ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s")
     )
     has_b = np.isfinite(b)
-    flat = (1.0 - a / c) / (v * v)
-    return a, np.where(has_b, s_of_b(np.where(has_b, b, 1.0)), flat)
+    s = np.where(has_b, s_of_b(np.where(has_b, b, 1.0)), s_of_height(a, c, v))
+    return a, s
 
 
 def speed_at_power(a_kg_m: FloatArray, s_s2_m2: FloatArray, power_w: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.quantiles import NORMAL
-from pipeline.recompute.outcome import Outcome, Prepared
+from pipeline.recompute.computed import Computed
 from pipeline.season_log.diagnosis import ALARM, ALARM_SD, DIAGNOSIS_SCHEMA, SOUND
 from pipeline.steps.anemometer import Anemometer, WindRatio, anemometer_of_seasons
 
@@ -22,51 +22,38 @@ USUAL_SD: Final = 0.05
 """Spread of ln scale of an anemometer about which nothing is known."""
 
 
-def with_anemometer(prepared: Sequence[Prepared]) -> list[Prepared]:
+def with_anemometer(computed: list[Computed]) -> list[Computed]:
     """The batches with their wind as it was, where their method asks to estimate the anemometer.
 
     Args:
-        prepared: all batches; the scale of a season is drawn towards that of the archive.
+        computed: all batches; the scale of a season is drawn towards that of the archive.
     """
-    asking = [p for p in prepared if _asks(p)]
+    asking = [c for c in computed if c.steps.wind.anemometer == "estimated"]
     if not asking:
-        return list(prepared)
-    anemometer = _estimated(asking)
-    return [_corrected(p, anemometer) if _asks(p) else p for p in prepared]
-
-
-def _asks(prepared: Prepared) -> bool:
-    return prepared.steps.wind.anemometer == "estimated"
-
-
-def _estimated(prepared: Sequence[Prepared]) -> Anemometer:
+        return computed
     each = [
         WindRatio.of(
-            p.batch, p.windows.mask, p.used, p.means.gps_m_s, p.speed_m_s, p.estimated.ln_sd
+            c.batch, c.windows.mask, c.used, c.means.gps_m_s, c.speed_m_s, c.estimated("ln_sd")
         )
-        for p in prepared
+        for c in asking
     ]
     names = [field.name for field in fields(WindRatio)]
-    return anemometer_of_seasons(
+    scale = anemometer_of_seasons(
         WindRatio(**{name: np.concatenate([getattr(r, name) for r in each]) for name in names})
     )
+    return [_corrected(c, scale) if c.steps.wind.anemometer == "estimated" else c for c in computed]
 
 
-def _corrected(prepared: Prepared, anemometer: Anemometer) -> Prepared:
-    ln_scale, sd = anemometer.of_tows(prepared.batch.of_tow("season"))
-    means = prepared.means.with_wind(np.exp(ln_scale)[prepared.batch.tow])
-    return replace(prepared, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
+def _corrected(computed: Computed, anemometer: Anemometer) -> Computed:
+    ln_scale, sd = anemometer.of_tows(computed.batch.of_tow("season"))
+    means = computed.means.with_wind(np.exp(ln_scale)[computed.batch.tow])
+    return replace(computed, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
 
 
-def anemometer_diagnosis(outcomes: Sequence[Outcome]) -> pl.DataFrame:
+def anemometer_diagnosis(computed: Sequence[Computed]) -> pl.DataFrame:
     """Rows of `season_diagnosis`: the anemometer of every season where it was estimated."""
     tows = pl.concat(
-        [
-            o.batch.tows.select(
-                "season", estimate=o.prepared.wind_ln_scale, sd=o.prepared.wind_ln_sd
-            )
-            for o in outcomes
-        ]
+        [c.batch.tows.select("season", estimate=c.wind_ln_scale, sd=c.wind_ln_sd) for c in computed]
     )
     seasons = (
         tows.filter(pl.col("sd").is_finite())

@@ -1,9 +1,9 @@
 """The uncertainty of a curve: the random part from its points, and the budget of every component.
 
-Here outcomes are given to `pipeline.uncertainty.propagation`, which has the formulas, and the
-interval of Cw at the declared speed comes back. A method with estimated season factors knows the
-whole archive: its scatter is pooled over a season. Any other method is taken at its word, tow by
-tow: its interval rests on the tow's own points and holds if its log factors are right.
+Here what was computed is given to the formulas of `pipeline.uncertainty.propagation`. A method
+with estimated season factors knows the whole archive: its scatter is pooled over a season. Any
+other method is taken at its word, tow by tow: its interval rests on the tow's own points and holds
+if its log factors are right.
 """
 
 from collections.abc import Sequence
@@ -15,9 +15,8 @@ import polars as pl
 
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, IntArray
-from pipeline.recompute.outcome import Outcome
+from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
-from pipeline.steps.speed import LOG_OF_TOW
 from pipeline.uncertainty.misfit import Departure, departure_of_boats
 from pipeline.uncertainty.propagation import (
     Assumed,
@@ -40,19 +39,19 @@ USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
 
 
-def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
+def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     """Scatter of single run points: of the season, or of each tow alone."""
-    return pooled_scatter(o) if pooled else curve.own_scatter(o.free)
+    return pooled_scatter(c) if pooled else curve.own_scatter(c.free)
 
 
-def pooled_scatter(o: Outcome) -> curve.Scatter:
+def pooled_scatter(c: Computed) -> curve.Scatter:
     """Scatter of single run points about their curve, pooled over the tows of a season."""
-    ratio, used, on_curve = _residuals(o)
-    return _of_height(*residual_scatter(ratio, used, _season(o)), used, on_curve)
+    ratio, used, on_curve = _residuals(c)
+    return _of_height(*residual_scatter(ratio, used, _season(c)), used, on_curve)
 
 
-def _season(o: Outcome) -> IntArray:
-    return o.batch.of_tow("season").astype(np.int64)
+def _season(c: Computed) -> IntArray:
+    return c.batch.of_tow("season").astype(np.int64)
 
 
 def _of_height(
@@ -67,60 +66,60 @@ def _of_height(
     return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
 
 
-def _residuals(o: Outcome) -> tuple[FloatArray, BoolArray, FloatArray]:
+def _residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
     """(point - curve) / curve, which points count, and the curve there, (tows, points) each."""
     on_curve = curve.cw(
-        o.free.a_kg_m[:, None],
-        o.free.s_s2_m2[:, None],
-        np.where(o.points.used, o.points.speed_m_s, 0.0),
+        c.free.a_kg_m[:, None],
+        c.free.s_s2_m2[:, None],
+        np.where(c.points.used, c.points.speed_m_s, 0.0),
     )
-    used = o.points.used & np.isfinite(on_curve) & o.free.converged[:, None]
-    ratio = np.where(used, o.points.cw_kg_m / np.where(used, on_curve, 1.0) - 1.0, 0.0)
+    used = c.points.used & np.isfinite(on_curve) & c.free.converged[:, None]
+    ratio = np.where(used, c.points.cw_kg_m / np.where(used, on_curve, 1.0) - 1.0, 0.0)
     return ratio, used, on_curve
 
 
-def _departure(o: Outcome, speed_ratios: Sequence[float]) -> Departure:
+def _departure(c: Computed, speed_ratios: Sequence[float]) -> Departure:
     """How far the hulls of a batch lie from their curves."""
-    ratio, used, _ = _residuals(o)
-    batch = o.batch
+    ratio, used, _ = _residuals(c)
+    batch = c.batch
     return Departure.of(
         ratio,
         used & batch.trusted[:, None],
-        o.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None],
+        c.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None],
         batch.by_tow(batch.direction.astype(np.float64)),
         batch.by_tow(batch.target_speed_ratio),
         np.array(speed_ratios),
     )
 
 
-def files_log_sd(o: Outcome) -> FloatArray:
+def files_log_sd(c: Computed) -> FloatArray:
     """Standard deviation of a combined tow's mean ln log factor, by how its files differ; (tows,).
 
     Each file has a log of its own. What two of them differ by says how far their mean may be off:
     half as far. Pooled over the season's combined tows; 0 for others, and where each is calibrated.
     """
-    ratio, used, _ = _residuals(o)
-    second = o.batch.by_tow(o.batch.in_second_file.astype(np.float64)) > 0
+    ratio, used, _ = _residuals(c)
+    second = c.batch.by_tow(c.batch.in_second_file.astype(np.float64)) > 0
     files = [used & ~second, used & second]
-    combined = files[0].any(axis=1) & files[1].any(axis=1) & ~o.prepared.calibrated
+    combined = files[0].any(axis=1) & files[1].any(axis=1) & ~c.calibrated
     of_first, of_second = (
         np.where(mine, ratio, 0.0).sum(axis=1) / np.maximum(mine.sum(axis=1), 1) for mine in files
     )
-    r = np.clip(o.free.s_s2_m2 * o.batch.of_tow("declared_speed_m_s") ** 2, -1.0, MOST_BENT)
+    r = np.clip(c.free.s_s2_m2 * c.batch.of_tow("declared_speed_m_s") ** 2, -1.0, MOST_BENT)
     apart = np.where(combined, of_second - of_first, 0.0) * (1.0 - r) / 2.0
-    season = np.unique(o.batch.of_tow("season"), return_inverse=True)[1]
+    season = np.unique(c.batch.of_tow("season"), return_inverse=True)[1]
     square = np.bincount(season, apart**2) / np.maximum(np.bincount(season, combined), 1)
     return np.where(combined, 0.5 * np.sqrt(square[season]), 0.0)
 
 
-def run_point_ratio(o: Outcome) -> FloatArray:
+def run_point_ratio(c: Computed) -> FloatArray:
     """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
-    season = _season(o)[o.batch.tow]
-    return run_point_uncertainty(o.batch.blocks, o.prepared.windows.mask, season)
+    season = _season(c)[c.batch.tow]
+    return run_point_uncertainty(c.batch.blocks, c.windows.mask, season)
 
 
 def budget_of(
-    outcomes: Sequence[Outcome], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
+    computed: Sequence[Computed], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
     """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
 
@@ -128,19 +127,19 @@ def budget_of(
     elasticity there.
 
     Args:
-        outcomes: all batches of a method.
+        computed: all batches of a method.
         estimated: its season factors, if it has estimated ones.
         speed_ratios: those speeds / declared speed.
 
     Returns:
         Rows as `pipeline.uncertainty.propagation.budget` gives them.
     """
-    misfit = misfit_of(outcomes, estimated, speed_ratios)
-    return pl.concat([_budget_of_batch(o, estimated, speed_ratios, misfit) for o in outcomes])
+    misfit = misfit_of(computed, estimated, speed_ratios)
+    return pl.concat([_budget_of_batch(c, estimated, speed_ratios, misfit) for c in computed])
 
 
 def misfit_of(
-    outcomes: Sequence[Outcome], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
+    computed: Sequence[Computed], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
     """How far the hull of each tow lies from its curve, by all tows of the boat.
 
@@ -148,8 +147,8 @@ def misfit_of(
         `tow_id, speed_ratio, misfit` (as a ratio, hull over curve less 1) and `misfit_variance`; 0
         where no season factors are estimated: such a method is taken at its word.
     """
-    each = [_departure(o, speed_ratios) for o in outcomes]
-    tows = pl.concat([o.batch.tows.select("tow_id", "fsn_no") for o in outcomes])
+    each = [_departure(c, speed_ratios) for c in computed]
+    tows = pl.concat([c.batch.tows.select("tow_id", "fsn_no") for c in computed])
     boat = tows["fsn_no"].rank("dense").to_numpy().astype(np.int64) - 1
     value, variance = departure_of_boats(
         Departure(*(np.concatenate([getattr(d, n) for d in each]) for n in ("ratio", "variance"))),
@@ -169,18 +168,18 @@ def misfit_of(
     )
 
 
-def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFrame:
+def curve_points(computed: Sequence[Computed], bounds: pl.DataFrame) -> pl.DataFrame:
     """Curves over the speeds at which they are valid, with the 95 % interval of Cw at each.
 
     Args:
-        outcomes: all batches of a method.
+        computed: all batches of a method.
         bounds: of their budget, as `propagation.combine` gives them.
 
     Returns:
         `tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`: a row per tow and speed of
         `CURVE_SPEED_RATIOS`, none at speeds from B on.
     """
-    points = pl.concat([_at_speeds(o, CURVE_SPEED_RATIOS) for o in outcomes])
+    points = pl.concat([_at_speeds(c, CURVE_SPEED_RATIOS) for c in computed])
     at = ["tow_id", "speed_ratio"]
     return points.join(bounds, on=at, maintain_order="left").select(
         "tow_id",
@@ -192,18 +191,18 @@ def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFr
 
 
 def _budget_of_batch(
-    o: Outcome,
+    c: Computed,
     estimated: SeasonFactors | None,
     speed_ratios: Sequence[float],
     misfit: pl.DataFrame,
 ) -> pl.DataFrame:
-    scatter = scatter_of(o, estimated is not None)
-    terms = _terms_of_tows(o, estimated, scatter)
+    scatter = scatter_of(c, estimated is not None)
+    terms = _terms_of_tows(c, estimated, scatter)
     cw, bend = pl.col("cw_kg_m"), pl.col("bend")
     r = (bend / (1.0 + bend) * pl.col("speed_ratio") ** 2).clip(-1.0, MOST_BENT)
-    random = np.concatenate([_random_ratio(o, scatter, ratio) for ratio in speed_ratios])
+    random = np.concatenate([_random_ratio(c, scatter, ratio) for ratio in speed_ratios])
     rows = (
-        _at_speeds(o, speed_ratios)
+        _at_speeds(c, speed_ratios)
         .with_columns(pl.Series("random_ratio", random))
         .filter(cw.is_finite())
         .join(terms, on="tow_id", maintain_order="left")
@@ -216,69 +215,68 @@ def _budget_of_batch(
             (pl.col("still_air_kg_m") / cw).alias("still_air_ratio"),
         )
     )
-    return budget(rows, _assumed(o, estimated))
+    return budget(rows, _assumed(c, estimated))
 
 
-def _at_speeds(o: Outcome, speed_ratios: Sequence[float]) -> pl.DataFrame:
+def _at_speeds(c: Computed, speed_ratios: Sequence[float]) -> pl.DataFrame:
     """Every tow at every speed: `tow_id, speed_ratio, speed_m_s, cw_kg_m`, NaN from B on."""
     return pl.concat(
         [
-            o.batch.tows.select(
+            c.batch.tows.select(
                 "tow_id",
                 pl.lit(ratio).alias("speed_ratio"),
                 (ratio * pl.col("declared_speed_m_s")).alias("speed_m_s"),
-                pl.Series("cw_kg_m", o.cw_at(ratio)),
+                pl.Series("cw_kg_m", c.cw_at(ratio)),
             )
             for ratio in speed_ratios
         ]
     )
 
 
-def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
+def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
     """Relative random uncertainty of Cw at a speed / declared speed, shape (tows,)."""
-    speed = speed_ratio * o.batch.of_tow("declared_speed_m_s")
-    errors = curve.covariance(o.points, o.free, scatter, speed)
-    cw = o.free.cw_at(speed)
+    speed = speed_ratio * c.batch.of_tow("declared_speed_m_s")
+    errors = curve.covariance(c.points, c.free, scatter, speed)
+    cw = c.free.cw_at(speed)
     known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
     variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
     return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0)
 
 
 def _terms_of_tows(
-    o: Outcome, factors: SeasonFactors | None, scatter: curve.Scatter
+    c: Computed, factors: SeasonFactors | None, scatter: curve.Scatter
 ) -> pl.DataFrame:
     """What `propagation.budget` asks of tows, as far as it is the same at any speed."""
-    p = o.prepared
-    batch = o.batch
-    estimated = np.isfinite(p.estimated.ln_sd)
-    usual = USUAL_BEND if factors is None else _median_bend(o)
-    bend = np.where(np.isfinite(p.estimated.bend), p.estimated.bend, usual)
+    batch = c.batch
+    estimated = np.isfinite(c.estimated("ln_sd"))
+    usual = USUAL_BEND if factors is None else _median_bend(c)
+    bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual)
     # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
     # taken off, and only what is put back for still air has it.
-    taken_off = 0.0 if o.steps.wind.coefficients == "archive" else o.air_kg_m
-    net_air = batch.mean(taken_off - o.still_air_kg_m, p.used)
+    taken_off = 0.0 if c.steps.wind.coefficients == "archive" else c.air_kg_m
+    net_air = batch.mean(taken_off - c.still_air_kg_m, c.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
-    still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
-    felt_unit = p.by_true_speed(p.means.air.ahead + p.means.air.behind)
-    per_coefficient = batch.mean(still_unit - felt_unit, p.used)
+    still_unit = c.still_air_kg_m / np.maximum(c.air.still, 1e-9)
+    felt_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
+    per_coefficient = batch.mean(still_unit - felt_unit, c.used)
     return batch.tows.select(
         "tow_id",
         "season",
-        *LOG_OF_TOW,
+        pl.col("log1_part").alias("part"),
         pl.Series("random_dof", scatter.dof),
         pl.Series("bend", bend),
-        pl.Series("calibrated", p.calibrated),
-        pl.Series("askew_ratio", p.estimated.askew_ratio).fill_nan(None),
-        pl.Series("log_sd", np.where(estimated, p.estimated.ln_sd, 0.0)),
-        pl.Series("log_dof", np.where(estimated, p.estimated.dof, np.inf)),
-        pl.Series("tow_log_sd", _tow_log_sd(o, factors)),
+        pl.Series("calibrated", c.calibrated),
+        pl.Series("askew_ratio", c.estimated("askew_ratio")).fill_nan(None),
+        pl.Series("log_sd", np.where(estimated, c.estimated("ln_sd"), 0.0)),
+        pl.Series("log_dof", np.where(estimated, c.estimated("dof"), np.inf)),
+        pl.Series("tow_log_sd", _tow_log_sd(c, factors)),
         pl.Series("net_air_kg_m", net_air),
-        pl.Series("wind_ln_sd", p.wind_ln_sd).fill_nan(None),
+        pl.Series("wind_ln_sd", c.wind_ln_sd).fill_nan(None),
         pl.Series("air_per_coefficient_kg_m", per_coefficient),
         pl.Series("wind_measured", batch.measured("wind")),
-        pl.Series("still_air_kg_m", batch.mean(o.still_air_kg_m, p.used)),
-        pl.Series("temperature_known", p.temperature_known),
-        pl.Series("water_off_c", p.water_off_c),
+        pl.Series("still_air_kg_m", batch.mean(c.still_air_kg_m, c.used)),
+        pl.Series("temperature_known", c.temperature_known),
+        pl.Series("water_off_c", c.water_off_c),
         force_uncertainty(batch.tows).alias("force_sd"),
     )
 
@@ -294,28 +292,28 @@ def force_uncertainty(tows: pl.DataFrame) -> pl.Expr:
     return (off**2 + pl.col("load_cell_sd") ** 2).sqrt()
 
 
-def _median_bend(o: Outcome) -> float:
+def _median_bend(c: Computed) -> float:
     """Median of q at the declared speed over the batch."""
-    declared = o.batch.of_tow("declared_speed_m_s")
-    r = np.where(o.free.converged, o.free.s_s2_m2 * declared**2, np.nan)
+    declared = c.batch.of_tow("declared_speed_m_s")
+    r = np.where(c.free.converged, c.free.s_s2_m2 * declared**2, np.nan)
     known = np.isfinite(r) & (r > 0.0) & (r < 1.0)
     return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
 
 
-def _tow_log_sd(o: Outcome, estimated: SeasonFactors | None) -> FloatArray:
+def _tow_log_sd(c: Computed, estimated: SeasonFactors | None) -> FloatArray:
     """Standard deviation of ln of the log factor from tow to tow, by era; 0 where calibrated."""
     if estimated is None:
-        return np.zeros(o.batch.size)
-    log_sd = estimated.tow_log_sd_of(o.batch.of_tow("season"))
-    return np.where(o.prepared.calibrated, 0.0, np.hypot(log_sd, files_log_sd(o)))
+        return np.zeros(c.batch.size)
+    log_sd = estimated.tow_log_sd_of(c.batch.of_tow("season"))
+    return np.where(c.calibrated, 0.0, np.hypot(log_sd, files_log_sd(c)))
 
 
-def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
+def _assumed(c: Computed, estimated: SeasonFactors | None) -> Assumed:
     """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
     assumed = Assumed()
     if estimated is not None:
         assumed = assumed.beside_repeats(estimated.tow_sd, estimated.calibration_sd)
-    assumed = replace(assumed, unmeasured_wind=o.prepared.expected_wind.sd)
-    if o.steps.wind.coefficients == "archive" and np.isfinite(o.coefficient_sd):
-        assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
+    assumed = replace(assumed, unmeasured_wind=c.expected_wind.sd)
+    if c.steps.wind.coefficients == "archive" and np.isfinite(c.coefficient_sd):
+        assumed = replace(assumed, wind_coefficient=c.coefficient_sd)
     return assumed

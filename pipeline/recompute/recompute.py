@@ -7,7 +7,7 @@ searched over the whole archive is found first and applied after. Nothing here k
 method says what holds when.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -18,23 +18,15 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, StrArray
 from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from pipeline.method.definition import Method, Steps
 from pipeline.recompute.anemometer import with_anemometer
+from pipeline.recompute.computed import Coefficients, Computed, ExpectedWind
 from pipeline.recompute.facts import with_expected_water
-from pipeline.recompute.outcome import (
-    STILL_AIR,
-    ExpectedWind,
-    Outcome,
-    Prepared,
-    TowFactor,
-)
 from pipeline.recompute.results import Recomputed, as_tables
 from pipeline.recompute.run_cache import RunCache
 from pipeline.recompute.season_factors import (
-    Instruments,
     find_season_factors,
-    is_estimated,
+    instruments_of,
     without_factor,
     without_gps,
 )
@@ -65,6 +57,9 @@ class ArchiveCoefficient(NamedTuple):
 
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
 
+Plans = Sequence[tuple[Batch, Steps]]
+"""Batches of tows, each with its steps."""
+
 FEWEST_WINDS = 10
 """Tows with an anemometer from which those without learn (inferred)."""
 
@@ -91,26 +86,19 @@ def recompute(
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     cache = RunCache() if cache is None else cache
     estimated = season_factors(plans, cache) if method.estimates_logs else None
-    outcomes = evaluate(plans, cache, Instruments.of(estimated))
-    return as_tables(method, tows, outcomes, estimated, with_bands)
+    computed = evaluate(plans, cache, None if estimated is None else estimated.instruments)
+    return as_tables(method, tows, computed, estimated, with_bands)
 
 
-def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> SeasonFactors | None:
+def season_factors(plans: Plans, cache: RunCache) -> SeasonFactors | None:
     """The log factors that the given steps ask to estimate, and how far tows scatter.
 
     None if not a single tow has a curve from which to estimate.
     """
-    as_read = [(batch, without_factor(steps)) for batch, steps in plans]
-    before = evaluate(as_read, cache, Instruments())
-    if not any((np.isfinite(o.cw_at_declared) & o.batch.trusted).any() for o in before):
+    as_read = evaluate([(batch, without_factor(steps)) for batch, steps in plans], cache)
+    if not any((np.isfinite(c.cw_at_declared) & c.batch.trusted).any() for c in as_read):
         return None
-    return find_season_factors(before)
-
-
-def instruments_of(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> Instruments:
-    """What is estimated of the tows' instruments, as far as the steps ask for it."""
-    asked = any(is_estimated(steps) for _, steps in plans)
-    return Instruments.of(season_factors(plans, cache) if asked else None)
+    return find_season_factors(as_read)
 
 
 def batches(
@@ -148,89 +136,56 @@ def _by_gps(batch: Batch, steps: tuple[Steps, ...]) -> Iterator[tuple[Batch, tup
 
 
 def evaluate(
-    plans: Sequence[tuple[Batch, Steps]],
-    cache: RunCache,
-    instruments: Instruments,
-) -> list[Outcome]:
+    plans: Plans, cache: RunCache, instruments: pl.DataFrame | None = None
+) -> list[Computed]:
     """What the given steps make of each batch.
 
     Args:
         plans: batches with their steps; what is searched over the archive is searched over them.
         cache: what was found before of the same tows; added to.
-        instruments: what was estimated, for steps that ask for it.
+        instruments: rows of the table `tow_instruments`, for steps that ask for an estimate.
     """
-    prepared = with_anemometer(
-        [_prepare(batch, steps, cache, instruments.of_tows(batch, steps)) for batch, steps in plans]
-    )
-    shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
-    return [_finish(p, shared) for p in _with_expected_wind(prepared, shared)]
+    read = [
+        _prepare(batch, steps, cache, instruments_of(batch, steps, instruments))
+        for batch, steps in plans
+    ]
+    return _with_expected_wind(_with_coefficients(with_anemometer(read)))
 
 
-def _with_expected_wind(
-    prepared: list[Prepared], shared: ArchiveCoefficient | None
-) -> list[Prepared]:
+def _with_expected_wind(computed: list[Computed]) -> list[Computed]:
     """The wind that tows without an anemometer must have had, by those with one, if a method asks.
 
     Wind along the course adds more on one way than it takes off on the other, so that a tow whose
     wind nobody measured comes out too high.
     """
-    asking = [p for p in prepared if _expects_wind(p)]
-    ratios = np.concatenate([[], *(p.wind_ratio(*_coefficients(p, shared)) for p in asking)])
+    asking = [c for c in computed if c.steps.expects_unrecorded]
+    ratios = np.concatenate([[], *(c.wind_ratio() for c in asking)])
     known = ratios[np.isfinite(ratios)]
     if len(known) < FEWEST_WINDS:
-        return prepared
+        return computed
     expected = ExpectedWind(float(known.mean()), float(known.std(ddof=1)))
-    return [replace(p, expected_wind=expected) if _expects_wind(p) else p for p in prepared]
+    return [
+        replace(c, expected_wind=expected) if c.steps.expects_unrecorded else c for c in computed
+    ]
 
 
-def _expects_wind(prepared: Prepared) -> bool:
-    return prepared.steps.wind.unmeasured == "expected"
-
-
-def evaluate_each(
-    variants: Iterable[Sequence[tuple[Batch, Steps]]],
-    cache: RunCache,
-    instruments: Instruments,
-) -> Iterator[list[Outcome]]:
-    """The same for variants of the steps of the same batches.
-
-    Where a variant differs from the one before it in the rule for the curve alone, all that comes
-    before the curve is kept.
-    """
-    last: list[Outcome] = []
-    for plans in variants:
-        asked = [steps for _, steps in plans]
-        if last and all(map(_differ_in_curve_alone, last, asked)):
-            last = list(map(_with_curve, last, asked))
-        else:
-            last = evaluate(plans, cache, instruments)
-        yield last
-
-
-def _differ_in_curve_alone(outcome: Outcome, steps: Steps) -> bool:
-    return bool(outcome.steps.model_copy(update={"curve": steps.curve}) == steps)
-
-
-def _with_curve(outcome: Outcome, steps: Steps) -> Outcome:
-    """The same points with the curve that other steps choose."""
-    prepared = replace(outcome.prepared, steps=steps)
-    curves = _choose_curve(prepared, outcome.points, outcome.free)
-    return replace(outcome, prepared=prepared, curves=curves)
-
-
-def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) -> Prepared:
+def _prepare(batch: Batch, steps: Steps, cache: RunCache, instruments: pl.DataFrame) -> Computed:
+    """All that does not depend on the wind coefficients; these are fixed for now."""
     windows, means = cache.windows(batch, steps), cache.means(batch, steps)
-    means = means.with_force(estimated.force_factor[batch.tow], estimated.force_zero_n[batch.tow])
-    tow_list = batch.of_tow("speed_correction_ratio")
-    known = log_factor(steps.speed, tow_list, estimated.factor)
+    scale, zero_n = (
+        instruments[name].to_numpy()[batch.tow] for name in ("force_factor", "force_zero_n")
+    )
+    means = means.with_force(scale, zero_n)
+    estimated = instruments["factor"].cast(pl.Float64).to_numpy()
+    known = log_factor(steps.speed, batch.of_tow("speed_correction_ratio"), estimated)
     reasons = _reasons(batch, steps, windows, means)
     y, determined = _calibrate(batch, steps, windows, means, known, reasons == "")
     calibrated = batch.any(determined & (reasons == "")) & (steps.calibration.rule != "none")
     reasons = np.where((reasons == "") & ~determined, NOT_CALIBRATED, reasons)
     speed = means.speed_m_s * known[batch.tow] * y
-    temperature, temperature_known = temperature_change_kg_m(batch, steps.temperature, speed)
-    front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
-    return Prepared(
+    temperature, temperature_known = temperature_change_kg_m(batch, steps, speed)
+    ahead, behind = (np.full(len(batch.tow), c) for c in (steps.wind.ahead, steps.wind.behind))
+    return Computed(
         batch,
         steps,
         windows,
@@ -238,14 +193,13 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
         known,
         y,
         calibrated,
-        estimated,
+        instruments,
         reasons,
-        still_unit_kg_m=still_air_coefficient_kg_m(front, 1.0),
-        temperature_kg_m=temperature,
-        temperature_known=temperature_known,
+        temperature,
+        temperature_known,
+        Coefficients(ahead, behind, still=ahead),
         wind_ln_scale=np.zeros(batch.size),
         wind_ln_sd=np.full(batch.size, np.nan),
-        expected_wind=STILL_AIR,
     )
 
 
@@ -276,84 +230,58 @@ def _calibrate(
     return y.ravel()[batch.file], determined.ravel()[batch.file]
 
 
-def _finish(prepared: Prepared, shared: ArchiveCoefficient | None) -> Outcome:
-    ahead, behind, still = _coefficients(prepared, shared)
-    cw = prepared.cw_of(ahead, behind, still)
-    points = prepared.points_of(cw)
-    free = curve.fit(points)
-    return Outcome(
-        prepared,
-        ahead=ahead,
-        behind=behind,
-        still_air_coefficient=still,
-        coefficient_sd=np.nan if shared is None else shared.sd,
-        cw_kg_m=cw,
-        points=points,
-        free=free,
-        curves=_choose_curve(prepared, points, free),
-    )
+def _with_coefficients(computed: list[Computed]) -> list[Computed]:
+    """The batches with the drag coefficients that their steps ask for."""
+    by_archive = [c for c in computed if c.steps.wind.coefficients == "archive"]
+    shared = _archive_coefficient(by_archive)
+
+    def found(c: Computed) -> Computed:
+        if c.steps.wind.coefficients == "per_run":
+            return replace(c, air=_best_per_run(c))
+        if c.steps.wind.coefficients == "archive" and shared is not None:
+            one = _alike(c, shared.value)
+            return replace(c, air=one, coefficient_sd=shared.sd)
+        return c
+
+    return [found(c) for c in computed]
 
 
-def _choose_curve(prepared: Prepared, points: curve.Points, free: curve.Curves) -> curve.Curves:
-    rule = prepared.steps.curve
-    if rule.b == "free":
-        return free
-    hull = hull_speed_m_s(prepared.batch.of_tow("waterline_length_m"))
-    if rule.b == "capped":
-        return curve.fit_capped(points, free, rule.cap_hull_speeds * hull)
-    return curve.fit_given_b(points, hull)
+def _alike(computed: Computed, value: float) -> Coefficients:
+    one = np.full(len(computed.batch.tow), value)
+    return Coefficients(one, one, one)
 
 
-def _coefficients(
-    prepared: Prepared, shared: ArchiveCoefficient | None
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Drag coefficients ahead, behind and in still air, each of shape (runs,)."""
-    wind = prepared.steps.wind
-    runs = len(prepared.batch.tow)
-    fixed = np.full(runs, wind.ahead), np.full(runs, wind.behind)
-    if wind.coefficients == "archive" and shared is not None:
-        one = np.full(runs, shared.value)
-        return one, one, one
-    if wind.coefficients == "per_run":
-        return *_best_per_run(prepared, *fixed), fixed[0]
-    return *fixed, fixed[0]
-
-
-def _best_per_run(
-    prepared: Prepared, ahead: FloatArray, behind: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _best_per_run(computed: Computed) -> Coefficients:
     """Coefficients searched run by run so that each point comes nearest to the curve.
 
     The old rule: fit, move every run as near to the curve as its wind allows, fit again. The
     still-air part keeps its fixed coefficient (inferred).
     """
-    still = ahead
+    air, tow = computed.air, computed.batch.tow
     for _ in range(PER_RUN_ITERATIONS):
-        cw = prepared.cw_of(ahead, behind, still)
-        curves = curve.fit(prepared.points_of(cw))
-        tow = prepared.batch.tow
-        on_curve = curve.cw(curves.a_kg_m[tow], curves.s_s2_m2[tow], prepared.speed_m_s)
+        cw = computed.cw_of(air)
+        curves = curve.fit(computed.points_of(cw))
+        on_curve = curve.cw(curves.a_kg_m[tow], curves.s_s2_m2[tow], computed.speed_m_s)
         fits = curves.converged[tow] & np.isfinite(on_curve)
-        excess = cw + prepared.air_of(ahead, behind) - np.where(fits, on_curve, cw)
-        searched = nearest_coefficients(prepared.means.air, excess * prepared.speed_factor**2)
-        ahead = np.where(fits, searched[0], ahead)
-        behind = np.where(fits, searched[1], behind)
-    return ahead, behind
+        excess = cw + computed.air_of(air) - np.where(fits, on_curve, cw)
+        searched = nearest_coefficients(computed.means.air, excess * computed.speed_factor**2)
+        ahead, behind = (np.where(fits, *pair) for pair in zip(searched, air, strict=False))
+        air = Coefficients(ahead, behind, air.still)
+    return air
 
 
-def _misfits(prepared: Prepared, grid: FloatArray) -> FloatArray:
+def _misfits(computed: Computed, grid: FloatArray) -> FloatArray:
     """Residuals' squares / Cw^2, (coefficients, tows); infinite without a curve of all points."""
-    each = [np.full(len(prepared.batch.tow), coefficient) for coefficient in grid]
-    points = [prepared.points_of(prepared.cw_of(one, one, one)) for one in each]
+    points = [computed.points_of(computed.cw_of(_alike(computed, value))) for value in grid]
     curves = curve.fit(curve.Points.stack(points))
-    scale = curves.cw_at(np.tile(prepared.batch.of_tow("declared_speed_m_s"), len(grid)))
-    runs = np.tile(prepared.batch.count(prepared.in_fit), len(grid))
+    scale = curves.cw_at(np.tile(computed.batch.of_tow("declared_speed_m_s"), len(grid)))
+    runs = np.tile(computed.batch.count(computed.in_fit), len(grid))
     sound = curves.converged & np.isfinite(scale) & (curves.n_points == runs)
     misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, np.inf)
     return misfit.reshape(len(grid), -1)
 
 
-def _archive_coefficient(prepared: list[Prepared]) -> ArchiveCoefficient | None:
+def _archive_coefficient(computed: list[Computed]) -> ArchiveCoefficient | None:
     """One coefficient for the whole archive: the least misfit of all tows together.
 
     Out and back feel different wind, so a wrong coefficient drives their points apart. Tows that
@@ -362,7 +290,7 @@ def _archive_coefficient(prepared: list[Prepared]) -> ArchiveCoefficient | None:
     standard deviation is the sandwich over tows (Huber 1967): what is odd about one tow is shared
     by its runs.
     """
-    misfits = (_misfits(p, ARCHIVE_GRID)[:, p.batch.trusted] for p in prepared)
+    misfits = (_misfits(c, ARCHIVE_GRID)[:, c.batch.trusted] for c in computed)
     each = np.concatenate([np.empty((len(ARCHIVE_GRID), 0)), *misfits], axis=1)
     if not (each := each[:, np.isfinite(each).all(axis=0)]).size:
         return None

@@ -31,9 +31,8 @@ from pipeline.recompute.budget import (
     run_point_ratio,
     scatter_of,
 )
+from pipeline.recompute.computed import Computed
 from pipeline.recompute.facts import with_expected_water
-from pipeline.recompute.outcome import Outcome
-from pipeline.recompute.season_factors import tow_instruments
 from pipeline.season_log import SeasonFactors, retow_choice
 from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, NOT_SETTLED
 from pipeline.steps.speed import log_factor
@@ -84,7 +83,7 @@ class Recomputed:
 def as_tables(
     method: Method,
     tows: pl.DataFrame,
-    outcomes: Sequence[Outcome],
+    computed: Sequence[Computed],
     estimated: SeasonFactors | None,
     with_bands: bool,
 ) -> Recomputed:
@@ -95,13 +94,13 @@ def as_tables(
         return pl.concat(frames).select(name, pl.all())
 
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
-    run_points = with_run_choice(together([_run_points(o, pooled) for o in outcomes]))
-    budget = budget_of(outcomes, estimated, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
+    run_points = with_run_choice(together([_run_points(c, pooled) for c in computed]))
+    budget = budget_of(computed, estimated, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
     bounds = combine(budget)
-    curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
-    misfit = misfit_of(outcomes, estimated, (DECLARED,))
+    curves = together([_curves(c, bounds.filter(at_declared), pooled) for c in computed])
+    misfit = misfit_of(computed, estimated, (DECLARED,))
     curves = with_best(curves, estimated, budget.filter(at_declared), misfit)
-    diagnosis = _diagnosis(estimated, outcomes)
+    diagnosis = _diagnosis(estimated, computed)
     assessments = assess(curves, run_points, with_expected_water(tows), diagnosis)
     rejecting = [
         (season, check)
@@ -111,7 +110,7 @@ def as_tables(
     return Recomputed(
         run_points=run_points,
         curves=with_status(curves, assessments, rejecting),
-        log_factors=together([_log_factors(o, estimated) for o in outcomes]).unique(
+        log_factors=together([_log_factors(c, estimated) for c in computed]).unique(
             "season", keep="first", maintain_order=True
         ),
         assessments=assessments,
@@ -120,105 +119,102 @@ def as_tables(
             pl.exclude("speed_ratio", "dof"),
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
-        curve_points=together([curve_points(outcomes, bounds)]) if with_bands else pl.DataFrame(),
+        curve_points=together([curve_points(computed, bounds)]) if with_bands else pl.DataFrame(),
         season_diagnosis=diagnosis.select(name, pl.all()),
         **{table: rows.select(name, pl.all()) for table, rows in _of_all_tows(estimated).items()},
         factors=estimated,
     )
 
 
-def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
-    p = o.prepared
-    means, has_window, tow = p.means, p.windows.exists, o.batch.tow
-    on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], p.speed_m_s)
+def _run_points(c: Computed, pooled: bool) -> pl.DataFrame:
+    means, has_window, tow = c.means, c.windows.exists, c.batch.tow
+    on_curve = curve.cw(c.curves.a_kg_m[tow], c.curves.s_s2_m2[tow], c.speed_m_s)
     log1 = np.where(has_window, means.speed_m_s, 1.0)
-    has_limits = o.steps.window.rule != "all"
-    wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
+    has_limits = c.steps.window.rule != "all"
+    wind, log2 = (c.batch.measured(channel)[tow] for channel in ("wind", "log2"))
     log2_ratio = means.log2_m_s / log1
     log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
     numbers = {
-        "window_start_s": p.windows.start_s,
-        "window_end_s": p.windows.end_s,
-        "end_speed_m_s": p.windows.ends.speed_m_s,
-        "end_force_ratio": p.windows.ends.force_ratio,
-        "end_wind_m_s": p.windows.ends.wind_m_s,
-        "speed_factor": p.speed_factor,
-        "speed_m_s": p.speed_m_s,
-        "gross_cw_kg_m": p.by_true_speed(means.gross_kg_m),
-        "inertia_cw_kg_m": p.by_true_speed(means.inertia_kg_m),
-        "air_cw_kg_m": o.air_kg_m,
-        "still_air_cw_kg_m": o.still_air_kg_m,
-        "temperature_cw_kg_m": p.temperature_kg_m,
-        "wind_coefficient_ahead": o.ahead,
-        "wind_coefficient_behind": o.behind,
-        "cw_kg_m": o.cw_kg_m,
-        "cw_sd": p.by_true_speed(means.sd_kg_m),
-        "u_ratio": run_point_ratio(o) if pooled else np.nan,
+        "window_start_s": c.windows.start_s,
+        "window_end_s": c.windows.end_s,
+        "end_speed_m_s": c.windows.ends.speed_m_s,
+        "end_force_ratio": c.windows.ends.force_ratio,
+        "end_wind_m_s": c.windows.ends.wind_m_s,
+        "speed_factor": c.speed_factor,
+        "speed_m_s": c.speed_m_s,
+        "gross_cw_kg_m": c.by_true_speed(means.gross_kg_m),
+        "inertia_cw_kg_m": c.by_true_speed(means.inertia_kg_m),
+        "air_cw_kg_m": c.air_kg_m,
+        "still_air_cw_kg_m": c.still_air_kg_m,
+        "temperature_cw_kg_m": c.temperature_kg_m,
+        "wind_coefficient_ahead": c.air.ahead,
+        "wind_coefficient_behind": c.air.behind,
+        "cw_kg_m": c.cw_kg_m,
+        "cw_sd": c.by_true_speed(means.sd_kg_m),
+        "u_ratio": run_point_ratio(c) if pooled else np.nan,
         "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
         "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
         "log2_ratio": np.where(log2, log2_ratio, np.nan),
     }
-    return o.batch.blocks.runs.select(
+    return c.batch.blocks.runs.select(
         "tow_id", "run", "direction", "target_speed_ratio"
     ).with_columns(
-        pl.Series("lost_s", o.batch.lost_s),
+        pl.Series("lost_s", c.batch.lost_s),
         *(_column(name, values, has_window) for name, values in numbers.items()),
-        _column("ends_ratio", p.windows.ends.in_limits(o.steps.window), has_window & has_limits),
+        _column("ends_ratio", c.windows.ends.in_limits, has_window & has_limits),
         _column("gps_ratio", means.gps_m_s / log1, has_window),
-        _column("fitted_cw_kg_m", on_curve, has_window & o.curves.converged[tow]),
-        pl.Series("cut_reason", p.windows.reasons, pl.String),
-        pl.Series("used", p.used),
-        pl.Series("reason", p.reasons, pl.String),
+        _column("fitted_cw_kg_m", on_curve, has_window & c.curves.converged[tow]),
+        pl.Series("cut_reason", c.windows.reasons, pl.String),
+        pl.Series("used", c.used),
+        pl.Series("reason", c.reasons, pl.String),
     )
 
 
-def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
-    tows = o.batch.tows
-    declared = o.batch.of_tow("declared_speed_m_s")
-    cw = o.cw_at_declared
+def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
+    tows = c.batch.tows
+    declared = c.batch.of_tow("declared_speed_m_s")
+    cw = c.cw_at_declared
     sound = np.isfinite(cw)
     mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
     lo, hi = (mine[name].fill_null(np.nan).to_numpy() for name in ("lo_ratio", "hi_ratio"))
-    b_interval = curve.b_interval(o.points, o.free, scatter_of(o, pooled))
+    b_interval = curve.b_interval(c.points, c.free, scatter_of(c, pooled))
     safe_cw = np.where(sound, cw, 1.0)
-    residual = np.sqrt(o.curves.rss_kg2_m2 / np.maximum(o.curves.n_points - 2, 1)) / safe_cw
+    residual = np.sqrt(c.curves.rss_kg2_m2 / np.maximum(c.curves.n_points - 2, 1)) / safe_cw
     # A cap is the method's choice, and coefficients searched run by run leave no scatter.
-    own_b = ~o.curves.b_capped & (o.steps.wind.coefficients != "per_run")
+    own_b = ~c.curves.b_capped & (c.steps.wind.coefficients != "per_run")
     numbers = {
-        "a_kg_m": o.curves.a_kg_m,
+        "a_kg_m": c.curves.a_kg_m,
         "cw_kg_m": cw,
         "cw_lo_kg_m": cw * lo,
         "cw_hi_kg_m": cw * hi,
         "b_lo_m_s": np.where(own_b, b_interval.lo, np.nan),
         "b_hi_m_s": np.where(own_b, b_interval.hi, np.nan),
-        "power_w": power_per_rower_w(safe_cw, declared, o.batch.of_tow("rowers")),
+        "power_w": power_per_rower_w(safe_cw, declared, c.batch.of_tow("rowers")),
         "residual_sd_ratio": residual,
     }
     return tows.select(
         "tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s"
     ).with_columns(
         *(_column(name, values, sound) for name, values in numbers.items()),
-        _column("b_m_s", o.curves.b_m_s, sound & o.curves.b_determined),
-        _column(
-            "calibration_factor", o.prepared.calibration_factor, o.steps.calibration.rule != "none"
-        ),
-        pl.Series("b_capped", o.curves.b_capped),
-        pl.Series("runs_used", o.batch.count(o.prepared.used), pl.Int8),
+        _column("b_m_s", c.curves.b_m_s, sound & c.curves.b_determined),
+        _column("calibration_factor", c.calibration_factor, c.steps.calibration.rule != "none"),
+        pl.Series("b_capped", c.curves.b_capped),
+        pl.Series("runs_used", c.batch.count(c.used), pl.Int8),
     )
 
 
-def _log_factors(o: Outcome, estimated: SeasonFactors | None) -> pl.DataFrame:
+def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
     """The factor of each season: from GPS, estimated, prescribed or none, in this order.
 
     Tows without GPS in a season that has it are in a batch behind the others, and give no row.
     With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
     A tow's own factor is in `run_points.speed_factor`.
     """
-    seasons = o.batch.tows["season"].unique().sort()
-    if o.steps.calibration.rule != "none":
-        rows = [_mean_factor(o, season) for season in seasons]
+    seasons = c.batch.tows["season"].unique().sort()
+    if c.steps.calibration.rule != "none":
+        rows = [_mean_factor(c, season) for season in seasons]
     else:
-        rows = [_factor_row(o, season, estimated) for season in seasons]
+        rows = [_factor_row(c, season, estimated) for season in seasons]
     schema = dtypes(LogFactors, without=["method"])
     return pl.DataFrame(rows, schema=schema, orient="row")
 
@@ -226,10 +222,9 @@ def _log_factors(o: Outcome, estimated: SeasonFactors | None) -> pl.DataFrame:
 FactorRow = tuple[int, float, float | None, float | None, str]
 
 
-def _mean_factor(o: Outcome, season: int) -> FactorRow:
-    p = o.prepared
-    mine = (o.batch.of_tow("season") == season) & p.calibrated
-    ln_factor = np.log((p.known_factor * p.calibration_factor)[mine])
+def _mean_factor(c: Computed, season: int) -> FactorRow:
+    mine = (c.batch.of_tow("season") == season) & c.calibrated
+    ln_factor = np.log((c.known_factor * c.calibration_factor)[mine])
     n = len(ln_factor)
     if n == 0:
         return season, 1.0, None, None, "none"
@@ -246,8 +241,8 @@ def _mean_factor(o: Outcome, season: int) -> FactorRow:
     )
 
 
-def _factor_row(o: Outcome, season: int, estimated: SeasonFactors | None) -> FactorRow:
-    speed = o.steps.speed
+def _factor_row(c: Computed, season: int, estimated: SeasonFactors | None) -> FactorRow:
+    speed = c.steps.speed
     if estimated is not None and speed.correction == "estimated":
         known = estimated.of_season(season)
         if known is not None:
@@ -269,15 +264,15 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
         "season_links": estimated.factors.select(*of_links).cast(pl.Schema(of_links)),
         "retow_choice": retow_choice(estimated),
         "season_steps": estimated.steps,
-        "tow_instruments": tow_instruments(estimated),
+        "tow_instruments": estimated.instruments.select(*schemas["tow_instruments"]).sort("tow_id"),
         "best_estimate_weights": estimated.weights,
     }
 
 
-def _diagnosis(estimated: SeasonFactors | None, outcomes: Sequence[Outcome]) -> pl.DataFrame:
+def _diagnosis(estimated: SeasonFactors | None, computed: Sequence[Computed]) -> pl.DataFrame:
     """What is wrong with the instruments of each season; no rows without an estimate."""
     joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
-    both = pl.concat([joint, anemometer_diagnosis(outcomes)])
+    both = pl.concat([joint, anemometer_diagnosis(computed)])
     return both.sort("season", "part", "instrument")
 
 

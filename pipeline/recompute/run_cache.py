@@ -12,9 +12,9 @@ from typing import Any, TypeAlias, TypeVar
 from pipeline.arrays import IntArray
 from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.method.definition import Steps, Window
+from pipeline.method.definition import Steps
 from pipeline.steps.resistance import OverWindow, RunMeans, run_means
-from pipeline.steps.window import Windows, choose_windows
+from pipeline.steps.window import Windows, steady_windows, whole_runs
 
 Tows: TypeAlias = tuple[str, ...]
 Options: TypeAlias = tuple[object, ...]
@@ -34,17 +34,18 @@ class RunCache:
 
     def windows(self, batch: Batch, steps: Steps) -> Windows:
         """The window of every run of a batch."""
-        rule = _rule(steps)
-        return self._of_part(batch, (rule,), lambda of: choose_windows(of.blocks, rule))
+        rule = steps.window.rule
+        choose = whole_runs if rule == "all" else steady_windows
+        return self._of_part(batch, (rule,), lambda of: choose(of.blocks))
 
     def means(self, batch: Batch, steps: Steps) -> RunMeans:
         """The means of every run of a batch over its window: coefficients are not in them yet."""
         of_wind = (steps.wind.model, steps.wind.averaging_s)
-        options = (_rule(steps), steps.run_point, *of_wind)
+        options = (steps.window.rule, steps.run_point, *of_wind)
         return self._of_part(batch, options, lambda of: run_means(of, self._over(of, steps), steps))
 
     def _over(self, batch: Batch, steps: Steps) -> OverWindow:
-        key = batch.key, (_rule(steps),)
+        key = batch.key, (steps.window.rule,)
         if key not in self._sums:
             window = self.windows(batch, steps).mask
             self._sums[key] = OverWindow.of(batch.blocks, window, self._averaged[batch.key])
@@ -73,11 +74,6 @@ class RunCache:
         """Forgets everything."""
         self._found.clear()
         self.let_go()
-
-
-def _rule(steps: Steps) -> Window:
-    """The rule for the window, without what it does not ask for: all of a run is all of it."""
-    return Window(rule="all") if steps.window.rule == "all" else steps.window
 
 
 def _rows(of_whole: Any, rows: IntArray) -> Any:

@@ -7,7 +7,6 @@ after. The statistics are in `pipeline.season_log`.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
 from typing import Final
 
 import numpy as np
@@ -17,19 +16,11 @@ from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.blocks.batch import Batch
 from pipeline.method.definition import Calibration, Steps
-from pipeline.recompute.budget import (
-    files_log_sd,
-    force_uncertainty,
-    pooled_scatter,
-)
-from pipeline.recompute.outcome import Outcome, TowFactor
-from pipeline.season_log import (
-    SeasonFactors,
-    estimate_season_factors,
-)
+from pipeline.recompute.budget import files_log_sd, force_uncertainty, pooled_scatter
+from pipeline.recompute.computed import Computed
+from pipeline.season_log import SeasonFactors, estimate_season_factors
 from pipeline.season_log.network import GROUP
 from pipeline.steps.calibration import gps_factor
-from pipeline.steps.speed import LOG_OF_TOW
 from pipeline.tables.keys import LINE
 
 FEWEST_OF_TYPE: Final = 5
@@ -43,6 +34,15 @@ LOG_SCATTER: Final = 0.005
 
 GPS: Final = "gps_per_tow"
 
+INSTRUMENT_SCHEMA: Final = {
+    "tow_id": pl.String(),
+    **dict.fromkeys(
+        ("factor", "ln_sd", "dof", "force_factor", "force_zero_n", "bend", "askew_ratio"),
+        pl.Float64(),
+    ),
+}
+"""What is estimated of a tow's instruments, as the table `tow_instruments` declares it."""
+
 
 def is_estimated(steps: Steps) -> bool:
     """Whether these steps ask for an estimated log factor."""
@@ -51,7 +51,7 @@ def is_estimated(steps: Steps) -> bool:
 
 def without_gps(steps: Steps) -> Steps:
     """The steps of a tow that has no GPS, where the method says what it then gets."""
-    if steps.calibration.without_gps == "no_curve":
+    if not steps.estimates_without_gps:
         return steps
     speed = steps.speed.model_copy(update={"correction": "estimated"})
     calibration = Calibration(rule="none")
@@ -66,7 +66,7 @@ def without_factor(steps: Steps) -> Steps:
     return steps.model_copy(update={"speed": speed})
 
 
-def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
+def find_season_factors(computed: Sequence[Computed]) -> SeasonFactors:
     """The log factors of all seasons, from tows computed without them.
 
     Tows of a line are compared at one true speed. A first estimate, from the speeds as read, says
@@ -74,112 +74,90 @@ def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
     the edge of what was towed, and all would hang on the bend.
 
     Args:
-        outcomes: all batches under `without_factor`.
+        computed: all batches under `without_factor`.
     """
-    as_read = _estimate(outcomes, {})
+    as_read = _estimate(computed, {})
     known = as_read.instruments.drop_nulls("factor")
-    return _estimate(outcomes, dict(known.select("tow_id", pl.col("factor").log()).iter_rows()))
+    return _estimate(computed, dict(known.select("tow_id", pl.col("factor").log()).iter_rows()))
 
 
-def _estimate(outcomes: Sequence[Outcome], ln_factor: Mapping[str, float]) -> SeasonFactors:
-    rows = _tow_rows(outcomes, ln_factor)
+def _estimate(computed: Sequence[Computed], ln_factor: Mapping[str, float]) -> SeasonFactors:
+    rows = _tow_rows(computed, ln_factor)
     return estimate_season_factors(_with_calibrations(_with_kappa(rows)))
 
 
-def _tow_rows(outcomes: Sequence[Outcome], ln_factor: Mapping[str, float]) -> pl.DataFrame:
+def _tow_rows(computed: Sequence[Computed], ln_factor: Mapping[str, float]) -> pl.DataFrame:
     """One row per tow with a sound curve, at one speed per line: its median declared speed.
 
     Args:
-        outcomes: all batches under `without_factor`.
+        computed: all batches under `without_factor`.
         ln_factor: of the logs of tows, as far as it is known; 0 of the others.
     """
-    declared = pl.concat([o.batch.tows.select(*LINE, "declared_speed_m_s") for o in outcomes])
+    declared = pl.concat([c.batch.tows.select(*LINE, "declared_speed_m_s") for c in computed])
     reference = declared.group_by(LINE, maintain_order=True).agg(
         pl.col("declared_speed_m_s").median().alias("speed")
     )
-    return pl.concat([_rows(o, reference, ln_factor) for o in outcomes]).drop_nulls("ln_cw")
+    return pl.concat([_rows(c, reference, ln_factor) for c in computed]).drop_nulls("ln_cw")
 
 
-@dataclass(frozen=True)
-class Instruments:
-    """What was estimated of the instruments of some tows, matched to each batch once.
+def instruments_of(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> pl.DataFrame:
+    """What was estimated of each tow of a batch, as far as its steps ask for it.
 
-    Attributes:
-        rows: of the table `tow_instruments`; None where nothing was estimated.
+    Args:
+        rows: `SeasonFactors.instruments` or rows of the table `tow_instruments`; None where nothing
+            was estimated.
+
+    Returns:
+        A row per tow with the columns of `INSTRUMENT_SCHEMA`, null where nothing is known; such a
+        load cell has the factor 1 and the zero 0.
     """
-
-    rows: pl.DataFrame | None = None
-    _known: dict[tuple[tuple[str, ...], bool], TowFactor] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, estimated: SeasonFactors | None) -> "Instruments":
-        """What season factors say of them; nothing without an estimate."""
-        return cls(None if estimated is None else tow_instruments(estimated))
-
-    def of_tows(self, batch: Batch, steps: Steps) -> TowFactor:
-        """What was estimated of each tow of a batch, as far as its steps ask for it."""
-        key = (batch.key, is_estimated(steps))
-        if key not in self._known:
-            self._known[key] = _factor_of_tows(batch, steps, self.rows)
-        return self._known[key]
-
-
-def _factor_of_tows(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> TowFactor:
-    if rows is None:
-        nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
-        return TowFactor(nothing, nothing, nothing, one, none, nothing, nothing)
-    own = batch.tows.select("tow_id", "season", *LOG_OF_TOW).join(
-        rows, on=["tow_id", "log"], how="left", maintain_order="left"
+    own = batch.tows.select("tow_id", "season", "log1_part")
+    known = pl.DataFrame(schema=INSTRUMENT_SCHEMA) if rows is None else rows
+    joined = own.join(
+        known.select(*INSTRUMENT_SCHEMA), on="tow_id", how="left", maintain_order="left"
     )
     # A tow that takes no part in the estimate had the instruments of its season all the same.
     of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
-    corrections = own.with_columns(of_season.fill_null(of_season.mean().over("season", "part")))
-    if not is_estimated(steps):
-        corrections = corrections.with_columns(pl.lit(None, pl.Float64).alias("factor"))
-    corrections = corrections.with_columns(
-        pl.col("force_factor").fill_null(1.0), pl.col("force_zero_n").fill_null(0.0)
+    filled = joined.with_columns(of_season.fill_null(of_season.mean().over("season", "log1_part")))
+    factor = pl.col("factor") if is_estimated(steps) else pl.lit(None, pl.Float64)
+    return filled.with_columns(
+        factor.alias("factor"),
+        pl.col("force_factor").fill_null(1.0),
+        pl.col("force_zero_n").fill_null(0.0),
     )
-    names = (own_field.name for own_field in fields(TowFactor))
-    return TowFactor(**{name: corrections[name].cast(pl.Float64).to_numpy() for name in names})
 
 
-def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
-    """What was estimated of each tow: `tow_id, log`, and the fields of `TowFactor`."""
-    return estimated.instruments.drop("others_ln_ratio").sort("tow_id", "log")
-
-
-def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -> pl.DataFrame:
+def _rows(c: Computed, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -> pl.DataFrame:
     """Per tow its curve at its line's true `speed`, with uncertainty, and its GPS ratio."""
-    p = o.prepared
-    batch, steps = o.batch, o.steps
+    batch, steps = c.batch, c.steps
     lines = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
     reference_ln = np.array([ln_factor.get(name, 0.0) for name in batch.tows["tow_id"]])
     true_speed = lines["speed"].to_numpy()
     speed = true_speed * np.exp(-reference_ln)
-    water = _water_points(o)
+    water = _water_points(c)
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
-    errors = curve.covariance(water, curves, pooled_scatter(o), speed)
+    errors = curve.covariance(water, curves, pooled_scatter(c), speed)
     sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
     sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
     calibrated = steps.calibration.rule == GPS
-    gps, gps_sd, has_gps = _gps_ratio(o)
-    own_sd, q = files_log_sd(o), safe_r / (1.0 - safe_r)
+    gps, gps_sd, has_gps = _gps_ratio(c)
+    own_sd, q = files_log_sd(c), safe_r / (1.0 - safe_r)
     by_log = (2.0 + 2.0 * q, 2.0 * q * (1.0 + q))
-    y = np.where(p.calibrated, p.calibration_factor, 1.0)
+    y = np.where(c.calibrated, c.calibration_factor, 1.0)
     numbers = {
         "ln_cw": np.where(sound, np.log(safe), np.nan),
         "ln_cw_sd": np.sqrt(
             np.where(sure, errors.c0_variance_kg2_m2 / safe**2, 1.0)
             + (by_log[0] * own_sd) ** 2
-            + (_unmeasured_wind_kg_m(o) / safe) ** 2
+            + (_unmeasured_wind_kg_m(c) / safe) ** 2
         ),
         "q": q,
         "q_sd": np.hypot(np.where(sure, np.sqrt(errors.q_variance), 1.0), by_log[1] * own_sd),
         "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
         + by_log[0] * by_log[1] * own_sd**2,
-        "own_calibration_ln": np.where(p.calibrated, np.log(p.known_factor * y), np.nan),
+        "own_calibration_ln": np.where(c.calibrated, np.log(c.known_factor * y), np.nan),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
         "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, own_sd), np.nan),
     }
@@ -190,10 +168,10 @@ def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -
         _boat_type(batch.tows),
         pl.col("tow_date").dt.ordinal_day().cast(pl.Float64).alias("day"),
         "season",
-        *LOG_OF_TOW,
+        pl.col("log1_part").alias("part"),
         pl.lit(calibrated).alias("anchored"),
-        pl.Series("temperature_known", p.temperature_known),
-        pl.Series("water_off_c", p.water_off_c),
+        pl.Series("temperature_known", c.temperature_known),
+        pl.Series("water_off_c", c.water_off_c),
         force_uncertainty(batch.tows).alias("force_sd"),
         pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / true_speed),
         pl.Series("reference_ln", reference_ln),
@@ -201,16 +179,16 @@ def _rows(o: Outcome, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -
     )
 
 
-def _unmeasured_wind_kg_m(o: Outcome) -> FloatArray:
+def _unmeasured_wind_kg_m(c: Computed) -> FloatArray:
     """Standard uncertainty of Cw by wind that nobody measured, shape (tows,); 0 where it was."""
-    still = o.batch.mean(o.still_air_kg_m, o.prepared.used)
-    return np.where(o.batch.measured("wind"), 0.0, still * o.prepared.expected_wind.sd)
+    still = c.batch.mean(c.still_air_kg_m, c.used)
+    return np.where(c.batch.measured("wind"), 0.0, still * c.expected_wind.sd)
 
 
-def _water_points(o: Outcome) -> curve.Points:
+def _water_points(c: Computed) -> curve.Points:
     """Run points of the water alone: the still-air part does not scale with the log's error."""
-    water = o.batch.by_tow(o.cw_kg_m - o.still_air_kg_m)
-    return curve.Points(o.points.speed_m_s, water, o.points.used & (water > 0))
+    water = c.batch.by_tow(c.cw_kg_m - c.still_air_kg_m)
+    return curve.Points(c.points.speed_m_s, water, c.points.used & (water > 0))
 
 
 def _boat_type(tows: pl.DataFrame) -> pl.Expr:
@@ -218,15 +196,14 @@ def _boat_type(tows: pl.DataFrame) -> pl.Expr:
     return pl.col("boat_type") if known else pl.lit(None, dtype=pl.String).alias("boat_type")
 
 
-def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
+def _gps_ratio(c: Computed) -> tuple[FloatArray, FloatArray, np.ndarray]:
     """Gives ln(GPS / log) of each tow with runs both ways, its random part, and where known.
 
     The random part is the scatter of run ratios about their direction's mean, pooled over the
     batch: one tow's six runs are too few.
     """
-    p = o.prepared
-    batch, gps, log = o.batch, p.means.gps_m_s, p.means.speed_m_s
-    used = p.used & np.isfinite(gps)
+    batch, gps, log = c.batch, c.means.gps_m_s, c.means.speed_m_s
+    used = c.used & np.isfinite(gps)
     y, both = gps_factor(gps, log, batch.direction, batch.tow, used, batch.size)
     ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
     spread, count = 0.0, 0.0

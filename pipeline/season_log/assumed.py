@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Final
 
+from pipeline.history import STEERED_STRAIGHT_FROM, UNKNOWN_LOG_SD
+
 
 @dataclass(frozen=True)
 class Prior:
@@ -55,7 +57,7 @@ class Settings:
     """
 
     era_starts: tuple[int, ...] = (2009, 2012)
-    log_sd: float = 0.06
+    log_sd: float = UNKNOWN_LOG_SD
     ageing_per_year: Prior = Prior(0.0, 0.005)
     weight_elasticity: Prior = Prior(0.4, 0.4)
     length_elasticity: Prior = Prior(0.0, 1.0)
@@ -75,7 +77,7 @@ class Settings:
     askew_excess: Prior = Prior(0.075, 0.03)
     askew_share: float = 0.05
     askew_tows: float = 20.0
-    straight_from: int = 2014
+    straight_from: int = STEERED_STRAIGHT_FROM
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
     force_sd: float = 0.002

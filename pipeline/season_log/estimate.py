@@ -33,7 +33,7 @@ class SeasonFactors:
 
     Attributes:
         factors: one row per season, part and log that has tows without dGPS calibration, sorted:
-            `season, part, log, factor, lo, hi, source, ln_sd, dof, n_tows, n_links, component,
+            `season, part, factor, lo, hi, source, ln_sd, dof, n_tows, n_links, component,
             influence, influence_boat, critical_boats`. See `estimate_season_factors`.
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
@@ -101,7 +101,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
 
     Args:
         tows: one row per sound tow:
-            `tow_id, season, part, log`; `fsn_no, rowers, crew_class` (the line);
+            `tow_id, season, part`; `fsn_no, rowers, crew_class` (the line);
             `day` within the season (may be null);
             `ln_cw`, ln Cw by the log as it reads (anchored tows: as calibrated), corrected for
             everything else, where that log over exp(-`reference_ln`) reads the line's reference

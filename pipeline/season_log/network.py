@@ -14,7 +14,7 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.tables.keys import LINE
 
-GROUP: Final = ("season", "part", "log")
+GROUP: Final = ("season", "part")
 """What has a log factor of its own: one log, in a season or the part of it until a replacement."""
 BOAT: Final = (*LINE, "state")
 """A line as it was until a reported alteration."""

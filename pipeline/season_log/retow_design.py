@@ -14,14 +14,12 @@ import polars as pl
 
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.choice import first_largest
+from pipeline.history import UNKNOWN_LOG_SD
 from pipeline.season_log.estimate import SeasonFactors
 from pipeline.season_log.network import Network
 from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import LINE
 from pipeline.tables.season_log import RetowChoice
-
-UNKNOWN_SD: Final = 0.06
-"""Spread of ln factor where nothing links a season to the anchor: the worst log was 6 % off."""
 
 MOST_BOATS: Final = 10
 
@@ -74,7 +72,7 @@ def retow_choice(estimated: SeasonFactors) -> pl.DataFrame:
 def _covariance(estimated: SeasonFactors) -> FloatArray:
     """Of all ln factors; those that are not determined are as good as unknown."""
     known = estimated.factors["factor"].is_not_null().to_numpy()
-    covariance = np.diag(np.where(known, 0.0, UNKNOWN_SD**2))
+    covariance = np.diag(np.where(known, 0.0, UNKNOWN_LOG_SD**2))
     covariance[np.ix_(known, known)] = estimated.covariance
     return covariance
 

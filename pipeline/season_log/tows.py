@@ -58,7 +58,6 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     others = -(applied * change[network.cluster]).sum(axis=1)
     return network.tows.select(
         "tow_id",
-        "log",
         _where(determined, "factor", np.exp(share[:, speed] @ posterior.mean[speed])),
         pl.Series("force_factor", np.exp(share[:, force] @ posterior.mean[force])),
         pl.Series("force_zero_n", share[:, zero] @ posterior.mean[zero]),

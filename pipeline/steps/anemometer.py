@@ -16,10 +16,8 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import WindowSums
+from pipeline.history import UNKNOWN_LOG_SD
 from pipeline.steps.calibration import mean_over_both_ways
-
-UNKNOWN_LOG_SD: Final = 0.06
-"""Spread of ln boat speed by a log about which nothing is known: the worst was 6 % off."""
 
 USUAL_TOW_SD: Final = 0.06
 """Spread of a tow's ratio where no season has two tows: wind changes between out and back."""

@@ -2,7 +2,7 @@
 
 Per sample the gross coefficient is `Cw = F / (v y)^2` (Sleepproef, R. Pot 2017, "IJking
 snelheid"). Everything here is in the speed that the log reads; a factor k that turns it into true
-speed divides every coefficient by k^2, and is applied last (`pipeline.recompute.outcome`). Which
+speed divides every coefficient by k^2, and is applied last (`pipeline.recompute.computed`). Which
 runs count and which factor holds is decided elsewhere.
 """
 
@@ -15,7 +15,8 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks, WindowSums
 from pipeline.hull import front_area_m2, side_area_m2
-from pipeline.method.definition import RunPoint, Steps, Temperature
+from pipeline.method.constants import REFERENCE_WATER_C
+from pipeline.method.definition import RunPoint, Steps
 from pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from pipeline.steps.wind import (
     AirParts,
@@ -161,7 +162,7 @@ def displaced_mass_kg(batch: Batch) -> FloatArray:
 
 
 def temperature_change_kg_m(
-    batch: Batch, rule: Temperature, speed_m_s: FloatArray
+    batch: Batch, steps: Steps, speed_m_s: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
     """What brings Cw to the reference temperature: friction there minus friction as towed.
 
@@ -173,24 +174,24 @@ def temperature_change_kg_m(
 
     Returns:
         Change of Cw, shape (runs,), kg/m, 0 where temperature or weight is missing; and for which
-        tows both were recorded, shape (tows,). Where the rule expects a temperature that nobody
+        tows both were recorded, shape (tows,). Where the steps expect a temperature that nobody
         recorded, the change is that of `expected_water_c`.
     """
     recorded = batch.of_tow("water_temperature_c")
     mass = displaced_mass_kg(batch)
     known = np.isfinite(recorded) & np.isfinite(mass)
-    if rule.rule == "none":
+    if steps.temperature.rule == "none":
         return np.zeros_like(speed_m_s), known
     temperature = recorded
-    if rule.unrecorded == "expected":
+    if steps.expects_unrecorded:
         temperature = np.where(known, recorded, batch.of_tow("expected_water_c"))
     told = np.isfinite(temperature) & np.isfinite(mass)
-    celsius = np.where(told, temperature, rule.reference_c)
+    celsius = np.where(told, temperature, REFERENCE_WATER_C)
     length = batch.of_run("waterline_length_m")
     surface = wetted_surface_m2(np.where(told, mass, 0.0)[batch.tow], length)
     speed = _or_one(speed_m_s)
     at_reference, as_towed = (
-        friction_cw_kg_m(speed, length, surface, t) for t in (rule.reference_c, celsius[batch.tow])
+        friction_cw_kg_m(speed, length, surface, t) for t in (REFERENCE_WATER_C, celsius[batch.tow])
     )
     return at_reference - as_towed, known
 

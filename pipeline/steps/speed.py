@@ -9,17 +9,12 @@ How a season's factor is estimated instead is in `pipeline.season_log`.
 from typing import Final
 
 import numpy as np
-import polars as pl
 
 from pipeline.arrays import FloatArray
 from pipeline.method.definition import Speed
 
 LOG: Final = "log1"
 """The log in use: "De berekeningen worden gebaseerd op log1" (Sleepproef, R. Pot 2017)."""
-
-LOG_OF_TOW: Final = (pl.col("log1_part").alias("part"), pl.lit(LOG).alias("log"))
-"""What names the log of a tow beside its season, from the columns of `tows`: another part begins
-when it is replaced."""
 
 
 def log_factor(

@@ -6,7 +6,7 @@ force and about equal wind and lasts at least 30 s (Sleepproef, R. Pot 2017, "Kn
 of a second there are so few windows that all of them are tried, longest first: the rule, not a
 hand, decides. A window within the three limits goes before every other. Where there is none, speed
 must be within its limit all the same, or the run does not count; by how much force or wind exceeds
-its limit, the window says.
+its limit, the window says. A window that a person gave goes before the one that is found.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks.run_blocks import RunBlocks, WindowSums
-from pipeline.method.definition import Window
+from pipeline.method.constants import FORCE_ENDS_RATIO, SHORTEST_WINDOW_S, SPEED_ENDS_M_S
 from pipeline.quantiles import MAD_TO_SD
 
 WORTH_DECIMALS: Final = 6
@@ -111,10 +111,11 @@ class Ends:
         force = np.abs(WindowSums(blocks, mask).mean("force"))
         return cls(rise("log1_v"), rise("force") / np.where(force > 0, force, 1.0), rise("wind_v"))
 
-    def in_limits(self, rule: Window) -> FloatArray:
-        """The largest of the three differences in limits of the rule: over 1 exceeds one."""
-        speed = np.abs(self.speed_m_s) / rule.speed_drift_m_s
-        force = np.abs(self.force_ratio) / rule.force_ends_ratio
+    @property
+    def in_limits(self) -> FloatArray:
+        """The largest of the three differences in their limits: over 1 exceeds one."""
+        speed = np.abs(self.speed_m_s) / SPEED_ENDS_M_S
+        force = np.abs(self.force_ratio) / FORCE_ENDS_RATIO
         return np.maximum(np.maximum(speed, force), np.abs(self.wind_m_s) / WIND_ENDS_M_S)
 
 
@@ -125,24 +126,22 @@ def end_masks(mask: BoolArray) -> tuple[BoolArray, BoolArray]:
     return mask & (order <= END_SECONDS), mask & (order > length - END_SECONDS)
 
 
-def choose_windows(blocks: RunBlocks, rule: Window) -> Windows:
-    """The window of every run under a rule; runs without any block have none.
+def whole_runs(blocks: RunBlocks) -> Windows:
+    """Windows that hold all of every run; runs without any block have none."""
+    return _windows(blocks, blocks.inside, ("",) * len(blocks.n))
 
-    `steady` searches; `by_hand` takes the window that a person gave (`HAND_COLUMNS` of
-    `blocks.runs`) and searches where none is given; `all` takes the whole run.
-    """
-    present = blocks.inside
-    if rule.rule == "all":
-        return _windows(blocks, present, ("",) * present.shape[0])
-    judged = _Runs.of(blocks)
-    start, length = _search(present, judged, rule)
+
+def steady_windows(blocks: RunBlocks) -> Windows:
+    """The steady part of every run, or the window that a person gave; some runs have none."""
+    present, judged = blocks.inside, _Runs.of(blocks)
+    start, length = _search(present, judged)
     second = np.arange(blocks.seconds)
     mask = (second >= start[:, None]) & (second < (start + length)[:, None])
     searched = _windows(blocks, mask, tuple(_reasons(present, mask, judged)))
-    return _given_by_hand(blocks, rule, searched) if rule.rule == "by_hand" else searched
+    return _given_by_hand(blocks, searched)
 
 
-def _given_by_hand(blocks: RunBlocks, rule: Window, searched: Windows) -> Windows:
+def _given_by_hand(blocks: RunBlocks, searched: Windows) -> Windows:
     """The windows given by hand, which must be as long as any other, else the searched ones."""
     if not set(HAND_COLUMNS.values()) <= set(blocks.runs.columns):
         return searched
@@ -151,7 +150,7 @@ def _given_by_hand(blocks: RunBlocks, rule: Window, searched: Windows) -> Window
     start, end = (bound.fill_null(0).to_numpy()[:, None] for bound in (hand_start, hand_end))
     second = np.arange(blocks.seconds)
     inside = (second >= start) & (second < end) & blocks.inside
-    long_enough = inside.sum(axis=1, keepdims=True) >= rule.minimum_s
+    long_enough = inside.sum(axis=1, keepdims=True) >= SHORTEST_WINDOW_S
     reasons = tuple(
         f"{BY_HAND}: {why}" if hand else reason
         for hand, why, reason in zip(given, hand_reason, searched.reasons, strict=True)
@@ -216,15 +215,15 @@ class _Runs:
         excess = np.maximum(self.force_peak - 1.0, 0.0) + np.maximum(self.gust - 1.0, 0.0)
         return BLOCK_PRICE_S * np.asarray(excess, dtype=np.float64)
 
-    def unsteadiness(self, size: int, rule: Window) -> tuple[FloatArray, FloatArray]:
+    def unsteadiness(self, size: int) -> tuple[FloatArray, FloatArray]:
         """How far speed, and the worse of force and wind, are from their limits (1).
 
         For every window of a size. Of the speed both the rise of a straight line and the difference
         of its ends count.
         """
-        drift = np.abs(self._slope(size)) * size / rule.speed_drift_m_s
-        speed = np.abs(_ends_difference(self.speed_ends, size)) / rule.speed_drift_m_s
-        force_limit = rule.force_ends_ratio * np.abs(self.force_median)
+        drift = np.abs(self._slope(size)) * size / SPEED_ENDS_M_S
+        speed = np.abs(_ends_difference(self.speed_ends, size)) / SPEED_ENDS_M_S
+        force_limit = FORCE_ENDS_RATIO * np.abs(self.force_median)
         force = np.abs(_ends_difference(self.force_ends, size)) / np.maximum(force_limit, 1e-9)
         wind = np.abs(_ends_difference(self.wind_ends, size)) / WIND_ENDS_M_S
         return np.maximum(drift, speed), np.maximum(force, wind)
@@ -294,7 +293,7 @@ def _ramp_length(speed: FloatArray, present: BoolArray) -> IntArray:
     return np.where(best_span >= LEAST_RAMP_M_S, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
 
 
-def _search(present: BoolArray, judged: _Runs, rule: Window) -> tuple[IntArray, IntArray]:
+def _search(present: BoolArray, judged: _Runs) -> tuple[IntArray, IntArray]:
     """Start and length of the best window of every run; length 0 where none is good enough.
 
     Best is the longest, less what the faults inside it cost; of equals, the first and longest.
@@ -304,8 +303,8 @@ def _search(present: BoolArray, judged: _Runs, rule: Window) -> tuple[IntArray, 
     value = np.full(runs, -np.inf)
     good = _running_sum((present & ~judged.ramp).astype(np.float64))
     price = _running_sum(judged.price_s())
-    for size in range(seconds, int(np.ceil(rule.minimum_s)) - 1, -1):
-        speed, ends = judged.unsteadiness(size, rule)
+    for size in range(seconds, SHORTEST_WINDOW_S - 1, -1):
+        speed, ends = judged.unsteadiness(size)
         worth = size - _span(price, size) - np.where(ends > 1.0, NOT_WITHIN_S * ends, 0.0)
         accepted = (_span(good, size) == size) & (speed <= 1.0)
         worth = np.where(accepted, np.round(worth, WORTH_DECIMALS), -np.inf)

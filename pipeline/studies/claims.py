@@ -8,6 +8,8 @@ from typing import Final
 
 import polars as pl
 
+from pipeline.curve import cw
+from pipeline.races.power import curve_of_lines
 from pipeline.tables.keys import LINE
 
 PROMISED: Final = {"1pct": 0.01, "2pct": 0.02}
@@ -77,16 +79,17 @@ def print_reproduction(
             pl.col("cw_kg_m").alias("printed_cw_kg_m"),
         )
     )
-    ratio_at_v0 = 1.0 - pl.col("a_kg_m") / pl.col("cw_kg_m")
-    bend = ratio_at_v0 * (pl.col("speed_m_s") / pl.col("declared_speed_m_s")) ** 2
-    cw = pl.when(bend < 1.0).then(pl.col("a_kg_m") / (1.0 - bend))
-    return (
+    compared = (
         curves.drop_nulls("cw_kg_m")
         .select(
             "method", "tow_id", "season", *LINE, "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s"
         )
         .join(of_tow, on="tow_id", maintain_order="left")
-        .with_columns(cw.alias("cw_kg_m"))
+    )
+    there = cw(*curve_of_lines(compared), compared["speed_m_s"])
+    known = pl.when(pl.Series(there).is_finite()).then(pl.Series(there))
+    return (
+        compared.with_columns(known.alias("cw_kg_m"))
         .with_columns((pl.col("printed_cw_kg_m") / pl.col("cw_kg_m")).alias("cw_ratio"))
         .drop("declared_speed_m_s")
         .sort("method", "tow_id")

@@ -11,12 +11,13 @@ from typing import Final
 import numpy as np
 import polars as pl
 
+from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.method.definition import Method, Steps
-from pipeline.recompute.outcome import Outcome
-from pipeline.recompute.recompute import batches, evaluate, instruments_of
+from pipeline.recompute.computed import Computed
+from pipeline.recompute.recompute import batches, evaluate, season_factors
 from pipeline.recompute.run_cache import RunCache
-from pipeline.recompute.season_factors import Instruments
+from pipeline.recompute.season_factors import is_estimated
 
 STEP_ORDER: Final = (
     "speed",
@@ -26,6 +27,7 @@ STEP_ORDER: Final = (
     "run_point",
     "wind",
     "temperature",
+    "unrecorded",
     "curve",
 )
 """The order in which steps are exchanged: that of the computation, and of the history."""
@@ -59,14 +61,10 @@ def ladder(
     """
     pairs = batches([from_method, to_method], tows, blocks)
     cache = RunCache() if cache is None else cache
-    of_old, of_new = (
-        map(Instruments, links)
-        if links
-        else (
-            instruments_of([(batch, steps[end]) for batch, steps in pairs], cache) for end in (0, 1)
-        )
+    of_old, of_new = links or (
+        _instruments([(batch, steps[end]) for batch, steps in pairs], cache) for end in (0, 1)
     )
-    rungs: list[list[Outcome]] = []
+    rungs: list[list[Computed]] = []
     mixed: list[Steps] = []
     for count in range(len(STEP_ORDER) + 1):
         before, mixed = mixed, [_mixed(old, new, count) for _, (old, new) in pairs]
@@ -75,8 +73,14 @@ def ladder(
             continue
         plans = [(batch, steps) for (batch, _), steps in zip(pairs, mixed, strict=True)]
         rungs.append(evaluate(plans, cache, of_new if count else of_old))
-    parts = [_rungs_of_batch(list(outcomes)) for outcomes in zip(*rungs, strict=True)]
+    parts = [_rungs_of_batch(list(computed)) for computed in zip(*rungs, strict=True)]
     return pl.concat(parts).sort("tow_id", "position")
+
+
+def _instruments(plans: list[tuple[Batch, Steps]], cache: RunCache) -> pl.DataFrame | None:
+    asked = any(is_estimated(steps) for _, steps in plans)
+    estimated = season_factors(plans, cache) if asked else None
+    return None if estimated is None else estimated.instruments
 
 
 def _mixed(old: Steps, new: Steps, count: int) -> Steps:
@@ -84,14 +88,14 @@ def _mixed(old: Steps, new: Steps, count: int) -> Steps:
     return old.model_copy(update={step: getattr(new, step) for step in STEP_ORDER[:count]})
 
 
-def _rungs_of_batch(outcomes: list[Outcome]) -> pl.DataFrame:
-    cw = np.stack([outcome.cw_at_declared for outcome in outcomes])
+def _rungs_of_batch(computed: list[Computed]) -> pl.DataFrame:
+    cw = np.stack([one.cw_at_declared for one in computed])
     sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
     for rung in range(1, len(cw)):
         cw[rung] = np.where(np.isfinite(cw[rung]), cw[rung], cw[rung - 1])
     cw_known = cw[:, sound]
     factor = np.vstack([np.ones(cw_known.shape[1]), cw_known[1:] / cw_known[:-1]])
-    tow_ids = outcomes[0].batch.tows["tow_id"].filter(pl.Series(sound))
+    tow_ids = computed[0].batch.tows["tow_id"].filter(pl.Series(sound))
     steps = (START, *STEP_ORDER)
     return pl.DataFrame(
         {

@@ -1,65 +1,74 @@
-"""The sensitivity study: how much do choices matter that are a matter of judgement.
+"""How much options matter: what a careful person could choose, and what the tool of 2015 let tick.
 
-A full factorial over options that a careful person could choose either way, on top of a method.
-Options that are known to be wrong (searching wind coefficients run by run) are history, not a vote,
-and take no part: they belong to the options of the tool of 2015 (`tool_options`).
+Both are full factorials on top of a method: every tow under all combinations of some choices, and
+of each choice its mean effect over all combinations of the others. What is known to be wrong
+(searching wind coefficients run by run) is history, not a vote, and takes part in the second only:
+"Razende Snol 2014, bepaalde combinaties van opties" (presentation 2015) shows some of its
+combinations; here are all.
 """
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
-import numpy as np
 import polars as pl
 
-from pipeline.arrays import FloatArray
+from pipeline import curve
+from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.hull import hull_speed_m_s
 from pipeline.method.definition import Method, Steps
-from pipeline.recompute.recompute import batches, evaluate_each
+from pipeline.recompute.computed import Computed
+from pipeline.recompute.recompute import batches, evaluate
 from pipeline.recompute.run_cache import RunCache
-from pipeline.recompute.season_factors import Instruments
 
 ALL_OPTIONS: Final = "all"
+FACTOR: Final = "speed.factor"
+B: Final = "curve.b"
 
 
 @dataclass(frozen=True)
 class Choice:
-    """One option of a step with the two values between which judgement may choose."""
+    """An option of a step with two of its values."""
 
     step: str
     option: str
-    values: tuple[Any, Any]
-
-    @property
-    def name(self) -> str:
-        """As written in a method file."""
-        return f"{self.step}.{self.option}"
-
-    def applies(self, steps: Steps) -> bool:
-        """Whether it can matter: a prescribed factor, where the log is corrected by it."""
-        return self.name != FACTOR or steps.speed.correction == "prescribed"
+    values: tuple[object, object]
 
 
-FACTOR: Final = "speed.factor"
+CHOICES: Final = {
+    FACTOR: Choice("speed", "factor", (1.06, 1 / 0.94)),
+    "run_point.estimator": Choice("run_point", "estimator", ("mean_of_ratios", "ratio_of_means")),
+    "wind.coefficients": Choice("wind", "coefficients", ("fixed", "archive")),
+    "wind.averaging_s": Choice("wind", "averaging_s", (0, 3)),
+    B: Choice("curve", "b", ("capped", "free")),
+}
+"""Of judgement, by name."""
 
-CHOICES: Final = (
-    Choice("window", "force_ends_ratio", (0.1, 0.05)),
-    Choice("speed", "factor", (1.06, 1 / 0.94)),
-    Choice("run_point", "estimator", ("mean_of_ratios", "ratio_of_means")),
-    Choice("wind", "coefficients", ("fixed", "archive")),
-    Choice("wind", "averaging_s", (0, 3)),
-    Choice("curve", "b", ("capped", "free")),
-)
-"""The curve comes last, so that it varies fastest (`evaluate_each`)."""
+B_FROM_LENGTH: Final = "b_from_length"
+TICKS: Final = {
+    "optimisation": Choice("wind", "coefficients", ("fixed", "per_run")),
+    "trimming": Choice("window", "rule", ("all", "steady")),
+    "vane": Choice("wind", "averaging_s", (0, 3)),
+    B_FROM_LENGTH: Choice("curve", "b", ("free", "hull speed")),
+}
+"""By column: "Optimalisatie", "Afkappen", "WindVaanCorrectie", "B uit sloeplengte"."""
+
+SPEED_NAMES: Final = ("as_read", "dgps", "multiply", "divide", "estimated")
+AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED = SPEED_NAMES
+
+SPEEDS: Final = {
+    "dgps": (AS_READ, DGPS),
+    "correction": (AS_READ, MULTIPLY),
+    "operation": (MULTIPLY, DIVIDE),
+    "estimate": (AS_READ, ESTIMATED),
+}
+"""Pairs of speeds, by the name of what makes the second of the first."""
 
 
 def option_effects(
-    method: Method,
-    tows: pl.DataFrame,
-    blocks: RunBlocks,
-    links: pl.DataFrame,
-    cache: RunCache,
+    method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame, cache: RunCache
 ) -> pl.DataFrame:
     """Spread of Cw over all combinations of `CHOICES`, and the effect of each choice.
 
@@ -71,41 +80,169 @@ def option_effects(
 
     Returns:
         Sorted rows per tow and option that can matter to it: `tow_id`, `option`, `cw_effect_ratio`
-        (second value / first value, mean over all combinations of the others; null where one of
-        them gives no curve) and `cw_sd_ratio` (standard deviation over all combinations, relative;
-        only in the row `all`).
+        (second value / first value, mean over all combinations of the others) and `cw_sd_ratio`
+        (standard deviation over all combinations, relative; only in the row `all`). A tow that one
+        of the combinations leaves without a curve has no rows.
+    """
+    plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
+    prescribed = [batch for batch, steps in plans if steps.speed.correction == "prescribed"]
+    names = [name for name in CHOICES if name != FACTOR or prescribed]
+    capped = chosen_everywhere(plans, {CHOICES[B]: "capped"})
+    frames = [
+        _curves(one, of_b).with_columns(_flags(flags | {B: of_b is one.free}))
+        for flags, computed in _combinations(capped, names, B, links, cache)
+        for one in computed
+        for of_b in (one.curves, one.free)
+    ]
+    whole = _whole(pl.concat(frames), ["tow_id"], len(names))
+    can = pl.concat([batch.tows["tow_id"] for batch in prescribed] or [pl.Series(dtype=pl.String)])
+    effects = [
+        _effect(whole.filter(pl.col("tow_id").is_in(can.implode()) | (name != FACTOR)), name)
+        for name in names
+    ]
+    return _together(whole, effects)
+
+
+def option_curves(
+    method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame, cache: RunCache
+) -> pl.DataFrame:
+    """Curves of every tow under all combinations of `TICKS` and the speeds of its season.
+
+    Args:
+        method, tows, blocks, links, cache: as `option_effects` takes them.
+
+    Returns:
+        Sorted rows per tow, speed and combination: `tow_id, speed`, a column for each tick,
+        `a_kg_m, b_m_s` (null where resistance does not rise) and `cw_kg_m` at the declared speed;
+        combinations that give no curve are left out.
     """
     pairs = batches([method], tows, blocks)
-    choices = [c for c in CHOICES if any(c.applies(steps) for _, (steps,) in pairs)]
-    corners = list(itertools.product((0, 1), repeat=len(choices)))
-    sides = [{c: c.values[s] for c, s in zip(choices, corner, strict=True)} for corner in corners]
-    variants = ([(b, chosen(steps, side)) for b, (steps,) in pairs] for side in sides)
-    ln_cw = np.stack(
-        [
-            np.concatenate([np.log(o.cw_at_declared) for o in outcomes])
-            for outcomes in evaluate_each(variants, cache, Instruments(links))
-        ]
-    )
-    tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
-    signs = 2 * np.array(corners) - 1
-    frames = [_frame(tow_ids, ALL_OPTIONS, "cw_sd_ratio", ln_cw.std(axis=0))]
-    for i, choice in enumerate(choices):
-        can = np.concatenate([np.full(b.size, choice.applies(steps)) for b, (steps,) in pairs])
-        effect = np.exp((ln_cw * signs[:, i, None]).mean(axis=0) * 2.0)
-        frames.append(_frame(tow_ids, choice.name, "cw_effect_ratio", effect).filter(can))
-    effects = pl.concat(frames, how="diagonal").sort("tow_id", "option")
-    return effects.select("tow_id", "option", "cw_effect_ratio", "cw_sd_ratio")
+    read = [(speed, batch, way) for batch, (steps,) in pairs for speed, way in speeds(steps)]
+    plans = [(batch, way) for _, batch, way in read]
+    frames = [
+        _curves(one, of_b).with_columns(
+            pl.lit(speed).alias("speed"), *_flags(flags | {B_FROM_LENGTH: of_b is not one.free})
+        )
+        for flags, computed in _combinations(plans, list(TICKS), B_FROM_LENGTH, links, cache)
+        for (speed, *_), one in zip(read, computed, strict=True)
+        for of_b in (one.free, _from_length(one))
+    ]
+    key = ["tow_id", "speed", *TICKS]
+    return pl.concat(frames).select(*key, "a_kg_m", "b_m_s", "cw_kg_m").sort(key)
 
 
-def chosen(steps: Steps, sides: Mapping[Choice, object]) -> Steps:
+def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
+    """What each tick and each speed does to a tow, over all combinations of the others.
+
+    Args:
+        curves: rows of `option_curves`.
+
+    Returns:
+        Rows as of `option_effects`, options named as in `TICKS` and `SPEEDS`; of speeds under which
+        every combination gives a curve.
+    """
+    whole = _whole(curves, ["tow_id", "speed"], len(TICKS))
+    ticks = [_effect(whole, name) for name in TICKS]
+    pairs = [
+        _effect(whole.filter(pl.col("speed").is_in(pair)), name, pl.col("speed") == pair[1])
+        for name, pair in SPEEDS.items()
+    ]
+    return _together(whole, [*ticks, *pairs])
+
+
+def speeds(steps: Steps) -> Iterator[tuple[str, Steps]]:
+    """The log as it reads, and each way in which a season's method makes a true speed of it."""
+    log = Choice("speed", "correction", ("none", steps.speed.correction))
+    gps = Choice("calibration", "rule", ("none", steps.calibration.rule))
+    yield AS_READ, chosen(steps, {log: "none", gps: "none"})
+    if steps.calibration.rule != "none":
+        yield DGPS, chosen(steps, {log: "none"})
+    if steps.speed.correction == "estimated":
+        yield ESTIMATED, steps
+    if steps.speed.correction == "prescribed":
+        # Multiply by 1 + p, or divide by 1 - p.
+        multiply = steps.speed.factor
+        factor = Choice("speed", "factor", (multiply, 1.0 / (2.0 - multiply)))
+        for way, value in zip((MULTIPLY, DIVIDE), factor.values, strict=True):
+            yield way, chosen(steps, {gps: "none", factor: value})
+
+
+def chosen(steps: Steps, values: Mapping[Choice, object]) -> Steps:
     """The steps of a season with a value for each choice."""
-    for choice, value in sides.items():
+    for choice, value in values.items():
         step = getattr(steps, choice.step).model_copy(update={choice.option: value})
         steps = steps.model_copy(update={choice.step: step})
     return steps
 
 
-def _frame(tow_ids: pl.Series, option: str, name: str, numbers: FloatArray) -> pl.DataFrame:
-    return pl.DataFrame({"tow_id": tow_ids, name: numbers}).select(
-        "tow_id", pl.lit(option).alias("option"), pl.col(name).fill_nan(None)
+Plans = list[tuple[Batch, Steps]]
+"""Batches with their steps."""
+
+
+def chosen_everywhere(plans: Plans, values: Mapping[Choice, object]) -> Plans:
+    """The same batches with a value for each choice."""
+    return [(batch, chosen(steps, values)) for batch, steps in plans]
+
+
+def _combinations(
+    plans: Plans, names: list[str], of_curve: str, links: pl.DataFrame, cache: RunCache
+) -> Iterator[tuple[dict[str, bool], list[Computed]]]:
+    """All combinations of choices but that of the curve: which are on, and what comes of them."""
+    others = [name for name in names if name != of_curve]
+    known = CHOICES | TICKS
+    for corner in itertools.product((False, True), repeat=len(others)):
+        flags = dict(zip(others, corner, strict=True))
+        values = {known[name]: known[name].values[on] for name, on in flags.items()}
+        yield flags, evaluate(chosen_everywhere(plans, values), cache, links)
+
+
+def _from_length(computed: Computed) -> curve.Curves:
+    """The curves whose B is hull speed."""
+    hull = hull_speed_m_s(computed.batch.of_tow("waterline_length_m"))
+    return curve.fit_given_b(computed.points, hull)
+
+
+def _curves(computed: Computed, curves: curve.Curves) -> pl.DataFrame:
+    cw = computed.cw_at(1.0, curves)
+    frame = pl.DataFrame(
+        {
+            "tow_id": computed.batch.tows["tow_id"],
+            "a_kg_m": curves.a_kg_m,
+            "b_m_s": curves.b_m_s,
+            "cw_kg_m": cw,
+        }
     )
+    b = pl.col("b_m_s")
+    return frame.filter(pl.col("cw_kg_m").is_finite()).with_columns(
+        pl.when(b.is_finite()).then(b).alias("b_m_s")
+    )
+
+
+def _flags(flags: Mapping[str, bool]) -> list[pl.Expr]:
+    return [pl.lit(value).alias(name) for name, value in flags.items()]
+
+
+def _whole(curves: pl.DataFrame, key: list[str], choices: int) -> pl.DataFrame:
+    """Curves of the tows of which every combination gives one, with `ln_cw`."""
+    every = pl.len().over(key) == 2**choices
+    return curves.filter(every).with_columns(ln_cw=pl.col("cw_kg_m").log())
+
+
+def _effect(whole: pl.DataFrame, name: str, on: pl.Expr | None = None) -> pl.DataFrame:
+    """Second value / first value of Cw; tows without both are left out."""
+    on, ln_cw = pl.col(name) if on is None else on, pl.col("ln_cw")
+    means = whole.group_by("tow_id", maintain_order=True).agg(
+        pl.lit(name).alias("option"),
+        (ln_cw.filter(on).mean() - ln_cw.filter(~on).mean()).exp().alias("cw_effect_ratio"),
+        both=on.any() & (~on).any(),
+    )
+    return means.filter("both").drop("both")
+
+
+def _together(whole: pl.DataFrame, effects: Iterable[pl.DataFrame]) -> pl.DataFrame:
+    """Effects with the spread over all combinations."""
+    spread = whole.group_by("tow_id", maintain_order=True).agg(
+        pl.lit(ALL_OPTIONS).alias("option"), pl.col("ln_cw").std(ddof=0).alias("cw_sd_ratio")
+    )
+    both = pl.concat([*effects, spread], how="diagonal").sort("tow_id", "option")
+    return both.select("tow_id", "option", "cw_effect_ratio", "cw_sd_ratio")

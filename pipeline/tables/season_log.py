@@ -22,7 +22,6 @@ class LogFactors(PerMethod):
 class SeasonLinks(PerPart):
     """What each estimated log factor rests on, per method, season, part of it and log."""
 
-    log = column.text("speed source", primary_key=True)
     source = column.text("estimated, gps, not determined, or not settled")
     n_tows = dy.Int32(description="tows of the season", min=0)
     n_links = dy.Int32(description="boats also towed in other seasons", min=0)
@@ -42,7 +41,6 @@ class SeasonLinks(PerPart):
 class SeasonSteps(PerPart):
     """Whether a season's step against the boats' other tows is the log's or the load cell's."""
 
-    log = column.text("speed source", primary_key=True)
     n_boats = dy.Int32(description="boats also towed in other seasons", min=0)
     level_step = column.number("1", "step of ln Cw, by the log as it reads", nullable=True)
     level_step_sd = column.number("1", "its standard deviation", nullable=True)
@@ -94,7 +92,6 @@ class SeasonDiagnosis(PerPart):
 class TowInstruments(PerTow):
     """What was found of the instruments of each tow, and is corrected in its curve."""
 
-    log = column.text("speed source", primary_key=True)
     factor = column.number(
         "1", "true speed / log speed; 1 with dGPS; empty: not determined", nullable=True
     )

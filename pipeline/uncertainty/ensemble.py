@@ -169,7 +169,7 @@ def _errors(
     if estimated is None:
         return keys, errors
     determined = estimated.factors.drop_nulls("factor").select(
-        log_key(pl.col("season"), pl.col("part"), pl.col("log")).alias("key")
+        log_key(pl.col("season"), pl.col("part")).alias("key")
     )
     sd = np.sqrt(np.diag(estimated.covariance))
     root = np.linalg.cholesky(estimated.covariance / np.outer(sd, sd))

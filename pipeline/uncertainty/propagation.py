@@ -19,6 +19,7 @@ import polars as pl
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.quantiles import t_quantile
+from pipeline.steps.speed import LOG
 
 LONGEST_LAG_S: Final = 10
 """Lags up to here count: surge and wander of the force have died away, and a window is 30-50 s."""
@@ -214,7 +215,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
 
     Args:
         tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
-            `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
+            `season, part`; `kappa`; `random_ratio` (of C0, from the scatter of the run
             points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
             `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
             where calibrated), `tow_log_sd` of the log (0 where calibrated); `air_ratio`, net
@@ -291,7 +292,7 @@ def _key(component: str, shared: pl.Expr) -> pl.Expr:
     """What has this error in common: the tow alone, its season (and log), or all."""
     season = pl.col("season").cast(pl.String)
     if component == "season_log":
-        return log_key(pl.col("season"), pl.col("part"), pl.col("log"))
+        return log_key(pl.col("season"), pl.col("part"))
     whose = (
         pl.when(shared == SINGLE)
         .then(pl.col("tow_id"))
@@ -302,11 +303,10 @@ def _key(component: str, shared: pl.Expr) -> pl.Expr:
     return pl.concat_str(pl.lit(component), whose, separator="/")
 
 
-def log_key(season: pl.Expr, part: pl.Expr, log: pl.Expr) -> pl.Expr:
+def log_key(season: pl.Expr, part: pl.Expr) -> pl.Expr:
     """Key of the error of one log factor."""
-    return pl.concat_str(
-        pl.lit("season_log"), season.cast(pl.String), part.cast(pl.String), log, separator="/"
-    )
+    named = (pl.lit("season_log"), season.cast(pl.String), part.cast(pl.String), pl.lit(LOG))
+    return pl.concat_str(named, separator="/")
 
 
 def combine(components: pl.DataFrame) -> pl.DataFrame:

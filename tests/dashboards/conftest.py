@@ -21,7 +21,7 @@ ACCENT = "Tréwes"
 FORMULA = "Foo;=1+1;bar"
 """A formula to a spreadsheet that separates by semicolons, wherever it is in the name."""
 EDITIONS = ("2015-1", "2026-1")
-LINKS = [("log1", 0, "estimated"), ("log1", 1, "estimated")]
+LINKS = [(0, "estimated"), (1, "estimated")]
 """Log, part and source of season factors: the methods of the small archive estimate none."""
 PUBLISHED_ON = dt.date(2026, 5, 9)
 
@@ -49,15 +49,15 @@ def _attack(built, root):
                 f"UPDATE boats SET name = ? WHERE fsn_no = (SELECT {which}(fsn_no) FROM tows)",  # noqa: S608
                 [name],
             )
-        for log, part, source in LINKS:
+        for part, source in LINKS:
             db.execute(
                 "INSERT INTO study.season_links BY NAME SELECT ? AS method, 2009 AS season, "
-                "? AS log, ? AS part, ? AS source, 4 AS n_tows, 3 AS n_links, 1.0 AS factor",
-                [METHODS[-1], log, part, source],
+                "? AS part, ? AS source, 4 AS n_tows, 3 AS n_links, 1.0 AS factor",
+                [METHODS[-1], part, source],
             )
         db.execute(
             "INSERT INTO study.season_steps BY NAME SELECT ? AS method, 2009 AS season, 0 AS part, "
-            "'log1' AS log, 3 AS n_boats, 'not told' AS cause",
+            "3 AS n_boats, 'not told' AS cause",
             [METHODS[-1]],
         )
         db.execute("UPDATE contents SET rows = 3 WHERE \"table\" = 'season_links'")

@@ -9,6 +9,7 @@ from pypdf import PdfReader
 from dashboards.documents import certificate, proposal
 from pipeline.errors import MissingKnowledgeError
 from pipeline.races.race import power_per_rower_w
+from pipeline.register.register import draft_name
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
 from warehouse.editions.compare import CauseSummary, largest_first
@@ -189,3 +190,8 @@ def test_a_proposal_counts_places_as_the_pages_of_races_do(views):
     placed = rows.drop_nulls("new_rank")
     assert results == placed.height > 0
     assert moved == placed.filter(pl.col("old_rank") != pl.col("new_rank")).height
+
+
+def test_a_draft_that_could_not_be_made_has_no_results(views):
+    winners, moved = replayed(views, EDITIONS[0], draft_name("never-made"))
+    assert (winners["new_winner"].drop_nulls().to_list(), moved) == ([], (0, 0))

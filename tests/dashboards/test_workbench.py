@@ -11,9 +11,8 @@ import pytest
 from polars.testing import assert_frame_equal
 
 from dashboards.guard import listen
-from dashboards.site.cells import KEPT
 from dashboards.workbench import texts
-from dashboards.workbench.bench import SCENARIO, Base, Bench, Named, Question
+from dashboards.workbench.bench import KEPT, SCENARIO, Base, Bench, Named, Question
 from dashboards.workbench.form import _kind, controls
 from dashboards.workbench.server import LOOPBACK
 from pipeline.assessment.checks import CODES
@@ -91,9 +90,8 @@ def test_kinds_of_options():
     assert CONTROLS["wind", "model"]["values"] == ["head", "oblique"]
     factor = CONTROLS["speed", "factor"]
     assert (factor["least"], factor["most"], factor["whole"]) == (0.85, 1.2, False)
-    assert CONTROLS["window", "speed_drift_m_s"]["least"] == pytest.approx(0.001)
     assert CONTROLS["wind", "averaging_s"]["by"] == 1
-    assert CONTROLS["window", "speed_drift_m_s"]["unit"] == "m/s"
+    assert CONTROLS["wind", "averaging_s"]["unit"] == "s"
     assert set(CONTROLS["assessment", "reject"]["values"]) == set(CODES)
 
 
@@ -134,11 +132,11 @@ def test_a_base_is_cut_at_the_seasons_of_the_archive(bench):
 
 def test_an_answer_is_plain_data_for_json(bench, history):
     boat = history.tows["fsn_no"][0]
-    answer = bench.answer(question(bench, boat=boat, curve={"cap_hull_speeds": 1.2}))
+    answer = bench.answer(question(bench, boat=boat, wind={"side": 1.2}))
     text = json.dumps(answer, allow_nan=False)
     assert answer["summary"]["lines"] == len(answer["register"])
     assert {row["method"] for row in answer["boat_curves"]} == {"as-published", SCENARIO}
-    assert [d["option"] for d in answer["changed_options"]] == ["cap_hull_speeds"]
+    assert [d["option"] for d in answer["changed_options"]] == ["side"]
     assert SCENARIO in text
 
 
@@ -181,7 +179,7 @@ def test_what_is_not_known_is_refused(bench):
     [
         {},
         {"wind": {"ahead": 0.62, "model": "head"}, "run_point": {"estimator": "ratio_of_means"}},
-        {"window": {"minimum_s": 40.0}, "speed": {"correction": "estimated"}},
+        {"window": {"rule": "all"}, "speed": {"correction": "estimated"}},
     ],
 )
 def test_the_register_of_a_saved_file_is_the_one_that_was_shown(bench, history, changes):

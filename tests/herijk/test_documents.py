@@ -102,6 +102,8 @@ def test_a_slide(lost, owner, name, is_one, fails, monkeypatch, tmp_path):
 
 def test_a_page(fails, tmp_path):
     command = ("export", "pages", "--out", tmp_path / "pages")
-    fails("page-due.html", render, "_write_page", lambda _, p, *__: p.path == "due.html", *command)
-    assert not (tmp_path / "pages" / "due.html").exists()
+    fails(
+        "page-boats.html", render, "_write_page", lambda _, p, *__: p.path == "boats.html", *command
+    )
+    assert not (tmp_path / "pages" / "boats.html").exists()
     assert (tmp_path / "pages" / "register.html").exists()

@@ -10,16 +10,16 @@ HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy
 HEAVY |= {READING}
 NEEDED = {
     "herijk.cli.main": set(),
+    "herijk.cli.render": set(),
+    "herijk.cli.registers_text": {"duckdb", "numpy", "polars"},
+    "herijk.cli.audit_text": HEAVY - {"altair", "dagster", "sqlalchemy"},
     "pipeline.method.definition": set(),
     "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
     "warehouse.queries.due": {"duckdb", "numpy", "polars"},
-    # It computes the statistics of types over the tows that are asked for.
     "warehouse.queries.audit": HEAVY - {"altair", "dagster", "sqlalchemy", READING},
-    # It replays races.
     "warehouse.editions.compare": {"dataframely", "numpy", "polars", "scipy"},
     # Columns of later, which an old edition lacks, are read from their declaration.
     "warehouse.editions.lineage": {"dataframely", "numpy", "polars"},
-    # A rebuild that finds nothing new.
     "assets.rebuild": HEAVY - {"altair", "dagster", "sqlalchemy"},
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}

@@ -38,9 +38,9 @@ def surfaces(store, herijk, kept):
         pages = [
             page for name in ("start", "register", "changes", "quality") for page in made[name]()
         ]
-        shown |= {page.path: site.html(page)[0] for page in pages}
+        shown |= {page.path: site.html(page) for page in pages}
         own = dict(boat_pages(views, METHODS))[line["fsn_no"]]
-        shown["boat"] = site.html(own())[0]
+        shown["boat"] = site.html(own())
         certificate.certificates(views, DRAFT, line["fsn_no"], "en")
         against = f"concept-{METHODS[0]}"
         proposal.proposal(views, [METHODS[-1]], against, "en", KnownMethods.of(store))

@@ -163,7 +163,6 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
     return {
         "season": season,
         "part": 0,
-        "log": "log1",
         "fsn_no": f"FSN{100 + boat}",
         "rowers": 8,
         "crew_class": "H",
@@ -196,11 +195,11 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
 def register(world):
     """Season factors, the last tow of every line, and the budget of every tow."""
     found = season_log.estimate_season_factors(world.tows)
-    logs = found.factors.select("season", "part", "log", log_sd="ln_sd", log_dof="dof")
+    logs = found.factors.select("season", "part", log_sd="ln_sd", log_dof="dof")
     era = pl.when(pl.col("season") < 2012).then(2009).otherwise(2012)
     wander = era.replace_strict(found.tow_log_sd, return_dtype=pl.Float64)
     anchored = pl.col("anchored")
-    tows = world.tows.join(logs, on=["season", "part", "log"], how="left").with_columns(
+    tows = world.tows.join(logs, on=["season", "part"], how="left").with_columns(
         pl.col("log_sd").fill_null(0.0),
         pl.col("log_dof").fill_null(np.inf),
         pl.when(anchored).then(0.0).otherwise(wander).alias("tow_log_sd"),

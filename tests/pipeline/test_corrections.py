@@ -106,10 +106,6 @@ def test_temperature(clean, water_c):
     assert corrected.max() < 0.01
 
 
-def test_temperature_at_the_reference_changes_nothing(clean):
-    assert np.array_equal(cw_of(Defects(), temperature='{ rule = "ittc57" }'), clean)
-
-
 def accelerating(acceleration_m_s2: float) -> tuple[pl.DataFrame, "object"]:
     """A world without defects whose boats gain or lose speed steadily during each run."""
     settings = world(Defects())
@@ -144,16 +140,6 @@ def test_inertia(clean, acceleration_m_s2):
     assert error(plain, clean).min() > 0.01
     assert (np.sign(plain - clean) == np.sign(acceleration_m_s2)).all()
     assert error(mended, clean).max() < 1e-4
-
-
-def test_inertia_lessens_the_error_of_a_wandering_helm(clean):
-    wandering = Defects(inertia=1.0, speed_wander_m_s=0.05)
-    plain = error(cw_of(wandering), clean)
-    mended = error(
-        cw_of(wandering, run_point='{ estimator = "mean_of_ratios", inertia = "end_speeds" }'),
-        clean,
-    )
-    assert np.sqrt(np.mean(mended**2)) < 0.6 * np.sqrt(np.mean(plain**2))
 
 
 def test_ratio_of_means_is_not_biased_by_a_noisy_log(clean):

@@ -105,14 +105,6 @@ def test_a_search_that_does_not_come_to_rest_gives_no_curve(monkeypatch):
     assert unsettled.a_kg_m == pytest.approx(points.cw_kg_m.mean(axis=1))
 
 
-def test_a_tow_without_points_is_flagged_beside_a_sound_one():
-    used = [[False] * 3, [True] * 3]
-    fitted = curve.fit(curve.Points.of(np.full((2, 3), [2, 2.5, 3]), np.full((2, 3), 30.0), used))
-    assert fitted.converged.tolist() == [False, True]
-    assert fitted.n_points.tolist() == [0, 3]
-    assert fitted.a_kg_m == pytest.approx([0.0, 30.0])
-
-
 def test_a_flat_curve_is_a_curve_without_b():
     fitted = curve.fit(curve.Points.of([2.0, 2.5, 3.0], [32.0, 31.0, 30.0]))
     assert fitted.converged[0]
@@ -159,12 +151,6 @@ def test_given_b_is_linear_least_squares():
     assert fitted.rss_kg2_m2[0] == pytest.approx(rss)
 
 
-def test_b_below_a_measured_speed_gives_no_curve():
-    points = curve.Points.of([2.0, 2.5, 3.0], [30.0, 32.0, 35.0])
-    assert not curve.fit_given_b(points, 2.9).converged[0]
-    assert not curve.fit_capped(points, curve.fit(points), 2.9).converged[0]
-
-
 def test_covariance_is_that_of_the_linearised_fit():
     points, *_, v0 = noisy_points(seed=6, n_fits=1)
     fitted = curve.fit(points)
@@ -183,30 +169,6 @@ def test_covariance_is_that_of_the_linearised_fit():
     assert errors.c0_variance_kg2_m2[0] == pytest.approx(expected[0, 0], rel=1e-6)
     assert errors.q_variance[0] == pytest.approx(expected[1, 1], rel=1e-6)
     assert errors.c0_q_covariance_kg_m[0] == pytest.approx(expected[0, 1], rel=1e-6)
-
-
-def test_cw_interval_does_not_depend_on_the_reference_speed():
-    points, *_, v0 = noisy_points(seed=7, n_fits=20)
-    fitted = curve.fit(points)
-    scatter = curve.own_scatter(fitted)
-    bounds = [
-        curve.cw_interval(
-            fitted, curve.covariance(points, fitted, scatter, v0 * f), scatter.dof, 1.1 * v0
-        )
-        for f in (0.9, 1.0, 1.15)
-    ]
-    for interval in bounds[1:]:
-        assert interval.lo == pytest.approx(bounds[0].lo)
-        assert interval.hi == pytest.approx(bounds[0].hi)
-
-
-def test_a_reference_speed_beyond_b_gives_an_unbounded_interval_not_an_error():
-    points = curve.Points.of([2.0, 2.5, 3.0, 3.1], [20.0, 25.0, 40.0, 46.0])
-    fitted = curve.fit(points)
-    scatter = curve.own_scatter(fitted)
-    errors = curve.covariance(points, fitted, scatter, fitted.b_m_s + 0.1)
-    assert errors.c0_variance_kg2_m2[0] == np.inf
-    assert curve.cw_interval(fitted, errors, scatter.dof, 2.5) == (0.0, np.inf)
 
 
 def test_profile_bounds_lie_where_the_sum_of_squares_says():
@@ -265,17 +227,3 @@ def test_a_used_point_that_is_no_measurement_is_refused(bad):
     with pytest.raises(BrokenPromiseError, match="first is curve 1"):
         curve.Points.of(speed, cw)
     assert curve.fit(curve.Points.of(speed, cw, np.isin(cw, bad, invert=True) & (cw > 0)))
-
-
-def test_arrays_of_different_shape_or_without_points_are_refused():
-    with pytest.raises(BrokenPromiseError, match="one shape"):
-        curve.Points.of([2.0, 2.5], [30.0, 31.0, 32.0])
-    with pytest.raises(BrokenPromiseError, match="one shape"):
-        curve.Points.of(np.empty((3, 0)), np.empty((3, 0)))
-
-
-def test_no_curves_are_no_error():
-    points = curve.Points.of(np.empty((0, 6)), np.empty((0, 6)))
-    fitted = curve.fit_capped(points, curve.fit(points), 10.0)
-    assert fitted.a_kg_m.shape == (0,)
-    assert curve.b_interval(points, fitted, curve.own_scatter(fitted)).hi.shape == (0,)

@@ -122,20 +122,6 @@ def test_without_a_race_in_the_past_year_the_lower_end_is_proposed():
     assert power(row["tow_speed_m_s"]) == pytest.approx(70)
 
 
-def test_the_stream_is_taken_off_and_the_fastest_race_counts():
-    raced = [("X", dt.date(2018, 5, 1), 2.3, 900.0), ("X", dt.date(2018, 4, 1), 2.2, 0.0)]
-    assert due(line("X", 2.1), raced=raced)["X"]["raced_speed_m_s"] == pytest.approx(2.3)
-
-
-def test_a_speed_beyond_the_curve_says_so():
-    assert due(line("X", 2.0))["X"]["beyond_curve"]
-
-
-def test_a_flat_curve_has_speeds_too():
-    row = due(line("X", 2.35, a=44.0, b=None))["X"]
-    assert 44.0 * row["highest_speed_m_s"] ** 3 / ROWERS == pytest.approx(90)
-
-
 def test_a_boat_without_a_curve_gets_the_middle_of_like_boats():
     types = [("X", "Kuiken"), ("Y", "Kuiken"), ("Z", "Vlet")]
     found = due(line("X", 2.35), line("Y", None), line("Z", None), types=types)

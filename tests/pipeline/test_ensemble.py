@@ -51,55 +51,11 @@ def test_tows_of_one_season_err_together_as_far_as_they_share(world):
     assert correlation == pytest.approx(expected, abs=4 / np.sqrt(MANY))
 
 
-def test_season_factors_err_together_as_they_were_estimated(world):
-    found, _, held = register(world)
-    only_log = held.filter(pl.col("component") == "season_log")
-    first = world.tows.filter(pl.col("season").is_in([2009, 2010])).unique(
-        "season", keep="first", maintain_order=True
-    )
-    members = ensemble.register_ensemble(
-        of_tows(world, first["tow_id"].to_list()), only_log, found, MANY
-    )
-    sd = np.sqrt(np.diag(found.covariance))
-    expected = found.covariance[0, 1] / (sd[0] * sd[1])
-    correlation = np.corrcoef(np.log(members).T)[0, 1]
-    assert expected > 0.1
-    assert correlation == pytest.approx(expected, abs=4 / np.sqrt(MANY))
-
-
 def test_a_line_keeps_its_members_when_others_go(drawn):
     found, lines, held, members = drawn
     kept = lines.head(3)
     mine = held.filter(pl.col("tow_id").is_in(kept["tow_id"].implode()))
     assert (ensemble.register_ensemble(kept, mine, found) == members[:, :3]).all()
-
-
-def test_the_same_tables_give_the_same_members(drawn):
-    found, lines, held, members = drawn
-    assert (ensemble.register_ensemble(lines, held, found) == members).all()
-
-
-def test_without_season_factors_the_members_can_still_be_drawn(world):
-    anchored = world.tows.filter(pl.col("season") >= 2014)
-    found, lines, held = register(type(world)(anchored, {}))
-    assert found.factors.is_empty()
-    assert np.isfinite(ensemble.register_ensemble(lines, held, found)).all()
-
-
-def test_frame_has_a_row_per_member_and_line(drawn):
-    _, lines, _, members = drawn
-    frame = ensemble.as_frame(lines, members)
-    assert frame.columns == ["member", *lines.columns]
-    assert frame.height == members.size
-    row = frame.filter((pl.col("member") == 7) & (pl.col("fsn_no") == lines["fsn_no"][4]))
-    assert row["cw_kg_m"].to_list() == [members[6, 4]]
-
-
-def test_a_method_without_estimated_factors_has_members_too(world):
-    _, lines, held = register(world)
-    members = ensemble.register_ensemble(lines, held.filter(pl.col("component") == "random"), None)
-    u = held.filter(pl.col("component") == "random").join(lines, on="tow_id")["u_ratio"].mean()
-    assert np.log(members).std(axis=0, ddof=1).mean() == pytest.approx(u, rel=0.05)
 
 
 def test_who_is_heavier_is_told_apart_by_what_is_not_shared():

@@ -10,7 +10,6 @@ from pipeline.steps.resistance import (
     OverWindow,
     run_means,
     temperature_change_kg_m,
-    wetted_surface_m2,
 )
 from tests.pipeline.methods import method
 from tests.worlds import measure
@@ -44,18 +43,8 @@ def test_what_is_not_known_is_not_corrected_and_said(missing):
     cold = Defects(water_temperature_c=(4.0, 4.0))
     unknown = pl.when(pl.col("tow_id") == "2015-002").then(None).otherwise(missing)
     batch = batch_of(cold, **{missing: unknown})
-    rule = method(temperature='{ rule = "ittc57" }').for_season(2015).temperature
+    rule = method(temperature='{ rule = "ittc57" }').for_season(2015)
     change, known = temperature_change_kg_m(batch, rule, np.full(36, 2.5))
     assert known.tolist() == [True, False, True, True, True, True]
     assert (change[batch.tow == 1] == 0.0).all()
     assert (change[batch.tow != 1] < 0.0).all()  # warmer water has less friction
-
-
-def test_the_wetted_surface_is_near_that_of_the_simulated_hulls():
-    """The simulator keeps a surface of its own; both are estimates from the same dimensions."""
-    batch = batch_of(Defects())
-    mass = batch.of_tow("weight_kg") + batch.of_tow("crew_weight_kg")
-    surface = wetted_surface_m2(mass, batch.of_tow("waterline_length_m"))
-    length, beam = batch.of_tow("waterline_length_m"), batch.of_tow("beam_m")
-    assert (surface > 0.5 * length * beam).all()
-    assert (surface < 1.5 * length * beam).all()

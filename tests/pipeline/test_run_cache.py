@@ -9,14 +9,13 @@ from herijk.simulate import WorldSettings
 from pipeline.blocks.batch import Batch
 from pipeline.recompute.run_cache import RunCache
 from pipeline.steps.resistance import OverWindow, run_means
-from pipeline.steps.window import choose_windows
+from pipeline.steps.window import steady_windows, whole_runs
 from tests.pipeline.methods import method
 from tests.worlds import measure
 
 CHANGES = (
     {},
     {"window": '{ rule = "steady" }'},
-    {"window": '{ rule = "steady", minimum_s = 20.0 }'},
     {"run_point": '{ estimator = "ratio_of_means" }'},
     {"run_point": '{ estimator = "ratio_of_means", inertia = "end_speeds" }'},
     {"wind": '{ model = "head" }'},
@@ -46,7 +45,8 @@ def test_means_and_windows_are_those_found_anew(batches):
             steps = method(**change).for_season(2012)
             for batch in batches:
                 alone = Batch.of(batch.tows, batch.blocks)
-                windows = choose_windows(alone.blocks, steps.window)
+                choose = whole_runs if steps.window.rule == "all" else steady_windows
+                windows = choose(alone.blocks)
                 sums = OverWindow.of(alone.blocks, windows.mask)
                 anew = [windows, run_means(alone, sums, steps)]
                 held = [cache.windows(batch, steps), cache.means(batch, steps)]
@@ -69,12 +69,3 @@ def test_a_log_factor_leaves_windows_and_means_as_they_are(batches):
     assert found is cache.means(batches[0], plain)
     cache.clear()
     assert len(cache) == 0
-
-
-def test_coefficients_of_the_wind_leave_windows_and_means_as_they_are(batches):
-    cache = RunCache()
-    fixed, searched = (
-        method(wind=f'{{ model = "head", {rest} }}').for_season(2012)
-        for rest in ("ahead = 0.5", 'ahead = 0.3, coefficients = "archive"')
-    )
-    assert cache.means(batches[0], fixed) is cache.means(batches[0], searched)

@@ -10,13 +10,10 @@ from hypothesis import strategies as st
 
 from pipeline.arrays import FloatArray
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.method.definition import Window
-from pipeline.steps.window import HAND_COLUMNS, Windows, choose_windows
+from pipeline.steps.window import HAND_COLUMNS, Windows, steady_windows, whole_runs
 
 SECONDS = 50
 SAMPLES = 20
-STEADY = Window(rule="steady")
-BY_HAND = Window(rule="by_hand")
 Hand = tuple[int, int, str] | None
 
 
@@ -56,8 +53,8 @@ def blocks_of(runs: Sequence[Run], hand: Sequence[Hand] | None = None) -> RunBlo
     return RunBlocks(frame, stacked([np.ones(len(run.speed)) for run in runs]), sums)
 
 
-def window_of(run: Run, rule: Window = STEADY) -> tuple[int, int, str]:
-    found = choose_windows(blocks_of([run]), rule)
+def window_of(run: Run) -> tuple[int, int, str]:
+    found = steady_windows(blocks_of([run]))
     assert found.exists[0]
     return int(found.start_s[0]), int(found.end_s[0]), found.reasons[0]
 
@@ -66,40 +63,33 @@ def test_a_clean_run_is_kept_whole() -> None:
     assert window_of(Run()) == (0, SECONDS, "")
 
 
-def test_a_ramp_at_the_start_is_cut_with_its_tail() -> None:
+@pytest.mark.parametrize("backwards", [False, True])
+def test_a_ramp_is_cut_with_its_tail(backwards: bool) -> None:
     run = Run()
     run.speed[:8] -= np.linspace(0.3, 0.04, 8)
+    if backwards:
+        run.speed = run.speed[::-1]
     start, end, reason = window_of(run)
-    assert 8 <= start <= 14
-    assert end == SECONDS
-    assert reason == "speed_drift"
+    cut, kept = (SECONDS - end, start) if backwards else (start, SECONDS - end)
+    assert 8 <= cut <= 14
+    assert (kept, reason) == (0, "speed_drift")
 
 
-def test_a_ramp_at_the_end_is_cut_with_its_tail() -> None:
-    run = Run()
-    run.speed[-8:] -= np.linspace(0.04, 0.3, 8)
-    start, end, reason = window_of(run)
-    assert start == 0
-    assert SECONDS - 14 <= end <= SECONDS - 8
-    assert reason == "speed_drift"
-
-
-def test_a_force_peak_near_the_start_is_cut() -> None:
-    run = Run()
-    run.force[4:6] += 60
-    start, end, reason = window_of(run)
-    assert 6 <= start <= 8
-    assert end == SECONDS
-    assert reason == "force_peak"
-
-
-def test_a_gust_near_the_end_is_cut() -> None:
-    run = Run()
-    run.wind_y[43:46] += 5
-    start, end, reason = window_of(run)
-    assert start == 0
-    assert 41 <= end <= 43
-    assert reason == "gust"
+@pytest.mark.parametrize(
+    ("channel", "size", "code"), [("force", 60, "force_peak"), ("wind_y", 5, "gust")]
+)
+def test_a_peak_near_an_end_is_cut_and_one_in_the_middle_cannot_be(
+    channel: str, size: float, code: str
+) -> None:
+    early, middle = Run(), Run()
+    getattr(early, channel)[4:7] += size
+    getattr(middle, channel)[24:26] += size
+    start, end, reason = window_of(early)
+    assert 7 <= start <= 9
+    assert (end, reason) == (SECONDS, code)
+    start, end, _ = window_of(middle)
+    assert start < 24
+    assert end > 26
 
 
 def test_several_disturbances_are_all_named() -> None:
@@ -107,14 +97,6 @@ def test_several_disturbances_are_all_named() -> None:
     run.force[2:4] += 60
     run.wind_y[46:48] += 5
     assert window_of(run)[2] == "force_peak,gust"
-
-
-def test_a_disturbance_in_the_middle_cannot_be_cut_out() -> None:
-    run = Run()
-    run.force[24:26] += 60
-    start, end, _ = window_of(run)
-    assert start < 24
-    assert end > 26
 
 
 def test_ends_that_differ_are_cut_though_no_ramp_or_peak_is_seen() -> None:
@@ -126,30 +108,19 @@ def test_ends_that_differ_are_cut_though_no_ramp_or_peak_is_seen() -> None:
     assert 42 <= end < SECONDS
 
 
-def test_a_slow_rise_of_over_a_tenth_of_a_metre_per_second_leaves_no_window() -> None:
-    run = Run()
-    run.speed += np.linspace(0, 0.5, SECONDS)
-    assert_none(choose_windows(blocks_of([run]), STEADY))
-
-
-def test_wind_that_rises_is_cut_to_equal_ends_or_said_by_how_much() -> None:
-    dropping, rising = Run(), Run()
+def test_wind_and_force_that_rise_are_cut_to_equal_ends_or_said_by_how_much() -> None:
+    dropping, rising, stronger = Run(), Run(), Run()
     dropping.wind_x[:8] += 1.6
     rising.wind_x += np.linspace(0, 4, SECONDS)
-    found = choose_windows(blocks_of([dropping, rising]), STEADY)
-    over = found.ends.in_limits(STEADY)
+    stronger.force *= np.linspace(0.8, 1.2, SECONDS)
+    found = steady_windows(blocks_of([dropping, rising, stronger]))
+    over = found.ends.in_limits
     assert over[0] <= 1.0
     assert found.start_s[0] >= 5
     assert found.ends.wind_m_s[1] == pytest.approx(over[1])
     assert 1.8 < over[1] < 2.2  # of the shortest window, 30 s: 4 * 25 / 49
-
-
-def test_a_force_that_differs_more_than_the_limit_is_said() -> None:
-    run = Run()
-    run.force *= np.linspace(0.8, 1.2, SECONDS)
-    ends = choose_windows(blocks_of([run]), STEADY).ends
-    assert 0.17 < ends.force_ratio[0] < 0.22  # of the shortest window, 30 s: 0.4 * 25 / 49
-    assert ends.in_limits(STEADY)[0] == pytest.approx(ends.force_ratio[0] / 0.1)
+    assert 0.17 < found.ends.force_ratio[2] < 0.22  # 0.4 * 25 / 49
+    assert over[2] == pytest.approx(found.ends.force_ratio[2] / 0.1)
 
 
 @settings(max_examples=40, deadline=None)
@@ -163,7 +134,7 @@ def test_seconds_without_samples_are_left_out_and_cut_nothing(
     n = blocks.n.copy()
     for values in (n, *sums.values()):
         values[:, lost] = 0.0
-    found = choose_windows(RunBlocks(blocks.runs, n, sums), STEADY)
+    found = steady_windows(RunBlocks(blocks.runs, n, sums))
     assert (found.start_s[0], found.end_s[0]) == (0, SECONDS)
 
 
@@ -173,40 +144,27 @@ def assert_none(found: Windows, run: int = 0) -> None:
     assert found.start_s[run] == found.end_s[run] == 0
 
 
-def test_speed_that_rises_all_the_time_leaves_no_window() -> None:
+@pytest.mark.parametrize("rise", [0.5, 0.8])
+def test_speed_that_rises_all_the_time_leaves_no_window(rise: float) -> None:
     run = Run()
-    run.speed += np.linspace(-0.4, 0.4, SECONDS)
-    found = choose_windows(blocks_of([run]), STEADY)
+    run.speed += np.linspace(-rise / 2, rise / 2, SECONDS)
+    found = steady_windows(blocks_of([run]))
     assert_none(found)
     assert found.reasons[0] != ""
 
 
-@pytest.mark.parametrize("rule", [STEADY, BY_HAND])
-def test_a_run_shorter_than_the_minimum_has_no_window(rule: Window) -> None:
-    found = choose_windows(blocks_of([Run(29), Run(30), Run()]), rule)
+def test_a_run_shorter_than_the_minimum_has_no_window() -> None:
+    found = steady_windows(blocks_of([Run(29), Run(30), Run()]))
     assert_none(found)
     assert found.end_s.tolist() == [0, 30, SECONDS]
 
 
-def test_a_run_without_blocks_has_no_window() -> None:
-    found = choose_windows(blocks_of([Run(0), Run()]), Window(rule="all"))
+def test_whole_runs_are_kept_but_for_one_without_blocks() -> None:
+    ramp = Run(20)
+    ramp.speed[:10] -= 0.4
+    found = whole_runs(blocks_of([Run(0), ramp]))
     assert_none(found)
-    assert found.end_s[1] == SECONDS
-
-
-def test_the_minimum_is_the_methods() -> None:
-    run = Run()
-    run.speed[:8] -= np.linspace(0.3, 0.04, 8)
-    run.speed[-8:] -= np.linspace(0.04, 0.3, 8)
-    assert_none(choose_windows(blocks_of([run]), STEADY))
-    start, end, _ = window_of(run, Window(rule="steady", minimum_s=20))
-    assert 8 <= start < end <= SECONDS - 8
-
-
-def test_the_rule_all_keeps_everything() -> None:
-    run = Run(20)
-    run.speed[:10] -= 0.4
-    assert window_of(run, Window(rule="all")) == (0, 20, "")
+    assert (found.end_s[1], found.reasons[1]) == (20, "")
 
 
 disturbed = st.tuples(
@@ -234,51 +192,36 @@ def disturbed_run(draw: tuple[int, int, list[tuple[str, int, int, float]]]) -> R
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.lists(disturbed, min_size=1, max_size=5), st.integers(20, 40))
+@given(st.lists(disturbed, min_size=1, max_size=5))
 def test_a_window_is_contiguous_inside_the_run_and_never_too_short(
-    draws: list[tuple[int, int, list[tuple[str, int, int, float]]]], minimum_s: int
+    draws: list[tuple[int, int, list[tuple[str, int, int, float]]]],
 ) -> None:
     runs = [disturbed_run(draw) for draw in [*draws, (0, 60, [])]]
     blocks = blocks_of(runs)
-    rule = Window(rule="steady", minimum_s=minimum_s)
-    found = choose_windows(blocks, rule)
+    found = steady_windows(blocks)
     second = np.arange(blocks.seconds)
     between = (second >= found.start_s[:, None]) & (second < found.end_s[:, None])
     assert np.array_equal(found.mask, between)
     assert not (found.mask & (blocks.n == 0)).any()
     length = found.mask.sum(axis=1)
-    assert ((length == 0) | (length >= minimum_s)).all()
+    assert ((length == 0) | (length >= 30)).all()
     assert np.array_equal(found.exists, length > 0)
     whole = length == (blocks.n > 0).sum(axis=1)
     assert all(reason == "" for reason, kept in zip(found.reasons, whole, strict=True) if kept)
 
 
-# By hand
-
-
-def test_a_window_given_by_hand_holds_and_says_why() -> None:
-    blocks = blocks_of([Run(), Run()], [(5, 45, "zwaan"), None])
-    found = choose_windows(blocks, BY_HAND)
-    assert (found.start_s[0], found.end_s[0]) == (5, 45)
+def test_a_window_given_by_hand_holds_whatever_the_rule_would_cut_and_says_why() -> None:
+    peaked = Run()
+    peaked.force[4:6] += 60
+    blocks = blocks_of([peaked, Run()], [(0, 45, "zwaan"), None])
+    found = steady_windows(blocks)
+    assert (found.start_s.tolist(), found.end_s.tolist()) == ([0, 0], [45, SECONDS])
     assert found.reasons == ("by_hand: zwaan", "")
-    assert (found.start_s[1], found.end_s[1]) == (0, SECONDS)
-
-
-def test_a_window_by_hand_may_hold_what_the_rule_would_cut() -> None:
-    run = Run()
-    run.force[4:6] += 60
-    found = choose_windows(blocks_of([run], [(0, 50, "piek verklaard")]), BY_HAND)
-    assert (found.start_s[0], found.end_s[0]) == (0, 50)
-
-
-@pytest.mark.parametrize("rule", [STEADY, Window(rule="all")])
-def test_other_rules_do_not_look_at_windows_by_hand(rule: Window) -> None:
-    found = choose_windows(blocks_of([Run()], [(5, 45, "zwaan")]), rule)
-    assert (found.end_s[0], found.reasons[0]) == (SECONDS, "")
+    assert whole_runs(blocks).end_s.tolist() == [SECONDS, SECONDS]
 
 
 def test_a_window_by_hand_is_as_long_as_any_other() -> None:
-    found = choose_windows(blocks_of([Run(), Run()], [(5, 34, "kort"), (5, 35, "net")]), BY_HAND)
+    found = steady_windows(blocks_of([Run(), Run()], [(5, 34, "kort"), (5, 35, "net")]))
     assert_none(found)
     assert found.reasons[0] == "by_hand: kort"
     assert found.exists[1]

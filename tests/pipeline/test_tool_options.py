@@ -11,7 +11,7 @@ from pipeline.hull import hull_speed_m_s
 from pipeline.method.definition import parse_method, shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
-from pipeline.studies.tool_options import TICKS, option_curves, tick_effects
+from pipeline.studies.options import TICKS, option_curves, tick_effects
 from tests.worlds import measure
 
 SPEEDS = {2010: {"as_read", "multiply", "divide"}, 2013: {"as_read"}, 2016: {"as_read", "dgps"}}
@@ -58,18 +58,6 @@ def test_b_from_length_is_hull_speed(world, curves):
     ticked = curves.filter("b_from_length").join(world.tows, on="tow_id")
     hull = hull_speed_m_s(ticked["waterline_length_m"].to_numpy())
     assert ticked["b_m_s"].to_numpy() == pytest.approx(hull)
-
-
-def test_an_effect_is_the_mean_over_all_combinations_of_the_others(curves):
-    effects = tick_effects(curves)
-    tow_id = curves["tow_id"][0]
-    of_tow = curves.filter(tow_id=tow_id).with_columns(ln=pl.col("cw_kg_m").log())
-    for name in TICKS:
-        others = ["speed", *(tick for tick in TICKS if tick != name)]
-        pairs = of_tow.filter(~pl.col(name)).join(of_tow.filter(name), on=others, suffix="_on")
-        mean = np.exp((pairs["ln_on"] - pairs["ln"]).mean())
-        found = effects.filter(tow_id=tow_id, option=name)["cw_effect_ratio"].item()
-        assert found == pytest.approx(mean)
 
 
 def test_the_speed_correction_is_the_largest_effect_and_dividing_takes_more(world, curves):

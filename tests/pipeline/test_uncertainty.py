@@ -6,7 +6,6 @@ import pytest
 from scipy import stats
 
 from pipeline.quantiles import LEVEL, MAD_TO_SD, NORMAL
-from pipeline.season_log.assumed import Settings
 from pipeline.uncertainty.propagation import (
     COMPONENTS,
     Assumed,
@@ -20,7 +19,7 @@ from tests.pipeline.season_worlds import as_blocks, run_noise, run_point_ratios
 
 def tows(**changed):
     usual = {
-        "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0, "log": "log1",
+        "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0,
         "kappa": 2.86,
         "misfit_ratio": 0.0, "wind_ln_sd": None,
         "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
@@ -52,14 +51,6 @@ def test_pooled_over_36_runs_the_estimate_is_near_the_truth():
     assert ratio.min() > 0.7
 
 
-def test_samples_are_not_independent():
-    """As if they were, a mean of 50 s at 1 kHz would seem 20 times as sure."""
-    noise = run_noise(np.random.default_rng(1), 72, 50)
-    blocks = as_blocks(noise)
-    sd = run_point_uncertainty(blocks, blocks.n > 0, np.zeros(72, int))
-    assert sd[0] > 10 * 0.08 / np.sqrt(50_000)
-
-
 def test_white_noise_gives_the_error_of_a_mean():
     noise = 0.03 * np.random.default_rng(2).standard_normal((600, 50))
     blocks = as_blocks(noise)
@@ -68,17 +59,6 @@ def test_white_noise_gives_the_error_of_a_mean():
     sd = run_point_uncertainty(blocks, window, np.zeros(600, int))
     assert sd[0] == pytest.approx(0.03 / np.sqrt(40), rel=0.08)
     assert sd[-1] == pytest.approx(0.03 / np.sqrt(50), rel=0.08)
-
-
-def test_a_windy_season_does_not_disturb_a_calm_one():
-    rng = np.random.default_rng(3)
-    noise = rng.standard_normal((120, 50)) * np.repeat([0.01, 0.05], 60)[:, None]
-    blocks = as_blocks(noise)
-    season = np.repeat([2011, 2014], 60)
-    sd = run_point_uncertainty(blocks, blocks.n > 0, season)
-    assert sd[-1] / sd[0] == pytest.approx(5.0, rel=0.3)
-    alone = as_blocks(noise[:60])
-    assert sd[:60] == pytest.approx(run_point_uncertainty(alone, alone.n > 0, season[:60]))
 
 
 def test_windows_too_short_or_empty_tell_nothing():
@@ -160,17 +140,6 @@ def test_a_recorded_temperature_is_the_tows_own():
     kind = pl.col("component") == "temperature"
     assert known.filter(kind)["shared"].to_list() == ["single"]
     assert unknown.filter(kind)["shared"].to_list() == ["season"]
-
-
-def test_a_temperature_unlike_its_days_is_as_uncertain_as_it_is_far_off():
-    held = budget(tows(temperature_known=True, water_off_c=10.0))
-    assert u_of(held, "temperature") == pytest.approx(0.03, abs=0.001)
-
-
-def test_where_logs_are_estimated_unrecorded_water_is_as_uncertain_as_in_the_log_factors():
-    held = budget(tows(), Assumed().beside_repeats(0.01, 0.003))
-    formula = Assumed().temperature_formula_ratio
-    assert u_of(held, "temperature") == pytest.approx(np.hypot(Settings().water_sd, formula))
 
 
 def test_interval_takes_few_degrees_of_freedom_into_account():

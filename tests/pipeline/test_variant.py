@@ -9,8 +9,8 @@ from pipeline.method.definition import (
     parse_method,
     shipped_method,
 )
-from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
-from tests.pipeline.methods import method, method_text
+from pipeline.method.variant import cut_at, differences, variant, variant_text
+from tests.pipeline.methods import method
 
 SEASONS = range(2009, 2019)
 
@@ -36,19 +36,11 @@ def test_ranges_are_cut_where_a_season_or_a_range_begins():
 
 def test_a_change_of_all_seasons_is_one_line():
     base = shipped_method("rebased")
-    made = variant(base, "own", "Mijn", "omdat", changed(base, "curve", "cap_hull_speeds", 2.0))
+    made = variant(base, "own", "Mijn", "omdat", changed(base, "runs", "highest_target_ratio", 1.3))
     assert variant_text(made) == (
         'name = "own"\ntitle = "Mijn"\ndescription = "omdat"\nextends = "rebased"\n'
-        'seasons = "2009:"\n\n[steps]\ncurve = { cap_hull_speeds = 2.0 }\n'
+        'seasons = "2009:"\n\n[steps]\nruns = { highest_target_ratio = 1.3 }\n'
     )
-
-
-def test_a_change_of_neighbouring_seasons_is_one_override():
-    base = shipped_method("rebased-2015")
-    ranges = changed(base, "speed", "factor", 1.05, (2010, 2011, 2012))
-    made = variant(base, "own", "t", "", ranges)
-    assert differences(made, base) == [Difference("speed", "factor", 2010, 2012, (1.06, 1.0), 1.05)]
-    assert '[[overrides]]\nrange = "2010:2012"\nspeed = { factor = 1.05 }' in (variant_text(made))
 
 
 def test_nothing_changed_is_the_method_itself():
@@ -78,11 +70,6 @@ def test_a_variant_of_a_file_that_extends_nothing_is_written_out():
     made = variant(base, "own", "t", "", changed(base, "wind", "ahead", 0.4))
     assert "extends" not in variant_text(made)
     assert parse_method(variant_text(made), "own.toml") == made
-
-
-def test_a_file_that_borrows_the_name_of_a_shipped_method_is_not_extended():
-    base = parse_method(method_text("rebased"), "rebased.toml")
-    assert variant(base, "own", "t", "", base.ranges).extends is None
 
 
 def test_seasons_that_are_left_out_are_refused():

@@ -213,15 +213,3 @@ def test_statistics_of_a_season_rest_on_its_tows_alone(built):
     assert {row["season"] for row in figures.outside} <= {2014}
     again = audit(built.store, [boat_type], "rebased-2015")
     assert again.types[0].n_tows > own.height, "the database is as it was"
-
-
-def test_a_boat_is_found_by_its_name_as_people_write_it(built):
-    boat = built.table("boats").row(0, named=True)
-    found = audit(built.store, [f" {boat['name'].upper()} "])
-    assert found.boat["fsn_no"] == boat["fsn_no"]
-
-
-@pytest.mark.parametrize("tows", ["last year", "1999"])
-def test_a_choice_of_tows_that_is_none_is_told(built, tows):
-    with pytest.raises(MissingKnowledgeError, match=tows):
-        audit(built.store, [types_of(built)[0]], tows=tows)

@@ -9,7 +9,7 @@ import shutil
 import polars as pl
 import pytest
 
-import pipeline.recompute.recompute
+import pipeline.recompute.computed
 import pipeline.studies.ladder
 from pipeline.method.definition import parse_method, shipped_method
 from pipeline.register.replay import RaceRules
@@ -59,9 +59,9 @@ AS_PUBLISHED = (shipped_method("as-published"),)
 
 def new_code(monkeypatch):
     """Another version of the code, which finds other run points."""
-    original = pipeline.recompute.recompute.still_air_coefficient_kg_m
+    original = pipeline.recompute.computed.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        pipeline.recompute.recompute,
+        pipeline.recompute.computed,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
@@ -89,7 +89,7 @@ def test_log_factors_of_the_editions_are_used_and_not_estimated_again(published,
     def refuse(*_):
         raise AssertionError("estimated again")
 
-    monkeypatch.setattr(pipeline.studies.ladder, "instruments_of", refuse)
+    monkeypatch.setattr(pipeline.studies.ladder, "season_factors", refuse)
     assert_factors_multiply(diff(published.store, "2014-1", "2014-2").lines)
 
 

@@ -7,7 +7,7 @@ import shutil
 import polars as pl
 import pytest
 
-import pipeline.recompute.recompute
+import pipeline.recompute.computed
 import warehouse.editions.verify
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import shipped_method
@@ -134,9 +134,9 @@ def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_
 def test_what_other_code_makes_otherwise_stands_where_the_head_is_known(
     published_copy, monkeypatch
 ):
-    original = pipeline.recompute.recompute.still_air_coefficient_kg_m
+    original = pipeline.recompute.computed.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        pipeline.recompute.recompute,
+        pipeline.recompute.computed,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )

@@ -14,10 +14,8 @@ from warehouse.store.store import Store
 
 UNTOWABLE = """
 name = "none"
-title = "no run is long enough"
+title = "no tow has runs enough"
 extends = "{base}"
-[steps]
-window = {{ minimum_s = 50.0, speed_drift_m_s = 0.0001, force_ends_ratio = 0.0001 }}
 """
 
 
@@ -109,7 +107,8 @@ def test_a_boat_has_its_curves_under_both_methods(scenario, built):
         assert own.filter(kind="point").height == 6
 
 
-def test_a_method_that_no_tow_survives_is_shown_too(history, scenario):
+def test_a_method_that_no_tow_survives_is_shown_too(history, scenario, monkeypatch):
+    monkeypatch.setattr("pipeline.recompute.computed.FEWEST_RUNS", 7)
     nothing = history.under(parse_method(UNTOWABLE.format(base="rebased-2015"), "none.toml"))
     both = Scenario(scenario.before, nothing)
     summary = both.summary()

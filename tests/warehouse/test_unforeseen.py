@@ -18,7 +18,7 @@ import warehouse.archive
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.blocks.batch import Batch
-from pipeline.recompute.outcome import Outcome
+from pipeline.recompute.computed import Computed
 from tests.architecture.repository import PACKAGES
 from tests.conftest import METHODS, Workbench, shared
 from warehouse.archive.plausibility.run import Run
@@ -34,7 +34,7 @@ def tows_in(value, path):
     """Whether a value that a function is given is about the tow."""
     if isinstance(value, pl.DataFrame):
         return "tow_id" in value.columns and TOW in value["tow_id"]
-    if isinstance(value, Outcome):
+    if isinstance(value, Computed):
         return tows_in(value.batch, path)
     if isinstance(value, Batch):
         return tows_in(value.tows, path)

@@ -9,8 +9,7 @@ from pipeline.method.definition import Method
 from pipeline.recompute.facts import with_hand_windows
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies.ladder import ladder
-from pipeline.studies.options import option_effects
-from pipeline.studies.tool_options import option_curves, tick_effects
+from pipeline.studies.options import option_curves, option_effects, tick_effects
 from pipeline.tables.declare import dy
 from pipeline.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
 from warehouse.derive.inputs import Blocks

@@ -54,6 +54,7 @@ STEPS: Final[Words] = {
     "run_point": ("gemiddelde per run", "run point"),
     "wind": ("wind", "wind"),
     "temperature": ("watertemperatuur", "water temperature"),
+    "unrecorded": ("wat niemand noteerde", "what nobody recorded"),
     "curve": ("kromme", "curve"),
 }
 STATUSES: Final[Words] = {

@@ -271,13 +271,14 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
     )
     ranked = race_changes(before, after).drop_nulls("new_rank")
     moved = ranked.filter(pl.col("old_rank") != pl.col("new_rank")).height
-    method = history.filter(edition=new)["method"].first()
-    members = _members(views, new, str(method))
+    members = _members(views, new)
     return winner_changes(before, after, members), (moved, ranked.height)
 
 
-def _members(views: Views, edition: str, method: str) -> pl.DataFrame:
-    """The ensemble of a draft from the lake, of an edition from its folder."""
-    if edition.startswith(DRAFT):
-        return views.store.read("ensemble", method)
-    return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())
+def _members(views: Views, edition: str) -> pl.DataFrame:
+    """The ensemble of a draft from the lake, of an edition from its folder; else none."""
+    if not edition.startswith(DRAFT):
+        return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())
+    method = edition.removeprefix(DRAFT)
+    is_there = views.store.made_from("ensemble", method) is not None
+    return views.store.read("ensemble", method) if is_there else pl.DataFrame()

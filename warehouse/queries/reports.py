@@ -117,9 +117,9 @@ WHERE f.method = ? ORDER BY f.season
 """
 
 _LOG_PARTS = """
-SELECT season, part, log, source, n_tows, n_links, factor, lo, hi FROM season_links
+SELECT season, part, source, n_tows, n_links, factor, lo, hi FROM season_links
 WHERE method = ? AND season IN (SELECT season FROM season_links WHERE part > 0)
-ORDER BY season, log, part
+ORDER BY season, part
 """
 
 _DIAGNOSIS = """

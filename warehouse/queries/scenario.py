@@ -13,8 +13,8 @@ import polars as pl
 
 from pipeline import curve
 from pipeline.consistency.compared import beside_their_type
-from pipeline.consistency.observed import UNKNOWN_TYPE, bend_of_curve
-from pipeline.curve import VALID_RATIO
+from pipeline.consistency.observed import UNKNOWN_TYPE
+from pipeline.curve import VALID_RATIO, s_of_height
 from pipeline.register.changes import register_changes, side_by_side
 from pipeline.register.register import LINE
 from warehouse.queries.chosen_tows import ALL, chosen
@@ -172,7 +172,7 @@ def _lines(curves: pl.DataFrame) -> pl.DataFrame:
     """Each curve at `LINE_RATIOS` of its declared speed."""
     declared = curves["declared_speed_m_s"].to_numpy()
     a, cw = (curves[name].to_numpy() for name in ("a_kg_m", "cw_kg_m"))
-    bend = bend_of_curve(a, cw, declared)
+    bend = s_of_height(a, cw, declared)
     lines = [
         curves.select("method", "tow_id").with_columns(
             pl.Series("speed_m_s", ratio * declared, pl.Float64),

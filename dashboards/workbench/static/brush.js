@@ -36,7 +36,8 @@ export function offerBrush(figure, view, { x, y }, rowsNow) {
 function boatsInside(rows, { fields, values }) {
   const inside = (row) => fields.every(({ field }, i) => {
     const [low, high] = [...values[i]].sort((a, b) => a - b);
-    return row[field] !== null && row[field] >= low && row[field] <= high;
+    const value = row[field.replace("_seen", "")];
+    return value !== null && value >= low && value <= high;
   });
   return [...new Set(rows.filter(inside).map((row) => row.fsn_no))].sort();
 }

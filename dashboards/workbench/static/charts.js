@@ -71,7 +71,8 @@ async function drawNow(figure) {
   view.addEventListener("click", (_, item) => {
     if (item?.datum?.fsn_no) chooseBoat(item.datum.fsn_no);
   });
-  if (spec.facet) offerBrush(figure, view, spec.spec.encoding, () => figureRows(figure));
+  const scatter = spec.spec?.layer?.find(({ encoding }) => encoding?.href);
+  if (scatter) offerBrush(figure, view, scatter.encoding, () => figureRows(figure));
   await mark(view).runAsync();
   const picture = place.querySelector("svg");
   picture.setAttribute("role", "img");

@@ -9,7 +9,6 @@ import polars as pl
 import pytest
 
 from herijk.simulate import (
-    WORLDS,
     simulate_tow,
     simulate_world,
     true_cw_kg_m,
@@ -17,7 +16,6 @@ from herijk.simulate import (
 )
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.simulate.delft import FROUDE, RESIDUARY
-from pipeline.errors import HerijkError
 from tests.worlds import nearest_hyperbola
 
 DELFT_FILE = Path(__file__).parents[2] / "data" / "uci_yacht_hydrodynamics.csv"
@@ -31,18 +29,6 @@ def world(name, **size):
 def tow_of(name, season, number=0):
     found = world(name, seasons=(season,))
     return simulate_tow(found, found.tows[number])[0], found.tows[number]
-
-
-@pytest.mark.parametrize("name", WORLDS)
-def test_every_world_says_what_is_wrong_and_can_be_simulated(name):
-    assert WORLDS[name].about.endswith(".")
-    samples, _ = tow_of(name, 2016)
-    assert samples.height in (6 * 50 * 20, 12 * 50 * 20)
-
-
-def test_a_world_that_does_not_exist_is_refused_with_those_that_do():
-    with pytest.raises(HerijkError, match="fouling"):
-        world_settings("foulness")
 
 
 @pytest.mark.parametrize(
@@ -64,23 +50,6 @@ def test_a_fault_touches_its_own_channel_in_its_own_seasons(name, season, change
     assert {c for c in samples.columns if not samples[c].equals(clean[c])} == changed
 
 
-def test_scale_and_zero_are_what_was_asked():
-    (scaled, _), (zero, _), (clean, _) = (
-        tow_of(name, 2016) for name in ("force-scale-dgps", "force-zero", "clean")
-    )
-    force = clean["force_n"].to_numpy()
-    assert scaled["force_n"].to_numpy() == pytest.approx(1.04 * force, rel=1e-6)
-    assert zero["force_n"].to_numpy() == pytest.approx(force + 10.0, rel=1e-5)
-
-
-def test_a_log_that_steers_reads_the_target_and_the_ship_goes_faster():
-    (samples, tow), (clean, _) = tow_of("log-steers", 2010), tow_of("clean", 2010)
-    factor = tow.truth.log_factor
-    assert factor > 1.03
-    ratio = samples["log1_m_s"].mean() / clean["log1_m_s"].mean()
-    assert ratio == pytest.approx(factor, rel=0.003)
-
-
 def test_fouling_and_a_replaced_log_move_the_days_of_a_season():
     fouling = [t.truth for t in world("fouling", seasons=(2010,)).tows]
     change = np.log([t.log_factor_of_day / t.season_log_factor for t in fouling])
@@ -92,11 +61,6 @@ def test_fouling_and_a_replaced_log_move_the_days_of_a_season():
     assert (np.diff(steps) <= 0).all()
 
 
-def test_the_zero_drifts_through_the_season():
-    zero = [t.truth.force_zero_n for t in world("force-zero-drift", seasons=(2016,)).tows]
-    assert (zero[0], zero[-1]) == pytest.approx((-12.0, 12.0))
-
-
 def test_a_turning_tide_is_in_the_ground_speed_alone():
     (samples, _), (clean, _) = tow_of("tide", 2016), tow_of("clean", 2016)
     assert samples["log1_m_s"].equals(clean["log1_m_s"])
@@ -105,14 +69,6 @@ def test_a_turning_tide_is_in_the_ground_speed_alone():
     stream = moved * np.array([1, 1, 1, -1, -1, -1])
     assert stream.min() < 0.0 < stream.max()
     assert (np.diff(stream) > 0).all() or (np.diff(stream) < 0).all()
-
-
-def test_the_fleet_steps_at_once_and_stays():
-    stepped, clean = world("fleet-step"), world("clean")
-    for old, new in zip(clean.tows, stepped.tows, strict=True):
-        ratio = new.truth.cw_at_15c_kg_m / old.truth.cw_at_15c_kg_m
-        # The still-air part, some 3 %, does not step.
-        assert ratio == pytest.approx(0.97 if new.season >= 2014 else 1.0, abs=0.002)
 
 
 def test_the_table_of_the_delft_series_is_the_published_one():
@@ -145,30 +101,6 @@ def test_boats_of_a_type_are_identical_where_the_world_says_so():
             shape = boat.waterline_length_m, boat.beam_m, boat.weight_kg, boat.roughness
             boats[boat.boat_type.name].add((*shape, boat.residuary))
     assert {len(shapes) for shapes in boats.values()} == {1}
-
-
-@pytest.mark.parametrize(("name", "linking"), [("unlinked", 0), ("three-links", 3)])
-def test_so_many_boats_of_2010_are_towed_again(name, linking):
-    tows = world(name).tows
-    of_2010 = {(t.boat.index, t.crew_class) for t in tows if t.season == 2010}
-    elsewhere = {(t.boat.index, t.crew_class) for t in tows if t.season != 2010}
-    assert len(of_2010 & elsewhere) == linking
-
-
-def test_missing_temperatures_are_in_the_water_but_not_in_the_list():
-    tows = world("temperatures").tows
-    assert all((t.listed_temperature_c is None) == (t.season < 2014) for t in tows)
-    means = [np.mean([t.water_temperature_c for t in tows if t.season == s]) for s in (2009, 2013)]
-    assert means == pytest.approx([4.0, 12.0], abs=0.8)
-
-
-def test_slow_tows_keep_to_their_range():
-    slow, usual = world("slow-tows").tows, world("clean").tows
-    ratio = np.array(
-        [a.declared_speed_m_s / b.declared_speed_m_s for a, b in zip(slow, usual, strict=True)]
-    )
-    assert 0.2 < (ratio < 0.99).mean() < 0.5
-    assert ratio.min() > 0.745
 
 
 def test_dropouts_gaps_and_spikes_are_in_the_samples():

@@ -28,11 +28,6 @@ def test_the_step_is_seen_whether_rounded_or_cut_off(step, spell):
     assert steps_of(samples(gps, FORCE))["gps_step_m_s"] == pytest.approx(step, rel=1e-4)
 
 
-def test_a_force_in_kilograms_has_steps_of_one():
-    force = np.floor(FORCE / 9.80665) * 9.80665
-    assert steps_of(samples(SPEED, force))["force_step_n"] == pytest.approx(9.80665, rel=1e-4)
-
-
 def test_samples_left_out_and_a_channel_that_is_not_there_tell_nothing():
     gaps = np.where(np.arange(len(FORCE)) % 3 == 0, np.nan, np.floor(FORCE / 5) * 5)
     found = steps_of(samples(None, gaps))

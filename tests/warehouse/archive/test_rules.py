@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from warehouse.archive.faults import Fault
-from warehouse.archive.plausibility.mix_ups import without_other_units
+from warehouse.archive.faults import DefectiveFileError, Fault
+from warehouse.archive.plausibility.mix_ups import check_mix_ups, without_other_units
 from warehouse.archive.plausibility.rules import RUN_RULES, apply_rules, without_stuck_gps
 from warehouse.archive.plausibility.run import SPARE, Run
 
@@ -109,6 +109,20 @@ def test_a_column_in_another_unit_is_lost_once_for_all_runs(times, unit):
     assert [(fault.run, unit in fault.message) for fault in faults] == [(None, True)]
 
 
-def test_a_log_that_stood_still_says_nothing_of_the_unit_of_others():
-    still = [sound(number, log1=np.zeros(1000, np.float32)) for number in (1, 2)]
-    assert without_other_units(still, []) == (still, [])
+@pytest.mark.parametrize(
+    ("changed", "code"),
+    [
+        (lambda c: {"log1": c["wind_speed"] * 2, "wind_speed": c["log1"]}, "swapped_columns"),
+        (lambda c: {"log2": c["gps"].repeat(20)[:1000], "gps": c["log2"]}, "swapped_columns"),
+        (lambda c: {"force": -c["force"]}, "negative_force"),
+        (lambda c: {key: 3.6 * c[key] for key in ("log1", "log2", "gps")}, "speed_unit"),
+    ],
+    ids=["wind of 8 m/s as log1", "a receiver as log2", "force turned", "km/h"],
+)
+def test_a_mix_up_costs_the_tow_and_sound_runs_have_none(changed, code):
+    runs = [sound(number) for number in (1, 2, 3)]
+    check_mix_ups(runs)
+    mixed = [sound(run.number, **changed(run.channels)) for run in runs]
+    with pytest.raises(DefectiveFileError) as error:
+        check_mix_ups(without_other_units(mixed, [])[0])
+    assert error.value.reason_code == code

@@ -23,7 +23,6 @@ title = "Met de hand"
 extends = "rebased-2015"
 seasons = "2014:"
 [steps]
-window = { rule = "by_hand" }
 assessment = { reject = ["few_runs"] }
 """
 

@@ -90,7 +90,7 @@ def judge_samples(samples: pl.DataFrame, tow: Row, runs: pl.DataFrame) -> Judged
     whole, gone = without_other_units(whole, faults)
     check_mix_ups(whole)
     usual_kg_m = usual_resistance_kg_m(whole)
-    judged = [judge_run(run, usual_kg_m, gone, faults) for run in whole]
+    judged = (judge_run(run, usual_kg_m, gone, faults) for run in whole)
     kept = without_stuck_gps([run for run in judged if run is not None], faults)
     _check_left(kept, number, faults)
     return Judged(_with_changes(samples, kept, faults), tuple(faults))
@@ -118,5 +118,5 @@ def _with_changes(samples: pl.DataFrame, kept: list[Run], faults: list[Fault]) -
             own = run.channels[key]
             values[run.start : run.start + len(own)] = own
         changed.append(pl.Series(name, values))
-    lost = [fault.run for fault in faults if fault.lost == "run"]
-    return samples.with_columns(changed).filter(~pl.col("run").is_in(lost))
+    lost = pl.col("run").is_in([fault.run for fault in faults if fault.lost == "run"])
+    return samples.with_columns(changed).filter(~lost)

@@ -76,8 +76,8 @@ def judge_run(
             found.append(_of_samples(run, key, own, of_channel))
             is_gone = of_channel == "column"
             channels[key] = np.where(own | is_gone, np.float32(np.nan), channels[key])
-    cleaned = replace(run, channels=channels) if found else run
-    kept = None if cost == "run" else apply_rules(cleaned, found)
+    run = replace(run, channels=channels) if found else run
+    kept = None if cost == "run" else apply_rules(run, found)
     faults += [fault for fault in found if kept is not None or fault.lost == "run"]
     return kept
 

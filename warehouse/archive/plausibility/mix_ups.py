@@ -26,16 +26,14 @@ from warehouse.archive.plausibility.run import (
 MOVES_AS_A_LOG_HZ: Final = 5.0
 HELD_AS_A_FIX_HZ: Final = (0.1, 2.0)
 """Changes of value a second, at least of a log and of a receiver of one fix a second."""
-
 KM_H_RATIO: Final = (3.0, 4.2)
 """Log 1 over the intended speed where it looks like km/h."""
 FOLLOWS_RATIO: Final = 0.1
 """Spread over the runs of a log or GPS over log 1; wind out and back differs far more."""
 STANDS_RATIO: Final = 0.1
-"""Of a log or GPS over log 1; below it dropped out."""
+"""A log or GPS that is less than so many times log 1 has dropped out."""
 UNITS: Final = {"km/h": 3.6, "kn": 1.9438}
 """Other units of speed in which people have a log or GPS, times m/s."""
-
 Typical = tuple[float, float, float]
 """Median, lowest and highest value of a channel in a typical run."""
 
@@ -59,42 +57,30 @@ def without_wind(runs: list[Run], faults: list[Fault]) -> list[Run]:
 
 def _is_no_wind(run: Run) -> bool:
     wind, (least, most) = run.statistics.get("wind_speed"), EXTREMES["wind_speed"]
-    if wind is None or np.isnan(wind.mean):
-        return wind is not None
-    return wind.changes_hz == 0 and not least <= wind.mean <= most
+    return wind is not None and bool(
+        np.isnan(wind.mean) or (wind.changes_hz == 0 and not least <= wind.mean <= most)
+    )
 
 
 def without_other_units(runs: list[Run], faults: list[Fault]) -> tuple[list[Run], list[str]]:
     """The runs without a log 2 or GPS in another unit of speed, and which of the two that is.
 
-    Raises:
-        DefectiveFileError: `speed_unit`, where log 1 is.
+    Nothing is said of them where log 1 cannot be right.
     """
-    log1 = np.array([run.statistics["log1"].median for run in runs])
-    ratio = float(np.median(log1 / [run.intended_m_s for run in runs]))
-    low, high = KM_H_RATIO
-    if low <= ratio <= high:
-        said = say(
-            "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
-            "looks like km/h under another header.",
-            ratio,
-            low,
-            high,
-        )
-        raise DefectiveFileError("speed_unit", said, HEADER, runs[0].path)
-    if not USUAL["log1"].low <= ratio <= USUAL["log1"].high:
+    log1 = _typical(runs, "log1")
+    if _implausible({"log1": log1}, _intended_m_s(runs)):
         return runs, []
     gone = [key for key in SPARE if key in runs[0].channels and _is_in_another_unit(runs, key)]
     for key in gone:
-        other, ratio = _typical(runs, key)[0], _typical(runs, key)[0] / float(np.median(log1))
-        units = [unit for unit, usual in UNITS.items() if 0.9 < ratio / usual < 1.1]
+        other = _typical(runs, key)[0]
+        units = (unit for unit, usual in UNITS.items() if 0.9 < other / log1[0] / usual < 1.1)
         message = say(
             "column '{column}' holds {:.3g} in a typical run and log1 {:.3g}, so it looks like "
             "{unit}; the tow goes on without this column.",
             other,
-            np.median(log1),
+            log1[0],
             column=COLUMN_OF[key],
-            unit=units[0] if units else say("another unit"),
+            unit=next(units, say("another unit")),
         )
         faults.append(replace(fault_of_all(runs, "implausible_value", message), line=HEADER))
     return [run.without(*gone) for run in runs], gone
@@ -112,18 +98,20 @@ def _is_in_another_unit(runs: list[Run], key: str) -> bool:
 
 
 def check_mix_ups(runs: list[Run]) -> None:
-    """Raises where a tow can only be right with its force turned, or two columns exchanged.
+    """Raises where a tow can only be right with its force turned, or columns or a unit changed.
 
     Raises:
-        DefectiveFileError: `negative_force` or `swapped_columns`.
+        DefectiveFileError: `negative_force`, `swapped_columns` or `speed_unit`.
     """
     typical = {key: _typical(runs, key) for key in runs[0].statistics}
-    intended_m_s = float(np.median([run.intended_m_s for run in runs]))
+    intended_m_s = _intended_m_s(runs)
     wrong = _implausible(typical, intended_m_s)
-    force = typical["force"][0]
-    if force < 0 and not _implausible({**typical, "force": (-force, 0, 0)}, intended_m_s):
-        message = say("The force is {:.0f} N in a typical run; it must be positive.")
-        said = say(message, force, turned=True)
+    if (force := typical["force"][0]) < 0 and not _implausible(
+        {**typical, "force": (-force, 0, 0)}, intended_m_s
+    ):
+        said = say(
+            "The force is {:.0f} N in a typical run; it must be positive.", force, turned=True
+        )
         raise DefectiveFileError("negative_force", said, runs[0].first_line, runs[0].path)
     for one, other in combinations(typical, 2):
         exchanged = {**typical, one: typical[other], other: typical[one]}
@@ -131,6 +119,19 @@ def check_mix_ups(runs: list[Run]) -> None:
             what = say("typically they hold {:.4g} and {:.4g}", typical[one][0], typical[other][0])
             raise _exchanged(one, other, what, runs[0].path)
     _check_log2_and_gps(runs)
+    (low, high), ratio = KM_H_RATIO, typical["log1"][0] / intended_m_s
+    if low <= ratio <= high:
+        said = say(
+            "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
+            "looks like km/h under another header.",
+            ratio,
+            *KM_H_RATIO,
+        )
+        raise DefectiveFileError("speed_unit", said, HEADER, runs[0].path)
+
+
+def _intended_m_s(runs: list[Run]) -> float:
+    return float(np.median([run.intended_m_s for run in runs]))
 
 
 def _typical(runs: list[Run], key: str) -> Typical:

@@ -32,8 +32,7 @@ class Limits:
     def times(self, intended_m_s: float, log1_m_s: float) -> tuple[float, float]:
         """The limits as they are for this speed."""
         units = {"intended": intended_m_s, "intended squared": intended_m_s**2, "log1": log1_m_s}
-        unit = units.get(self.unit, 1.0)
-        return self.low * unit, self.high * unit
+        return self.low * units.get(self.unit, 1.0), self.high * units.get(self.unit, 1.0)
 
 
 USUAL: Final = {
