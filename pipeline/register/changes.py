@@ -94,8 +94,8 @@ def compare_lines(
     cw_ratio, time_ratio = _ratios(pairs)
     compared = both & np.isfinite(cw_ratio)
     same = np.abs(cw_ratio - 1.0) <= SAME_RATIO
-    new_alone = pairs["cw_kg_m"].is_null().to_numpy()
-    change = np.select([both & same, both, new_alone], ["same", "changed", "added"], "removed")
+    kinds = [both & same, both, pairs["cw_kg_m"].is_null().to_numpy()]
+    change = np.select(kinds, ["same", "changed", "added"], "removed")
     power = power_per_rower_w(pairs["cw_kg_m"], pairs["declared_speed_m_s"], pairs["rowers"])
     of_one_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False).to_numpy()
     of_old = _half_width(pairs, "")
@@ -187,8 +187,8 @@ def _ranked(register: pl.DataFrame) -> pl.DataFrame:
     lines = register.drop_nulls("cw_kg_m").select(*LINE, *NUMBERS)
     power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64)
     speed = speed_at_power(*curve_of_lines(lines), (power * lines["rowers"]).to_numpy())
-    rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
-    return lines.with_columns(pl.Series("speed", speed)).with_columns(rank=rank).drop("speed")
+    by_speed = pl.lit(pl.Series(speed)).rank("min", descending=True)
+    return lines.with_columns(rank=by_speed.over("crew_class").cast(pl.Int32))
 
 
 def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:
