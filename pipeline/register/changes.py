@@ -93,8 +93,11 @@ def compare_lines(
     both = pairs["both"].to_numpy()
     cw_ratio, time_ratio = _ratios(pairs)
     compared = both & np.isfinite(cw_ratio)
-    same = np.abs(cw_ratio - 1.0) <= SAME_RATIO
-    kinds = [both & same, both, pairs["cw_kg_m"].is_null().to_numpy()]
+    kinds = [
+        both & (np.abs(cw_ratio - 1.0) <= SAME_RATIO),
+        both,
+        pairs["cw_kg_m"].is_null().to_numpy(),
+    ]
     change = np.select(kinds, ["same", "changed", "added"], "removed")
     power = power_per_rower_w(pairs["cw_kg_m"], pairs["declared_speed_m_s"], pairs["rowers"])
     of_one_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False).to_numpy()
@@ -159,8 +162,8 @@ def _pairs(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         suffix="_new",
         maintain_order="left_right",
     )
-    both = (pl.col("cw_kg_m").is_not_null() & pl.col("cw_kg_m_new").is_not_null()).alias("both")
-    return pairs.with_columns(both).sort(LINE)
+    both = pl.col("cw_kg_m").is_not_null() & pl.col("cw_kg_m_new").is_not_null()
+    return pairs.with_columns(both=both).sort(LINE)
 
 
 def _ratios(pairs: pl.DataFrame) -> tuple[FloatArray, FloatArray]:
@@ -187,8 +190,8 @@ def _ranked(register: pl.DataFrame) -> pl.DataFrame:
     lines = register.drop_nulls("cw_kg_m").select(*LINE, *NUMBERS)
     power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64)
     speed = speed_at_power(*curve_of_lines(lines), (power * lines["rowers"]).to_numpy())
-    by_speed = pl.lit(pl.Series(speed)).rank("min", descending=True)
-    return lines.with_columns(rank=by_speed.over("crew_class").cast(pl.Int32))
+    rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
+    return lines.with_columns(speed=pl.Series(speed)).with_columns(rank=rank)
 
 
 def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:
