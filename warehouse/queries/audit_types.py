@@ -15,6 +15,7 @@ from pipeline.consistency.eras import ERAS
 from pipeline.consistency.homogeneity import LEVEL
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.tables.row import Row
+from warehouse.queries.chosen_tows import ALL, NEWEST
 from warehouse.store.database import is_simulated, rows
 
 ENOUGH_POWER: Final = 0.8
@@ -60,7 +61,7 @@ class TypeStatistics:
     """All statistics of a type under one method.
 
     Attributes:
-        lines: rows of `type_consistency` with `follows`.
+        lines: rows of `type_lines` with `follows`.
         bends: the row of `type_homogeneity` with `equal_possible`, or `n` and `reason`.
         speed_trend: the row of that table with `follows`, or `n` and `reason`.
         shared: per pooling, what sharing a bend does to B and Cw.
@@ -113,7 +114,9 @@ def types_audit(
 ) -> TypesAudit:
     """Facts and figures of the types under each method, what holds for all, and what differs."""
     audited = [
-        OneType(**vars(type_facts(db, name)), under={m: _type_under(db, name, m) for m in methods})
+        OneType(
+            **vars(type_facts(db, name)), under={m: _type_under(db, name, m, tows) for m in methods}
+        )
         for name in types
     ]
     return TypesAudit(
@@ -131,14 +134,16 @@ def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> TypeFacts:
     return TypeFacts(**rows(db, _FACTS, boat_type)[0])
 
 
-def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> TypeStatistics:
-    """All statistics of a type under one method."""
+def _type_under(
+    db: duckdb.DuckDBPyConnection, boat_type: str, method: str, tows: str
+) -> TypeStatistics:
+    """All statistics of a type under one method; lines are of all tows, or of the newest chosen."""
     own = (method, boat_type)
     reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
     absent = [{"n": 0, "reason": reason, "equal_possible": None, "follows": None}]
     eras = {row["era"]: row for row in rows(db, _ERAS, *own)}
     no_era = {"n": 0, "apart": None, "reason": "few_pairs"}
-    lines = rows(db, _LINES, *own)
+    lines = rows(db, _LINES, *own, ALL if tows == ALL else NEWEST)
     return TypeStatistics(
         lines=lines,
         hull_speed=rows(db, _HULL_SPEED, *own),
@@ -246,7 +251,8 @@ _FOLLOWS = "CASE WHEN slope IS NOT NULL THEN slope_lo > 0 OR slope_hi < 0 END AS
 """Whether the interval of a slope leaves out zero."""
 
 _LINES = f"""
-SELECT *, {_FOLLOWS} FROM type_consistency WHERE method = ? AND boat_type = ?
+SELECT * EXCLUDE tows, {_FOLLOWS} FROM type_lines
+WHERE method = ? AND boat_type = ? AND tows = ?
 ORDER BY quantity, explaining, within
 """  # noqa: S608
 
