@@ -233,7 +233,7 @@ def _described(choice: Choice, tows: Observed) -> Iterator[tuple[Row, _Line | No
 
 def _levels(group: FloatArray | IntArray) -> FloatArray:
     """A column of 0 and 1 for each group."""
-    return (group[:, None] == np.unique(group)).astype(np.float64)
+    return np.asarray(group[:, None] == np.unique(group), dtype=np.float64)
 
 
 def _reason(row: Row, x: FloatArray, n_crews: int, centred: FloatArray) -> str:

@@ -96,7 +96,7 @@ class Problem:
         group = np.asarray([] if other is None else other)
         others = (group[:, None] == np.unique(group)).astype(np.float64)
         self.others = others.reshape(len(self.y), -1)
-        self.plain: FloatArray = np.linalg.lstsq(self.x, self.y)[0]
+        self.plain = np.asarray(np.linalg.lstsq(self.x, self.y)[0], dtype=np.float64)
         self.residual = self.y - self.x @ self.plain
         self.rows_beyond = len(self.y) - int(self.x.shape[1])
         self.spread = float(np.sqrt((self.residual**2).sum() / max(self.rows_beyond, 1)))
@@ -157,17 +157,24 @@ class _SideBySide:
             rows = (one.residual, one.variance, design, np.full(len(order), number))
             parts.append((*(part[order] for part in rows), boats + one.boat[order]))
             boats += int(one.boat.max()) + 1
-        residual, variance, rows, problem, boat = map(np.concatenate, zip(*parts, strict=True))
-        return cls(residual, variance, rows, random, n_others, problem, boat)
+        joined = [np.concatenate(part) for part in zip(*parts, strict=True)]
+        residual, variance, stacked, problem, boat = joined
+        return cls(residual, variance, stacked, random, n_others, problem, boat)
 
     def take(self, chosen: IntArray) -> "_SideBySide":
         """Some of the problems, in their order."""
         place = np.full(len(self.random), -1)
         place[chosen] = np.arange(len(chosen))
         mine = place[self.problem] >= 0
-        rows = (part[mine] for part in (self.residual, self.variance, self.design))
-        whose = place[self.problem[mine]], self.boat[mine]
-        return _SideBySide(*rows, self.random[chosen], self.n_others, *whose)
+        return _SideBySide(
+            self.residual[mine],
+            self.variance[mine],
+            self.design[mine],
+            self.random[chosen],
+            self.n_others,
+            place[self.problem[mine]],
+            self.boat[mine],
+        )
 
     def likelihood(self, chosen: IntArray, variances: FloatArray) -> Likelihood:
         """The restricted likelihood of some of the problems, as `most_likely` takes it."""
@@ -204,13 +211,14 @@ class _SideBySide:
         def solve(values: FloatArray) -> FloatArray:
             """The precision of the rows, were the unknowns known, times values (n, any)."""
             of_boats = over(weight[:, None] * values, row_of_boat)
-            return weight[:, None] * (values - (shrink[:, None] * of_boats)[boat_of_row])
+            left = values - (shrink[:, None] * of_boats)[boat_of_row]
+            return np.asarray(weight[:, None] * left)
 
         weighed = solve(design)
         products = outer(design, weighed)
         prior = np.where(np.arange(design.shape[1]) < q, variances[:, 1:2], 1.0)
         known = self.random[:, None] * np.eye(design.shape[1]) + prior[:, :, None] * products
-        covariance: FloatArray = np.linalg.inv(known) * prior[:, None]
+        covariance = np.linalg.inv(known).astype(np.float64) * prior[:, None]
         score = over(weighed * self.residual[:, None], row_of_problem)
         unknowns = (covariance @ score[..., None])[..., 0]
         left = self.residual - (design * unknowns[problem]).sum(axis=1)
@@ -324,7 +332,7 @@ class Fit:
             error[rows], variance[rows] = inverse @ pull[rows], np.diagonal(inverse)
             others = self.scale * problem.rows_beyond - error[rows] @ pull[rows]
             beyond = max(problem.rows_beyond - len(rows), 1)
-            scale[rows] = max(others, LEAST_MISFIT) / beyond
+            scale[rows] = max(float(others), LEAST_MISFIT) / beyond
         return error, variance, scale
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:

@@ -33,8 +33,9 @@ class Observed:
             `displacement_kg`; `standard_speed_m_s`, the median declared speed of all tows of the
             type, one for all methods and seasons; `s_s2_m2`, `c0_kg_m`, `q` of the free fit at the
             declared speed; `c0_unit_variance` (relative), `q_unit_variance`,
-            `c0_q_unit_covariance`: covariance of (ln C0, q) for a run scatter of 1; `run_sd_ratio`: the type's pooled scatter of a
-            run, null where unknown; `run_dof`: degrees of freedom of the tow itself.
+            `c0_q_unit_covariance`: covariance of (ln C0, q) for a run scatter of 1;
+            `run_sd_ratio`: the type's pooled scatter of a run, null where unknown; `run_dof`:
+            degrees of freedom of the tow itself.
         points: run points, shape (rows, runs).
     """
 
