@@ -14,6 +14,7 @@ from pipeline.consistency.eras import ERAS
 from pipeline.consistency.homogeneity import LEVEL
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.tables.row import Row
+from warehouse.queries.chosen_tows import ALL, NEWEST
 from warehouse.store.database import is_simulated, rows
 
 ENOUGH_POWER: Final = 0.8
@@ -43,7 +44,7 @@ class TypeStatistics:
     """All statistics of a type under one method.
 
     Attributes:
-        lines: rows of `type_consistency` with `follows`.
+        lines: rows of `type_lines` with `follows`.
         bends: the row of `type_homogeneity` with `equal_possible`, or `n` and `reason`.
         speed_trend: the row of that table with `follows`, or `n` and `reason`.
         shared: per pooling, what sharing a bend does to B and Cw.
@@ -104,7 +105,7 @@ def types_audit(
 ) -> TypesAudit:
     """Facts and figures of the types under each method, what holds for all, and what differs."""
     audited = [
-        OneType(**type_facts(db, name), under={m: _type_under(db, name, m) for m in methods})
+        OneType(**type_facts(db, name), under={m: _type_under(db, name, m, tows) for m in methods})
         for name in types
     ]
     return TypesAudit(
@@ -122,8 +123,10 @@ def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> Row:
     return rows(db, _FACTS, boat_type)[0]
 
 
-def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> TypeStatistics:
-    """All statistics of a type under one method."""
+def _type_under(
+    db: duckdb.DuckDBPyConnection, boat_type: str, method: str, tows: str
+) -> TypeStatistics:
+    """All statistics of a type under one method; lines are of all tows, or of the newest chosen."""
     found = {name: rows(db, query, method, boat_type) for name, query in _STATISTICS.items()}
     reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
     absent = {"n": 0, "reason": reason, "equal_possible": None, "follows": None}
@@ -134,6 +137,7 @@ def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> T
         for name in ("bends", "speed_trend", "repeats", "prediction")
     )
     return TypeStatistics(
+        lines=rows(db, _LINES, method, boat_type, ALL if tows == ALL else NEWEST),
         bends=bends,
         speed_trend=trend,
         repeats=repeats,
@@ -196,7 +200,8 @@ _FOLLOWS = "CASE WHEN slope IS NOT NULL THEN slope_lo > 0 OR slope_hi < 0 END AS
 """Whether the interval of a slope leaves out zero."""
 
 _LINES = f"""
-SELECT *, {_FOLLOWS} FROM type_consistency WHERE method = ? AND boat_type = ?
+SELECT * EXCLUDE tows, {_FOLLOWS} FROM type_lines
+WHERE method = ? AND boat_type = ? AND tows = ?
 ORDER BY quantity, explaining, within
 """  # noqa: S608
 
@@ -242,7 +247,6 @@ WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
 """Rows of tows for which a column says yes, with the boat's name."""
 
 _STATISTICS: Final = {
-    "lines": _LINES,
     "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'",
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "bends": _BENDS,
