@@ -231,7 +231,3 @@ def _listed(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
     runs = store.read("listed_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
     return tows, runs.sort("tow_id", "run")
 
-
-def count_listed(store: Store, seasons: Collection[int]) -> int:
-    """Tows listed in the given seasons."""
-    return store.read("listed_tows").filter(pl.col("season").is_in(list(seasons))).height
