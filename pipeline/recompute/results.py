@@ -34,7 +34,8 @@ from pipeline.recompute.budget import (
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.facts import with_expected_water
 from pipeline.season_log import SeasonFactors, retow_choice
-from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, NOT_SETTLED
+from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
+from pipeline.season_log.factors import NOT_SETTLED
 from pipeline.steps.speed import log_factor
 from pipeline.tables.frames import dtypes
 from pipeline.tables.season_log import (

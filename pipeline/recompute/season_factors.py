@@ -19,7 +19,7 @@ from pipeline.method.definition import Calibration, Steps
 from pipeline.recompute.budget import files_log_sd, force_uncertainty, scatter_of
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors, estimate_season_factors
-from pipeline.season_log.network import GROUP
+from pipeline.season_log.archive_tows import LOG
 from pipeline.steps.calibration import gps_factor
 from pipeline.tables.keys import LINE
 
@@ -213,19 +213,19 @@ def _with_calibrations(rows: pl.DataFrame) -> pl.DataFrame:
     the scatter within all such seasons; null where there are none.
     """
     y = pl.col("own_calibration_ln")
-    within = (y - y.mean().over(GROUP)) ** 2
+    within = (y - y.mean().over(LOG)) ** 2
     spread, tows, groups = (
         rows.drop_nulls("own_calibration_ln")
-        .select(within.sum().alias("spread"), pl.len(), pl.struct(GROUP).n_unique().alias("groups"))
+        .select(within.sum().alias("spread"), pl.len(), pl.struct(LOG).n_unique().alias("groups"))
         .row(0)
     )
     scatter = (
         math.sqrt(spread / (tows - groups)) if tows - groups >= FEWEST_OF_TYPE else LOG_SCATTER
     )
     return rows.with_columns(
-        y.mean().over(GROUP).alias("others_calibration_ln"),
-        pl.when(y.count().over(GROUP) > 0)
-        .then(scatter / y.count().over(GROUP).sqrt())
+        y.mean().over(LOG).alias("others_calibration_ln"),
+        pl.when(y.count().over(LOG) > 0)
+        .then(scatter / y.count().over(LOG).sqrt())
         .alias("others_calibration_sd"),
     )
 
