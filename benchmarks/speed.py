@@ -39,7 +39,7 @@ from warehouse.archive.files.contents import read_bytes
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.intake import lake
 from warehouse.intake import seasons as intake
-from warehouse.queries.rebase import rebase
+from warehouse.queries.scenario import rebase
 from warehouse.store.store import Store, write_parquet
 
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data"))

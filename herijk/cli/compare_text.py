@@ -13,7 +13,7 @@ from pipeline.method.variant import Difference, differences
 from pipeline.register.register import draft_name
 from pipeline.tables.row import Row
 from warehouse.editions.compare import DiffReport, Group
-from warehouse.queries.rebase import RebaseReport, against_print, rebase
+from warehouse.queries.scenario import RebaseReport, against_print, rebase
 from warehouse.store.editions import edition_names, method_of_edition, read_edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store

@@ -9,9 +9,7 @@ import duckdb
 import polars as pl
 import pytest
 
-from assets.checks import CHECKS
 from assets.report import Done, failed_checks
-from assets.resources import Setup
 from dashboards.report import Check, headlines
 from pipeline.messages import speaker
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
@@ -119,11 +117,6 @@ def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, mo
     report = bench.rebuild()
     assert report.done == Done()
     assert [row["what"] for row in report.set_aside] == ["new"]
-
-
-def test_all_checks_can_be_run_again_after_the_report(built):
-    setup = Setup(archive="", data=str(built.data), methods=list(METHODS))
-    assert all(check(setup).passed for check in CHECKS)
 
 
 def test_a_failing_check_of_a_promise_is_an_error_and_a_warning_is_none():

@@ -22,7 +22,7 @@ from pipeline.recompute.run_cache import RunCache
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
 from warehouse.queries.history import History
-from warehouse.queries.rebase import rebase
+from warehouse.queries.scenario import rebase
 from warehouse.store.store import Store
 
 CONTROLS = {(s["step"], c["option"]): c for s in controls() for c in s["options"]}

@@ -138,14 +138,6 @@ def test_an_edition_of_a_method_with_options_that_are_gone_was_made_by_other_cod
     assert any("made by other code" in finding.message for finding in own)
 
 
-@FILES_ALONE
-def test_an_archive_that_went_away_is_told(published_copy):
-    published_copy.archive.rename(published_copy.archive.with_name("elsewhere"))
-    findings, wrong = found(published_copy, kind="unchecked")
-    assert wrong
-    assert "herijk rebuild" in findings[0].message
-
-
 # Lineage
 
 
@@ -190,14 +182,6 @@ def test_carried_and_printed_lines_are_made_again_too(carrying):
         assert one.equal == one.made_again == register.height
     carried = read_edition(carrying.store, "2014-1").register.filter(basis="printed_rebased")
     assert carried["fsn_no"].to_list() == ["FSN900"]
-
-
-def test_a_changed_printed_register_is_named_and_so_is_its_line(carrying):
-    file = carrying.archive / "sloepregister" / "sloepregister_2012.csv"
-    file.write_text(PRINTED.replace("32,62", "32,63"), encoding="utf-8")
-    findings, wrong = found(carrying, edition="printed")
-    assert wrong
-    assert {f.kind for f in findings} == {"swapped", "differs"}
 
 
 # A chain of editions, and what a new seal does not hide

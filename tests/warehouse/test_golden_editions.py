@@ -65,13 +65,6 @@ def test_one_flipped_bit_of_any_file_is_found(store, edition):
         file.write_bytes(whole)
 
 
-def test_a_changed_number_is_found(store):
-    file = store.editions / "2014-1" / "register.csv"
-    text = file.read_bytes().decode()
-    file.write_bytes(text.replace(";39,992;", ";35,993;").encode())
-    assert integrity(store) == {("2014-1", "register.csv")}
-
-
 def test_a_copy_out_of_the_chain_with_other_numbers_is_found(store):
     path = shutil.copytree(store.editions / "2014-1", store.editions / "2014-2")
     register = pl.read_parquet(path / "register.parquet")

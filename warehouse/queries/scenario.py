@@ -1,9 +1,11 @@
-"""A scenario: what it does to register, types, agreement of repeats and a boat.
+"""Scenarios: what a method does, against another, to register, types, repeats, seasons and a boat.
 
-Two drafts side by side as frames, for a page that shows them. Every number comes from `pipeline`;
-here rows are joined with names, put in order and counted. Nothing is stored.
+Two drafts side by side as frames for a page, or as a report that a committee looks at before anyone
+publishes. Every number comes from `pipeline`; here rows are joined with names, put in order and
+counted. Nothing is stored.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -15,11 +17,18 @@ from pipeline import curve
 from pipeline.consistency.compared import beside_their_type
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.curve import VALID_RATIO, s_of_height
+from pipeline.method.definition import Method
 from pipeline.register.changes import compare_lines, largest_first
+from pipeline.register.register import LINE
+from pipeline.studies.ladder import START, ladder
+from pipeline.tables.row import Row
+from warehouse.editions.compare import NO_STEPS
 from warehouse.queries.chosen_tows import ALL, chosen
-from warehouse.queries.history import Draft
+from warehouse.queries.history import Draft, History
+from warehouse.store.editions import Edition
+from warehouse.store.store import Store
 
-LINE_RATIOS: Final = np.linspace(*VALID_RATIO, 13)
+LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
 """Speeds at which a curve is drawn / declared speed."""
 
 TYPE_COLUMNS: Final = (
@@ -30,6 +39,7 @@ CURVE_COLUMNS: Final = (
     *("method", "tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m"),
     *("cw_hi_kg_m", "runs_used", "status", "flags"),
 )
+MOST_AFFECTED: Final = 15
 
 
 @dataclass(frozen=True)
@@ -44,26 +54,22 @@ class Scenario:
         """Every line of either register, with name and type; the largest change first.
 
         Returns:
-            Columns of `compare_lines` without causes, with `name` and `boat_type`. A line
-            that appears or disappears comes before all that change.
+            Columns of `compare_lines` without causes, with `name` and `boat_type`. A line that
+            appears or disappears comes before all that change.
         """
         lines = compare_lines(self.before.register, self.after.register).drop("causes")
-        return largest_first(lines).join(
-            self._names, on="fsn_no", how="left", maintain_order="left"
-        )
+        names = self._names
+        return largest_first(lines).join(names, on="fsn_no", how="left", maintain_order="left")
 
     def summary(self) -> dict[str, object]:
         """How many lines change, who gains and loses, and by how much."""
         lines = self.register_lines
-        changed = lines.filter(pl.col("change") == "changed")
+        changed = lines.filter(change="changed")
         gain = changed["gain_in_two_hours_s"]
-        counts = dict(lines["change"].value_counts().iter_rows())
+        kinds = ("same", "changed", "added", "removed")
         return {
             "lines": lines.height,
-            "same": counts.get("same", 0),
-            "changed": changed.height,
-            "added": counts.get("added", 0),
-            "removed": counts.get("removed", 0),
+            **{kind: lines.filter(change=kind).height for kind in kinds},
             "gains": int((gain > 0).sum()),
             "loses": int((gain < 0).sum()),
             "median_ratio": lines["cw_ratio"].median(),
@@ -94,25 +100,23 @@ class Scenario:
         Args:
             tows: which; see `chosen_tows`.
         """
-        return pl.concat(
-            beside_their_type(chosen(draft.observed, tows))
-            .filter(pl.col("boat_type") != UNKNOWN_TYPE)
-            .join(self._names.drop("boat_type"), on="fsn_no", how="left", maintain_order="left")
-            .select(TYPE_COLUMNS)
-            for draft in (self.before, self.after)
+        compared = self._both(lambda draft: beside_their_type(chosen(draft.observed, tows)))
+        named = compared.filter(pl.col("boat_type") != UNKNOWN_TYPE).join(
+            self._names.drop("boat_type"), on="fsn_no", how="left", maintain_order="left"
         )
+        return named.select(TYPE_COLUMNS)
 
     def type_homogeneity(self, tows: str = ALL) -> pl.DataFrame:
         """Rows of the table `type_homogeneity` under both methods, of the newest of these tows."""
-        return pl.concat(draft.type_homogeneity(tows) for draft in (self.before, self.after))
+        return self._both(lambda draft: draft.type_homogeneity(tows))
 
     def reproducibility(self) -> pl.DataFrame:
         """Rows of the table `reproducibility` under both methods."""
-        return pl.concat(draft.reproducibility for draft in (self.before, self.after))
+        return self._both(lambda draft: draft.reproducibility)
 
     def log_factors(self) -> pl.DataFrame:
         """Rows of the table `log_factors` under both methods."""
-        return pl.concat(draft.made.log_factors for draft in (self.before, self.after))
+        return self._both(lambda draft: draft.made.log_factors)
 
     def boat_curves(self, fsn_no: str) -> pl.DataFrame:
         """Every tow's curve of a boat under both methods."""
@@ -128,9 +132,8 @@ class Scenario:
         """
         curves = self._curves_of(fsn_no).drop_nulls("cw_kg_m")
         own = curves.select("method", "tow_id")
-        points = pl.concat(
-            draft.made.run_points.join(own, on=["method", "tow_id"], maintain_order="left")
-            for draft in (self.before, self.after)
+        points = self._both(lambda draft: draft.made.run_points).join(
+            own, on=["method", "tow_id"], maintain_order="right"
         )
         shared = ("method", "tow_id", "speed_m_s", "cw_kg_m")
         intervals = {d.method.name: d.method.interval for d in (self.before, self.after)}
@@ -144,28 +147,113 @@ class Scenario:
         drawn = points.drop_nulls("cw_kg_m").select(
             *shared, "run", "direction", "used", kind=pl.lit("point")
         )
-        return pl.concat([_lines(curves), drawn, declared], how="diagonal")
+        return pl.concat([_lines(curves).select(*shared, "kind"), drawn, declared], how="diagonal")
 
     @property
     def _names(self) -> pl.DataFrame:
         return self.after.history.boats.select("fsn_no", "name", "boat_type")
 
+    def _both(self, of: Callable[[Draft], pl.DataFrame]) -> pl.DataFrame:
+        return pl.concat([of(self.before), of(self.after)])
+
     def _curves_of(self, fsn_no: str) -> pl.DataFrame:
-        both = pl.concat(draft.made.curves for draft in (self.before, self.after))
-        return both.filter(pl.col("fsn_no") == fsn_no).sort("season", "tow_id", maintain_order=True)
+        mine = self._both(lambda draft: draft.made.curves).filter(fsn_no=fsn_no)
+        return mine.sort("season", "tow_id", maintain_order=True)
 
 
 def _lines(curves: pl.DataFrame) -> pl.DataFrame:
     """Each curve at `LINE_RATIOS` of its declared speed."""
-    declared = curves["declared_speed_m_s"].to_numpy()
-    a, cw = (curves[name].to_numpy() for name in ("a_kg_m", "cw_kg_m"))
-    bend = s_of_height(a, cw, declared)
-    lines = [
-        curves.select("method", "tow_id").with_columns(
-            pl.Series("speed_m_s", ratio * declared, pl.Float64),
-            pl.Series("cw_kg_m", curve.cw(a, bend, ratio * declared), pl.Float64),
-            kind=pl.lit("line"),
-        )
-        for ratio in LINE_RATIOS
-    ]
-    return pl.concat(lines).filter(pl.col("cw_kg_m").is_finite())
+    rows = LINE_RATIOS.join(curves, how="cross")
+    a, cw, declared, ratio = (
+        rows[name].to_numpy() for name in ("a_kg_m", "cw_kg_m", "declared_speed_m_s", "ratio")
+    )
+    speed = ratio * declared
+    drawn = curve.cw(a, s_of_height(a, cw, declared), speed)
+    lines = rows.with_columns(speed_m_s=speed, cw_kg_m=drawn, kind=pl.lit("line"))
+    return lines.filter(pl.col("cw_kg_m").is_finite())
+
+
+# A re-base: all of history under a method that may not have been used before
+
+
+@dataclass(frozen=True)
+class RebaseReport:
+    """What a method changes against another.
+
+    Attributes:
+        method, method_hash, against: the methods.
+        simulated: whether the archive is.
+        by_season: median factor on Cw of each step, per season, with `total`.
+        changes: number of lines by kind of change.
+        boats: the register lines most affected, with their factors.
+    """
+
+    method: str
+    method_hash: str
+    against: str
+    simulated: bool
+    by_season: list[Row]
+    changes: list[Row]
+    boats: list[Row]
+
+
+def rebase(store: Store, method: Method, against: Method) -> RebaseReport:
+    """Recomputes everything under a method and says what changes against another, and why.
+
+    Raises:
+        MissingKnowledgeError: there is no sound tow, or a method does not cover a season.
+    """
+    history = History.of(store)
+    old, new = (history.under(m) for m in (against, method))
+    links = old.made.tow_instruments, new.made.tow_instruments
+    rungs = ladder(against, method, history.tows, history.blocks, links, history.cache)
+    rungs = rungs.filter(pl.col("step") != START)
+    return _report(new, old.register, against.name, rungs)
+
+
+def against_print(store: Store, method: Method, printed: Edition) -> RebaseReport:
+    """What a method changes against an edition taken over from print: by which steps is unknown.
+
+    Raises:
+        MissingKnowledgeError: there is no sound tow, or the method does not cover a season.
+    """
+    new = History.of(store).under(method)
+    return _report(new, printed.register, printed.manifest.edition, NO_STEPS)
+
+
+def _report(new: Draft, old: pl.DataFrame, against: str, rungs: pl.DataFrame) -> RebaseReport:
+    history, method = new.history, new.method
+    lines = largest_first(compare_lines(old, new.register).drop("causes"))
+    most = lines.drop_nulls("cw_ratio").head(MOST_AFFECTED)
+    for facts, key in (
+        (new.register.select(*LINE, "tow_id"), LINE),
+        (history.boats.select("fsn_no", "name"), "fsn_no"),
+        (rungs.pivot("step", index="tow_id", values="factor"), "tow_id"),
+    ):
+        most = most.join(facts, on=key, how="left", maintain_order="left")
+    return RebaseReport(
+        method=method.name,
+        method_hash=method.content_hash,
+        against=against,
+        simulated=history.simulated,
+        by_season=_by_season(rungs, history.tows),
+        changes=lines["change"].value_counts(sort=True).to_dicts(),
+        boats=most.drop("from_edition", "to_edition").to_dicts(),
+    )
+
+
+def _by_season(rungs: pl.DataFrame, tows: pl.DataFrame) -> list[Row]:
+    """Median factor of each step, and of all together, per season."""
+    factors = rungs.sort("position").pivot("step", index="tow_id", values="factor")
+    steps = [name for name in factors.columns if name != "tow_id"]
+    total = pl.lit(1.0)
+    for step in steps:
+        total = total * pl.col(step)
+    return (
+        factors.join(tows.select("tow_id", "season"), on="tow_id", maintain_order="left")
+        .with_columns(total=total)
+        .group_by("season", maintain_order=True)
+        .agg(pl.col(steps).median(), tows=pl.len(), total=pl.col("total").median())
+        .sort("season")
+        .to_dicts()
+    )
