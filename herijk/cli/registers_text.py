@@ -12,9 +12,8 @@ from pipeline.messages import ngettext, say, tell
 from pipeline.tables.row import Row
 
 if TYPE_CHECKING:
-    from warehouse.editions.chain import Finding
     from warehouse.editions.publish import Published
-    from warehouse.editions.verify import Verification
+    from warehouse.editions.verify import Finding, Verification
     from warehouse.queries.registers import DueReport, RegisterReport
     from warehouse.queries.reports import LogErrorReport
 

@@ -14,10 +14,9 @@ from pipeline.method.definition import shipped_method
 from tests.warehouse.edition_bench import terms
 from warehouse.derive.graph import METHOD
 from warehouse.derive.inputs import Scope
-from warehouse.editions.chain import chain_head
 from warehouse.editions.lineage import lineage
 from warehouse.editions.publish import publish_printed
-from warehouse.editions.verify import verify
+from warehouse.editions.verify import chain_head, verify
 from warehouse.store.editions import manifest_path, read_edition, read_manifest
 from warehouse.store.files import file_sha256
 

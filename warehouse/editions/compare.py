@@ -261,14 +261,12 @@ class Group:
         of_class: how many of each class.
         median_power_ratio: new / old power for the same race.
         median_seconds: what the new register gives in a race of two hours [s].
-        most: the lines that it moves most, as in `DiffReport.rows`.
     """
 
     lines: int
     of_class: dict[str, int]
     median_power_ratio: float | None
     median_seconds: float | None
-    most: list[Row]
 
 
 @dataclass(frozen=True)
@@ -323,8 +321,8 @@ def report(comparison: Comparison) -> DiffReport:
         simulated=any(edition.manifest.simulated for edition in editions),
         lines=lines.height,
         changes=dict(lines["change"].value_counts().sort("change").rows()),
-        gain=_group(moved.filter(gains).sort("power_ratio", "fsn_no", descending=True)),
-        loss=_group(moved.filter(~gains).sort("power_ratio", "fsn_no")),
+        gain=_group(moved.filter(gains)),
+        loss=_group(moved.filter(~gains)),
         exceeds_interval=int(moved["exceeds_interval"].fill_null(False).sum()),
         interval_unknown=int(moved["exceeds_interval"].null_count()),
         runs_alone=[
@@ -365,7 +363,6 @@ def _group(lines: pl.DataFrame) -> Group:
         of_class={c: lines.filter(crew_class=c).height for c in ("H", "D")},
         median_power_ratio=power,
         median_seconds=seconds,
-        most=_rows(lines.head(LARGEST)),
     )
 
 

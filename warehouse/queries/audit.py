@@ -11,10 +11,9 @@ from typing import Final
 
 import duckdb
 
-from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.row import Row
-from warehouse.queries.audit_types import TYPE, Audit, TypesAudit, type_facts, types_audit
+from warehouse.queries.audit_types import TYPE, Audit, TypesAudit, types_audit
 from warehouse.queries.chosen_tows import NEWEST, choose
 from warehouse.store.boats import boats_named, plain, the_boat
 from warehouse.store.database import is_simulated, open_results, rows
@@ -32,7 +31,6 @@ class BoatAudit(Audit):
         boat: its row of `boats`.
         tows: rows of `tows` with `curves` (rows of that table with `interval`, `run_points` and
             `budget`) and `steps`, rows of `correction_steps`.
-        type_size: how many boats and tows its type has, and how they differ.
         in_type: rows of `type_outliers`.
         predicted: rows of `predicted_cw`.
         options: rows of `option_effects`.
@@ -45,7 +43,6 @@ class BoatAudit(Audit):
     boat: Row
     tows: list[Row]
     in_type: list[Row]
-    type_size: Row
     pooled: list[Row]
     slow_tows: list[Row]
     repeat_pairs: list[Row]
@@ -144,7 +141,6 @@ def _boat_audit(
         boat=boat,
         tows=rows(db, _TOWS, fsn_no, methods),
         in_type=of_boat("type_outliers"),
-        type_size=type_facts(db, boat["boat_type"] or UNKNOWN_TYPE),
         pooled=of_boat("pooled_curves"),
         slow_tows=of_boat("slow_tows"),
         repeat_pairs=of_boat("repeat_pairs"),

@@ -105,7 +105,10 @@ def types_audit(
 ) -> TypesAudit:
     """Facts and figures of the types under each method, what holds for all, and what differs."""
     audited = [
-        OneType(**type_facts(db, name), under={m: _type_under(db, name, m, tows) for m in methods})
+        OneType(
+            **rows(db, _FACTS, name)[0],
+            under={m: _type_under(db, name, m, tows) for m in methods},
+        )
         for name in types
     ]
     return TypesAudit(
@@ -116,11 +119,6 @@ def types_audit(
         differences={m: differences(*(one.under[m] for one in audited)) for m in methods},
         reproducibility=rows(db, _REPRODUCIBILITY, methods),
     )
-
-
-def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> Row:
-    """How many boats and tows there are of a type, and how they differ: as in `OneType`."""
-    return rows(db, _FACTS, boat_type)[0]
 
 
 def _type_under(
