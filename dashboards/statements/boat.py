@@ -74,7 +74,8 @@ class Answer:
         if line["cw_ratio"] is None or line["change"] == "same":
             return ""
         old = line["old_cw_kg_m"]
-        caption = f"{speech.say('From the old number to the new, Cw in kg/m')}: {line['name']} {self.crew(speech)}"
+        title = speech.say("From the old number to the new, Cw in kg/m")
+        caption = f"{title}: {line['name']} {self.crew(speech)}"
         causes = [(speech.say(name), factor) for name, factor in causes_of_line(line)]
         return waterfall_picture((old, old * line["cw_ratio"]), causes, speech, caption)
 
