@@ -292,13 +292,14 @@ def _page(fsn_no: str, boats: _Boats, methods: Sequence[str], told: Sequence[Ans
 
 def _related(answers: Sequence[Answer]) -> list[Section]:
     """The pages of its type and of its races."""
-    types = {one.line["boat_type"]: type_path(one.line["boat_type"]) for one in answers}
+    names = filter(None, (one.line["boat_type"] for one in answers))
+    types = {name: type_path(name) for name in names}
     races = {
         f"{race['race']} {race['race_date']}": race_path(race["race"], race["race_date"])
         for one in answers
         for race in one.races
     }
-    pages = [(path, name) for name, path in (types | races).items() if name]
+    pages = [(path, name) for name, path in (types | races).items()]
     return [Section("boat_related", say("Its type and its races"), pages=pages)] if pages else []
 
 
