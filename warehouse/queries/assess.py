@@ -96,12 +96,16 @@ def _not_usable(tow_id: str, faults: pl.DataFrame) -> MissingKnowledgeError:
 def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
     boats, tows, curves = store.read("boats"), store.read("tows"), store.read("curves", method)
     set_aside = store.read("quarantine").filter(tow_id=tow_id)
-    named = tows.join(boats.select("fsn_no", "name", "boat_type"), on="fsn_no", how="left")
+    named = tows.join(
+        boats.select("fsn_no", "name", "boat_type"), on="fsn_no", how="left", maintain_order="left"
+    )
     own = named.filter(tow_id=tow_id)
     if own.is_empty():
         raise _not_usable(tow_id, set_aside)
     tow = own.row(0, named=True)
-    others = curves.join(named.select("tow_id", "tow_date", "boat_type"), on="tow_id")
+    others = curves.join(
+        named.select("tow_id", "tow_date", "boat_type"), on="tow_id", maintain_order="left"
+    )
     others = _at_speed(others, tow["declared_speed_m_s"]).filter(
         pl.col("tow_id") != tow_id, pl.col("tow_date") <= tow["tow_date"]
     )
