@@ -4,14 +4,12 @@ Reads the database; writes and computes nothing: every number here is in a table
 """
 
 import datetime as dt
-from collections.abc import Sequence
 from typing import Final, Self
 
 import polars as pl
 
 from pipeline.register.register import LINE, with_empty_thwart
 from warehouse.queries.as_of import lay_over, lay_published
-from warehouse.queries.chosen_tows import choose
 from warehouse.queries.due import RETOW_CHOICE
 from warehouse.store.database import open_results
 from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
@@ -112,10 +110,6 @@ class Views:
             "JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run"
         )
 
-    def choose(self, tows: str, methods: Sequence[str]) -> None:
-        """From now on the statistics of types are over these tows: see `chosen_tows.choose`."""
-        choose(self._db, tows, methods)
-
     def type_tows(self) -> pl.DataFrame:
         """Every tow of a boat of a known type, under every method, with the boat's name."""
         return self.frame(_TYPE_TOWS)
@@ -123,10 +117,6 @@ class Views:
     def compared_tows(self) -> pl.DataFrame:
         """Every tow next to its type under every method, with the boat's name."""
         return self._tows("compared_tows")
-
-    def slow_tows(self) -> pl.DataFrame:
-        """Tows made with little power or raced off their curve, with the boat's name."""
-        return self._tows("slow_tows")
 
     def _tows(self, table: str) -> pl.DataFrame:
         """Rows of a table of tows with the boat's name, or else its number."""
@@ -141,14 +131,6 @@ class Views:
             "JOIN tows AS t USING (tow_id) LEFT JOIN boats AS b USING (fsn_no) "
             "WHERE t.fsn_no = ? ORDER BY method, tow_id, speed_m_s",
             fsn_no,
-        )
-
-    def option_curves(self, tow_id: str = "") -> pl.DataFrame:
-        """Curves under the tool's ticks, of one tow or of all, with boat and declared speed."""
-        return self.frame(
-            "SELECT o.*, t.fsn_no, t.declared_speed_m_s FROM option_curves AS o "
-            "JOIN tows AS t USING (tow_id) WHERE $1 IN ('', tow_id) ORDER BY ALL",
-            tow_id,
         )
 
     def repeat_pairs(self) -> pl.DataFrame:
