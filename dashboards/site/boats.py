@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import polars as pl
 
-from dashboards.answer import Answer, answers_by_boat
 from dashboards.site.columns import json_by, json_of
 from dashboards.site.parts import (
     Chart,
@@ -21,6 +20,7 @@ from dashboards.site.parts import (
     methods_select,
     once_for_methods,
 )
+from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say
 from warehouse.queries.answers import newest_edition
 from warehouse.queries.views import DRAFT, Views

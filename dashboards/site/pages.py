@@ -7,7 +7,6 @@ from typing import Final
 
 import polars as pl
 
-from dashboards import headlines
 from dashboards.site.downloads import files_of
 from dashboards.site.parts import (
     Chart,
@@ -28,6 +27,8 @@ from dashboards.site.prose import edition_pages, guide_links, guide_pages
 from dashboards.site.races import race_pages
 from dashboards.site.start import ABOUT, CARDS, start_page, words_page
 from dashboards.site.types import type_pages, types_page
+from dashboards.statements import due as of_due
+from dashboards.statements import edition, season
 from pipeline.messages import Sentence, say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
@@ -99,7 +100,7 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
         "register", lines, REGISTER_COLUMNS, say("Register"), ["edition"], search=True,
         cards=REGISTER_CARDS,
     )  # fmt: skip
-    headline = headlines.register(lines.filter(edition=chosen))
+    headline = edition.register(lines.filter(edition=chosen))
     return Page(
         "register.html",
         say("Register"),
@@ -180,7 +181,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
                 "to 115 % of the declared speed."
             ),
             tables=[due],
-            headline=headlines.due(rows),
+            headline=of_due.due(rows),
         ),
         *listed(
             Section(
@@ -196,7 +197,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
             choice.hstack(sd),
             CHOICE_COLUMNS,
             follows=(),
-            headline=headlines.retow(choice),
+            headline=of_due.retow(choice) if choice.height else None,
         ),
     ]
     if can_compare:
@@ -277,8 +278,8 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     }
     first = default_method(methods)
     said = {
-        "log_factors": headlines.log_factors(frames["log_factors"].filter(method=first)),
-        "reproducibility": headlines.reproducibility(frames["reproducibility"], first),
+        "log_factors": season.log_factors(frames["log_factors"].filter(method=first)),
+        "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
     links = views.table("season_links").with_columns(PART)
     steps = views.season_steps().with_columns(PART)
@@ -466,7 +467,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
                 ),
                 [chart],
                 [table],
-                headline=headlines.changes(changes.filter(to_edition=chosen)),
+                headline=edition.changes(changes.filter(to_edition=chosen)),
             ),
             races,
         ],
@@ -519,7 +520,7 @@ def _quality(views: Views, methods: list[str]) -> Page:
         Section(
             "statuses",
             say("Status of the curves"),
-            headline=headlines.statuses(statuses.filter(method=default_method(methods))),
+            headline=season.statuses(statuses.filter(method=default_method(methods))),
             charts=[
                 Chart("statuses", "statuses", say("Status of the curves"), {"method": "method"})
             ],

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from dashboards import headlines, labels
+from dashboards import labels
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -24,6 +24,7 @@ from dashboards.site.parts import (
 )
 from dashboards.slide_book import Book
 from dashboards.speech import Headline
+from dashboards.statements.boat_type import homogeneity
 from pipeline.messages import Sentence, say
 from warehouse.queries.chosen_tows import NEWEST
 from warehouse.queries.views import Views
@@ -174,9 +175,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                     ),
                     charts,
                     [listed_tows],
-                    headline=headlines.homogeneity(
-                        tests.filter(own, method=default_method(methods))
-                    ),
+                    headline=homogeneity(tests.filter(own, method=default_method(methods))),
                 ),
                 Section(
                     "types_lines",

@@ -24,11 +24,11 @@ from dashboards.site.parts import (
     race_path,
     type_path,
 )
-from dashboards.site.races import _winner
 from dashboards.site.render import build_pages, build_site
 from dashboards.site.slides import slides_page
 from dashboards.site.start import ABOUT
 from dashboards.speech import Speech
+from dashboards.statements.race import winners
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 from tests.texts import said
@@ -169,10 +169,11 @@ def test_power_that_repeats_cw_is_not_shown_beside_it(site):
 def test_a_race_page_says_among_how_many_it_compares():
     rows = pl.DataFrame(
         {"name": ["A", "B", "C"], "race": "R", "race_date": "2025-06-04",
+         "crew_class": "H",
          "old_power_w": [70.0, None, 60.0], "new_power_w": [69.0, 80.0, 61.0],
          "old_rank": [1, None, 2], "new_rank": [1, None, 2]}
     )  # fmt: skip
-    text = _winner(Speech("nl"), "H", rows, {("R 2025-06-04", "H"): 0.1})
+    text = winners(rows, {("R 2025-06-04", "H"): 0.1})(Speech("nl"))
     assert "maar 2 van de 3 ploegen" in text
     assert "wint A, net als eerst" in text
     assert "Kans" not in text
