@@ -123,7 +123,7 @@ class Book:
         self.views = views
         known = views.table("methods")["method"].to_list()
         label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
-        compared = views.compared_tows().with_columns(label=label)
+        compared = views.ask("compared_tows").with_columns(label=label)
         held = compared["method"].unique().to_list()
         methods = [name for name in known if name in held]
         if not methods and not views.table("tows").is_empty():
@@ -332,8 +332,10 @@ class Book:
 
     def boat(self, fsn_no: str) -> Iterator[Slide]:
         """How far the tows of one boat lie apart through the years."""
-        pairs = self.views.repeat_pairs().filter(pl.col("method").is_in(self.ends), fsn_no=fsn_no)
-        points = self.views.curve_points_of(fsn_no).filter(pl.col("method").is_in(self.ends))
+        pairs = self.views.ask("repeat_pairs").filter(
+            pl.col("method").is_in(self.ends), fsn_no=fsn_no
+        )
+        points = self.views.ask("curve_points_of", fsn_no).filter(own)
         largest = [
             pairs.filter(method=method).sort((pl.col("cw_ratio") - 1).abs()).tail(1)
             for method in self.ends

@@ -11,8 +11,9 @@ from dashboards.speech import Speech
 from dashboards.statements.edition import Effect, cause_name, changes, effects, undecided
 from dashboards.statements.race import stretched_fatigue
 from pipeline.messages import in_per_cent, pgettext, say
+from pipeline.register.changes import largest_first
 from pipeline.register.register import draft_name
-from warehouse.editions.compare import causes_of, largest_first
+from warehouse.editions.compare import causes_of
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
@@ -124,19 +125,19 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
     yield _types(lines, speech)
     yield _boats(lines, speech)
     yield _races(views, lines, speech)
-    flagged = views.flagged_boats().filter(method=method)["tow_id"]
+    flagged = views.ask("flagged_boats").filter(method=method)["tow_id"]
     left = (statement(speech) for statement in undecided(lines, flagged))
     yield _part(say("What stays undecided"), *left)
 
 
 def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
     """What each cause did, as the notice of an edition says it, the largest first."""
-    causes = sorted(causes_of(lines), key=lambda cause: -abs(cause.median_factor - 1))
+    causes = sorted(causes_of(lines), key=lambda cause: -abs(cause["median_factor"] - 1))
     return [
         [
-            speech.say(cause_name(vars(cause))),
-            speech.per_cent(cause.median_factor),
-            str(cause.lines),
+            speech.say(cause_name(cause)),
+            speech.per_cent(cause["median_factor"]),
+            str(cause["lines"]),
         ]
         for cause in causes
     ]

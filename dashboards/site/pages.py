@@ -160,11 +160,11 @@ CHOICE_COLUMNS = (
 
 def _boats(views: Views, methods: Sequence[str]) -> Page:
     """Who has to tow again, at what speed, which boats to tow again, and two boats compared."""
-    rows = views.due_list().filter(method=default_method(methods))
+    rows = views.ask("due_list").filter(method=default_method(methods))
     rows = rows.rename({"tow_date": "last_tow"})
     title = say("Who has to tow again")
     due = Table("due_list", rows, DUE_COLUMNS, title, search=True, cards=DUE_CARDS)
-    choice = views.retow_choice().filter(method=default_method(methods))
+    choice = views.ask("retow_choice").filter(method=default_method(methods))
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
     curves = _curves(views, methods)
     crews = curves["crew"].unique().sort().to_list()
@@ -270,11 +270,11 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         "era_shifts": views.table("era_shifts")
         .drop_nulls("shift_ratio")
         .filter(shown, boat_type="all"),
-        "repeat_pairs": with_page(views.repeat_pairs().filter(shown)),
+        "repeat_pairs": with_page(views.ask("repeat_pairs").filter(shown)),
         "variance_components": views.table("variance_components")
         .drop_nulls("sd_ratio")
         .filter(shown),
-        "predicted_cw": with_page(views.predicted().filter(shown)),
+        "predicted_cw": with_page(views.ask("predicted").filter(shown)),
     }
     first = default_method(methods)
     said = {
@@ -282,7 +282,7 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
     links = views.table("season_links").with_columns(PART)
-    steps = views.season_steps().with_columns(PART)
+    steps = views.ask("season_steps").with_columns(PART)
     shares = frames["reproducibility"].select(*SHARE_COLUMNS)
     sections: list[Section] = []
     for name, (figure, follows) in SEASON_FIGURES.items():
@@ -515,7 +515,7 @@ def _about(views: Views) -> Page:
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
-    statuses = views.status_counts()
+    statuses = views.ask("statuses")
     sections = [
         Section(
             "statuses",
@@ -536,13 +536,13 @@ def _quality(views: Views, methods: list[str]) -> Page:
         ),
         ("run", "run_reasons", say("Runs that do not count"), None),
     ):
-        frame = views.counts(kind)
+        frame = views.ask("counts", kind)
         if frame.height:
             tables = [Table(name, frame, ["code", "number"], title, ["method"])]
             if kind == "flag":
                 tables.append(_flagged_boats(views))
             sections.append(Section(name, title, note, tables=tables))
-    checks = views.checks()
+    checks = views.ask("checks")
     columns = ["method", "check", "severity", "tows", "beyond"]
     table = Table("check_counts", checks, columns, say("What the checks found"), ["method"])
     sections += [
@@ -576,7 +576,7 @@ def _season_diagnosis(views: Views) -> list[Section]:
     """What may be wrong with the instruments of a season; none where no method asks."""
     if not views.has("season_diagnosis"):
         return []
-    doubted = views.season_diagnosis().filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
+    doubted = views.ask("season_diagnosis").filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
     # What else it could be: the kinds, without their seasons.
     rows = doubted.with_columns(
         PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
@@ -597,7 +597,7 @@ def _season_diagnosis(views: Views) -> list[Section]:
 def _flagged_boats(views: Views) -> Table:
     """Which boats each flag is about."""
     columns = ("flag", "name", "fsn_no", "rowers", "crew_class", "tow_date")
-    rows = views.flagged_boats()
+    rows = views.ask("flagged_boats")
     return Table(
         "flagged_boats", rows, columns, say("Which tows they are about"), ["method"], search=True
     )

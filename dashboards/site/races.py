@@ -26,7 +26,7 @@ CARDS = ("name", "fsn_no", "new_power_w", "old_rank", "new_rank")
 
 def race_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """A page for each race."""
-    races = views.races() if views.has("race_changes") else pl.DataFrame()
+    races = views.ask("races") if views.has("race_changes") else pl.DataFrame()
     if races.is_empty():
         return
     editions = races["to_edition"].unique().sort().to_list()

@@ -120,7 +120,7 @@ def editions(report: DiffReport) -> str:
     """Two editions side by side."""
     counts = ", ".join(f"{n} {codes(change)}" for change, n in report.changes.items())
     known = report.changes.get("changed", 0) > report.interval_unknown
-    causes = [vars(cause) | {"cause": tell(cause_name(vars(cause)))} for cause in report.causes]
+    causes = [cause | {"cause": tell(cause_name(cause))} for cause in report.causes]
     parts = [
         f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.",
         tell(

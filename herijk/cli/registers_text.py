@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from warehouse.editions.chain import Finding
     from warehouse.editions.publish import Published
     from warehouse.editions.verify import Verification
-    from warehouse.queries.due import DueReport
-    from warehouse.queries.register import RegisterReport
+    from warehouse.queries.registers import DueReport, RegisterReport
     from warehouse.queries.reports import LogErrorReport
 
 

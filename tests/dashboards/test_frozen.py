@@ -7,7 +7,7 @@ from dashboards.speech import Speech
 from dashboards.statements.boat import answers_by_boat
 from pipeline.method.definition import shipped_method
 from warehouse.editions.publish import Terms, publish
-from warehouse.queries.register import register_report
+from warehouse.queries.registers import register_report
 from warehouse.queries.views import Views
 
 EDITION, METHOD, DAY = "2014-1", "rebased", dt.date(2014, 6, 1)
