@@ -332,9 +332,8 @@ class Book:
 
     def boat(self, fsn_no: str) -> Iterator[Slide]:
         """How far the tows of one boat lie apart through the years."""
-        pairs = self.views.ask("repeat_pairs").filter(
-            pl.col("method").is_in(self.ends), fsn_no=fsn_no
-        )
+        own = pl.col("method").is_in(self.ends)
+        pairs = self.views.ask("repeat_pairs").filter(own, fsn_no=fsn_no)
         points = self.views.ask("curve_points_of", fsn_no).filter(own)
         largest = [
             pairs.filter(method=method).sort((pl.col("cw_ratio") - 1).abs()).tail(1)
