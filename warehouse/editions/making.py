@@ -1,14 +1,10 @@
 """An edition as archive and code of today give it: to publish it, or to see whether it still is so.
 
 Which tow counts is decided in `pipeline.register.register`; here the facts of its tow are put
-beside it, numbers are left out where no valid curve is, and all is written into the files of an
-edition. Nothing but samples, lists and blocks is read: tables that a rebuild made of them are not.
+beside it, and numbers are left out where no valid curve is. Nothing but samples, lists and blocks
+is read: tables that a rebuild made of them are not.
 """
 
-import datetime as dt
-import hashlib
-import io
-import json
 from typing import Final
 
 import polars as pl
@@ -16,7 +12,6 @@ import polars as pl
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
-from pipeline.method.writing import method_text
 from pipeline.recompute.recompute import recompute
 from pipeline.register.register import LINE, as_ruled, draft_register
 from pipeline.tables.archive import Boats
@@ -26,8 +21,7 @@ from pipeline.tables.register import Register
 from pipeline.tables.schemas import conform
 from pipeline.uncertainty.ensemble import tow_ensemble
 from warehouse.derive.published import decisions_of
-from warehouse.editions import notes, sheets
-from warehouse.editions.compare import compare
+from warehouse.editions import sheets
 from warehouse.editions.inputs import INPUTS_HASH, JUDGED, tables_of_today
 from warehouse.editions.printed import (
     NOT_REBASED,
@@ -36,17 +30,9 @@ from warehouse.editions.printed import (
     with_carried,
 )
 from warehouse.intake import seasons as intake
-from warehouse.store import decisions as decided
 from warehouse.store.editions import (
-    CHANGES,
-    CSV,
-    DECISIONS,
     INPUTS,
-    MANIFEST,
     MEASURED,
-    METHOD,
-    PARQUET,
-    XLSX,
     Edition,
     Manifest,
     edition_path,
@@ -191,49 +177,3 @@ def _completed(
     coded = full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
     conform("register", coded)
     return coded
-
-
-def contents_of(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
-    """An edition's files: tables, sheets, texts, and last its manifest.
-
-    Args:
-        store: the data folder.
-        edition: the edition, without its comparison with the one before.
-        files: what it was made from, as `input_files` gives it.
-    """
-    manifest = edition.manifest
-    tables = dict(edition.tables)
-    previous = None
-    if manifest.previous is not None:
-        previous = compare(store, read_edition(store, manifest.previous), edition)
-        tables[CHANGES] = previous.lines
-    written = notes.texts(edition, previous)
-    if edition.method is not None:
-        decisions = decisions_up_to(store, manifest.published_on)
-        written |= {
-            METHOD: method_text(edition.method),
-            DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
-        }
-    contents = {
-        CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
-        XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, manifest),
-        INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
-        **{name: text.encode("utf-8") for name, text in written.items()},
-        **{name + PARQUET: _parquet(frame) for name, frame in tables.items()},
-    }
-    hashes = {name: hashlib.sha256(c).hexdigest() for name, c in sorted(contents.items())}
-    sealed = manifest.model_copy(update={"files": hashes}).sealed()
-    contents[MANIFEST] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
-    return contents
-
-
-def _parquet(frame: pl.DataFrame) -> bytes:
-    target = io.BytesIO()
-    frame.write_parquet(target, compression="zstd")
-    return target.getvalue()
-
-
-def decisions_up_to(store: Store, day: dt.date) -> tuple[decided.Decision, ...]:
-    """Decisions about tows taken up to a day."""
-    decisions = decided.read_decisions(store.root / decided.FILE_NAME)
-    return tuple(d for d in decisions if d.datum <= day)

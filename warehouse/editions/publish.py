@@ -17,8 +17,9 @@ from pipeline.register.register import DOUBTED, LINE
 from pipeline.tables.row import Row
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
+from warehouse.editions.contents import contents_of, decisions_up_to
 from warehouse.editions.inputs import REGISTER, input_files, listed_inputs
-from warehouse.editions.making import as_printed, contents_of, decisions_up_to, recomputed
+from warehouse.editions.making import as_printed, recomputed
 from warehouse.editions.printed import printed_path
 from warehouse.editions.verify import chain_head
 from warehouse.store import decisions as decided

@@ -28,8 +28,9 @@ from warehouse.derive.graph import ARCHIVE
 from warehouse.derive.inputs import Scope
 from warehouse.editions import sheets
 from warehouse.editions.compare import parts_of
+from warehouse.editions.contents import contents_of
 from warehouse.editions.inputs import LIST, NOT_INPUT, SAMPLES, input_files, same_tows
-from warehouse.editions.making import contents_of, made_again
+from warehouse.editions.making import made_again
 from warehouse.intake import seasons as intake
 from warehouse.store.database import open_database
 from warehouse.store.decisions import FILE_NAME as DECISIONS
