@@ -16,7 +16,7 @@ from dashboards.figures import FIGURES
 from dashboards.slide_book import THE_PRESENTATION, Asked, Slide, slides
 from pipeline.messages import speaker
 from warehouse.queries.views import Views
-from warehouse.store.database import open_results
+from warehouse.store.database import open_database
 from warehouse.store.files import written_beside
 from warehouse.store.store import Store
 from warehouse.store.unforeseen import Border
@@ -47,7 +47,7 @@ def write_slides(
         MissingKnowledgeError: there is no such type, boat or choice of tows, or no database.
     """
     say = speaker(language)
-    open_results(store.database).close()  # says so where there is no tow
+    open_database(store.database).close()  # says so where there is none
     with Views(store) as views:
         simulated = views.about().get("simulated") == "true"
         made = list(slides(views, say, asked, border))

@@ -7,7 +7,7 @@ import duckdb
 import polars as pl
 import pytest
 
-from pipeline.tables.schemas import ABOUT, STUDY, TABLES
+from pipeline.tables.schemas import ABOUT, TABLES
 from pipeline.tables.views import VIEWS
 from tests.conftest import Workbench
 from warehouse.derive.inputs import LAKE_ONLY
@@ -76,15 +76,6 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
     assert comments["curves", "cw_kg_m"] == "Cw at the declared speed [kg/m]"
 
 
-def test_working_tables_of_studies_are_in_a_schema_of_their_own(built: Workbench):
-    with duckdb.connect(built.store.database, read_only=True) as db:
-        placed = db.sql("SELECT table_name FROM duckdb_tables() WHERE schema_name = 'study'")
-        assert {name for (name,) in placed.fetchall()} == {*STUDY}
-        with pytest.raises(duckdb.CatalogException):
-            db.table("promise")
-    assert built.table("promise").columns == TABLES["promise"].column_names()
-
-
 ENOUGH_VERSIONS = 4
 
 
@@ -127,14 +118,6 @@ def test_readers_never_see_an_error_or_half_of_a_database(tmp_path):
     assert errors == []
     assert {count for _, count in seen} == {1000}
     assert len({version for version, _ in seen}) > ENOUGH_VERSIONS
-
-
-def test_a_reader_that_has_the_old_database_open_keeps_it(tmp_path):
-    path = tmp_path / "warehouse.duckdb"
-    build_database(path, {"t": pl.DataFrame({"x": [1]})})
-    with duckdb.connect(path, read_only=True) as db:
-        build_database(path, {"t": pl.DataFrame({"x": [2, 3]})})
-        assert db.execute("SELECT x FROM t").fetchall() == [(1,)]
 
 
 def test_a_failed_build_leaves_the_old_database_and_no_litter(tmp_path):

@@ -129,17 +129,6 @@ def test_a_tow_in_another_unit_is_set_aside_with_the_likely_unit(archive, change
     assert not archive.doubts()
 
 
-def test_half_a_season_in_another_unit_costs_that_half(archive):
-    wrong = sorted(archive.season(2016))[5:]
-    for tow in wrong:
-        archive.change(tow, header("kracht", "kgf"))
-    archive.collect()
-    found = archive.quarantined()
-    assert set(found) == set(wrong)
-    assert all("5 tows of season 2016" in m and "kgf" in m for _, m in found.values())
-    assert not archive.doubts()
-
-
 def vane(angle: Callable[[float], float], speed: str = "wind") -> Callable[[str], str]:
     """Gives the vane other angles, and the wind the speed of another column."""
 

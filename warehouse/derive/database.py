@@ -7,7 +7,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.tables.declare import dy
-from pipeline.tables.schemas import ABOUT, TABLES, conform, ordered
+from pipeline.tables.schemas import ABOUT, TABLES, ordered
 from pipeline.tables.views import VIEWS
 from warehouse.store.code import code_version
 from warehouse.store.database import build_database, left_wal
@@ -50,16 +50,6 @@ def _files(store: Store, tables: Mapping[str, pl.DataFrame]) -> dict[Path, type[
     methods = [None, *tables["methods"]["method"]]
     paths = {store.table_path(name, method): TABLES[name] for name in known for method in methods}
     return {path: schema for path, schema in paths.items() if path.exists()}
-
-
-def database_without_tows(store: Store, tables: Mapping[str, pl.DataFrame]) -> None:
-    """A first database where no tow can be used, so that readers see what was set aside."""
-    if not store.database.exists():
-        empty = {name: schema.create_empty() for name, schema in TABLES.items()}
-        known = {name: conform(name, frame) for name, frame in tables.items()}
-        build_database(
-            store.database, {**empty, **known, "about": _about(store.read("about_archive"))}
-        )
 
 
 def _about(about_archive: pl.DataFrame) -> pl.DataFrame:

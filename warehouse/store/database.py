@@ -126,12 +126,6 @@ def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
 
 
-NO_TOW: Final = say(
-    "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "
-    "quarantine say why"
-)
-
-
 def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     """The database, to read only; tables of the schema `study` are found by their name alone.
 
@@ -156,27 +150,13 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     return connection
 
 
-def open_results(path: Path) -> duckdb.DuckDBPyConnection:
-    """The database of a rebuild that accepted a tow.
-
-    Raises:
-        MissingKnowledgeError: it was not made yet, or no tow was accepted.
-        UnavailableError: as `open_database`.
-    """
-    connection = open_database(path)
-    if not connection.execute("SELECT 1 FROM tows LIMIT 1").fetchall():
-        connection.close()
-        raise MissingKnowledgeError("{} has no tow: {}", path, NO_TOW)
-    return connection
-
-
 def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError:
     """What to say of an edition or draft that the database does not hold."""
     return MissingKnowledgeError(
         "the last rebuild has no edition {}; it has {}. One published since is there after herijk "
         "rebuild",
         edition,
-        ", ".join(sorted(known)) or NO_TOW,
+        ", ".join(sorted(known)),
     )
 
 
