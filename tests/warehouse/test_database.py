@@ -1,17 +1,20 @@
 """The database is swapped in whole, and says what its columns mean."""
 
 import re
+import subprocess
 import threading
 
 import duckdb
+import numpy as np
 import polars as pl
 import pytest
 
 from pipeline.tables.schemas import ABOUT, TABLES
 from pipeline.tables.views import VIEWS
+from tests.assets.test_machine_faults import mounted
 from tests.conftest import Workbench
+from warehouse.derive.database import build_database
 from warehouse.derive.inputs import LAKE_ONLY
-from warehouse.store.database import build_database
 
 CONTRACT = {
     "boats": "fsn_no, ht_no, name, boat_type",
@@ -128,6 +131,20 @@ def test_a_failed_build_leaves_the_old_database_and_no_litter(tmp_path):
     assert [f.name for f in tmp_path.iterdir()] == ["warehouse.duckdb"]
     with duckdb.connect(path, read_only=True) as db:
         assert db.execute("SELECT x FROM t").fetchall() == [(1,)]
+
+
+def test_a_database_that_does_not_fit_on_the_disk_is_not_put_in_place(tmp_path):
+    mounted(tmp_path / "disk", 1_000_000)
+    try:
+        path = tmp_path / "disk" / "warehouse.duckdb"
+        build_database(path, {"t": pl.DataFrame({"x": [1]})})
+        numbers = np.random.default_rng(1).random(200_000)
+        with pytest.raises(duckdb.Error):
+            build_database(path, {"t": pl.DataFrame({"x": numbers})})
+        with duckdb.connect(path, read_only=True) as db:
+            assert db.execute("SELECT x FROM t").fetchall() == [(1,)]
+    finally:
+        subprocess.run(["umount", str(tmp_path / "disk")], check=True)
 
 
 def test_views_answer_and_programs_of_last_year_can_open_the_file(built: Workbench):

@@ -8,6 +8,7 @@ from pipeline.consistency.eras import era_shifts
 from pipeline.method.definition import Method
 from pipeline.studies.claims import promise
 from pipeline.studies.summaries import check_counts, option_summary, quality_counts, season_ladder
+from pipeline.tables.views import VIEWS
 from warehouse.derive import consistency, database, registers, summaries
 from warehouse.derive.archive_tables import archive_tables
 from warehouse.derive.inputs import (
@@ -42,8 +43,8 @@ DATABASE: Final = Step(
     "database",
     database.warehouse_database,
     (database.DATABASE_TABLE,),
-    code=(*COMPUTING, "warehouse.store.database", "warehouse.store.package"),
-    also=database.MEANINGS,
+    code=(*COMPUTING, "warehouse.store.package"),
+    also=str((database.MEANINGS, VIEWS)),
     is_whole=database.is_whole,
 )
 
