@@ -2,7 +2,6 @@
 
 import re
 import subprocess
-import threading
 
 import duckdb
 import numpy as np
@@ -77,50 +76,6 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
     assert silent == []
     comments = {(t, c): comment for t, c, comment in columns}
     assert comments["curves", "cw_kg_m"] == "Cw at the declared speed [kg/m]"
-
-
-ENOUGH_VERSIONS = 4
-
-
-def test_readers_never_see_an_error_or_half_of_a_database(tmp_path):
-    path, stop = tmp_path / "warehouse.duckdb", threading.Event()
-    seen: list[tuple[int, int]] = []
-    errors: list[Exception] = []
-
-    def build(version: int) -> None:
-        rows = pl.DataFrame({"version": [version] * 1000})
-        build_database(path, {"first": rows, "second": rows})
-
-    def poll() -> None:
-        while not stop.is_set():
-            try:
-                with duckdb.connect(path, read_only=True) as db:
-                    first, second = (
-                        db.execute(
-                            f"SELECT min(version), max(version), count(*) FROM {t}"  # noqa: S608
-                        ).fetchone()
-                        for t in ("first", "second")
-                    )
-                assert first == second
-                assert first[0] == first[1]
-                seen.append((first[0], first[2]))
-            except Exception as error:
-                errors.append(error)
-                return
-
-    build(0)
-    # One reader: connections of one process to one path share a database while any of them is open.
-    reader = threading.Thread(target=poll)
-    reader.start()
-    for version in range(1, 1000):
-        build(version)
-        if errors or len({held for held, _ in seen}) > ENOUGH_VERSIONS:
-            break
-    stop.set()
-    reader.join()
-    assert errors == []
-    assert {count for _, count in seen} == {1000}
-    assert len({version for version, _ in seen}) > ENOUGH_VERSIONS
 
 
 def test_a_failed_build_leaves_the_old_database_and_no_litter(tmp_path):

@@ -27,11 +27,7 @@ from warehouse.store.store import Store
 
 ARCHIVE: Final = Step("archive", archive_tables, ARCHIVE_TABLES)
 METHOD: Final = Step("method", method_tables, METHOD_TABLES)
-STUDIES: Final = Step(
-    "studies",
-    study_tables,
-    STUDY_TABLES,
-)
+STUDIES: Final = Step("studies", study_tables, STUDY_TABLES)
 LINES: Final = Step("lines", consistency.line_tables, LINE_TABLES)
 TYPES: Final = Step("consistency", consistency.type_tables, TYPE_TABLES)
 REGISTERS: Final = Step(
@@ -50,11 +46,7 @@ DATABASE: Final = Step(
 
 STEPS: Final = (
     ARCHIVE,
-    Step(
-        "recordings",
-        summaries.recording_tables,
-        ("trace_seconds", "run_statistics"),
-    ),
+    Step("recordings", summaries.recording_tables, ("trace_seconds", "run_statistics")),
     *(METHOD, STUDIES, LINES, TYPES),
     *(
         Step("consistency", compute, (compute.__name__,))
