@@ -85,17 +85,16 @@ def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
 
 def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:
     """No season's log factor jumped since the last report."""
+    limit = setup.settings.factor_jump
     moved = change_report(setup.store).factors
-    jumps = moved.filter((moved["ratio"] - 1.0).abs() > setup.settings.factor_jump)
-    return _result(jumps.rows(), WARN)
+    return _result([tuple(f.values()) for f in moved if abs(f["ratio"] - 1.0) > limit], WARN)
 
 
 def boats_stayed_within_their_intervals(setup: Setup) -> dg.AssetCheckResult:
     """No line of a draft moved by more than its intervals since the last report."""
-    lines = change_report(setup.store).lines
-    beyond = lines.filter(lines["exceeds_interval"].fill_null(value=False))
-    columns = ["to_edition", "fsn_no", "rowers", "crew_class"]
-    return _result(beyond.select(columns).rows(), WARN)
+    columns = ("to_edition", "fsn_no", "rowers", "crew_class")
+    beyond = change_report(setup.store).beyond_interval
+    return _result([tuple(line[name] for name in columns) for line in beyond], WARN)
 
 
 def editions_can_be_made_again(setup: Setup) -> dg.AssetCheckResult:

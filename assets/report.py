@@ -18,12 +18,7 @@ from dashboards.report import (
 )
 from pipeline.messages import LANGUAGE, speaker
 from warehouse.derive.step import QUARANTINE
-from warehouse.queries.change_report import (
-    ChangeSummary,
-    change_report,
-    remember,
-    summary_of,
-)
+from warehouse.queries.change_report import ChangeReport, change_report, remember
 from warehouse.store.code import code_version
 from warehouse.store.files import written_beside
 from warehouse.store.store import Store
@@ -47,10 +42,11 @@ class Done:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Report(ChangeSummary):
+class Report(ChangeReport):
     """What a rebuild did, what that changed, and what the checks say.
 
     Attributes:
+        nothing_changed: whether that is so.
         made_at: the moment, ISO 8601.
         archive: where it is.
         simulated: whether the archive is.
@@ -58,6 +54,7 @@ class Report(ChangeSummary):
         headlines: the news in English.
     """
 
+    nothing_changed: bool
     made_at: str
     archive: str
     simulated: bool
@@ -72,17 +69,18 @@ def write_report(
 ) -> Report:
     """Finds out what changed, and writes page and JSON; the page about the last change stays."""
     changes = change_report(store)
-    about, summary = store.read("about_archive"), summary_of(changes)
+    about = store.read("about_archive")
     checks = [*(_check(one) for one in evaluated), *_unforeseen(store)]
     report = Report(
-        **vars(summary),
+        **vars(changes),
+        nothing_changed=changes.nothing,
         made_at=now.isoformat(timespec="seconds"),
         archive=about["root"][0],
         simulated=about["simulated"][0],
         code_version=code_version(),
         done=done,
         checks=checks,
-        headlines=headlines(summary, checks, speaker("en")),
+        headlines=headlines(changes, checks, speaker("en")),
     )
     text = json.dumps(asdict(report), default=str, indent=1)
     folder = store.root / "report"

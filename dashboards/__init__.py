@@ -5,7 +5,6 @@
 - Pictures as files: `slides` with its `slide_book` and `slide_rows`, `audit_plots`.
 - Charts: `figures`, drawn without a browser by `drawn`, in the `fonts` of the pages; two small
   ones by hand (`pictures`).
-- Sentences: the owner's `answer`, `headlines` of sections, and numbers as people write them
-  (`speech`).
+- Sentences: `statements`, and numbers as people write them (`speech`).
 - Underneath: `html`, texts that are `kept`, and the `guard` of every server.
 """

@@ -76,18 +76,18 @@ def _of_types(views: Views, report: TypesAudit) -> Iterator[Plot]:
     shifts = views.table("era_shifts").filter(own, pl.col("shift_ratio").is_not_null())
     for boat_type in types:
         yield Plot("eras", shifts.filter(boat_type=boat_type), boat_type)
-    boats = views.type_tows().filter(own, rows_of(report.statistics_over))
+    boats = views.ask("type_tows").filter(own, rows_of(report.statistics_over))
     yield Plot(
         "repeats",
         boats.select("method", "fsn_no")
         .unique()
         .sort("method", "fsn_no")
-        .join(views.repeat_pairs(), on=["method", "fsn_no"], maintain_order="left"),
+        .join(views.ask("repeat_pairs"), on=["method", "fsn_no"], maintain_order="left"),
     )
     compared = pl.col("method").is_in([methods[0], default_method(methods)])
     for name in SCATTERS:
         yield Plot(name, boats.filter(compared))
-    yield Plot("predicted", views.predicted().filter(own, method=default_method(methods)))
+    yield Plot("predicted", views.ask("predicted").filter(own, method=default_method(methods)))
 
 
 def _of_boat(views: Views, report: BoatAudit) -> Iterator[Plot]:
@@ -95,9 +95,9 @@ def _of_boat(views: Views, report: BoatAudit) -> Iterator[Plot]:
     methods, boat = report.methods, report.boat
     own = (pl.col("fsn_no") == boat["fsn_no"]) & pl.col("method").is_in(methods)
     tow = pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
-    yield Plot("history", views.curves().filter(own).with_columns(tow=tow))
-    yield Plot("repeats", views.repeat_pairs().filter(own))
-    like = views.type_tows().filter(
+    yield Plot("history", views.ask("curves").filter(own).with_columns(tow=tow))
+    yield Plot("repeats", views.ask("repeat_pairs").filter(own))
+    like = views.ask("type_tows").filter(
         rows_of(report.statistics_over), pl.col("boat_type") == (boat["boat_type"] or "")
     )
     for name in SCATTERS:

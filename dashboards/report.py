@@ -3,6 +3,7 @@
 What changed is found out in `warehouse.queries.change_report`; texts are in `words`.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -10,7 +11,7 @@ from typing import Final
 from dashboards import labels
 from pipeline.messages import Say, pgettext, say, speaker
 from pipeline.tables.row import Row
-from warehouse.queries.change_report import ChangeSummary
+from warehouse.queries.change_report import ChangeReport
 
 LINES_IN_MAIL: Final = 20
 PAGES: Final = {"nl": "latest.html", "en": "latest.en.html"}
@@ -53,7 +54,7 @@ def values_found(check: Check) -> list[tuple[str, str]]:
     ]
 
 
-def mail(changes: ChangeSummary, checks: Sequence[Check], simulated: bool) -> tuple[str, str]:
+def mail(changes: ChangeReport, checks: Sequence[Check], simulated: bool) -> tuple[str, str]:
     """Subject and text of the mail, in Dutch."""
     say = speaker("nl")
     lines = headlines(changes, checks, say)
@@ -73,13 +74,13 @@ def _line(line: Row) -> str:
     return f"  {line['to_edition']}: {line['fsn_no']} {crew} {line['change']} {ratio}".rstrip()
 
 
-def headlines(changes: ChangeSummary, checks: Sequence[Check], say: Say) -> list[str]:
+def headlines(changes: ChangeReport, checks: Sequence[Check], say: Say) -> list[str]:
     """What happened in a few lines, the most important first."""
     sentences = [*_wrong(checks, say), *_moved(changes, say)]
     return sentences or [say("Nothing changed since the last report.")]
 
 
-def in_short(changes: ChangeSummary, checks: Sequence[Check], say: Say) -> str:
+def in_short(changes: ChangeReport, checks: Sequence[Check], say: Say) -> str:
     """The headlines as sentences of one paragraph."""
     return " ".join(f"{line.rstrip('.')}." for line in headlines(changes, checks, say))
 
@@ -115,7 +116,7 @@ def _wrong(checks: Sequence[Check], say: Say) -> Iterable[str]:
             yield f"{outcome}: {failed} ({found_in_words(check, say)})"
 
 
-def _moved(changes: ChangeSummary, say: Say) -> Iterable[str]:
+def _moved(changes: ChangeReport, say: Say) -> Iterable[str]:
     if changes.first:
         yield say("First report: everything is new.")
     if changes.seasons_gone:
@@ -125,15 +126,12 @@ def _moved(changes: ChangeSummary, say: Say) -> Iterable[str]:
         yield f"{say('Method')} {row['method']}: {say(labels.code(row['what']))}"
     counted = ((pgettext("number", "Tows"), changes.tows), (say("Set aside"), changes.set_aside))
     for title, rows in counted:
-        by_what: dict[str, int] = {}
-        for row in rows:
-            by_what[row["what"]] = by_what.get(row["what"], 0) + row["number"]
-        if by_what:
+        if by_what := Counter(row["what"] for row in rows):
             parts = (f"{number} {say(labels.code(what))}" for what, number in by_what.items())
             yield f"{say(title)}: {', '.join(parts)}"
     if changes.factors:
         yield f"{say('Log factors that moved')}: {len(changes.factors)}"
     if changes.lines:
-        beyond = changes.beyond_interval
+        beyond = len(changes.beyond_interval)
         title, of_them = say("Changed lines of the drafts"), say("beyond their interval")
         yield f"{title}: {len(changes.lines)}, {beyond} {of_them}"

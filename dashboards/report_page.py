@@ -19,7 +19,7 @@ from dashboards.report import (
 from dashboards.site.parts import Page, Section, Table
 from dashboards.site.render import Edition
 from pipeline.messages import LANGUAGES, pgettext, say, speaker
-from warehouse.queries.change_report import ChangeReport, summary_of
+from warehouse.queries.change_report import ChangeReport
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
 
@@ -63,13 +63,10 @@ def report_pages(
         orient="row",
     )
     counted = of_checks.group_by(OF_A_CHECK, maintain_order=True).len("number")
+    changed = ("lines", "tows", "set_aside", "factors")
     frames = {
-        "lines": changes.lines,
-        "tows": changes.tows,
-        "set_aside": changes.set_aside,
-        "factors": changes.factors,
-        "checks": counted,
-    }
+        name: pl.DataFrame(getattr(changes, name), infer_schema_length=None) for name in changed
+    } | {"checks": counted}
     sections = [
         Section(
             f"report_{name}",
@@ -80,11 +77,10 @@ def report_pages(
         else Section(f"report_{name}", _TITLES[name], empty=say("Nothing."))
         for name, frame in frames.items()
     ]
-    summary = summary_of(changes)
     in_words = Section(
         "report_summary",
         say("In short"),
-        headline=lambda speech: in_short(summary, checks, speech.say),
+        headline=lambda speech: in_short(changes, checks, speech.say),
     )
     with Views(store) as views:
         return {

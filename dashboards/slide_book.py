@@ -301,7 +301,7 @@ class Book:
     def raced_beyond(self) -> Iterator[Slide]:
         """Race power by curves that are used where they do not count."""
         label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
-        rows = self.views.slow_tows().with_columns(label.alias("label"))
+        rows = self.views.ask("slow_tows").with_columns(label.alias("label"))
         rows = rows.filter(
             pl.col("power_ratio_raced").is_not_null(),
             pl.col("method").is_in(methods_of(self.held)),
@@ -366,7 +366,7 @@ class Book:
             return
         name = own["name"][0]
         common = own.select("method", "tow_id", "standard_speed_m_s")
-        rows = self.views.curve_points_of(fsn_no).join(
+        rows = self.views.ask("curve_points_of", fsn_no).join(
             common, on=["method", "tow_id"], maintain_order="left"
         )
         title = self.say("{name} through the years", name=name)
@@ -377,7 +377,9 @@ class Book:
         """The tow of 2014, as on the slide, or the boat's newest."""
         of_2014 = own.filter(season=int(RECOMPUTED_SEASON))
         tow = (of_2014 if of_2014.height else own).row(-1, named=True)
-        rows = self.views.option_curves(tow["tow_id"]).filter(pl.col("method") == self._ticked())
+        rows = self.views.ask("option_curves_of", tow["tow_id"]).filter(
+            pl.col("method") == self._ticked()
+        )
         if rows.is_empty():
             return
         effects = self.views.table("option_effects").filter(

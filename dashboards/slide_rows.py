@@ -29,7 +29,7 @@ def methods_of(held: Sequence[str], tows: str = "all") -> list[str]:
 def compared_frame(views: Views) -> pl.DataFrame:
     """Tows of `compared_tows` with a label, "Vecht 8D 2012", as the charts draw them."""
     label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
-    return views.compared_tows().with_columns(label.alias("label"), kind=pl.lit("tow"))
+    return views.ask("compared_tows").with_columns(label.alias("label"), kind=pl.lit("tow"))
 
 
 def lines_frame(views: Views) -> pl.DataFrame:

@@ -1,15 +1,12 @@
 """Numbers and texts as people of one language write them."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias, cast
+from typing import Final, TypeAlias
 
 from markupsafe import Markup, escape
 
 from dashboards import labels
 from pipeline.messages import DECIMALS, speaker
-
-if TYPE_CHECKING:
-    import polars as pl
 
 MINUS: Final = "\u2212"
 
@@ -55,25 +52,6 @@ def duration(seconds: float) -> str:
     """A time rowed as people say it: 1:55:11."""
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"
-
-
-def stretched_fatigue(times_s: "pl.Series", speech: Speech) -> str:
-    """That the correction for fatigue is used for times that it was not made for, where it is."""
-    from pipeline.races.race import FATIGUE_REFERENCE  # noqa: PLC0415 - many need no NumPy
-
-    (first, _), (last, _) = FATIGUE_REFERENCE
-    beyond = times_s.filter(~times_s.is_between(first, last))
-    if beyond.is_empty():
-        return ""
-    ends = {
-        name: duration(cast(float, time))
-        for name, time in zip(("low", "high"), (times_s.min(), times_s.max()), strict=True)
-    }
-    return speech.say(
-        " Where another wins, that rests in part on the correction for fatigue, which "
-        "was made for 2 to 3 hours and is used outside them here ({low} to {high}).",
-        **ends,
-    )
 
 
 Headline: TypeAlias = Callable[[Speech], str]

@@ -5,18 +5,19 @@
 The numbers e of different boats are independent; those of one have any covariance, which may depend
 on which of a few patterns the boat follows (a normal mixture). The unknowns u are fixed (a flat
 prior) or random (a normal one). So no matrix is larger than a boat's numbers or than the unknowns,
-however many tows there are (Woodbury). Several problems of such a kind lie side by side.
+however many tows there are (Woodbury). Where the boat's effect is the only covariance, as in
+`consistency.mixed`, sums over a boat are enough, and many problems are searched side by side.
 
-Belongs here: the likelihood of boats, the posterior of the unknowns, the restricted likelihood of
-variances and its maximum, scores of candidates, leaving boats out. Does not: what the numbers,
-unknowns and variances mean (`consistency.mixed`, `season_log.posterior`, `assessment.mean_shift`).
+Belongs here: the likelihood of boats, the posterior of the unknowns, the maximum of a restricted
+likelihood over its variances, scores of candidates. Does not: what the numbers, unknowns and
+variances mean (`consistency.mixed`, `season_log.posterior`, `assessment.mean_shift`).
 
 Sources: Patterson & Thompson 1971 (REML); Gilmour, Thompson & Cullis 1995 (average information);
-Louis 1982 (information of mixtures); Cook & Weisberg 1982, 2.2 (leaving out).
+Louis 1982 (information of mixtures).
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple, Self
 
@@ -48,8 +49,6 @@ class Boats:
         pull: (b, patterns, n) precision of the numbers times their residual.
         weight: (b, patterns) posterior of each pattern.
         precision: (b, n, n) of the numbers, averaged over patterns.
-        ln_determinant: (b, patterns) of their covariance.
-        problem: (b,) which problem they are of, sorted.
     """
 
     rows: IntArray
@@ -58,8 +57,6 @@ class Boats:
     pull: FloatArray
     weight: FloatArray
     precision: FloatArray
-    ln_determinant: FloatArray
-    problem: IntArray
 
     @classmethod
     def of(
@@ -70,7 +67,7 @@ class Boats:
         covariance: FloatArray,
         ln_prior: FloatArray,
     ) -> Self:
-        """What boats of one problem say, each of which follows one of a few patterns.
+        """What boats say, each of which follows one of a few patterns.
 
         Args:
             rows, design, residual: as the attributes.
@@ -83,47 +80,7 @@ class Boats:
         ln_density = -0.5 * ((pull * residual).sum(axis=2) + determinant)
         weight = shares(ln_density + ln_prior)
         precision = np.einsum("bp,bpij->bij", weight, inverse)
-        problem = np.zeros(len(rows), np.int64)
-        return cls(rows, design, residual, pull, weight, precision, determinant, problem)
-
-    @classmethod
-    def alike(
-        cls,
-        rows: IntArray,
-        design: FloatArray,
-        residual: FloatArray,
-        covariance: FloatArray,
-        problem: IntArray,
-    ) -> Self:
-        """The same of boats of several problems that all follow the same pattern.
-
-        Args:
-            rows, design, problem: as the attributes.
-            residual: (b, n).
-            covariance: (b, n, n).
-        """
-        precision: FloatArray = np.linalg.inv(covariance).astype(np.float64)
-        determinant = np.linalg.slogdet(covariance)[1][:, None]
-        pull = (precision @ residual[..., None])[:, None, :, 0]
-        weight = np.ones((len(rows), 1))
-        own = residual[:, None]
-        return cls(rows, design, own, pull, weight, precision, determinant, problem)
-
-    def moved(self, unknowns: FloatArray) -> Self:
-        """The boats where the unknowns have moved by so much, (problems, k); of one pattern."""
-        residual = self.residual[:, 0] - (self.design @ unknowns[self.problem, :, None])[..., 0]
-        pull = (self.precision @ residual[..., None])[:, None, :, 0]
-        return replace(self, residual=residual[:, None], pull=pull)
-
-    @cached_property
-    def begins(self) -> IntArray:
-        """The first boat of each problem."""
-        return np.flatnonzero(self.problem != np.concatenate([[-1], self.problem[:-1]]))
-
-    @property
-    def misfit(self) -> FloatArray:
-        """Squares of the residuals in units of their covariance, (b, patterns)."""
-        return np.asarray((self.pull * self.residual).sum(axis=2))
+        return cls(rows, design, residual, pull, weight, precision)
 
     @cached_property
     def mean_pull(self) -> FloatArray:
@@ -165,25 +122,11 @@ class Boats:
         restricted ln likelihood by that variance.
 
         Args:
-            covariance: of the unknowns, (problems, k, k).
+            covariance: of the unknowns, (k, k) or (1, k, k).
         """
         squares = np.swapaxes(self.weight[..., None] * self.pull, 1, 2) @ self.pull
-        of_boats = covariance if len(covariance) == 1 else covariance[self.problem]
-        known = self.weighed @ of_boats @ np.swapaxes(self.weighed, 1, 2)
+        known = self.weighed @ covariance @ np.swapaxes(self.weighed, 1, 2)
         return np.asarray(squares - self.precision + known)
-
-
-def total(boats: Sequence[Boats], parts: Iterable[FloatArray], problems: int) -> FloatArray:
-    """Sum over the boats of each problem of what `parts` holds per boat, (problems, ...)."""
-    sums: FloatArray | float = 0.0
-    for some, values in zip(boats, parts, strict=True):
-        if problems == 1:
-            sums = sums + values.sum(axis=0, keepdims=True)
-            continue
-        added = np.zeros((problems, *values.shape[1:]))
-        added[some.problem[some.begins]] = np.add.reduceat(values, some.begins, axis=0)
-        sums = sums + added
-    return np.asarray(sums)
 
 
 def shares(ln_weight: FloatArray) -> FloatArray:
@@ -228,38 +171,6 @@ class Scores(NamedTuple):
         """Of each candidate, the unknowns not being known, (c,)."""
         known = (self.across * (covariance @ self.across)).sum(axis=0)
         return np.asarray(np.maximum(self.itself - known, 0.0))
-
-
-class LeftOut(NamedTuple):
-    """Numbers as those of all other boats predict them, in the order of the numbers.
-
-    Attributes:
-        error: (numbers,) what they have above the prediction.
-        variance: of that; infinite where the others do not determine it.
-        own: misfit of the boat's numbers.
-    """
-
-    error: FloatArray
-    variance: FloatArray
-    own: FloatArray
-
-
-def leave_boats_out(boats: Sequence[Boats], covariance: FloatArray, numbers: int) -> LeftOut:
-    """Predicts the numbers of each boat from those of the others, without fitting again.
-
-    With P the precision of all numbers less what the unknowns take up, the errors of a boat's are
-    (P_bb)^-1 (P y)_b with the variance (P_bb)^-1. One problem, one pattern, at its best unknowns.
-    """
-    error, variance, own = np.zeros(numbers), np.full(numbers, np.inf), np.zeros(numbers)
-    for some in boats:
-        block = some.precision - some.weighed @ covariance @ np.swapaxes(some.weighed, 1, 2)
-        largest = np.diagonal(some.precision, axis1=1, axis2=2).max(axis=1)
-        determined = np.linalg.eigvalsh(block)[:, 0] > 1e-9 * largest
-        inverse, pull = np.linalg.inv(block[determined]), some.mean_pull[determined]
-        missed, rows = (inverse @ pull[..., None])[..., 0], some.rows[determined]
-        error[rows], variance[rows] = missed, np.diagonal(inverse, axis1=1, axis2=2)
-        own[rows] = (missed * pull).sum(axis=1, keepdims=True)
-    return LeftOut(error, variance, own)
 
 
 class Likelihood(NamedTuple):

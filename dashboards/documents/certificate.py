@@ -6,10 +6,10 @@ from typing import Final
 import segno
 
 from dashboards import labels
-from dashboards.answer import crew_name, interval_in_words
 from dashboards.documents import page, pdf
 from dashboards.pictures import curve_picture
 from dashboards.speech import Speech
+from dashboards.statements.boat import crew_name, interval
 from pipeline.messages import pgettext, say
 from pipeline.tables.row import Row
 from warehouse.queries.documents import certificate_lines, curve_of
@@ -128,10 +128,9 @@ def _caution(line: Row, speech: Speech) -> str:
 
 
 def _interval(line: Row, speech: Speech) -> str:
-    low, high = line["cw_lo_kg_m"], line["cw_hi_kg_m"]
-    if low is None or high is None:
+    if line["cw_lo_kg_m"] is None or line["cw_hi_kg_m"] is None:
         return speech.say("The uncertainty of this number is not known.")
-    return interval_in_words(low, high, line["log_known"], speech)
+    return interval(line, line["log_known"])(speech)
 
 
 def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:

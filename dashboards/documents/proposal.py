@@ -1,17 +1,19 @@
 """The document of a meeting: what a method would change, for whom, and how uncertain that is."""
 
 from collections.abc import Iterator, Sequence
-from math import log
 from typing import Any, Final
 
 import polars as pl
 
-from dashboards import headlines, labels
+from dashboards import labels
 from dashboards.documents import pdf
-from dashboards.speech import Speech, stretched_fatigue
+from dashboards.speech import Speech
+from dashboards.statements.edition import Effect, cause_name, changes, effects, undecided
+from dashboards.statements.race import stretched_fatigue
 from pipeline.messages import in_per_cent, pgettext, say
+from pipeline.register.changes import largest_first
 from pipeline.register.register import draft_name
-from warehouse.editions.compare import causes_of, largest_first
+from warehouse.editions.compare import causes_of
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
@@ -90,16 +92,12 @@ def _part(
 def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
     """The methods side by side."""
     rows = []
-    for method, changes in lines.items():
-        known = changes.drop_nulls("cw_ratio")
-        rows.append(
-            [
-                speech.say(labels.method(method)),
-                str(changes.filter(change="changed").height),
-                _beyond(changes["exceeds_interval"], speech),
-                *(speech.per_cent(ratio) for ratio in _middle_and_ends(known)),
-            ]
-        )
+    for method, compared_lines in lines.items():
+        effect = effects(compared_lines)[0]
+        row = (effect.median, effect.lowest, effect.highest)
+        changed = str(compared_lines.filter(change="changed").height)
+        name = speech.say(labels.method(method))
+        rows.append([name, changed, _beyond(effect, speech), *(one(speech) for one in row)])
     heads = (
         say("Method"),
         labels.code("changed"),
@@ -110,18 +108,9 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
     )
 
 
-def _middle_and_ends(changes: pl.DataFrame) -> tuple[float, float, float]:
-    ratio = pl.col("cw_ratio")
-    middle, low, high = changes.select(
-        ratio.median().alias("middle"), ratio.min().alias("low"), ratio.max().alias("high")
-    ).row(0)
-    return middle, low, high
-
-
-def _beyond(exceeds: pl.Series, speech: Speech) -> str:
+def _beyond(effect: Effect, speech: Speech) -> str:
     """How many lines change by more than their uncertainty; none of them need be known."""
-    known = exceeds.drop_nulls()
-    return speech.say("not known") if known.is_empty() else str(known.sum())
+    return speech.say("not known") if effect.beyond is None else str(effect.beyond)
 
 
 def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
@@ -129,43 +118,26 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
     say = speech.say
     yield _part(
         say("What changes: {method}", method=say(labels.method(method))),
-        headlines.changes(lines)(speech),
+        changes(lines)(speech),
         head=[say(labels.column("step")), say("Median effect on Cw"), say(labels.column("number"))],
         rows=_steps(lines, speech),
     )
     yield _types(lines, speech)
     yield _boats(lines, speech)
     yield _races(views, lines, speech)
-    unknown = int(lines["exceeds_interval"].null_count())
-    sure = (
-        say(
-            "Lines of which it cannot be told whether the change is larger than the "
-            "uncertainty: {unknown}.",
-            unknown=unknown,
-        )
-        if unknown
-        else say("Of every line it can be told whether the change is larger than the uncertainty.")
-    )
-    flagged = views.flagged_boats().filter(method=method)["tow_id"].implode()
-    voted = lines.drop_nulls("new_cw_kg_m").select(pl.col("new_tow_id").is_in(flagged))
-    flags = say(
-        "Lines with a flag that the committee still has to look at: {flagged} of "
-        "{lines}. Old numbers often have too small an uncertainty: the error of the "
-        "log is not in it.",
-        flagged=voted.to_series().sum(),
-        lines=voted.height,
-    )
-    yield _part(say("What stays undecided"), sure, flags)
+    flagged = views.ask("flagged_boats").filter(method=method)["tow_id"]
+    left = (statement(speech) for statement in undecided(lines, flagged))
+    yield _part(say("What stays undecided"), *left)
 
 
 def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
     """What each cause did, as the notice of an edition says it, the largest first."""
-    causes = sorted(causes_of(lines), key=lambda cause: -abs(log(cause.median_factor)))
+    causes = sorted(causes_of(lines), key=lambda cause: -abs(cause["median_factor"] - 1))
     return [
         [
-            speech.say(labels.code(cause.step or cause.cause)),
-            speech.per_cent(cause.median_factor),
-            str(cause.lines),
+            speech.say(cause_name(cause)),
+            speech.per_cent(cause["median_factor"]),
+            str(cause["lines"]),
         ]
         for cause in causes
     ]
@@ -173,18 +145,7 @@ def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
 
 def _types(lines: pl.DataFrame, speech: Speech) -> Part:
     """What changes by type and class."""
-    by_type = (
-        lines.drop_nulls("cw_ratio")
-        .with_columns(pl.col("boat_type").fill_null("unknown").replace("", "unknown"))
-        .group_by("boat_type", "crew_class", maintain_order=True)
-        .agg(
-            number=pl.len(),
-            ratio=pl.col("cw_ratio").median(),
-            seconds=pl.col("gain_in_two_hours_s").median(),
-            beyond=pl.col("exceeds_interval"),
-        )
-        .sort("boat_type", "crew_class", descending=[False, True])
-    )
+    by_type = effects(lines, "boat_type", "crew_class")
     heads = (
         say("Type"),
         labels.column("number"),
@@ -201,13 +162,14 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
         head=[*map(speech.unbroken, heads)],
         rows=[
             [
-                f"{speech.say(labels.code(boat_type))}, {speech.say(labels.crew(crew_class))}",
-                str(number),
-                speech.per_cent(ratio),
-                speech.number(seconds, 0, "+"),
-                _beyond(pl.Series(beyond), speech),
+                ", ".join((speech.say(labels.code(type_)), speech.say(labels.crew(crew_class)))),
+                str(effect.lines),
+                effect.median(speech),
+                effect.seconds(speech),
+                _beyond(effect, speech),
             ]
-            for boat_type, crew_class, number, ratio, seconds, beyond in by_type.rows()
+            for effect in by_type
+            for type_, crew_class in [effect.of]
         ],
     )
 
@@ -253,7 +215,7 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
     names = dict(views.table("boats").select("fsn_no", "name").rows())
     return _part(
         say("The races of {year}", year=last["race_date"][0].year),
-        *filter(None, [stretched_fatigue(_times(views, last), speech).strip()]),
+        *(one(speech).strip() for one in stretched_fatigue(_times(views, last))),
         say(
             "Of the {results} results of crews with a valid line on that day in both, "
             "{moved} change place. The winners of the last year:",

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import polars as pl
 
-from dashboards.answer import Answer, answers_by_boat
 from dashboards.site.columns import json_by, json_of
 from dashboards.site.parts import (
     Chart,
@@ -21,6 +20,7 @@ from dashboards.site.parts import (
     methods_select,
     once_for_methods,
 )
+from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say
 from warehouse.queries.answers import newest_edition
 from warehouse.queries.views import DRAFT, Views
@@ -141,13 +141,13 @@ ALIKE = ("runs", "wind", "line", "point", "declared", "stages", "assessments")
 def _frames(views: Views) -> dict[str, pl.DataFrame]:
     """Everything a boat's page draws, of all boats at once."""
     boat_of = views.table("tows").select("tow_id", "fsn_no")
-    points = views.run_points().with_columns(run_cw_kg_m="cw_kg_m")
+    points = views.ask("run_points").with_columns(run_cw_kg_m="cw_kg_m")
     seconds = views.table("trace_seconds")
     ends = seconds.group_by("tow_id", "run", maintain_order=True).agg(
         run_end_s=pl.col("second").max() + 1
     )
     register = views.register()
-    curves = views.curves().with_columns(
+    curves = views.ask("curves").with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
@@ -188,7 +188,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     }
     for name in EXTRA:
         if views.has(name):
-            rows = views.flagged() if name == "assessments" else views.table(name)
+            rows = views.ask("flagged") if name == "assessments" else views.table(name)
             frames[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
     return frames
 

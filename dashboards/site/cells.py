@@ -13,6 +13,7 @@ from markupsafe import Markup, escape
 from dashboards import labels
 from dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
 from dashboards.speech import Speech, duration
+from dashboards.statements.edition import cause_name
 from pipeline.messages import LANGUAGES
 from warehouse.queries.chosen_tows import STATED, spoken_range
 
@@ -164,8 +165,7 @@ class Cells:
     def _causes(self, value: str) -> Markup:
         """What a change is attributed to (a method's step by its name), each in per cent."""
         parts = [
-            self.text(labels.code(cause.get("step", cause["cause"])))
-            + f" {self.speech.per_cent(cause['factor'])}"
+            self.text(cause_name(cause)) + f" {self.speech.per_cent(cause['factor'])}"
             for cause in json.loads(value)
         ]
         return Markup("; ").join(parts)

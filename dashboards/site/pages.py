@@ -7,7 +7,6 @@ from typing import Final
 
 import polars as pl
 
-from dashboards import headlines
 from dashboards.site.downloads import files_of
 from dashboards.site.parts import (
     Chart,
@@ -28,6 +27,8 @@ from dashboards.site.prose import edition_pages, guide_links, guide_pages
 from dashboards.site.races import race_pages
 from dashboards.site.start import ABOUT, CARDS, start_page, words_page
 from dashboards.site.types import type_pages, types_page
+from dashboards.statements import due as of_due
+from dashboards.statements import edition, season
 from pipeline.messages import Sentence, say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
@@ -99,7 +100,7 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
         "register", lines, REGISTER_COLUMNS, say("Register"), ["edition"], search=True,
         cards=REGISTER_CARDS,
     )  # fmt: skip
-    headline = headlines.register(lines.filter(edition=chosen))
+    headline = edition.register(lines.filter(edition=chosen))
     return Page(
         "register.html",
         say("Register"),
@@ -159,11 +160,11 @@ CHOICE_COLUMNS = (
 
 def _boats(views: Views, methods: Sequence[str]) -> Page:
     """Who has to tow again, at what speed, which boats to tow again, and two boats compared."""
-    rows = views.due_list().filter(method=default_method(methods))
+    rows = views.ask("due_list").filter(method=default_method(methods))
     rows = rows.rename({"tow_date": "last_tow"})
     title = say("Who has to tow again")
     due = Table("due_list", rows, DUE_COLUMNS, title, search=True, cards=DUE_CARDS)
-    choice = views.retow_choice().filter(method=default_method(methods))
+    choice = views.ask("retow_choice").filter(method=default_method(methods))
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
     curves = _curves(views, methods)
     crews = curves["crew"].unique().sort().to_list()
@@ -180,7 +181,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
                 "to 115 % of the declared speed."
             ),
             tables=[due],
-            headline=headlines.due(rows),
+            headline=of_due.due(rows),
         ),
         *listed(
             Section(
@@ -196,7 +197,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
             choice.hstack(sd),
             CHOICE_COLUMNS,
             follows=(),
-            headline=headlines.retow(choice),
+            headline=of_due.retow(choice) if choice.height else None,
         ),
     ]
     if can_compare:
@@ -269,19 +270,19 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         "era_shifts": views.table("era_shifts")
         .drop_nulls("shift_ratio")
         .filter(shown, boat_type="all"),
-        "repeat_pairs": with_page(views.repeat_pairs().filter(shown)),
+        "repeat_pairs": with_page(views.ask("repeat_pairs").filter(shown)),
         "variance_components": views.table("variance_components")
         .drop_nulls("sd_ratio")
         .filter(shown),
-        "predicted_cw": with_page(views.predicted().filter(shown)),
+        "predicted_cw": with_page(views.ask("predicted").filter(shown)),
     }
     first = default_method(methods)
     said = {
-        "log_factors": headlines.log_factors(frames["log_factors"].filter(method=first)),
-        "reproducibility": headlines.reproducibility(frames["reproducibility"], first),
+        "log_factors": season.log_factors(frames["log_factors"].filter(method=first)),
+        "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
     links = views.table("season_links").with_columns(PART)
-    steps = views.season_steps().with_columns(PART)
+    steps = views.ask("season_steps").with_columns(PART)
     shares = frames["reproducibility"].select(*SHARE_COLUMNS)
     sections: list[Section] = []
     for name, (figure, follows) in SEASON_FIGURES.items():
@@ -466,7 +467,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
                 ),
                 [chart],
                 [table],
-                headline=headlines.changes(changes.filter(to_edition=chosen)),
+                headline=edition.changes(changes.filter(to_edition=chosen)),
             ),
             races,
         ],
@@ -514,12 +515,12 @@ def _about(views: Views) -> Page:
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
-    statuses = views.status_counts()
+    statuses = views.ask("statuses")
     sections = [
         Section(
             "statuses",
             say("Status of the curves"),
-            headline=headlines.statuses(statuses.filter(method=default_method(methods))),
+            headline=season.statuses(statuses.filter(method=default_method(methods))),
             charts=[
                 Chart("statuses", "statuses", say("Status of the curves"), {"method": "method"})
             ],
@@ -535,13 +536,13 @@ def _quality(views: Views, methods: list[str]) -> Page:
         ),
         ("run", "run_reasons", say("Runs that do not count"), None),
     ):
-        frame = views.counts(kind)
+        frame = views.ask("counts", kind)
         if frame.height:
             tables = [Table(name, frame, ["code", "number"], title, ["method"])]
             if kind == "flag":
                 tables.append(_flagged_boats(views))
             sections.append(Section(name, title, note, tables=tables))
-    checks = views.checks()
+    checks = views.ask("checks")
     columns = ["method", "check", "severity", "tows", "beyond"]
     table = Table("check_counts", checks, columns, say("What the checks found"), ["method"])
     sections += [
@@ -575,7 +576,7 @@ def _season_diagnosis(views: Views) -> list[Section]:
     """What may be wrong with the instruments of a season; none where no method asks."""
     if not views.has("season_diagnosis"):
         return []
-    doubted = views.season_diagnosis().filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
+    doubted = views.ask("season_diagnosis").filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
     # What else it could be: the kinds, without their seasons.
     rows = doubted.with_columns(
         PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
@@ -596,7 +597,7 @@ def _season_diagnosis(views: Views) -> list[Section]:
 def _flagged_boats(views: Views) -> Table:
     """Which boats each flag is about."""
     columns = ("flag", "name", "fsn_no", "rowers", "crew_class", "tow_date")
-    rows = views.flagged_boats()
+    rows = views.ask("flagged_boats")
     return Table(
         "flagged_boats", rows, columns, say("Which tows they are about"), ["method"], search=True
     )

@@ -12,8 +12,8 @@ import polars as pl
 from markupsafe import Markup
 
 from dashboards import labels
-from dashboards.answer import Answer
 from dashboards.speech import Headline, Speech
+from dashboards.statements.boat import Answer
 from pipeline.messages import Sentence, say
 from pipeline.register.register import draft_name
 from warehouse.derive.studies import STUDIED_METHOD
@@ -108,7 +108,7 @@ class Section:
         files: path of a file to download, and its name, which is data.
         empty: what is said where there is nothing to show.
         folded: whether it opens only when asked for.
-        headline: what it shows, in each language; see `dashboards.headlines`.
+        headline: what it shows, in each language; see `dashboards.statements`.
         terms: a word and its meaning.
         key_figures: what is counted, and the figure.
         prose: a text to read, as HTML.

@@ -18,7 +18,6 @@ import vl_convert
 from markupsafe import Markup
 
 from dashboards import fonts, labels
-from dashboards.answer import told
 from dashboards.html import as_json, environment
 from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
@@ -158,7 +157,6 @@ class Edition:
             "column_text": labels.column,
             "speech": self.speech,
             "heading": cache(self._heading),
-            "told": lambda answer: told(answer, self.speech),
             "about": self.about,
         }
 

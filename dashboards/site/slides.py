@@ -61,7 +61,7 @@ TOW_COLUMNS = (
 )
 NOT_DRAWN = (
     *("fsn_no", "tow_id", "rowers", "candidates", "reason", "study", "newest"),
-    *("displacement_kg", "expected_cw_kg_m"),
+    "displacement_kg",
 )
 OF_2014 = tuple(f"{y} {x} {RECOMPUTED_SEASON}" for y, x in RECOMPUTED)
 CLAIMS = {

@@ -5,7 +5,7 @@ from typing import Final
 
 import polars as pl
 
-from dashboards import headlines, labels
+from dashboards import labels
 from dashboards.report import in_short
 from dashboards.site.parts import (
     Chart,
@@ -14,6 +14,7 @@ from dashboards.site.parts import (
     draft_of,
 )
 from dashboards.speech import Headline, Speech
+from dashboards.statements import edition
 from pipeline.messages import Sentence, pgettext, say
 from warehouse.queries.answers import newest_edition
 from warehouse.queries.change_report import last_changes
@@ -184,7 +185,7 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
             "now",
             say("The current state"),
             key_figures=_figures(views),
-            headline=headlines.changes(changes.filter(to_edition=chosen)) if editions else None,
+            headline=edition.changes(changes.filter(to_edition=chosen)) if editions else None,
         ),
     ]
     if years.height:

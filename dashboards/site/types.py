@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from dashboards import headlines, labels
+from dashboards import labels
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -24,6 +24,7 @@ from dashboards.site.parts import (
 )
 from dashboards.site.slides import drawn_rows, sentences
 from dashboards.speech import Headline
+from dashboards.statements.boat_type import homogeneity
 from pipeline.messages import say
 from warehouse.queries.chosen_tows import NEWEST
 from warehouse.queries.views import Views
@@ -60,7 +61,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
         return Page("types.html", say("Types"), [])
     after = pl.col("method").alias("after")
     shown = pl.col("method").is_in(methods)
-    tows = with_page(views.type_tows()).filter("newest", shown).with_columns(after)
+    tows = with_page(views.ask("type_tows")).filter("newest", shown).with_columns(after)
     columns = (*TOW_COLUMNS[:2], "boat_type", *TOW_COLUMNS[2:])
     table = Table(
         "type_boats", tows, columns, say("Boats"), OF_TYPE, search=True, linked=True,
@@ -68,7 +69,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     follows = {"method": SIDES, "boat_type": "boat_type"}
     charts = [Chart(name, "type_boats", labels.FIGURES[name], follows) for name in SCATTERS]
     tests = views.table("type_homogeneity").filter(shown).with_columns(after)
-    outliers = views.outliers().filter(shown).with_columns(after)
+    outliers = views.ask("outliers").filter(shown).with_columns(after)
     return Page(
         "types.html",
         say("Types"),
@@ -134,7 +135,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     if not views.has("compared_tows"):
         return
     shown = pl.col("method").is_in(methods)
-    tows = views.type_tows().filter("newest", shown)
+    tows = views.ask("type_tows").filter("newest", shown)
     tows = once_for_methods(tows.select("method", "boat_type", *TOW_COLUMNS))
     lines = views.table("type_lines").filter(shown, LINES_OF, tows=NEWEST)
     tests = views.table("type_homogeneity")
@@ -173,9 +174,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                     ),
                     charts,
                     [listed_tows],
-                    headline=headlines.homogeneity(
-                        tests.filter(own, method=default_method(methods))
-                    ),
+                    headline=homogeneity(tests.filter(own, method=default_method(methods))),
                 ),
                 Section(
                     "types_lines",

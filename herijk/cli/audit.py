@@ -76,7 +76,8 @@ def audit(
         click.echo(as_json_text(report))
         return
     if isinstance(report, BoatAudit):
-        click.echo(audit_text.boat_text(store, report, edition, steps))
+        answers = audit_text.answers_of(store, report.boat, edition)
+        click.echo(audit_text.boat_text(report, answers, steps))
     else:
         click.echo(audit_text.types_text(report, steps))
     if behind:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import polars as pl
 
-from dashboards.answer import Answer, answers_by_boat, told
-from dashboards.headlines import homogeneity
 from dashboards.labels import candidate, code_in_words
+from dashboards.statements.boat import Answer, answers_by_boat
+from dashboards.statements.boat_type import homogeneity
 from herijk.cli.render import (
     cell,
     codes,
@@ -37,14 +37,16 @@ if TYPE_CHECKING:
 # A boat
 
 
-def boat_text(store: Store, report: BoatAudit, edition: str | None, steps: bool) -> str:
+def boat_text(report: BoatAudit, answers: Sequence[Answer], steps: bool) -> str:
     """What there is to say of each crew of a boat; how it came about where that is asked."""
-    speaks = speech()
     parts = [
-        "\n".join([f"{report.boat['fsn_no']} {report.boat['name']}, {one.crew}", one.headline])
-        + "\n"
-        + "\n".join(one.sentences)
-        for one in (told(answer, speaks) for answer in _answers(store, report.boat, edition))
+        "\n".join(
+            [
+                f"{report.boat['fsn_no']} {report.boat['name']}, {answer.crew(speech())}",
+                *(statement(speech()) for statement in answer.statements),
+            ]
+        )
+        for answer in answers
     ]
     if steps:
         parts += list(_boat_steps(report))
@@ -55,8 +57,12 @@ def boat_text(store: Store, report: BoatAudit, edition: str | None, steps: bool)
     return page(parts, report.simulated)
 
 
-def _answers(store: Store, boat: Row, edition: str | None) -> list[Answer]:
-    """The answers about the crews of a boat in an edition or draft."""
+def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
+    """The answers about the crews of a boat in an edition or draft, the newest where none is asked.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition.
+    """
     with Views(store) as views:
         chosen = edition or current_edition(views)
         known = views.table("register")["edition"].unique()

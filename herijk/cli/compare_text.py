@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from dashboards.labels import code_in_words
+from dashboards.statements.edition import cause_name
 from herijk.cli.methods_text import options_text
 from herijk.cli.render import cell, codes, interval_of_runs_alone, page, section, speech, table
 from pipeline.messages import in_per_cent, say, tell
@@ -119,7 +120,7 @@ def editions(report: DiffReport) -> str:
     """Two editions side by side."""
     counts = ", ".join(f"{n} {codes(change)}" for change, n in report.changes.items())
     known = report.changes.get("changed", 0) > report.interval_unknown
-    causes = [vars(cause) | {"cause": _cause(vars(cause))} for cause in report.causes]
+    causes = [cause | {"cause": tell(cause_name(cause))} for cause in report.causes]
     parts = [
         f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.",
         tell(
@@ -152,15 +153,9 @@ LINE: Final = (
 )
 
 
-def _cause(cause: Row) -> str:
-    """A cause in words, with the step of the method where there is one."""
-    step = cause.get("step")
-    words = code_in_words(cause["cause"])
-    return f"{words}: {code_in_words(step)}" if step else words
-
-
 def _line(row: Row) -> Row:
-    causes = "; ".join(f"{_cause(c)} {speech().per_cent(c['factor'])}" for c in row["causes"])
+    named = ((tell(cause_name(cause)), cause["factor"]) for cause in row["causes"])
+    causes = "; ".join(f"{name} {speech().per_cent(factor)}" for name, factor in named)
     change = code_in_words(row["change"])
     if row["change"] == "removed":
         change += f": {code_in_words(row['new_status'] or 'gone')}"

@@ -19,8 +19,7 @@ from warehouse.editions.publish import Published
 from warehouse.editions.verify import Verification
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import TypesAudit
-from warehouse.queries.due import DueReport
-from warehouse.queries.register import RegisterReport
+from warehouse.queries.registers import DueReport, RegisterReport
 from warehouse.queries.reports import LogErrorReport
 
 

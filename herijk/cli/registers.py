@@ -34,16 +34,13 @@ def register(
 ) -> None:
     """The register: every line with its sizes, and whether it is valid on a day."""
     from herijk.cli import registers_text as text
+    from warehouse.queries.registers import due_report, register_report
     from warehouse.store.store import Store
 
     store = Store(data)
     if due:
-        from warehouse.queries.due import due_report
-
         show(due_report(store, _method_of(store, edition), as_of), text.due, as_json)
     else:
-        from warehouse.queries.register import register_report
-
         show(register_report(store, edition, as_of), text.register, as_json)
 
 

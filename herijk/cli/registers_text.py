@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
-from dashboards import headlines
+from dashboards.statements import due as of_due
+from dashboards.statements import edition, season
 from herijk.cli.render import codes, page, section, speech, table
 from pipeline.messages import ngettext, say, tell
 from pipeline.tables.row import Row
@@ -14,8 +15,7 @@ if TYPE_CHECKING:
     from warehouse.editions.chain import Finding
     from warehouse.editions.publish import Published
     from warehouse.editions.verify import Verification
-    from warehouse.queries.due import DueReport
-    from warehouse.queries.register import RegisterReport
+    from warehouse.queries.registers import DueReport, RegisterReport
     from warehouse.queries.reports import LogErrorReport
 
 
@@ -40,7 +40,7 @@ RETOW: Final = "position fsn_no name crew seasons valid_until tow_speed_m_s fact
 def register(report: "RegisterReport") -> str:
     """The lines of an edition, and the day on which their validity was judged."""
     parts = [
-        f"{speech().edition(report.edition)}: {headlines.register(_frame(report.lines))(speech())}",
+        f"{speech().edition(report.edition)}: {edition.register(_frame(report.lines))(speech())}",
         table(report.lines, REGISTER),
         tell(
             "Low, high: the 95 % interval of Cw where the method estimates the error of the log; "
@@ -66,7 +66,7 @@ def due(report: "DueReport") -> str:
         for urgency, title in URGENCIES.items()
     )
     parts = [
-        headlines.due(_frame(report.lines))(speech()),
+        of_due.due(_frame(report.lines))(speech()),
         *by_urgency,
         tell(
             "The speed takes 70-90 W per rower (men) or 40-55 W (women) on the known curve of "
@@ -86,7 +86,7 @@ def _retow(choice: list[Row]) -> str:
             "{}: nobody, this method estimates no log error, so no tow would narrow it.", title
         )
     rows = [row | {"factor_sd_after_percent": 100 * row["factor_sd_after_ratio"]} for row in choice]
-    return section(title + ":", headlines.retow(_frame(choice))(speech()), table(rows, RETOW))
+    return section(title + ":", of_due.retow(_frame(choice))(speech()), table(rows, RETOW))
 
 
 # Seasons
@@ -95,7 +95,7 @@ def _retow(choice: list[Row]) -> str:
 def seasons(report: "LogErrorReport") -> str:
     """The log factors of all seasons, and what else may be wrong with instruments."""
     factor = "factor lo hi source n_tows n_links"
-    furthest = headlines.log_factors(_frame(report.factors)) if report.factors else None
+    furthest = season.log_factors(_frame(report.factors)) if report.factors else None
     lacking = _seasons_between([row["season"] for row in report.factors])
     parts = [
         furthest(speech()) if furthest else "",

@@ -23,7 +23,7 @@ UNLIMITED: Final = 1000
 
 DIGITS: Final = {
     "_kg_m": 2, "_m_s": 2, "_kg": 0, "_w": 0, "_m": 2, "_s": 0, "_sd": 1, "e_n": 2, "factor": 4,
-    "lo": 4, "hi": 4, "slope": 4, "p_value": 3, "distinct_categories": 1,
+    "lo": 4, "hi": 4, "slope": 4, "p_value": 3,
 }  # fmt: skip
 """Decimals by the ending of a column's name; 3 otherwise."""
 

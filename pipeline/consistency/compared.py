@@ -2,7 +2,7 @@
 
 All tows of all seasons, each marked: the newest of its boat and crew, towed too slowly, outside its
 type. Also what hull speed says: `v0 / hull speed`, `B / hull speed`, and which of the three cases
-of Cw-kromme (R. Pot 2015) a tow is. Lines and outliers themselves are in `lines`.
+of Cw-kromme (R. Pot 2015) a tow is. Outliers themselves are in `outliers`.
 """
 
 from typing import Final
@@ -10,22 +10,23 @@ from typing import Final
 import numpy as np
 import polars as pl
 
-from pipeline.arrays import FloatArray
 from pipeline.consistency.eras import median_interval, season_ranges
-from pipeline.consistency.lines import ALL_TOWS, NEWEST, tow_outliers
+from pipeline.consistency.lines import ALL_TOWS, NEWEST
 from pipeline.consistency.observed import (
     ALL_TYPES,
     TOW,
     UNKNOWN_TYPE,
     Observed,
+    a_unit_variance,
     counts_at,
     curve_anywhere,
     ln_cw_variance,
     newest,
 )
+from pipeline.consistency.outliers import tow_outliers
 from pipeline.consistency.tow_speed import is_slow, speed_case
 from pipeline.hull import hull_speed_m_s
-from pipeline.quantiles import NORMAL, t_quantile
+from pipeline.quantiles import NORMAL
 from pipeline.tables.consistency import HullSpeed
 from pipeline.tables.frames import frame_of
 
@@ -46,7 +47,6 @@ def compared_tows(observed: Observed) -> pl.DataFrame:
     outliers = tow_outliers(observed).select(
         "method",
         "tow_id",
-        pl.col("expected").exp().alias("expected_cw_kg_m"),
         "deviation_sd",
         "outside",
         "candidates",
@@ -71,13 +71,15 @@ def beside_their_type(tows: Observed) -> pl.DataFrame:
     speed = tows.column("standard_speed_m_s")
     cw = curve_anywhere(tows, speed)
     half = NORMAL * np.sqrt(ln_cw_variance(tows, speed))
-    a_lo, a_hi = _a_interval(tows)
+    a = tows.column("a_kg_m")
+    a_variance = np.maximum(a_unit_variance(tows, tows.column("q")), 0.0)
+    a_half = NORMAL * np.sqrt(a_variance) * tows.column("run_sd_ratio")
     hull = hull_speed_m_s(tows.column("waterline_length_m"))
     b = tows.table["b_m_s"].to_numpy().astype(np.float64)
     ratio = tows.column("declared_speed_m_s") / hull
     numbers = {
-        "a_lo_kg_m": a_lo,
-        "a_hi_kg_m": a_hi,
+        "a_lo_kg_m": a * np.exp(-a_half),
+        "a_hi_kg_m": a * np.exp(a_half),
         "hull_speed_m_s": hull,
         "tow_hull_ratio": ratio,
         "b_hull_ratio": b / hull,
@@ -96,18 +98,6 @@ def beside_their_type(tows: Observed) -> pl.DataFrame:
         pl.Series("beyond_curve", ~counts_at(tows, speed)),
         pl.Series("slow", is_slow(tows.table)),
     )
-
-
-def _a_interval(tows: Observed) -> tuple[FloatArray, FloatArray]:
-    """95 % interval of A by the scatter of its runs, shape (rows,)."""
-    q = tows.column("q")
-    unit = (
-        tows.column("c0_unit_variance")
-        - 2.0 * tows.column("c0_q_unit_covariance") / (1.0 + q)
-        + tows.column("q_unit_variance") / (1.0 + q) ** 2
-    )
-    half = NORMAL * np.sqrt(np.maximum(unit, 0.0)) * tows.column("run_sd_ratio")
-    return tows.column("a_kg_m") * np.exp(-half), tows.column("a_kg_m") * np.exp(half)
 
 
 def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
@@ -167,17 +157,10 @@ def _hull_row(tows: pl.DataFrame, boat_type: str) -> dict[str, object]:
 
 
 def _length_slope(boats: pl.DataFrame) -> dict[str, float]:
-    """Slope of ln B on ln length over boats, with its 95 % interval."""
-    sorted_boats = boats.sort("fsn_no")
-    x, y = (np.log(sorted_boats[name].to_numpy()) for name in ("waterline_length_m", "b_m_s"))
+    """Slope of ln B on ln length over boats, and the share of its spread that it explains."""
+    x, y = (np.log(boats[name].to_numpy()) for name in ("waterline_length_m", "b_m_s"))
     if len(x) < FEWEST_LENGTHS or np.ptp(x) < 1e-9:
         return {}
-    (slope, _), residuals, *_ = np.polyfit(x, y, 1, full=True)
-    unexplained = float(residuals.sum())
-    half = t_quantile(len(x) - 2) * np.sqrt(unexplained / (len(x) - 2) / (len(x) * x.var()))
-    return {
-        "length_slope": float(slope),
-        "length_slope_lo": float(slope - half),
-        "length_slope_hi": float(slope + half),
-        "length_r2": 1.0 - unexplained / (len(y) * float(y.var())) if y.var() > 0.0 else 0.0,
-    }
+    slope = float(np.polyfit(x, y, 1)[0])
+    explained = slope**2 * float(x.var() / y.var()) if y.var() > 0.0 else 0.0
+    return {"length_slope": slope, "length_r2": explained}

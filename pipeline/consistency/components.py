@@ -26,9 +26,6 @@ from pipeline.tables.row import Row
 FLEET, WITHIN_TYPE = "fleet", "within_type"
 SCOPES: Final = (FLEET, WITHIN_TYPE)
 
-DISTINCT: Final = 1.41
-"""Number of distinct categories = 1.41 s_boat / s_R (Measurement Systems Analysis, AIAG)."""
-
 FEWEST_REPEATS: Final = 3
 NAMES: Final = {"boat": mixed.BOAT, "season": mixed.OTHER, "boat_season": mixed.CELL}
 
@@ -37,9 +34,8 @@ def variance_components(observed: Observed) -> dy.DataFrame[VarianceComponents]:
     """Standard deviations of ln Cw by cause, over the fleet and within types, per method.
 
     A boat with a crew is compared at its median declared speed; the growth of Cw with speed is
-    taken out, as boats are distinguished at one speed. `run` is what the scatter of the runs does
-    to the Cw of one tow; it is known from within the tows. The spread of boats divided by that of
-    everything else says how many boats the test can distinguish.
+    taken out, as boats are compared at one speed. `run` is what the scatter of the runs does to the
+    Cw of one tow; it is known from within the tows.
 
     Returns:
         Rows of the table `variance_components`: `boat`, `season`, `boat_season` and `run` for each
@@ -63,17 +59,13 @@ def _components(tows: Observed, scope: str) -> list[Row]:
     rows = np.flatnonzero(known)
     tows, y, variance = tows.take(rows), y[rows], variance[rows]
     boat, season = tows.table["boat"].to_numpy(), tows.table["season"].to_numpy()
-    repeated = len(y) - len(np.unique(boat))
-    counts: Row = {
-        "n": len(y),
-        "n_boats": len(np.unique(boat)),
-        "n_seasons": len(np.unique(season)),
-        "n_repeated": repeated,
-    }
+    n_boats = len(np.unique(boat))
+    counts: Row = {"n": len(y), "n_boats": n_boats}
     x = _fixed(tows, scope)
-    if repeated < FEWEST_REPEATS or counts["n_seasons"] < 2 or counts["n_boats"] < x.shape[1] + 2:
+    few = len(y) - n_boats < FEWEST_REPEATS or len(np.unique(season)) < 2
+    if few or n_boats < x.shape[1] + 2:
         return _nothing(counts, "too_few_repeats")
-    problem = mixed.Problem.of(y, variance, x, boat, season)
+    problem = mixed.Problem(y, variance, x, boat, season)
     try:
         shares = _shares(mixed.fit(problem, mixed.COMPONENTS), float(np.sqrt(variance.mean())))
     except mixed.NotSettledError:
@@ -88,7 +80,6 @@ def _nothing(counts: Row, reason: str) -> list[Row]:
 def _shares(fit: mixed.Fit, run: float) -> list[Row]:
     sd = dict(zip(NAMES, fit.sd, strict=True)) | {"run": run}
     total = sum(s * s for s in sd.values())
-    between_tows = np.sqrt(total - sd["boat"] ** 2)
     rows: list[Row] = [
         {"component": name, "sd_ratio": s, "share": s * s / total if total > 0 else None}
         for name, s in sd.items()
@@ -96,8 +87,6 @@ def _shares(fit: mixed.Fit, run: float) -> list[Row]:
     intervals = fit.intervals()
     for row in rows[:-1]:
         row["lo"], row["hi"] = intervals[NAMES[row["component"]]]
-    if between_tows > 0:
-        rows[0]["distinct_categories"] = DISTINCT * sd["boat"] / between_tows
     return [row | {"reason": ""} for row in rows]
 
 

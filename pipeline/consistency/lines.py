@@ -1,4 +1,4 @@
-"""Does a quantity follow weight, length or tow speed within a type, and which tows are outliers?
+"""Does a quantity follow weight, length or tow speed within a type?
 
 The tows are a choice: the newest of each boat and crew, all, or those of one season. Lines are
 weighted: each tow has its own measuring error, and boats differ truly by a standard deviation that
@@ -14,34 +14,27 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
-import scipy
 
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.arrays import FloatArray, IntArray
 from pipeline.consistency import mixed
 from pipeline.consistency.eras import season_ranges
 from pipeline.consistency.mixed import Problem
 from pipeline.consistency.observed import (
     UNKNOWN_TYPE,
     Observed,
+    a_unit_variance,
     bend_at,
     curve_anywhere,
     ln_cw_unit_variance,
     newest,
     q_at,
 )
-from pipeline.consistency.tow_speed import is_slow
-from pipeline.history import STEERED_STRAIGHT_FROM
-from pipeline.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
+from pipeline.tables.consistency import TypeLinePoints, TypeLines
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
-from pipeline.tables.keys import LINE
 from pipeline.tables.row import Row
 
 LN_CW, BEND = "ln_cw_standard", "bend"
-"""What makes an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the
-forms of the bend this one has the most even spread: where B truly spreads 10 %, 27 % of types of 24
-boats had an outlier by q, 11 % have one by this."""
-
 LN_DISPLACEMENT: Final = "ln_displacement"
 EXPLAINING: Final = ("weight_kg", "displacement_kg", "declared_speed_m_s", "waterline_length_m")
 OF_THE_BOAT: Final = ("weight_kg", "waterline_length_m")
@@ -54,6 +47,10 @@ SLIDE_PAIRS: Final = tuple(
 )
 """What the presentation of 2015 plots, here for every choice of tows."""
 
+NEWEST_PAIRS: Final = (
+    *((q, x) for q in ("b_m_s", "a_kg_m", "q", "cw_kg_m", "cw_standard_kg_m") for x in EXPLAINING),
+    (LN_CW, LN_DISPLACEMENT),
+)
 
 ALL_CREWS: Final = "all"
 WITHIN: Final = {"men": "H", "women": "D"}
@@ -62,15 +59,6 @@ WITHIN: Final = {"men": "H", "women": "D"}
 FEWEST_BOATS: Final = 3
 PLACES: Final = 7
 """Points at which a line is given for drawing."""
-
-OUTSIDE_LEVEL: Final = 0.05
-"""Chance that any boat of a type of like boats is called outside (Bonferroni)."""
-
-UNUSUAL_SD: Final = 2.0
-"""A weight, length or season counts as unusual from this many standard deviations on."""
-
-ASKEW_EXCESS: Final = 0.03
-"""Pulled askew gave 5-10 % too high, once 40 % (presentation 2015); less is not worth naming."""
 
 
 class Choice(NamedTuple):
@@ -87,7 +75,6 @@ class Choice(NamedTuple):
 
 NEWEST: Final = Choice("newest")
 ALL_TOWS: Final = Choice("all", (mixed.BOAT, mixed.CELL))
-TOW_BY_TOW: Final = Choice("all", mixed.COMPONENTS)
 
 
 def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
@@ -102,15 +89,11 @@ def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
         yield choice, observed.take(np.flatnonzero(season.is_between(*ends).to_numpy()))
 
 
-Measured = tuple[FloatArray, FloatArray]
-"""Values and their variances for a run scatter of 1, shape (rows,); NaN where there is none."""
+def quantities(observed: Observed) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """What is compared within a type: values, and variances for a run scatter of 1, (rows,).
 
-
-def quantities(observed: Observed) -> dict[str, Measured]:
-    """What is compared within a type.
-
-    Cw at the standard speed is the curve's also beyond the speeds at which it counts: a tow too
-    slow for it is not left out. Its error grows with the distance.
+    NaN where there is none. Cw at the standard speed is the curve's also beyond the speeds at which
+    it counts: a tow too slow for it is not left out. Its error grows with the distance.
 
     Errors of A and B are taken at the type's middle bend, not at each tow's own: else boats with a
     small B, whose error looks small, would weigh most.
@@ -121,39 +104,53 @@ def quantities(observed: Observed) -> dict[str, Measured]:
     b = np.where(observed.table["b_capped"].to_numpy(), np.nan, b)
     middle = pl.col("q").median().over("method", "boat_type")
     q = np.maximum(observed.table.select(middle).to_series().to_numpy(), 0.05)
-    var_c, var_q = observed.column("c0_unit_variance"), observed.column("q_unit_variance")
-    cov = observed.column("c0_q_unit_covariance")
-    standard = curve_anywhere(observed, speed)
-    standard_unit = ln_cw_unit_variance(observed, speed)
+    standard, unit = curve_anywhere(observed, speed), ln_cw_unit_variance(observed, speed)
+    b_unit = observed.column("q_unit_variance") / (2.0 * q * (1.0 + q)) ** 2
     with np.errstate(invalid="ignore"):
         ln_standard = np.log(standard)
     return {
-        "b_m_s": (b, b * b * var_q / (2.0 * q * (1.0 + q)) ** 2),
-        "a_kg_m": (a, a * a * (var_c - 2.0 * cov / (1.0 + q) + var_q / (1.0 + q) ** 2)),
+        "b_m_s": (b, b * b * b_unit),
+        "a_kg_m": (a, a * a * a_unit_variance(observed, q)),
         "q": q_at(observed, speed),
         BEND: bend_at(observed, speed),
-        "cw_kg_m": (cw, cw * cw * var_c),
-        "cw_standard_kg_m": (standard, standard * standard * standard_unit),
-        LN_CW: (ln_standard, standard_unit),
+        "cw_kg_m": (cw, cw * cw * observed.column("c0_unit_variance")),
+        "cw_standard_kg_m": (standard, standard * standard * unit),
+        LN_CW: (ln_standard, unit),
     }
 
 
-def newest_lines(lines: pl.DataFrame) -> pl.DataFrame:
-    """Rows of the table `type_consistency`: those of `type_lines` by the newest tows.
+def explaining_variable(observed: Observed, name: str) -> FloatArray:
+    """An explaining variable, (rows,), NaN where missing."""
+    if name == LN_DISPLACEMENT:
+        return np.log(explaining_variable(observed, "displacement_kg"))
+    return np.asarray(observed.table[name].to_numpy(), dtype=np.float64)
 
-    The physics model is among them: the slope of ln Cw on ln displacement is the power with which
-    resistance grows.
+
+class _Line(NamedTuple):
+    """A line to be fitted; n tows.
+
+    Attributes:
+        row: what `type_lines` says of it so far.
+        problem: with a column for every crew and the explaining variable about their means, scaled
+            to one so that no power of a unit gets lost in rounding.
+        centre: (crews,) those means; width: what the variable is divided by.
+        x: (n,) the variable as it is; whose: (n,) the class that a tow is drawn with.
+        noise: root mean square of measuring errors.
     """
-    return lines.filter(tows=NEWEST.tows).drop("tows")
+
+    row: Row
+    problem: Problem
+    centre: FloatArray
+    width: float
+    x: FloatArray
+    whose: np.ndarray
+    noise: float
 
 
-def type_lines(
-    observed: Observed,
-) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
-    """Straight lines of each quantity on each explaining variable, per method and boat type.
+def type_lines(observed: Observed) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
+    """Lines through the tows of every type, for every choice of tows.
 
-    All lines over the newest tow of each boat and crew; over other choices of tows, those that
-    the presentation of 2015 plots.
+    Over the newest tows there are lines for more pairs than the presentation plots.
 
     Returns:
         Rows of the tables `type_lines` and `type_line_points`. Where no line is drawn, `reason`
@@ -163,161 +160,93 @@ def type_lines(
     rows: list[Row] = []
     lines: dict[tuple[str, ...], list[_Line]] = {}
     for choice, tows in chosen_tows(observed):
-        measured, designs = quantities(tows), _Designs(tows)
-        run_variance = tows.column("run_sd_ratio") ** 2
-        speeds = tows.column("standard_speed_m_s")
-        for (method, boat_type), own in tows.rows_by("method", "boat_type"):
-            for quantity, explaining, within in _kinds(choice):
-                y, unit = measured[quantity]
-                mine = own[np.isfinite(y[own])]
-                mine, facts, design = designs.of(mine, boat_type, explaining, within)
-                row: Row = {
-                    "method": method,
-                    "tows": choice.tows,
-                    "boat_type": boat_type,
-                    "quantity": quantity,
-                    "explaining": explaining,
-                    "within": within,
-                    "standard_speed_m_s": float(speeds[own[0]]),
-                    **facts,
-                }
-                rows.append(row)
-                if design is not None:
-                    variance = unit[mine] * run_variance[mine]
-                    problem = Problem.of(y[mine], variance, design.x, design.boat)
-                    noise = float(np.sqrt(variance.mean()))
-                    lines.setdefault(choice.components, []).append(
-                        _Line(row, design, problem, noise)
-                    )
-    points: dict[str, list[object]] = {name: [] for name in TypeLinePoints.column_names()}
-    for components, of_choice in lines.items():
-        fits = mixed.fit_all([line.problem for line in of_choice], components)
-        for line, fit in zip(of_choice, fits, strict=True):
+        for row, line in _described(choice, tows):
+            rows.append(row)
+            if line is not None:
+                lines.setdefault(choice.components, []).append(line)
+    points: list[Row] = []
+    for components, alike in lines.items():
+        fits = mixed.fit_all([line.problem for line in alike], components)
+        for line, fit in zip(alike, fits, strict=True):
             if fit is None:
                 line.row["reason"] = "not_settled"
                 continue
-            ends = fit.line_at(line.design.at)
-            line.row.update(_numbers(line, fit, ends))
-            if line.is_drawn:
-                for column, values in _points(line, ends).items():
-                    points[column] += values
-    return frame_of(TypeLines, rows), TypeLinePoints.cast(pl.DataFrame(points))
+            line.row.update(_numbers(line, fit))
+            kind = line.row["quantity"], line.row["explaining"]
+            if line.row["within"] == ALL_CREWS and kind in SLIDE_PAIRS:
+                points += _points(line, fit)
+    return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 
 
 def _kinds(choice: Choice) -> Iterator[tuple[str, str, str]]:
     """Each quantity with what may explain it, and within which crews, for a choice of tows."""
-    for quantity, explaining in _pairs(choice):
+    for quantity, explaining in NEWEST_PAIRS if choice == NEWEST else SLIDE_PAIRS:
         yield quantity, explaining, ALL_CREWS
         if explaining == "declared_speed_m_s":
             yield from ((quantity, explaining, name) for name in WITHIN)
 
 
-def _pairs(choice: Choice) -> Iterator[tuple[str, str]]:
-    """Each quantity with what may explain it, as far as the choice of tows has a line of it."""
-    if choice != NEWEST:
-        yield from SLIDE_PAIRS
-        return
-    for quantity in ("b_m_s", "a_kg_m", "q", "cw_kg_m", "cw_standard_kg_m"):
-        for explaining in EXPLAINING:
-            yield quantity, explaining
-    yield LN_CW, LN_DISPLACEMENT
+def _described(choice: Choice, tows: Observed) -> Iterator[tuple[Row, _Line | None]]:
+    """The row of every line through some tows, and the line; none where the row says why."""
+    measured = quantities(tows)
+    variables = {name: explaining_variable(tows, name) for name in (*EXPLAINING, LN_DISPLACEMENT)}
+    crew_class = tows.table["crew_class"].to_numpy()
+    boat, hull, crew = (
+        tows.table.select(pl.struct(by).rank("dense")).to_series().to_numpy()
+        for by in (("fsn_no",), ("hull",), ("rowers", "crew_class"))
+    )
+    run_variance = tows.column("run_sd_ratio") ** 2
+    speeds = tows.column("standard_speed_m_s")
+    for (method, boat_type), own in tows.rows_by("method", "boat_type"):
+        for quantity, explaining, within in _kinds(choice):
+            (y, unit), x = measured[quantity], variables[explaining]
+            known = np.isfinite(y[own]) & np.isfinite(x[own])
+            if within != ALL_CREWS:
+                known &= crew_class[own] == WITHIN[within]
+            mine = own[known]
+            row: Row = {
+                "method": method,
+                "tows": choice.tows,
+                "boat_type": boat_type,
+                "quantity": quantity,
+                "explaining": explaining,
+                "within": within,
+                "standard_speed_m_s": float(speeds[own[0]]),
+                "n": len(mine),
+                "n_boats": len(np.unique(boat[mine])),
+            }
+            is_of_boat = explaining in OF_THE_BOAT
+            crews = _levels(crew[mine] if is_of_boat else np.zeros(len(mine)))
+            centre = x[mine] @ crews / np.maximum(crews.sum(axis=0), 1.0)
+            centred = x[mine] - crews @ centre
+            row["reason"] = _reason(row, x[mine], crews.shape[1], centred)
+            if row["reason"]:
+                yield row, None
+                continue
+            width, variance = float(np.abs(centred).max()), unit[mine] * run_variance[mine]
+            columns = np.column_stack([crews, centred / width])
+            whose = crew_class[mine] if is_of_boat else np.full(len(mine), ALL_CREWS)
+            problem = Problem(y[mine], variance, columns, hull[mine])
+            noise = float(np.sqrt(variance.mean()))
+            yield row, _Line(row, problem, centre, width, x[mine], whose, noise)
 
 
-class _Design(NamedTuple):
-    """What lines through the same tows on the same explaining variable have in common.
-
-    Attributes:
-        x: the crews and the variable, which is scaled to one so that no power of a unit gets lost
-            in rounding.
-        boat: of each row.
-        width: what the variable is divided by.
-        names, places: class and place of each point that is drawn.
-        at: the same as rows of x; the last row is the slope's.
-    """
-
-    x: FloatArray
-    boat: IntArray
-    width: float
-    names: list[str]
-    places: list[float]
-    at: FloatArray
+def _levels(group: FloatArray | IntArray) -> FloatArray:
+    """A column of 0 and 1 for each group."""
+    return np.asarray(group[:, None] == np.unique(group), dtype=np.float64)
 
 
-class _Line(NamedTuple):
-    """A line to be fitted: its row of `type_lines`, and root mean square of measuring errors."""
-
-    row: Row
-    design: _Design
-    problem: Problem
-    noise: float
-
-    @property
-    def is_drawn(self) -> bool:
-        """Whether its points are in `type_line_points`."""
-        kind = self.row["quantity"], self.row["explaining"]
-        return self.row["within"] == ALL_CREWS and kind in SLIDE_PAIRS
+def _reason(row: Row, x: FloatArray, n_crews: int, centred: FloatArray) -> str:
+    """Why there is no line, or nothing."""
+    if row["boat_type"] == UNKNOWN_TYPE:
+        return "no_type"
+    if row["n_boats"] < max(FEWEST_BOATS, n_crews + 2):
+        return "few_boats"
+    return "equal_values" if np.abs(centred).max() <= 1e-9 * np.abs(x).max() else ""
 
 
-class _Designs:
-    """Designs of lines: one serves all methods and quantities with its tows."""
-
-    def __init__(self, tows: Observed) -> None:
-        self._explaining = {n: _explaining(tows, n) for n in (*EXPLAINING, LN_DISPLACEMENT)}
-        self._tow, self._boat, self._hull, self._crew = (
-            tows.table.select(pl.struct(by).rank("dense")).to_series().to_numpy()
-            for by in (("tow_id",), ("fsn_no",), ("hull",), ("rowers", "crew_class"))
-        )
-        self._class = tows.table["crew_class"].to_numpy()
-        self._made: dict[tuple[str, str, bytes], tuple[Row, _Design | None]] = {}
-
-    def of(
-        self, rows: IntArray, boat_type: str, explaining: str, within: str
-    ) -> tuple[IntArray, Row, _Design | None]:
-        """Which of some rows a line is through, how many they are, and the design or why none."""
-        known = np.isfinite(self._explaining[explaining][rows])
-        if within != ALL_CREWS:
-            known &= self._class[rows] == WITHIN[within]
-        rows = rows[known]
-        key = boat_type, explaining, self._tow[rows].tobytes()
-        if key not in self._made:
-            self._made[key] = self._design(rows, boat_type, explaining)
-        return rows, *self._made[key]
-
-    def _design(
-        self, rows: IntArray, boat_type: str, explaining: str
-    ) -> tuple[Row, _Design | None]:
-        of_boat = explaining in OF_THE_BOAT
-        crew = self._crew[rows] if of_boat else np.zeros(len(rows))
-        crews = np.asarray(crew[:, None] == np.unique(crew), dtype=np.float64)
-        n_boats = len(np.unique(self._boat[rows]))
-        counts: Row = {"n": len(rows), "n_boats": n_boats}
-        if boat_type == UNKNOWN_TYPE:
-            return counts | {"reason": "no_type"}, None
-        if n_boats < max(FEWEST_BOATS, crews.shape[1] + 2):
-            return counts | {"reason": "few_boats"}, None
-        x = self._explaining[explaining][rows]
-        centre = np.linalg.lstsq(crews, x)[0]
-        centred = x - crews @ centre
-        width = float(np.abs(centred).max())
-        if width <= 1e-9 * np.abs(x).max():
-            return counts | {"reason": "equal_values"}, None
-        names, places, at = [], [], []
-        whose = self._class[rows] if of_boat else np.full(len(rows), ALL_CREWS)
-        for name in np.unique(whose):
-            mine = whose == name
-            some = np.unique(np.linspace(x[mine].min(), x[mine].max(), PLACES))
-            mean = crews[mine].mean(axis=0)
-            at += [[*mean, (place - mean @ centre) / width] for place in some]
-            names += [str(name)] * len(some)
-            places += some.tolist()
-        at.append([*np.zeros(crews.shape[1]), 1.0])
-        columns = np.column_stack([crews, centred / width])
-        design = _Design(columns, self._hull[rows], width, names, places, np.array(at))
-        return counts | {"reason": ""}, design
-
-
-def _numbers(line: _Line, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
-    """The line and its spread, as in `type_lines`; `ends` are at `_Design.at`.
+def _numbers(line: _Line, fit: mixed.Fit) -> Row:
+    """The line and its spread, as in `type_lines`.
 
     Tows weigh on the line as they were measured. About the line as it is drawn they count alike in
     its spread, and so in R2: beside that about the means of the crews.
@@ -325,7 +254,7 @@ def _numbers(line: _Line, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
     problem, level = line.problem, 1.0
     if line.row["quantity"] != LN_CW:
         level = float(abs(problem.y.mean()))
-    slope, lo, hi = (float(end[-1]) / line.design.width for end in ends)
+    slope, lo, hi = (float(end[-1]) / line.width for end in fit.coefficients())
     about_line = float(((problem.y - problem.x @ fit.beta) ** 2).sum())
     # The last column of x has no mean within a crew.
     about_means = float(((problem.residual + problem.x[:, -1] * problem.plain[-1]) ** 2).sum())
@@ -340,146 +269,17 @@ def _numbers(line: _Line, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
     }
 
 
-def _points(line: _Line, ends: mixed.Coefficients) -> dict[str, list[object]]:
+def _points(line: _Line, fit: mixed.Fit) -> Iterator[Row]:
     """The line with its interval at some places; for each class at the mean of its crews."""
-    names = ("method", "tows", "boat_type", "quantity", "explaining")
-    columns = {name: [line.row[name]] * len(line.design.places) for name in names}
-    columns |= {"crew_class": list(line.design.names), "x": list(line.design.places)}
-    value, lo, hi = (end[:-1].tolist() for end in ends)
-    return columns | {"y": value, "lo": lo, "hi": hi}
-
-
-def _explaining(boats: Observed, name: str) -> FloatArray:
-    """An explaining variable, NaN where missing."""
-    if name == LN_DISPLACEMENT:
-        return np.log(_explaining(boats, "displacement_kg"))
-    return np.asarray(boats.table[name].to_numpy(), dtype=np.float64)
-
-
-def type_outliers(observed: Observed) -> pl.DataFrame:
-    """The newest tow of every boat against its type, with what could explain a difference.
-
-    ln Cw at the standard speed is compared, after the line on ln displacement where that is known,
-    and so is the bend. A boat's expectation comes from the other boats alone; the deviation is in
-    standard deviations of a prediction (externally Studentised).
-
-    Returns:
-        Rows of the table `type_outliers`: one per method, tow and quantity, `outside` or not;
-        none of a type where the search for its variances did not come to rest.
-    """
-    return _outliers(newest(observed), NEWEST, (LN_CW, BEND))
-
-
-def tow_outliers(observed: Observed) -> pl.DataFrame:
-    """Every tow against the tows of the other boats of its type, by Cw at the standard speed.
-
-    A season's own deviation is taken out, so that a tow stands out by itself and not because its
-    log was worn like those of all tows that year.
-
-    Returns:
-        As `type_outliers`, for all tows.
-    """
-    return _outliers(observed, TOW_BY_TOW, (LN_CW,))
-
-
-def _outliers(tows: Observed, choice: Choice, names: tuple[str, ...]) -> pl.DataFrame:
-    compared = [
-        (boats, quantity, problem)
-        for (_, boat_type), group in tows.groups("method", "boat_type")
-        if boat_type != UNKNOWN_TYPE
-        for quantity in names
-        for boats, problem in _compared(group, choice, quantity)
-    ]
-    fits = mixed.fit_all([problem for *_, problem in compared], choice.components)
-    parts = [
-        _deviations(boats, quantity, fit)
-        for (boats, quantity, _), fit in zip(compared, fits, strict=True)
-        if fit is not None
-    ]
-    return _with_season(pl.concat([TypeOutliers.create_empty(), *parts]))
-
-
-def _compared(boats: Observed, choice: Choice, quantity: str) -> Iterator[tuple[Observed, Problem]]:
-    """The boats of a type that have a quantity, with what is fitted; nothing where too few have."""
-    y, unit = quantities(boats)[quantity]
-    displacement = _explaining(boats, LN_DISPLACEMENT)
-    weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
-    known = np.flatnonzero(np.isfinite(y))
-    boats, y, displacement = boats.take(known), y[known], displacement[known]
-    x = np.ones((len(y), 1))
-    if weighed and len(y) and np.ptp(displacement) > 1e-9:
-        x = np.column_stack([x, displacement - displacement.mean()])
-    if boats.table["fsn_no"].n_unique() >= x.shape[1] + FEWEST_BOATS:
-        variance = unit[known] * boats.column("run_sd_ratio") ** 2
-        season = boats.table["season"].to_numpy() if mixed.OTHER in choice.components else None
-        yield boats, Problem.of(y, variance, x, boats.table["hull"].to_numpy(), season)
-
-
-def _deviations(boats: Observed, quantity: str, fit: mixed.Fit) -> pl.DataFrame:
-    """Rows of the table `type_outliers`, without the candidate `season`."""
-    y = fit.problem.y
-    error, variance, scale = fit.leave_boats_out()
-    deviation = error / np.sqrt(variance * scale)
-    chance = 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))
-    limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), chance))
-    return boats.table.select(
-        "method",
-        "tow_id",
-        *LINE,
-        "boat_type",
-        "season",
-        pl.lit(quantity).alias("quantity"),
-        "standard_speed_m_s",
-        pl.Series("value", y),
-        pl.Series("expected", y - error),
-        pl.Series("deviation_sd", deviation),
-        pl.Series("outside", np.abs(deviation) > limit),
-        pl.Series("candidates", _candidates(boats, quantity, error)),
-    )
-
-
-def _candidates(boats: Observed, quantity: str, error: FloatArray) -> list[list[str]]:
-    """What could explain a boat's place, as codes; the season is judged afterwards."""
-    table = boats.table
-    unchecked = (table["season"] < STEERED_STRAIGHT_FROM).to_numpy()
-    high = (error > ASKEW_EXCESS) & (quantity == LN_CW)
-    differ = table["flags"].list.contains("out_and_back_differ").to_numpy()
-    checks = {
-        "weight": _unusual(_explaining(boats, "weight_kg")),
-        "length": _unusual(_explaining(boats, "waterline_length_m")),
-        "log": table["flags"].list.contains("unusual_calibration").to_numpy(),
-        "altered": table["altered"].to_numpy(),
-        "slow_tow": is_slow(table),
-        "askew": differ | (high & unchecked),
-        "b_at_cap": table["b_capped"].to_numpy(),
-        "b_not_determined": table["b_m_s"].is_null().to_numpy(),
+    names = {
+        name: line.row[name] for name in ("method", "tows", "boat_type", "quantity", "explaining")
     }
-    return [[code for code, applies in checks.items() if applies[i]] for i in range(table.height)]
-
-
-def _unusual(values: FloatArray) -> BoolArray:
-    """Whether a value lies far from the other boats', each judged by the others."""
-    known = np.isfinite(values)
-    others = int(known.sum()) - 1
-    if others < FEWEST_BOATS:
-        return np.zeros(len(values), bool)
-    # About the mean of the others: with the value itself mean and squares are known.
-    from_all = values - values[known].mean()
-    squares = from_all**2 * (others + 1) / others
-    variance = ((from_all[known] ** 2).sum() - squares) / (others - 1)
-    from_others = np.abs(from_all) * (others + 1) / others
-    return np.asarray(known & (from_others > UNUSUAL_SD * np.sqrt(np.fmax(variance, 1e-18))))
-
-
-def _with_season(outliers: pl.DataFrame) -> pl.DataFrame:
-    """Adds the candidate `season` where the season's other boats lie on the same side."""
-    group = ["method", "quantity", "season"]
-    others = pl.len().over(group) - 1
-    mean = (pl.col("deviation_sd").sum().over(group) - pl.col("deviation_sd")) / others
-    along = mean * pl.col("deviation_sd").sign() * others.sqrt() > UNUSUAL_SD
-    return outliers.with_columns(
-        pl.when((others > 0) & along)
-        .then(pl.col("candidates").list.concat(pl.lit(["season"])))
-        .otherwise("candidates")
-        .alias("candidates")
-    ).sort("method", "boat_type", "tow_id", "quantity")
+    for crew_class in np.unique(line.whose):
+        mine = line.whose == crew_class
+        mean = line.problem.x[mine, :-1].mean(axis=0)
+        places = np.unique(np.linspace(line.x[mine].min(), line.x[mine].max(), PLACES))
+        along = (places - mean @ line.centre) / line.width
+        ends = fit.line_at(np.column_stack([np.tile(mean, (len(places), 1)), along]))
+        for x, y, lo, hi in zip(places, *ends, strict=True):
+            where = {"crew_class": str(crew_class), "x": float(x)}
+            yield names | where | {"y": float(y), "lo": float(lo), "hi": float(hi)}

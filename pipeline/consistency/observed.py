@@ -32,10 +32,10 @@ class Observed:
         table: one row per method and tow: columns of `curves` and `tows`, `boat_type`, and
             `displacement_kg`; `standard_speed_m_s`, the median declared speed of all tows of the
             type, one for all methods and seasons; `s_s2_m2`, `c0_kg_m`, `q` of the free fit at the
-            declared speed;
-            `c0_unit_variance` (relative), `q_unit_variance`, `c0_q_unit_covariance`: covariance
-            of (ln C0, q) for a run scatter of 1; `run_sd_ratio`: the type's pooled scatter of a
-            run, null where unknown; `run_dof`: degrees of freedom of the tow itself.
+            declared speed; `c0_unit_variance` (relative), `q_unit_variance`,
+            `c0_q_unit_covariance`: covariance of (ln C0, q) for a run scatter of 1;
+            `run_sd_ratio`: the type's pooled scatter of a run, null where unknown; `run_dof`:
+            degrees of freedom of the tow itself.
         points: run points, shape (rows, runs).
     """
 
@@ -95,7 +95,7 @@ def observe(
         .join(tows.select("tow_id", *of_tow), on="tow_id", maintain_order="left")
         .with_columns(displacement_kg=pl.col("weight_kg") + pl.col("crew_weight_kg"))
         .sort("method", "tow_date", "tow_id")
-        .pipe(_with_standard_speed, tows)
+        .join(_standard_speeds(tows), on="boat_type", how="left", maintain_order="left")
     )
     points = _points(table, run_points)
     fitted = curve.fit(points)
@@ -106,33 +106,26 @@ def observe(
     unit = curve.Scatter(safe * safe, np.full(len(c0), np.inf))
     errors = curve.covariance(points, fitted, unit, declared)
     sound &= np.isfinite(errors.q_variance)
-    columns = {
-        "s_s2_m2": fitted.s_s2_m2,
-        "c0_kg_m": c0,
-        "q": q,
-        "c0_unit_variance": errors.c0_variance_kg2_m2 / safe**2,
-        "q_unit_variance": errors.q_variance,
-        "c0_q_unit_covariance": errors.c0_q_covariance_kg_m / safe,
-        "run_rss_ratio2": fitted.rss_kg2_m2 / safe**2,
-        "run_dof": (fitted.n_points - 2).astype(np.float64),
-    }
-    rows = np.flatnonzero(sound)
-    numbers = (pl.Series(name, values) for name, values in columns.items())
-    fits = Observed(table.with_columns(*numbers), points).take(rows)
-    return Observed(fits.table.with_columns(_pooled_scatter()), fits.points)
+    numbers = table.with_columns(
+        s_s2_m2=pl.Series(fitted.s_s2_m2),
+        c0_kg_m=pl.Series(c0),
+        q=pl.Series(q),
+        c0_unit_variance=pl.Series(errors.c0_variance_kg2_m2 / safe**2),
+        q_unit_variance=pl.Series(errors.q_variance),
+        c0_q_unit_covariance=pl.Series(errors.c0_q_covariance_kg_m / safe),
+        run_rss_ratio2=pl.Series(fitted.rss_kg2_m2 / safe**2),
+        run_dof=pl.Series(fitted.n_points - 2.0),
+    )
+    known = Observed(numbers, points).take(np.flatnonzero(sound))
+    pooled = (pl.col("run_rss_ratio2").sum() / pl.col("run_dof").sum()).sqrt()
+    scatter = pooled.over("method", "boat_type").alias("run_sd_ratio")
+    return Observed(known.table.with_columns(scatter), known.points)
 
 
-def _with_standard_speed(table: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Adds the speed at which boats of a type are compared, the same under every method."""
+def _standard_speeds(tows: pl.DataFrame) -> pl.DataFrame:
+    """The speed at which boats of a type are compared, the same under every method."""
     median = pl.col("declared_speed_m_s").median().alias("standard_speed_m_s")
-    speeds = tows.group_by("boat_type", maintain_order=True).agg(median)
-    return table.join(speeds, on="boat_type", how="left", maintain_order="left")
-
-
-def _pooled_scatter() -> pl.Expr:
-    """Scatter of a single run about its curve, relative, pooled over a method's boats of a type."""
-    pooled = pl.col("run_rss_ratio2").sum() / pl.col("run_dof").sum()
-    return pooled.sqrt().over("method", "boat_type").alias("run_sd_ratio")
+    return tows.group_by("boat_type", maintain_order=True).agg(median)
 
 
 def _points(table: pl.DataFrame, run_points: pl.DataFrame) -> curve.Points:
@@ -197,6 +190,13 @@ def ln_cw_unit_variance(observed: Observed, speed_m_s: FloatArray | float) -> Fl
         + 2.0 * slope * observed.column("c0_q_unit_covariance")
         + slope * slope * observed.column("q_unit_variance")
     )
+
+
+def a_unit_variance(observed: Observed, q: FloatArray) -> FloatArray:
+    """Variance of ln A for a run scatter of 1, at bends q of the curves, shape (rows,)."""
+    shared = 2.0 * observed.column("c0_q_unit_covariance") / (1.0 + q)
+    of_bend = observed.column("q_unit_variance") / (1.0 + q) ** 2
+    return observed.column("c0_unit_variance") - shared + of_bend
 
 
 def ln_cw_variance(observed: Observed, speed_m_s: FloatArray | float) -> FloatArray:

@@ -67,35 +67,26 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     x = _columns(fleet)
     if fleet.table["fsn_no"].n_unique() < FEWEST_BOATS_PER_COLUMN * (x.shape[1] + 1):
         return rows.with_columns(reason=pl.lit("few_boats"))
-    try:
-        numbers = _second_opinion(fleet, x, cw, variance)
-    except mixed.NotSettledError:
+    problem = mixed.Problem(np.log(cw), variance, x, fleet.table["hull"].to_numpy(), _types(fleet))
+    fit = mixed.fit_all([problem], (mixed.BOAT, mixed.OTHER))[0]
+    if fit is None:
         return rows.with_columns(reason=pl.lit("not_settled"))
-    both = NORMAL * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
-    return rows.with_columns(
-        *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items())
-    ).with_columns(disagrees=pl.col("ln_ratio").abs() > both, reason=pl.lit(""))
-
-
-def _second_opinion(
-    fleet: Observed, x: FloatArray, cw: FloatArray, variance: FloatArray
-) -> dict[str, FloatArray]:
-    hull = fleet.table["hull"].to_numpy()
-    problem = mixed.Problem.of(np.log(cw), variance, x, hull, _types(fleet))
-    fit = mixed.fit(problem, (mixed.BOAT, mixed.OTHER))
     error, error_variance, _ = fit.leave_boats_out()
-    known = np.isfinite(error_variance)
-    ratio = np.where(known, error, np.nan)
-    total = np.where(known, error_variance * fit.scale, np.nan)
-    sd = np.sqrt(np.maximum(total - variance, 0.0))
+    ratio = np.where(np.isfinite(error_variance), error, np.nan)
+    sd = np.sqrt(np.maximum(error_variance * fit.scale - variance, 0.0))
     half = float(t_quantile(fit.dof)) * sd
-    return {
+    numbers = {
         "predicted_cw_kg_m": cw * np.exp(-ratio),
         "predicted_lo_kg_m": cw * np.exp(-ratio - half),
         "predicted_hi_kg_m": cw * np.exp(-ratio + half),
-        "predicted_sd_ratio": sd,
         "ln_ratio": ratio,
+        "both": NORMAL * np.sqrt(variance + sd**2),
     }
+    return (
+        rows.with_columns(pl.Series(k, v).fill_nan(None) for k, v in numbers.items())
+        .with_columns(disagrees=pl.col("ln_ratio").abs() > pl.col("both"), reason=pl.lit(""))
+        .drop("both")
+    )
 
 
 def _columns(fleet: Observed) -> FloatArray:

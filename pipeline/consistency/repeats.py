@@ -11,7 +11,6 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import FloatArray
-from pipeline.consistency.components import DISTINCT, WITHIN_TYPE
 from pipeline.consistency.eras import ERAS
 from pipeline.consistency.observed import Observed
 from pipeline.curve import s_of_height
@@ -106,27 +105,7 @@ def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
             | _scatter(runs.filter(pl.col("season").is_between(first, last)))
             for name, first, last in scopes
         ]
-    return frame_of(Reproducibility, rows).drop("distinct_categories")
-
-
-def with_categories(reproducibility: pl.DataFrame, components: pl.DataFrame) -> pl.DataFrame:
-    """Adds `distinct_categories`: how many classes of boats of a type the test tells apart.
-
-    1.41 s_boat / s_R (Measurement Systems Analysis, AIAG), with s_boat from `variance_components`
-    within types.
-    """
-    boats = components.filter(pl.col("scope") == WITHIN_TYPE, pl.col("component") == "boat").select(
-        "method", pl.col("sd_ratio").alias("boat_sd_ratio")
-    )
-    return (
-        reproducibility.join(boats, on="method", how="left", maintain_order="left")
-        .with_columns(
-            pl.when(pl.col("sd_ratio") > 0)
-            .then(DISTINCT * pl.col("boat_sd_ratio") / pl.col("sd_ratio"))
-            .alias("distinct_categories")
-        )
-        .drop("boat_sd_ratio")
-    )
+    return frame_of(Reproducibility, rows)
 
 
 def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
@@ -138,7 +117,6 @@ def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
     chained = pairs.join(pairs, left_on="tow_id_before", right_on="tow_id", how="semi").height
     dof = n / (1.0 + chained / (2.0 * n))
     low, high = (float(scipy.special.chdtri(dof, 0.5 + end * LEVEL / 2)) for end in (-1, 1))
-    e_n = pairs["e_n"].drop_nulls().to_numpy()
     return {
         "n_pairs": n,
         "sd_ratio": float(np.sqrt(total / (2 * n))),
@@ -146,7 +124,6 @@ def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
         "hi": float(np.sqrt(total / (2 * n) * dof / high)),
         "share_within_1pct": float((np.abs(difference) < 0.01).mean()),
         "share_within_2pct": float((np.abs(difference) < 0.02).mean()),
-        "share_e_n_above_1": float((np.abs(e_n) > 1).mean()) if len(e_n) else None,
     }
 
 

@@ -4,8 +4,9 @@ import polars as pl
 
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
-from pipeline.consistency.lines import newest_lines, type_lines, type_outliers
+from pipeline.consistency.lines import type_lines
 from pipeline.consistency.observed import Observed
+from pipeline.consistency.outliers import type_outliers
 from pipeline.consistency.prediction import predicted_cw, prediction_error
 from pipeline.consistency.tow_speed import speed_trend
 
@@ -13,11 +14,7 @@ from pipeline.consistency.tow_speed import speed_trend
 def line_tables(observed: Observed) -> dict[str, pl.DataFrame]:
     """The lines through boats of a type, for all methods: half of the work."""
     lines, points = type_lines(observed)
-    return {
-        "type_lines": lines,
-        "type_line_points": points,
-        "type_consistency": newest_lines(lines),
-    }
+    return {"type_lines": lines, "type_line_points": points}
 
 
 def type_tables(observed: Observed) -> dict[str, pl.DataFrame]:

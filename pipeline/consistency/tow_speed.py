@@ -56,7 +56,6 @@ van verkeerde snelheid kiezen"); of a low tow raced slower the text says nothing
 
 FEWEST_BOATS: Final = 4
 FEWEST_OTHERS: Final = 2
-ENDS: Final = ("", "_lo", "_hi")
 
 
 def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> BoolArray:
@@ -114,7 +113,7 @@ def _trend(boats: Observed) -> tuple[Row, Problem | None]:
         return counts | {"reason": "equal_values"}, None
     variance = unit * boats.column("run_sd_ratio") ** 2
     columns = np.column_stack([types, centred])
-    return counts | {"reason": ""}, Problem.of(q[known], variance[known], columns, hull)
+    return counts | {"reason": ""}, Problem(q[known], variance[known], columns, hull)
 
 
 def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
@@ -147,40 +146,34 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
 
     Towed with little power, or raced at speeds at which the curve does not count. The tow's own
     curve is compared with the curve of the same runs that has the bend of the type's other boats,
-    at the speed that its crew will really row, the median declared speed of the type's other crews
-    of that class (inferred), and at the fastest speed that it raced. The interval is that of the
-    tow's own bend alone.
+    at the fastest speed that its crew raced. The interval is that of the tow's own bend alone.
 
     Args:
         observed: all tows.
         results: as `raced` takes them.
 
     Returns:
-        Rows of the table `slow_tows`; the ratios are empty where the type has no other boats.
+        Rows of the table `slow_tows`; the ratio is empty where the type has no other boats.
     """
     table = observed.table.join(
         raced(observed, results), on=["method", "tow_id"], how="left", maintain_order="left"
     )
-    tows = Observed(table, observed.points)
-    slow = is_slow(table)
+    tows, slow = Observed(table, observed.points), is_slow(table)
     raced_speed = table["raced_speed_m_s"].to_numpy().astype(np.float64)
     beyond = np.isfinite(raced_speed) & ~counts_at(tows, raced_speed)
     chosen = tows.take(np.flatnonzero(is_slow(table, BORDERLINE_POWER_W) | beyond))
-    rowed, bend = _of_others(chosen, newest(tows.take(np.flatnonzero(~slow))))
-    declared = chosen.column("declared_speed_m_s")
-    raced_speed = chosen.column("raced_speed_m_s")
+    declared, raced_speed = chosen.column("declared_speed_m_s"), chosen.column("raced_speed_m_s")
     raced_cw = curve_anywhere(chosen, raced_speed)
-    raced_power = power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))
-    columns = {"rowed_speed_m_s": rowed, "raced_power_w": raced_power}
-    for at, speed in (("rowed", rowed), ("raced", raced_speed)):
-        ends = _power_ratio(chosen, bend, speed)
-        columns |= {f"power_ratio_{at}{end}": ends[i] for i, end in enumerate(ENDS)}
+    bend = _bend_of_others(chosen, newest(tows.take(np.flatnonzero(~slow))))
+    numbers = {"raced_power_w": power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))}
+    names = (f"power_ratio_raced{end}" for end in ("", "_lo", "_hi"))
+    numbers |= dict(zip(names, _power_ratio(chosen, bend, raced_speed), strict=True))
     ratio = declared / hull_speed_m_s(chosen.column("waterline_length_m"))
     case = speed_case(ratio)
     high = chosen.table["crew_class"].replace_strict(RACED_POWER_W, return_dtype=pl.Float64)
     return (
         chosen.table.with_columns(
-            *(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in columns.items()),
+            *(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in numbers.items()),
             pl.Series("slow", is_slow(chosen.table), pl.Boolean),
             pl.Series("tow_hull_ratio", ratio, pl.Float64),
             pl.Series("speed_case", case, pl.String),
@@ -192,16 +185,15 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _of_others(chosen: Observed, others: Observed) -> tuple[FloatArray, FloatArray]:
-    """Of a type's other boats: the speed they row and the s they share; NaN where too few."""
-    rowed, bend = np.full((2, chosen.table.height), np.nan)
+def _bend_of_others(chosen: Observed, others: Observed) -> FloatArray:
+    """The s that a type's other boats share, shape (rows,); NaN where they are too few."""
+    bend = np.full(chosen.table.height, np.nan)
     by_type = dict(others.rows_by("method", "boat_type"))
     for key, rows in chosen.rows_by("method", "boat_type"):
         own = others.take(by_type.get(key, np.zeros(0, np.int64)))
         if key[1] != UNKNOWN_TYPE and own.table["fsn_no"].n_unique() >= FEWEST_OTHERS:
-            rowed[rows] = _rowed_speed(chosen.table["crew_class"][rows], own)
             bend[rows] = shared_bend(own)
-    return rowed, bend
+    return bend
 
 
 def speed_case(tow_hull_ratio: FloatArray) -> list[str]:
@@ -218,15 +210,6 @@ def _text_says(case: list[str], raced_ratio: FloatArray) -> list[str | None]:
         pace = "faster" if ratio > fastest else "slower" if ratio < slowest else ""
         expected.append(TEXT_SAYS.get((one, pace)))
     return expected
-
-
-def _rowed_speed(crew_class: pl.Series, others: Observed) -> FloatArray:
-    """Median declared speed of the others of the same crew class, NaN without any."""
-    median = others.table.group_by("crew_class", maintain_order=True).agg(
-        pl.col("declared_speed_m_s").median()
-    )
-    by_class = dict(median.iter_rows())
-    return np.array([by_class.get(c, np.nan) for c in crew_class], dtype=np.float64)
 
 
 def _power_ratio(tows: Observed, s_s2_m2: FloatArray, speed_m_s: FloatArray) -> FloatArray:

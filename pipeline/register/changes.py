@@ -20,7 +20,7 @@ from pipeline.races.power import curve_of_lines, speed_at_power
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import LINE
 from pipeline.tables.frames import dtypes
-from pipeline.tables.register import Register
+from pipeline.tables.register import Register, RegisterChanges
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 
@@ -38,12 +38,27 @@ PART_SCHEMA: Final = {
     "cause": pl.String(),
     **{name: dtypes(CorrectionSteps)[name] for name in ("step", "factor")},
 }
+BOTH: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s", "rank", "tow_id")
+"""What is said of a line under both editions."""
+
+NUMBERS: Final = ("tow_id", *BOTH[:4], "cw_lo_kg_m", "cw_hi_kg_m")
+
 NO_PARTS: Final = pl.DataFrame(schema=PART_SCHEMA)
 """Parts of changes whose cause is known: per line and cause a factor on Cw; `step` where the cause
 is the method."""
 
 
 def register_changes(
+    old: pl.DataFrame,
+    new: pl.DataFrame,
+    parts: pl.DataFrame = NO_PARTS,
+    grounds: pl.DataFrame | None = None,
+) -> pl.DataFrame:
+    """Rows of the table `register_changes`: what `compare_lines` says without both numbers."""
+    return compare_lines(old, new, parts, grounds).select(RegisterChanges.column_names())
+
+
+def compare_lines(
     old: pl.DataFrame,
     new: pl.DataFrame,
     parts: pl.DataFrame = NO_PARTS,
@@ -61,35 +76,63 @@ def register_changes(
             a line names no tow, `tow` where another one counts, else `method`.
 
     Returns:
-        Rows of the table `register_changes`. `causes` is JSON: a list of `cause`, `factor` and,
-        where the cause is `method`, the `step`; the factors multiply to `cw_ratio`. A ratio is null
-        where the new curve says nothing about the old declared speed.
+        The columns of the table `register_changes`, per line with a curve in either edition.
+        `causes` is JSON: a list of `cause`, `factor` and, where the cause is `method`, the `step`;
+        the factors multiply to `cw_ratio`. A ratio is null where the new curve says nothing about
+        the old declared speed.
+
+        Beside them tow, A, B, Cw, declared speed and rank in both (`old_`, `new_`); the power per
+        rower at the old declared speed; the seconds that the new register gives in a two-hour race:
+        more time for the same power counts as gain. `exceeds_interval`: whether the change is
+        larger than the 95 % intervals of both together; of two numbers from one tow, which share
+        its errors, whether it is larger than that of the old one; null where an interval is not
+        known. The rank is among all boats of the class with a curve: 1 is the fastest at equal
+        power per rower.
     """
     pairs = _pairs(old, new)
-    known = pairs["both"].to_numpy()
+    both = pairs["both"].to_numpy()
     cw_ratio, time_ratio = _ratios(pairs)
-    compared = known & np.isfinite(cw_ratio)
-    same = np.abs(cw_ratio - 1.0) <= SAME_RATIO
-    change = np.select(
-        [known & same, known, pairs["cw_kg_m"].is_null().to_numpy()],
-        ["same", "changed", "added"],
-        "removed",
-    )
+    compared = both & np.isfinite(cw_ratio)
+    kinds = [
+        both & (np.abs(cw_ratio - 1.0) <= SAME_RATIO),
+        both,
+        pairs["cw_kg_m"].is_null().to_numpy(),
+    ]
+    change = np.select(kinds, ["same", "changed", "added"], "removed")
+    power = power_per_rower_w(pairs["cw_kg_m"], pairs["declared_speed_m_s"], pairs["rowers"])
+    of_one_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False).to_numpy()
+    of_old = _half_width(pairs, "")
+    width = np.where(of_one_tow, of_old, np.hypot(of_old, _half_width(pairs, "_new")))
+    exceeds = np.abs(np.log(np.where(compared, cw_ratio, 1.0))) > width
+
+    def known(name: str, values: np.ndarray, where: np.ndarray = compared) -> pl.Expr:
+        return pl.when(pl.Series(where)).then(pl.Series(values)).alias(name)
+
     return pairs.select(
-        pl.lit(old["edition"][0]).alias("from_edition"),
-        pl.lit(new["edition"][0]).alias("to_edition"),
+        pl.lit(old["edition"].first(), pl.String).alias("from_edition"),
+        pl.lit(new["edition"].first(), pl.String).alias("to_edition"),
         *LINE,
         pl.Series("change", change, pl.String),
-        *(
-            pl.when(pl.Series(compared)).then(pl.Series(values)).alias(name)
-            for name, values in (
-                ("cw_ratio", cw_ratio),
-                ("power_ratio", cw_ratio),
-                ("time_ratio", time_ratio),
-            )
-        ),
+        known("cw_ratio", cw_ratio),
+        known("power_ratio", cw_ratio),
+        known("time_ratio", time_ratio),
         pl.Series("causes", _causes(pairs, compared, cw_ratio, parts, grounds), pl.String),
+        *(
+            pl.col(f"{name}{suffix}").alias(f"{side}_{name}")
+            for name in BOTH
+            for side, suffix in (("old", ""), ("new", "_new"))
+        ),
+        pl.Series("old_power_w", power).fill_nan(None),
+        known("new_power_w", power * cw_ratio),
+        known("gain_in_two_hours_s", RACE_S * (time_ratio - 1.0)),
+        known("exceeds_interval", exceeds, compared & np.isfinite(width)),
     )
+
+
+def largest_first(lines: pl.DataFrame) -> pl.DataFrame:
+    """Lines by the size of their change, whatever its sign; those without a ratio on top."""
+    size = pl.col("cw_ratio").log().abs().fill_null(math.inf)
+    return lines.sort(size, *LINE, descending=[True, *(False for _ in LINE)])
 
 
 def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
@@ -109,71 +152,18 @@ def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame
     )
 
 
-def side_by_side(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """The numbers of both editions on one line, in the order of `register_changes`.
-
-    Args:
-        old, new: as for `register_changes`, with the intervals of Cw.
-
-    Returns:
-        Per line with a curve in either: tow, A, B, Cw, declared speed and rank in both; the power
-        per rower at the old declared speed. Also the seconds that the new register gives in a
-        two-hour race; more time for the same power counts as gain. Also whether the change is
-        larger than the 95 % intervals of both together; of two numbers from one tow, which share
-        its errors, whether it is larger than that of the old one. Null where an interval is not
-        known. The rank is among all boats of the class with a curve: 1 is the fastest at equal
-        power per rower.
-    """
-    pairs = _pairs(_ranked(old), _ranked(new))
-    cw_ratio, time_ratio = _ratios(pairs)
-    known = pairs["both"].to_numpy() & np.isfinite(cw_ratio)
-    power = power_per_rower_w(pairs["cw_kg_m"], pairs["declared_speed_m_s"], pairs["rowers"])
-    of_one_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False).to_numpy()
-    of_old = _half_width(pairs, "")
-    width = np.where(of_one_tow, of_old, np.hypot(of_old, _half_width(pairs, "_new")))
-    exceeds = np.abs(np.log(np.where(known, cw_ratio, 1.0))) > width
-    numbers = {
-        "new_power_w": power * cw_ratio,
-        "gain_in_two_hours_s": RACE_S * (time_ratio - 1.0),
-        "exceeds_interval": exceeds,
-    }
-    both = {"tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "rank"}
-    return pairs.select(
-        *LINE,
-        *(
-            column.alias(f"{side}_{name}")
-            for name in sorted(both)
-            for side, column in (("old", pl.col(name)), ("new", pl.col(f"{name}_new")))
-        ),
-        pl.Series("old_power_w", power).fill_nan(None),
-        *(
-            pl.when(pl.Series(known & (np.isfinite(width) | (name != "exceeds_interval"))))
-            .then(pl.Series(values))
-            .alias(name)
-            for name, values in numbers.items()
-        ),
-    )
-
-
 def _pairs(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """Lines with a curve in either edition, sorted; `both` where there is one in each."""
-    pairs = _with_curve(old).join(
-        _with_curve(new),
+    pairs = _ranked(old).join(
+        _ranked(new),
         on=LINE,
         how="full",
         coalesce=True,
         suffix="_new",
         maintain_order="left_right",
     )
-    both = (pl.col("cw_kg_m").is_not_null() & pl.col("cw_kg_m_new").is_not_null()).alias("both")
-    return pairs.with_columns(both).sort(LINE)
-
-
-def _with_curve(register: pl.DataFrame) -> pl.DataFrame:
-    chosen = register.filter(pl.col("cw_kg_m").is_not_null())
-    optional = [c for c in ("cw_lo_kg_m", "cw_hi_kg_m", "rank") if c in chosen.columns]
-    numbers = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")
-    return chosen.select(*LINE, "tow_id", *numbers, *optional)
+    both = pl.col("cw_kg_m").is_not_null() & pl.col("cw_kg_m_new").is_not_null()
+    return pairs.with_columns(both=both).sort(LINE)
 
 
 def _ratios(pairs: pl.DataFrame) -> tuple[FloatArray, FloatArray]:
@@ -196,11 +186,12 @@ def _ratios(pairs: pl.DataFrame) -> tuple[FloatArray, FloatArray]:
 
 
 def _ranked(register: pl.DataFrame) -> pl.DataFrame:
-    lines = register.filter(pl.col("cw_kg_m").is_not_null())
+    """Lines with a curve, and their rank by speed at equal power."""
+    lines = register.drop_nulls("cw_kg_m").select(*LINE, *NUMBERS)
     power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64)
     speed = speed_at_power(*curve_of_lines(lines), (power * lines["rowers"]).to_numpy())
     rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
-    return lines.with_columns(pl.Series("speed", speed)).with_columns(rank.alias("rank"))
+    return lines.with_columns(speed=pl.Series(speed)).with_columns(rank=rank)
 
 
 def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:

@@ -24,7 +24,7 @@ PROMISED = {
     " declared_speed_m_s a_kg_m b_m_s cw_kg_m cw_lo_kg_m cw_hi_kg_m status",
     "register_changes": "from_edition to_edition fsn_no rowers crew_class change cw_ratio"
     " power_ratio time_ratio causes",
-    "type_consistency": "method boat_type quantity explaining n slope slope_lo slope_hi r2"
+    "type_lines": "method tows boat_type quantity explaining n slope slope_lo slope_hi r2"
     " residual_sd_ratio",
     "reproducibility": "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
     "quarantine": "path tow_id line reason_code message first_seen",

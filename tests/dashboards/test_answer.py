@@ -7,10 +7,10 @@ import re
 import polars as pl
 import pytest
 
-from dashboards import headlines
-from dashboards.answer import Answer, told
-from dashboards.site import races
 from dashboards.speech import Speech, duration
+from dashboards.statements import boat_type, due, edition
+from dashboards.statements.boat import Answer
+from dashboards.statements.race import winners
 
 NL, EN = Speech("nl"), Speech("en")
 LINE = {
@@ -34,8 +34,8 @@ CURVE = [(1.96, 29.8, 60.0), (2.31, 31.01, 90.0), (2.66, 32.6, 140.0)]
 
 
 def said(speech=NL, races=(), faults=(), **other):
-    found = told(Answer(LINE | other, races, CURVE, faults), speech)
-    return "\n".join([found.headline, *found.sentences])
+    answer = Answer(LINE | other, races, CURVE, faults)
+    return "\n".join(statement(speech) for statement in answer.statements)
 
 
 def test_old_and_new_number_by_how_much_and_why():
@@ -123,7 +123,7 @@ def test_unknown_is_neither_none_nor_another_cause(exceeds, words):
     causes = '[{"cause": "printed", "factor": 0.97}]' if None in exceeds else "[]"
     rows = [CHANGED | {"exceeds_interval": e, "causes": causes} for e in exceeds]
     schema = {"exceeds_interval": pl.Boolean}
-    text = headlines.changes(pl.DataFrame(rows, schema_overrides=schema))(NL)
+    text = edition.changes(pl.DataFrame(rows, schema_overrides=schema))(NL)
     assert words in text
     assert ("hoe het gedrukte register is gerekend" in text) == (None in exceeds)
     assert "andere proef" not in text
@@ -138,7 +138,7 @@ def test_another_winner_by_a_stretched_curve_of_fatigue_says_so():
                 race=pl.lit("R"), race_date=pl.lit(dt.date(2017, 6, 4)), crew_class=pl.lit("H"),
                 old_power_w=1.0, new_power_w=1.0,
             )  # fmt: skip
-            text = races._winners(frame, {})(NL)
+            text = winners(frame, {})(NL)
             assert ("2 tot 3 uur" in text) == (stretched and ranks == (2, 1))
 
 
@@ -179,7 +179,7 @@ def test_how_to_object_names_boat_and_code():
 
 
 def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
-    picture = told(Answer(LINE, (), CURVE), NL).waterfall
+    picture = Answer(LINE, (), CURVE).waterfall(NL)
     # A bar for a number would have to begin at zero.
     assert (picture.count("<rect"), picture.count("<path")) == (2, 2)
     assert re.search(r'aria-label="[^"]*Tr\w+wes', picture)
@@ -187,13 +187,13 @@ def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
 
 def test_the_waterfall_ends_at_the_new_number_though_small_causes_have_no_bar():
     causes = json.dumps([{"cause": "tow", "factor": 0.9674}, {"cause": "code", "factor": 0.9996}])
-    picture = told(Answer(LINE | {"causes": causes}, (), CURVE), NL).waterfall
+    picture = Answer(LINE | {"causes": causes}, (), CURVE).waterfall(NL)
     assert picture.count("<rect") == 1
     assert ">31,01<" in picture
 
 
 def test_names_in_pictures_are_escaped():
-    picture = told(Answer(LINE | {"name": "<script>"}, (), CURVE), NL).waterfall
+    picture = Answer(LINE | {"name": "<script>"}, (), CURVE).waterfall(NL)
     assert "<script>" not in picture
 
 
@@ -207,7 +207,7 @@ def test_a_time_rowed_is_in_hours(seconds, shown):
 )
 def test_tows_that_are_not_worth_it_are_told(after, words):
     choice = pl.DataFrame({"factor_sd_before_ratio": [0.004667], "factor_sd_after_ratio": [after]})
-    assert words in headlines.retow(choice)(NL)
+    assert words in due.retow(choice)(NL)
 
 
 @pytest.mark.parametrize(
@@ -216,4 +216,4 @@ def test_tows_that_are_not_worth_it_are_told(after, words):
 )
 def test_a_type_s_verdict(p_value, power, words):
     test = pl.DataFrame({"p_value": [p_value], "power_at_10pct": [power], "n": [11]})
-    assert words in headlines.homogeneity(test)(NL)
+    assert words in boat_type.homogeneity(test)(NL)

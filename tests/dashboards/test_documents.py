@@ -12,7 +12,6 @@ from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import draft_name
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
-from warehouse.editions.compare import CauseSummary, largest_first
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
@@ -99,19 +98,6 @@ def test_an_expired_certificate_says_so(views, contents, monkeypatch):
         assert bool(said) == bool(caution)
 
 
-def test_the_largest_changes_come_first_whatever_their_sign():
-    lines = pl.DataFrame({"cw_ratio": [1.01, 0.9, 1.05, 1.2], "fsn_no": [*"abcd"]})
-    assert largest_first(lines)["cw_ratio"].to_list() == [1.2, 0.9, 1.05, 1.01]
-
-
-def test_a_proposal_takes_its_causes_from_where_the_notice_takes_them(views, contents, monkeypatch):
-    told = CauseSummary("method", "temperature", 7, 0.5, 0.4, 0.6)
-    monkeypatch.setattr(proposal, "causes_of", lambda _: [told])
-    proposed(views, [METHODS[1]], EDITIONS[0], "en")
-    rows = next(p["rows"] for p in contents[0]["parts"] if p["title"].startswith("What changes"))
-    assert rows == [["temperature", "\u221250.0\u00a0%", "7"]]
-
-
 def test_a_draft_is_no_certificate(views, contents):
     line = lines_of(views, "concept-as-published").row(0, named=True)
     certificate.certificates(views, "concept-as-published", line["fsn_no"], "nl")
@@ -150,7 +136,10 @@ def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, contents,
     lines = compared(views, EDITIONS[0], f"concept-{METHODS[1]}")
     tows = lines.drop_nulls("new_cw_kg_m")["new_tow_id"]
     flagged = pl.DataFrame({"method": METHODS[1], "tow_id": [tows[0], tows[0], "superseded"]})
-    monkeypatch.setattr(Views, "flagged_boats", lambda _: flagged)
+    ask = Views.ask
+    monkeypatch.setattr(
+        Views, "ask", lambda v, q, *of: flagged if q == "flagged_boats" else ask(v, q, *of)
+    )
     proposed(views, [METHODS[1]], EDITIONS[0], "en")
     said = [s for part in contents[0]["parts"] for s in part["sentences"]]
     assert any(f"still has to look at: 1 of {tows.len()}." in sentence for sentence in said)
@@ -159,7 +148,7 @@ def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, contents,
 def test_drafts_and_the_due_list_judge_on_one_day(views):
     drafts = views.table("register").filter(pl.col("edition").str.starts_with("concept-"))
     days = {*drafts["as_of"], *views.table("due_list")["as_of"]}
-    assert days == {max(*views.table("tows")["tow_date"], *views.races()["race_date"])}
+    assert days == {max(*views.table("tows")["tow_date"], *views.ask("races")["race_date"])}
 
 
 def test_several_methods_make_a_ballot(views, contents):
@@ -186,7 +175,7 @@ def test_a_proposal_takes_six_pages_at_most_before_its_annex(views):
 
 def test_a_proposal_counts_places_as_the_pages_of_races_do(views):
     _, (moved, results) = replayed(views, *EDITIONS)
-    rows = views.races().filter(from_edition=EDITIONS[0], to_edition=EDITIONS[1])
+    rows = views.ask("races").filter(from_edition=EDITIONS[0], to_edition=EDITIONS[1])
     placed = rows.drop_nulls("new_rank")
     assert results == placed.height > 0
     assert moved == placed.filter(pl.col("old_rank") != pl.col("new_rank")).height

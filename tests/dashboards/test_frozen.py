@@ -2,12 +2,12 @@
 
 import datetime as dt
 
-from dashboards.answer import answers_by_boat, told
 from dashboards.documents import certificate
 from dashboards.speech import Speech
+from dashboards.statements.boat import answers_by_boat
 from pipeline.method.definition import shipped_method
 from warehouse.editions.publish import Terms, publish
-from warehouse.queries.register import register_report
+from warehouse.queries.registers import register_report
 from warehouse.queries.views import Views
 
 EDITION, METHOD, DAY = "2014-1", "rebased", dt.date(2014, 6, 1)
@@ -21,7 +21,11 @@ def shown(store):
         answers = [one for crews in answers_by_boat(views, EDITION).values() for one in crews]
         for answer in answers:
             answer.line.update(dict.fromkeys(OF_TODAY))
-        pages = [told(answer, Speech("en")) for answer in answers]
+        english = Speech("en")
+        pages = [
+            [*(one(english) for one in answer.statements), answer.waterfall(english)]
+            for answer in answers
+        ]
         paper = certificate.certificates(views, EDITION, None, "en", as_page=True)
     return pages, register_report(store, EDITION), paper.decode()
 
@@ -43,7 +47,7 @@ def test_an_edition_stays_on_pages_register_and_certificates(bench):
     terms = Terms(EDITION, DAY, "besluit van de ALV", DAY)
     publish(bench.store, shipped_method(METHOD), terms)
     before, draft = shown(bench.store), register_report(bench.store, f"concept-{METHOD}")
-    assert any("the log read" in text for page in before[0] for text in page.sentences)
+    assert any("the log read" in text for page in before[0] for text in page)
     change_lists(bench.archive)
     bench.rebuild(("as-published", METHOD))
     assert register_report(bench.store, f"concept-{METHOD}") != draft

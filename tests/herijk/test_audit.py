@@ -68,12 +68,13 @@ def test_the_steps_of_a_tow_multiply_to_the_total_printed(audit, built):
 
 def test_the_answer_about_types_has_every_line_with_its_interval_and_n(audit, built):
     types = sorted(built.table("boats")["boat_type"].drop_nulls().unique())
-    rows = built.table("type_consistency").filter(
+    rows = built.table("type_lines").filter(
         pl.col("reason") == "",
         pl.col("quantity").is_in(["b_m_s", "a_kg_m", "cw_standard_kg_m"]),
         explaining="weight_kg",
         method="rebased-2015",
         within="all",
+        tows="newest",
     )
     assert rows.height > 0
     pages = {t: audit(t, "--method", "rebased-2015") for t in types}

@@ -15,7 +15,6 @@ NEEDED = {
     "herijk.cli.audit_text": HEAVY - {"altair", "dagster", "sqlalchemy"},
     "pipeline.method.definition": set(),
     "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
-    "warehouse.queries.due": {"duckdb", "numpy", "polars"},
     "warehouse.queries.audit": HEAVY - {"altair", "dagster", "sqlalchemy", READING},
     "warehouse.editions.compare": {"dataframely", "numpy", "polars", "scipy"},
     # Columns of later, which an old edition lacks, are read from their declaration.

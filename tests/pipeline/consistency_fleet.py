@@ -8,9 +8,9 @@ import polars as pl
 from pipeline import curve
 from pipeline.consistency.components import variance_components
 from pipeline.consistency.eras import era_shifts
-from pipeline.consistency.lines import newest_lines, type_lines
+from pipeline.consistency.lines import type_lines
 from pipeline.consistency.observed import observe
-from pipeline.consistency.repeats import repeat_pairs, reproducibility, with_categories
+from pipeline.consistency.repeats import repeat_pairs, reproducibility
 from pipeline.consistency.tables import type_tables
 from pipeline.consistency.tow_speed import slow_tows
 from pipeline.tables.lake import ListedRaces
@@ -126,9 +126,9 @@ def _fitted(speed, cw, v0):
     yield pl.Series("flags", [[]] * len(v0), dtype=pl.List(pl.String))
 
 
-def type_consistency(observed):
-    """Rows of the table `type_consistency`, those within a class apart."""
-    return newest_lines(type_lines(observed)[0]).filter(within="all")
+def newest_lines(observed):
+    """Rows of the table `type_lines` of the newest tows, without those within a class."""
+    return type_lines(observed)[0].filter(within="all", tows="newest")
 
 
 def consistency_tables(curves, tows, boats, run_points):
@@ -139,6 +139,6 @@ def consistency_tables(curves, tows, boats, run_points):
         "slow_tows": slow_tows(observed, NO_RACES),
         "repeat_pairs": pairs,
         "era_shifts": era_shifts(pairs, boats),
-        "reproducibility": with_categories(reproducibility(pairs, observed), components),
+        "reproducibility": reproducibility(pairs, observed),
         "variance_components": components,
     }

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from pipeline.register.changes import (
     PART_SCHEMA,
+    compare_lines,
     register_changes,
-    side_by_side,
     steps_of_lines,
 )
 
@@ -91,7 +91,7 @@ def test_the_steps_of_a_ladder_go_to_the_lines_of_their_tow_in_order():
     ]
 
 
-def test_side_by_side_in_watt_seconds_and_rank():
+def test_both_numbers_in_watt_seconds_and_rank():
     old = edition(
         "o",
         ("FSN1", "H", 40.0, 5.0, 0.01),
@@ -104,7 +104,7 @@ def test_side_by_side_in_watt_seconds_and_rank():
         ("FSN2", "H", 42.0, 5.0, 0.01),
         ("FSN3", "D", 60.0, 5.0, 0.01),
     )
-    first, second, third = side_by_side(old, new).iter_rows(named=True)
+    first, second, third = compare_lines(old, new).iter_rows(named=True)
     assert first["old_power_w"] == pytest.approx(40 / 0.75 * 2.5**3 / 8)
     assert first["new_power_w"] == pytest.approx(1.1 * first["old_power_w"])
     assert (first["old_rank"], first["new_rank"]) == (1, 2)
@@ -122,7 +122,7 @@ def test_a_change_is_held_against_the_intervals_of_both(width, exceeds):
         edition(name, ("FSN1", "H", a, 5.0, width)).with_columns(tow_id=pl.lit(name))
         for name, a in (("o", 40.0), ("n", 44.0))
     )
-    assert side_by_side(old, new)["exceeds_interval"].item() is exceeds
+    assert compare_lines(old, new)["exceeds_interval"].item() is exceeds
 
 
 @pytest.mark.parametrize(("tow", "cause"), [("t", "method"), ("u", "tow"), (None, "printed")])

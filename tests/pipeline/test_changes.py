@@ -25,10 +25,12 @@ def edition(name, lines):
             "a_kg_m": a,
             "b_m_s": b,
             "cw_kg_m": None if a is None else a / (1 - (v0 / b) ** 2 if b else 1),
+            "cw_lo_kg_m": None,
+            "cw_hi_kg_m": None,
         }
         for boat, tow, v0, a, b in lines
     ]
-    numbers = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")
+    numbers = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
     return pl.DataFrame(rows, schema_overrides=dict.fromkeys(numbers, pl.Float64))
 
 

@@ -1,10 +1,8 @@
 """The mixed model: against the formulas of textbooks, another optimiser and another program."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from scipy import optimize, stats
+from scipy import optimize
 
 from pipeline.consistency import mixed
 from pipeline.consistency.mixed import Problem
@@ -12,18 +10,19 @@ from pipeline.consistency.mixed import Problem
 ONE = np.zeros(1, np.int64)
 
 
-def grouped_data(seed=1, n=60, boats=20, others=5):
+def grouped_data(seed=1, n=60, boats=20, others=5, known=None):
     rng = np.random.default_rng(seed)
     boat, other = rng.integers(0, boats, n), rng.integers(0, others, n)
     boat[:boats], other[:others] = np.arange(boats), np.arange(others)
     x = np.column_stack([np.ones(n), rng.normal(size=n)])
-    known = rng.uniform(0.5, 2.0, n) ** 2
+    error = rng.uniform(0.5, 2.0, n) ** 2
     y = x @ [1.0, 0.5] + 2.0 * rng.normal(size=boats)[boat] + rng.normal(size=others)[other]
-    return Problem.of(y + np.sqrt(known) * rng.normal(size=n), known, x, boat, other)
+    y += np.sqrt(error) * rng.normal(size=n)
+    return Problem(y, error if known is None else np.full(n, known), x, boat, other)
 
 
 def likelihood(problem, sd):
-    return mixed._SideBySide([problem]).likelihood(ONE, np.square([sd]))
+    return mixed._SideBySide.of([problem]).likelihood(ONE, np.square([sd]))
 
 
 def deviance(problem, sd):
@@ -32,7 +31,7 @@ def deviance(problem, sd):
 
 def fit_at(problem, sd):
     """The model with these standard deviations."""
-    at = mixed._SideBySide([problem]).at(ONE, np.square([sd]))
+    at = mixed._SideBySide.of([problem]).at(np.square([sd]))
     k = problem.others.shape[1]
     beta, covariance = problem.plain + at.unknowns[0, k:], at.covariance[0, k:, k:]
     return mixed.Fit(problem, mixed.COMPONENTS, sd, beta, covariance, at.misfit[0])
@@ -65,20 +64,6 @@ def test_deviance_and_its_slope_equal_the_dense_formula(sd):
     assert at.gradient[0] == pytest.approx(slope, rel=1e-3, abs=1e-3)
 
 
-def test_a_tow_without_any_error_keeps_the_fit_exact():
-    """Runs that lie exactly on their curve: beside a spread of boats no digit was left."""
-    y = np.array([0.367, 0.464, 0.569, 0.481, 0.508, 0.516])
-    x = np.array(
-        [[1, 0, 0], [0, 1, 0.009], [0, 1, -0.091], [0, 1, 0.023], [0, 1, 0.059], [1, 0, 0]]
-    )
-    variance = [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6]
-    problem = Problem.of(y, variance, x, range(6), [0] * 6)
-    for sd in (0.001, 0.1, 10.0):
-        dense = dense_deviance(problem, (sd, 0.0, 0.0))
-        assert deviance(problem, (sd, 0.0, 0.0)) == pytest.approx(dense, abs=1e-4)
-    assert np.isfinite(mixed.fit(problem, (mixed.BOAT,)).coefficients()).all()
-
-
 def test_fit_finds_the_minimum_that_another_optimiser_finds():
     problem = grouped_data()
     found = mixed.fit(problem, mixed.COMPONENTS)
@@ -100,7 +85,7 @@ def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd
     y += np.sqrt(error) * rng.normal(size=n)
     x = np.column_stack([np.ones(n), rng.normal(size=n)])
     fits = [
-        mixed.fit(Problem.of(y * noise, np.full(n, error**2), x, boat, other), mixed.COMPONENTS)
+        mixed.fit(Problem(y * noise, np.full(n, error**2), x, boat, other), mixed.COMPONENTS)
         for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
     ]
     sds, intervals = (
@@ -118,7 +103,7 @@ def one_row_a_boat(variance, true_sd=0.0, seed=3):
     rng = np.random.default_rng(seed)
     x = np.column_stack([np.ones(12), rng.normal(size=12)])
     y = x @ [1.0, 2.0] + np.sqrt(variance + true_sd**2) * rng.normal(size=12)
-    return Problem.of(y, variance, x, range(12))
+    return Problem(y, variance, x, range(12))
 
 
 def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
@@ -135,22 +120,8 @@ def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
         assert np.column_stack([found.lo, found.hi]) == pytest.approx(other.conf_int(), rel=1e-9)
 
 
-def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
-    from statsmodels.stats.meta_analysis import combine_effects  # noqa: PLC0415 - takes seconds to import
-
-    # At the same spread: statsmodels estimates it by Paule and Mandel, not by likelihood.
-    problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
-    other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
-    only_mean = Problem.of(problem.y, problem.variance, np.ones(12), range(12))
-    found = fit_at(only_mean, (np.sqrt(other.tau2), 0.0, 0.0))
-    assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
-    half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
-    assert found.coefficients().hi[0] - found.beta[0] == pytest.approx(half, rel=1e-6)
-
-
 def test_variance_components_are_those_of_another_program():
-    problem = grouped_data()
-    problem = replace(problem, variance=np.full(len(problem.y), 1e-9))
+    problem = grouped_data(known=1e-9)
     groups = [np.eye(problem.boat.max() + 1)[problem.boat], problem.others]
     from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec  # noqa: PLC0415 - takes seconds to import
 
@@ -173,8 +144,15 @@ def test_variance_components_are_those_of_another_program():
 def test_problems_side_by_side_are_fitted_as_each_alone():
     rng = np.random.default_rng(4)
     first = grouped_data()
-    problems = [replace(first, y=first.y + s * rng.normal(size=60)) for s in (0.0, 0.5, 20)]
-    problems += [replace(first, others=np.zeros((60, 0)), x=first.x[:, :1]), grouped_data(2, 30)]
+    other = first.others.argmax(axis=1)
+    problems = [
+        Problem(first.y + s * rng.normal(size=60), first.variance, first.x, first.boat, other)
+        for s in (0.0, 0.5, 20)
+    ]
+    problems += [
+        Problem(first.y, first.variance, first.x[:, :1], first.boat),
+        grouped_data(2, 30),
+    ]
     together = mixed.fit_all(problems, (mixed.BOAT, mixed.CELL))
     for problem, fit in zip(problems, together, strict=True):
         assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)

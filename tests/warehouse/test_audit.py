@@ -10,7 +10,7 @@ import pytest
 from pipeline.errors import MissingKnowledgeError
 from tests.conftest import METHODS
 from warehouse.queries.audit import audit
-from warehouse.queries.audit_types import cw_closest, differences
+from warehouse.queries.audit_types import differences
 
 
 def change(bench, *statements):
@@ -35,7 +35,7 @@ def test_figures_of_a_type_are_those_of_the_tables(built):
         for method in METHODS:
             own = {"method": method, "boat_type": boat_type}
             found = report.types[0].under[method]
-            lines = built.table("type_consistency").filter(**own)
+            lines = built.table("type_lines").filter(tows="newest", **own).drop("tows")
             assert lines.height == len(found.lines)
             for line in found.lines:
                 key = {name: line[name] for name in ("quantity", "explaining", "within")}
@@ -90,7 +90,6 @@ def of(built):
             speed_trend={"reason": "few_boats"},
             eras=[],
             bends={"equal_possible": bends},
-            cw_closest=None,
         )
 
     return lambda first, second: [statistics(*first), statistics(*second)]
@@ -112,30 +111,6 @@ def test_types_differ_by_a_verdict_only_where_both_have_one(of):
     assert differences(*of((same, True), (same, False))) == ["bends"]
     assert differences(*of((same, True), (same, None))) == []
     assert differences(of((same, True), (same, True))[0]) == []
-
-
-def spread(n_boats, **sds):
-    """Lines on weight with these spreads about them."""
-    return [
-        {"quantity": q, "explaining": "weight_kg", "reason": "", "n": n_boats, "n_boats": n_boats,
-         "residual_sd_ratio": sd}
-        for q, sd in sds.items()
-    ]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("n_boats", "b", "a", "cw", "verdict"),
-    [
-        (12, 0.06, 0.06, 0.03, True),
-        (4, 0.06, 0.06, 0.03, None),
-        (12, 0.06, 0.04, 0.03, None),
-        (12, 0.02, 0.06, 0.05, False),
-    ],
-)
-def test_cw_lies_closest_only_where_chance_would_not_make_it(n_boats, b, a, cw, verdict):
-    lines = spread(n_boats, b_m_s=b, a_kg_m=a, cw_standard_kg_m=cw)
-    assert cw_closest(lines) is verdict
-    assert cw_closest([line | {"reason": "few_boats"} for line in lines]) is None
 
 
 @pytest.mark.parametrize("name", ["Kuikensloep", "kuikensloep", " KUIKEN SLOEP "])

@@ -9,7 +9,7 @@ from dashboards.labels import CODES
 from herijk.cli.registers_text import URGENCIES
 from pipeline.register.due import NOT_RACED
 from pipeline.register.register import draft_name
-from warehouse.queries.due import due_report
+from warehouse.queries.registers import due_report
 from warehouse.store.decisions import FILE_NAME
 
 METHOD = "rebased-2015"

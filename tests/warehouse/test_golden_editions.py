@@ -120,4 +120,4 @@ def test_a_line_leads_to_its_files_and_seconds(store):
 def test_their_comparison_is_that_of_the_day_of_publication(store):
     difference = report(diff(store, "gedrukt-2014", "2014-1"))
     assert difference.changes == {"added": 1, "changed": 2, "same": 1}
-    assert [cause.cause for cause in difference.causes] == ["printed_and_tow"]
+    assert [cause["cause"] for cause in difference.causes] == ["printed_and_tow"]

@@ -51,15 +51,13 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 def reproducibility(
     repeat_pairs: pl.DataFrame,
-    variance_components: pl.DataFrame,
     curves: pl.DataFrame,
     run_points: pl.DataFrame,
     tows: pl.DataFrame,
     boats: pl.DataFrame,
 ) -> pl.DataFrame:
     """How far a measurement can be repeated."""
-    spread = repeats.reproducibility(repeat_pairs, _observed(curves, run_points, tows, boats))
-    return repeats.with_categories(spread, variance_components)
+    return repeats.reproducibility(repeat_pairs, _observed(curves, run_points, tows, boats))
 
 
 def _of(method: Method, frame: pl.DataFrame) -> pl.DataFrame:

@@ -36,7 +36,7 @@ METHOD_TABLES: Final = (
 """All tows under one method."""
 
 STUDY_TABLES: Final = ("correction_steps", "option_effects", "option_curves")
-LINE_TABLES: Final = ("type_lines", "type_line_points", "type_consistency")
+LINE_TABLES: Final = ("type_lines", "type_line_points")
 TYPE_TABLES: Final = (
     *("compared_tows", "hull_speed", "type_outliers", "type_homogeneity", "pooled_curves"),
     *("speed_trend", "predicted_cw", "prediction_error", "variance_components"),

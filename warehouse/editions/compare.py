@@ -7,7 +7,7 @@ unexplained is one factor, named after what else differs. An edition holds its c
 one before.
 """
 
-import json
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -19,8 +19,9 @@ from pipeline.register.changes import (
     NO_FACTOR,
     NO_PARTS,
     PART_SCHEMA,
+    compare_lines,
+    largest_first,
     register_changes,
-    side_by_side,
     steps_of_lines,
 )
 from pipeline.register.register import LINE, NO_EMPTY_THWART
@@ -36,6 +37,8 @@ from warehouse.store.store import Store, archive_root
 
 STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
 NO_STEPS: Final = pl.DataFrame(schema={n: dtypes(CorrectionSteps)[n] for n in STEP_COLUMNS})
+CAUSE: Final = pl.Struct({name: PART_SCHEMA[name] for name in ("cause", "step", "factor")})
+LARGEST: Final = 10
 
 
 @dataclass(frozen=True)
@@ -44,9 +47,8 @@ class Comparison:
 
     Attributes:
         old, new: the editions.
-        lines: rows of `register_changes`, with the columns of
-            `pipeline.register.changes.side_by_side`, the boat's `name`, and the status in both,
-            which says why a line has no curve any more.
+        lines: lines as `pipeline.register.changes.compare_lines` has them, with the boat's `name`,
+            and the status in both, which says why a line has no curve any more.
     """
 
     old: Edition
@@ -74,17 +76,13 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     code = _code_parts(store, old, new)
     steps = _steps(store, old, new)
     printed = _printed_parts(old, new)
-    known = [code, printed, steps_of_lines(new.register, steps)]
-    parts = pl.concat(known, how="diagonal_relaxed")
-    separated = {*steps["tow_id"], *printed.select(LINE).rows()}
-    grounds = _grounds(old, new, separated, code_known=not code.is_empty())
-    changes = register_changes(old.register, new.register, parts, grounds)
+    parts = pl.concat([code, printed, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
+    grounds = _grounds(old, new, steps["tow_id"], printed, code_known=not code.is_empty())
+    lines = compare_lines(old.register, new.register, parts, grounds)
     names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
-    lines = (
-        changes.join(side_by_side(old.register, new.register), on=LINE, maintain_order="left")
-        .join(names.unique(LINE, keep="first"), on=LINE, how="left", maintain_order="left")
-        .sort(LINE)
-    )
+    lines = lines.join(
+        names.unique(LINE, keep="first"), on=LINE, how="left", maintain_order="left"
+    ).sort(LINE)
     for side, edition in (("old", old), ("new", new)):
         status = edition.register.select(*LINE, pl.col("status").alias(f"{side}_status"))
         lines = lines.join(status, on=LINE, how="left", maintain_order="left")
@@ -112,10 +110,7 @@ def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 def _parts(cause: str, changes: pl.DataFrame) -> pl.DataFrame:
     """All of what changed as the work of one cause."""
     return changes.select(
-        *LINE,
-        pl.lit(cause).alias("cause"),
-        pl.lit(None, pl.String).alias("step"),
-        pl.col("cw_ratio").alias("factor"),
+        *LINE, cause=pl.lit(cause), step=pl.lit(None, pl.String), factor="cw_ratio"
     )
 
 
@@ -128,16 +123,13 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
         return NO_PARTS
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
     tows = new.tables["tows"].select("tow_id", "tow_date", thwart)
-    curves = (
-        new.tables["curves"]
-        .join(tows, on="tow_id", maintain_order="left")
-        .with_columns(edition=pl.lit("printed"))
-    )
+    curves = new.tables["curves"].join(tows, on="tow_id", maintain_order="left")
     day = [*LINE, "tow_date"]
     same_tow = curves.join(old.register, on=day, how="semi").unique(day, keep="none")
     moved = same_tow.join(new.register, on="tow_id", how="anti")
     if moved.is_empty():
         return NO_PARTS
+    moved = moved.with_columns(edition=pl.lit("printed"))
     return _parts("printed", register_changes(old.register, moved).drop_nulls("cw_ratio"))
 
 
@@ -161,68 +153,103 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     return ladder(old.method, new.method, tows, blocks, links)
 
 
-def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:
-    """Per line the name of what its known parts do not explain.
+# What the known parts of a change leave unexplained is named after its ground
+
+
+def grounds(
+    old: pl.DataFrame,
+    new: pl.DataFrame,
+    same: Collection[str],
+    *,
+    others: bool,
+    method: bool,
+    code: bool,
+    separated: Collection[str] = (),
+) -> pl.DataFrame:
+    """Per line of two registers of tows, the `ground` of what known parts do not explain.
+
+    Args:
+        old, new: the registers.
+        same: tows with the same input in both.
+        others: any tow has another input.
+        method, code: whether these differ.
+        separated: tows of which the work of the method is a known part.
+    """
+    pairs = old.select(*LINE, "tow_id").join(
+        new.select(*LINE, "tow_id"), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
+    )
+    tow = pl.col("tow_id_new")
+    own = ~tow.is_in(list(same))
+    redefined = ~tow.is_in(list(separated)) & method
+    ground = (
+        pl.when(pl.col("tow_id").ne_missing(tow))
+        .then(pl.lit("tow"))
+        .when(redefined & (own | code))
+        .then(pl.lit("unseparated"))
+        .when(redefined)
+        .then(pl.lit("method"))
+        .when(own)
+        .then(pl.lit("input_and_code" if code else "input"))
+        .when(others)
+        .then(pl.lit("code_or_other_input" if code else "other_input"))
+        .otherwise(pl.lit("code" if code else "unexplained"))
+    )
+    return pairs.select(*LINE, ground=ground)
+
+
+def _grounds(
+    old: Edition,
+    new: Edition,
+    separated: Collection[str],
+    printed_parts: pl.DataFrame,
+    *,
+    code_known: bool,
+) -> pl.DataFrame:
+    """The ground of every line, of tows or of print.
 
     Args:
         old, new: the editions.
-        separated: tows with a ladder, and lines whose printed tow was computed.
+        separated: tows with a ladder.
+        printed_parts: lines whose printed tow was computed.
         code_known: what the code changed is a known part.
     """
-    shared = [*LINE, "tow_id", "tow_date", INPUTS_HASH, "basis"]
+    shared = [*LINE, "tow_date", INPUTS_HASH, "basis"]
     pairs = old.register.select(shared).join(
         new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
     )
-    code = not code_known and old.manifest.code_version != new.manifest.code_version
-    same = None
+    computed = printed_parts.select(LINE).with_columns(computed=pl.lit(value=True))
+    days = pl.col("tow_date"), pl.col("tow_date_new")
+    of_print = (
+        pl.when(pl.col(INPUTS_HASH).eq_missing(pl.col(f"{INPUTS_HASH}_new")))
+        .then(pl.lit("closed_form"))
+        .when("computed")
+        .then(pl.lit("tow"))
+        .when(days[0] != days[1])
+        .then(pl.lit("printed_and_tow"))
+        .otherwise(pl.lit("printed"))
+    )
+    named = pairs.join(computed, on=LINE, how="left", maintain_order="left")
+    named = named.with_columns(ground=of_print)
     if "tows" in old.tables and "tows" in new.tables:
         same = same_tows(old.tables, new.tables)
-    grounds = [_ground(row, old, new, separated, code, same) for row in pairs.iter_rows(named=True)]
-    return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
-
-
-def _ground(
-    line: Row,
-    old: Edition,
-    new: Edition,
-    separated: set[object],
-    code: bool,
-    same: frozenset[str] | None,
-) -> str:
-    if same is None or {line["basis"], line["basis_new"]} != {MEASURED}:
-        return _ground_of_printed(line, separated)
-    if line["tow_id"] != line["tow_id_new"]:
-        return "tow"
-    own = line["tow_id"] not in same
-    others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
-    method = old.manifest.method_hash != new.manifest.method_hash
-    return ground_of(own, others, method and line["tow_id_new"] not in separated, code)
-
-
-def ground_of(own: bool, others: bool, method: bool, code: bool) -> str:
-    """The name of what differs: the tow's own input, that of others, the method, the code."""
-    if method:
-        return "unseparated" if own or code else "method"
-    if own:
-        return "input_and_code" if code else "input"
-    if others:
-        return "code_or_other_input" if code else "other_input"
-    return "code" if code else "unexplained"
-
-
-def _ground_of_printed(line: Row, separated: set[object]) -> str:
-    if line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]:
-        return "closed_form"
-    if tuple(line[name] for name in LINE) in separated:
-        return "tow"
-    days = {line["tow_date"], line["tow_date_new"]}
-    return "printed" if len(days) == 1 or None in days else "printed_and_tow"
+        manifests = old.manifest, new.manifest
+        of_tows = grounds(
+            old.register,
+            new.register,
+            same,
+            others=any(edition.tables["tows"].height > len(same) for edition in (old, new)),
+            method=len({m.method_hash for m in manifests}) > 1,
+            code=not code_known and len({m.code_version for m in manifests}) > 1,
+            separated=separated,
+        )
+        measured = pl.all_horizontal(pl.col("basis", "basis_new").eq_missing(MEASURED))
+        of_tow = pl.when(measured).then("of_tows").otherwise("ground")
+        of_tows = of_tows.rename({"ground": "of_tows"})
+        named = named.join(of_tows, on=LINE, maintain_order="left").with_columns(ground=of_tow)
+    return named.select(*LINE, "ground")
 
 
 # Summary
-
-
-LARGEST: Final = 10
 
 
 @dataclass(frozen=True)
@@ -245,24 +272,6 @@ class Group:
 
 
 @dataclass(frozen=True)
-class CauseSummary:
-    """What one cause, or one step of a method, did.
-
-    Attributes:
-        cause, step: the cause; the step where a method is the cause.
-        lines: the lines it moved.
-        median_factor, lowest_factor, highest_factor: its factor on Cw there.
-    """
-
-    cause: str
-    step: str | None
-    lines: int
-    median_factor: float
-    lowest_factor: float
-    highest_factor: float
-
-
-@dataclass(frozen=True)
 class DiffReport:
     """A comparison of two editions as plain data.
 
@@ -275,7 +284,7 @@ class DiffReport:
         exceeds_interval: lines that moved by more than their intervals.
         interval_unknown: lines whose interval is not known.
         runs_alone: editions whose intervals are the spread of the runs alone.
-        causes: per cause and step, the most lines first.
+        causes: see `causes_of`.
         largest: the lines that changed most.
         rows: all lines: rows of `register_changes` with the causes that moved each.
         race_rules: how races are worked out, where that was asked.
@@ -293,7 +302,7 @@ class DiffReport:
     exceeds_interval: int
     interval_unknown: int
     runs_alone: list[str]
-    causes: list[CauseSummary]
+    causes: list[Row]
     largest: list[Row]
     rows: list[Row]
     race_rules: RaceRules | None = None
@@ -304,10 +313,9 @@ class DiffReport:
 def report(comparison: Comparison) -> DiffReport:
     """Counts, who gains and loses, causes, and every line of a comparison."""
     lines = comparison.lines
-    compared = lines.filter(pl.col("cw_ratio").is_not_null())
-    moved = compared.filter(pl.col("change") == "changed")
-    gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
-    loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
+    compared = lines.drop_nulls("cw_ratio")
+    moved = compared.filter(change="changed")
+    gains = pl.col("power_ratio") > 1
     editions = (comparison.old, comparison.new)
     return DiffReport(
         from_edition=comparison.old.manifest.edition,
@@ -315,8 +323,8 @@ def report(comparison: Comparison) -> DiffReport:
         simulated=any(edition.manifest.simulated for edition in editions),
         lines=lines.height,
         changes=dict(lines["change"].value_counts().sort("change").rows()),
-        gain=_group(gain),
-        loss=_group(loss),
+        gain=_group(moved.filter(gains).sort("power_ratio", "fsn_no", descending=True)),
+        loss=_group(moved.filter(~gains).sort("power_ratio", "fsn_no")),
         exceeds_interval=int(moved["exceeds_interval"].fill_null(False).sum()),
         interval_unknown=int(moved["exceeds_interval"].null_count()),
         runs_alone=[
@@ -351,51 +359,54 @@ def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) ->
 
 
 def _group(lines: pl.DataFrame) -> Group:
+    power, seconds = lines.select("power_ratio", "gain_in_two_hours_s").median().row(0)
     return Group(
         lines=lines.height,
         of_class={c: lines.filter(crew_class=c).height for c in ("H", "D")},
-        median_power_ratio=_median(lines["power_ratio"]),
-        median_seconds=_median(lines["gain_in_two_hours_s"]),
+        median_power_ratio=power,
+        median_seconds=seconds,
         most=_rows(lines.head(LARGEST)),
     )
 
 
-def _median(values: pl.Series) -> float | None:
-    median = values.median()
-    return median if isinstance(median, float) else None
+def parts_of(lines: pl.DataFrame) -> pl.DataFrame:
+    """The causes of lines, one a row: `LINE`, `cause`, `step` and `factor`; null where none is."""
+    causes = pl.col("causes").str.json_decode(pl.List(CAUSE))
+    return lines.select(*LINE, causes).explode("causes").unnest("causes")
 
 
-def largest_first(moved: pl.DataFrame) -> pl.DataFrame:
-    """Lines that changed, by the size of the change, whatever its sign."""
-    return moved.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
+def causes_of(lines: pl.DataFrame) -> list[Row]:
+    """What each cause, or step of a method, did; that with the most lines first.
 
-
-def causes_of(lines: pl.DataFrame) -> list[CauseSummary]:
-    """Per cause and step, the most lines first: the lines it moved, and its factors there."""
-    moved = [
-        {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
-        for text in lines["causes"]
-        for one in _moved(text)
-    ]
-    schema = {name: PART_SCHEMA[name] for name in ("cause", "step", "factor")}
-    summed = (
-        pl.DataFrame(moved, schema=schema)
+    Returns:
+        Rows of `cause`, `step` (where a method is the cause), `lines` (how many it moved), and of
+        its factors on Cw there `median_factor`, `lowest_factor`, `highest_factor`.
+    """
+    factor = pl.col("factor")
+    return (
+        parts_of(lines)
+        .filter((factor - 1.0).abs() > NO_FACTOR)
         .group_by("cause", "step", maintain_order=True)
         .agg(
             pl.len().alias("lines"),
-            pl.col("factor").median().alias("median_factor"),
-            pl.col("factor").min().alias("lowest_factor"),
-            pl.col("factor").max().alias("highest_factor"),
+            factor.median().alias("median_factor"),
+            factor.min().alias("lowest_factor"),
+            factor.max().alias("highest_factor"),
         )
         .sort("lines", "cause", "step", descending=[True, False, False])
+        .to_dicts()
     )
-    return [CauseSummary(**row) for row in summed.iter_rows(named=True)]
 
 
 def _rows(lines: pl.DataFrame) -> list[Row]:
-    return [row | {"causes": _moved(row["causes"])} for row in lines.to_dicts()]
+    """Lines with the causes that changed something."""
+    rows = lines.with_columns(pl.col("causes").str.json_decode(pl.List(CAUSE))).to_dicts()
+    return [row | {"causes": list(map(_named, filter(_moves, row["causes"])))} for row in rows]
 
 
-def _moved(causes: str) -> list[Row]:
-    """The causes that changed something."""
-    return [one for one in json.loads(causes) if abs(one["factor"] - 1.0) > NO_FACTOR]
+def _moves(cause: Row) -> bool:
+    return abs(float(cause["factor"]) - 1.0) > NO_FACTOR
+
+
+def _named(cause: Row) -> Row:
+    return {name: value for name, value in cause.items() if value is not None}

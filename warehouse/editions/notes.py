@@ -13,7 +13,6 @@ import jinja2
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
 from warehouse.editions.compare import (
-    CauseSummary,
     Comparison,
     DiffReport,
     Group,
@@ -181,11 +180,11 @@ def _group(group: Group, language: Language) -> str:
     )
 
 
-def _cause(cause: CauseSummary, language: Language) -> tuple[str, ...]:
-    factors = (cause.median_factor, cause.lowest_factor, cause.highest_factor)
+def _cause(cause: Row, language: Language) -> tuple[str, ...]:
+    factors = (cause[f"{which}_factor"] for which in ("median", "lowest", "highest"))
     return (
-        language.cause(cause.cause, cause.step),
-        str(cause.lines),
+        language.cause(cause["cause"], cause["step"]),
+        str(cause["lines"]),
         *(language.per_cent(factor) for factor in factors),
     )
 

@@ -3,14 +3,13 @@
 Joins the tables and `pipeline.register.changes`; computes nothing else. Words are in `dashboards`.
 """
 
-from collections import defaultdict
 from collections.abc import Callable
 from typing import Final
 
 import polars as pl
 
 from pipeline.method.definition import COMPLETE
-from pipeline.register.changes import register_changes, side_by_side, steps_of_lines
+from pipeline.register.changes import compare_lines, steps_of_lines
 from pipeline.register.register import LINE, draft_name
 from pipeline.register.replay import (
     RaceRules,
@@ -45,19 +44,15 @@ def line_changes(views: Views) -> pl.DataFrame:
     """Every pair of lines that is compared: `register_changes`, with both numbers beside it.
 
     Returns:
-        Columns of `register_changes` and `side_by_side`, the boat's `name` and `boat_type`, and of
-        both editions whether an interval holds the error of the log (`old_log_known`,
-        `new_log_known`); causes of a draft's change by step.
+        Columns of `compare_lines`, ranks as `old_speed_rank` and `new_speed_rank`, the boat's
+        `name` and `boat_type`, and of both editions whether an interval holds the error of the log
+        (`old_log_known`, `new_log_known`); causes of a draft's change by step.
     """
-    register = views.table("register")
-    changes = views.table("register_changes")
-    parts = [
-        _pair(views, register, changes.filter(from_edition=old, to_edition=new))
-        for old, new in changes.select(PAIR).unique().sort(PAIR).rows()
-    ]
-    if not parts:
-        parts = [_side_by_side(register.clear(), register.clear(), changes)]
-    return _named(views, pl.concat(parts))
+    kept = views.table("register_changes")
+    pairs = kept.select(PAIR).unique().sort(PAIR).rows()
+    nothing = views.table("register").clear()
+    lines = [_lines(views, old, new, kept) for old, new in pairs]
+    return _named(views, pl.concat([compare_lines(nothing, nothing), *lines]))
 
 
 def compared(views: Views, old: str, new: str) -> pl.DataFrame:
@@ -66,32 +61,41 @@ def compared(views: Views, old: str, new: str) -> pl.DataFrame:
     Raises:
         MissingKnowledgeError: there is no such edition or draft.
     """
+    known = views.table("register")["edition"].unique()
+    for edition in (old, new):
+        if edition not in known:
+            raise no_such_edition(edition, known)
+    return _named(views, _lines(views, old, new))
+
+
+def _lines(views: Views, old: str, new: str, kept: pl.DataFrame | None = None) -> pl.DataFrame:
+    """The changes between two editions with both sides, and causes by step.
+
+    Args:
+        kept: the table `register_changes`: an edition keeps the causes that it was published with.
+    """
     register = views.table("register")
     before, after = (register.filter(edition=edition) for edition in (old, new))
-    for edition, side in ((old, before), (new, after)):
-        if side.is_empty():
-            raise no_such_edition(edition, register["edition"].unique())
-    steps = steps_of_lines(after, _steps(views, before, after))
-    return _named(views, _side_by_side(before, after, register_changes(before, after, steps)))
+    if kept is None or new.startswith(DRAFT):
+        return compare_lines(before, after, steps_of_lines(after, _steps(views, before, after)))
+    lines = compare_lines(before, after)
+    changes = kept.filter(from_edition=old, to_edition=new)
+    sides = lines.drop(set(kept.columns) - {*LINE})
+    return changes.join(sides, on=LINE, how="left", maintain_order="left").select(lines.columns)
 
 
 def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
     """With the boat, as the new edition or else the old one names it, and `log_known` of both."""
-    names = views.register().select("edition", *LINE, "name", "boat_type")
-    key = [*PAIR, *LINE]
-    of_each = [
-        changes.select(key).join(
-            names.rename({"edition": side}), on=[side, *LINE], maintain_order="left"
-        )
-        for side in reversed(PAIR)
-    ]
-    once = pl.concat(of_each).unique(key, keep="first", maintain_order=True)
-    named = changes.join(once, on=key, how="left", maintain_order="left")
+    boats = views.register().select("edition", *LINE, "name", "boat_type")
     known = log_known(views)
-    for side, edition in (("old", "from_edition"), ("new", "to_edition")):
-        mine = known.rename({"edition": edition, "log_known": f"{side}_log_known"})
-        named = named.join(mine, on=edition, how="left", maintain_order="left")
-    return named
+    for side, edition in (("new", "to_edition"), ("old", "from_edition")):
+        names = {name: f"{side}_{name}" for name in ("name", "boat_type", "log_known")}
+        for frame, key in ((boats, LINE), (known, ())):
+            mine = frame.rename({"edition": edition} | names, strict=False)
+            changes = changes.join(mine, on=[edition, *key], how="left", maintain_order="left")
+        changes = changes.rename({f"{side}_rank": f"{side}_speed_rank"})
+    of_either = {n: pl.coalesce(f"new_{n}", f"old_{n}") for n in ("name", "boat_type")}
+    return changes.with_columns(**of_either).drop("^(old|new)_(name|boat_type)$")
 
 
 def log_known(views: Views) -> pl.DataFrame:
@@ -104,19 +108,6 @@ def log_known(views: Views) -> pl.DataFrame:
     )
     of_each = pl.concat([views.table("editions").select("interval", "edition"), drafts])
     return of_each.select("edition", log_known=pl.col("interval") == COMPLETE)
-
-
-def _pair(views: Views, register: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
-    """The changes between two editions with both sides."""
-    old, new = (register.filter(pl.col("edition") == changes[side][0]) for side in PAIR)
-    if changes["to_edition"][0].startswith(DRAFT):
-        changes = register_changes(old, new, steps_of_lines(new, _steps(views, old, new)))
-    return _side_by_side(old, new, changes)
-
-
-def _side_by_side(old: pl.DataFrame, new: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
-    sides = side_by_side(old, new).rename({f"{s}_rank": f"{s}_speed_rank" for s in ("old", "new")})
-    return changes.join(sides, on=LINE, how="left", maintain_order="left")
 
 
 def _steps(views: Views, old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
@@ -214,10 +205,9 @@ def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     Returns:
         Rows of `season_diagnosis` that a person should look at.
     """
-    faults: dict[tuple[str, int], list[Row]] = defaultdict(list)
-    for row in views.table("season_diagnosis").filter("alarm").to_dicts():
-        faults[row["method"], row["season"]].append(row)
-    return faults
+    alarms = views.table("season_diagnosis").filter("alarm")
+    by_season = alarms.partition_by("method", "season", as_dict=True)
+    return {(str(method), int(season)): f.to_dicts() for (method, season), f in by_season.items()}
 
 
 def _with_places(lines: pl.DataFrame) -> pl.DataFrame:
@@ -238,7 +228,7 @@ def _with_places(lines: pl.DataFrame) -> pl.DataFrame:
 
 def own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
     """Results of races under two editions, with how many in race and class have a place in both."""
-    races = views.races().filter(from_edition=old or "", to_edition=edition)
+    races = views.ask("races").filter(from_edition=old or "", to_edition=edition)
     size = pl.col("new_rank").count().over("race", "race_date", "crew_class").alias("race_size")
     return races.with_columns(size)
 

@@ -5,7 +5,6 @@ collected, in `warehouse.queries.audit_types` also judged. How it is said in wor
 `cli.audit_text`.
 """
 
-from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -15,14 +14,7 @@ import duckdb
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.row import Row
-from warehouse.queries.audit_types import (
-    TYPE,
-    Audit,
-    TypeFacts,
-    TypesAudit,
-    type_facts,
-    types_audit,
-)
+from warehouse.queries.audit_types import TYPE, Audit, TypesAudit, type_facts, types_audit
 from warehouse.queries.chosen_tows import NEWEST, choose
 from warehouse.store.boats import boats_named, plain, the_boat
 from warehouse.store.database import is_simulated, open_results, rows
@@ -40,7 +32,7 @@ class BoatAudit(Audit):
         boat: its row of `boats`.
         tows: rows of `tows` with `curves` (rows of that table with `interval`, `run_points` and
             `budget`) and `steps`, rows of `correction_steps`.
-        type_size: the facts of its type.
+        type_size: how many boats and tows its type has, and how they differ.
         in_type: rows of `type_outliers`.
         predicted: rows of `predicted_cw`.
         options: rows of `option_effects`.
@@ -53,7 +45,7 @@ class BoatAudit(Audit):
     boat: Row
     tows: list[Row]
     in_type: list[Row]
-    type_size: TypeFacts
+    type_size: Row
     pooled: list[Row]
     slow_tows: list[Row]
     repeat_pairs: list[Row]
@@ -134,96 +126,73 @@ def _no_such_type(
 
 _TYPES = f"SELECT {TYPE} AS boat_type, count(*) AS n FROM boats AS b GROUP BY ALL ORDER BY ALL"  # noqa: S608
 
-# A boat ------------------------------------------------------------------------------------------
+# A boat
 
 
 def _boat_audit(
     db: duckdb.DuckDBPyConnection, boat: Row, methods: list[str], tows: str
 ) -> BoatAudit:
     fsn_no = boat["fsn_no"]
+
+    def of_boat(table: str) -> list[Row]:
+        return rows(db, _OF_BOAT.format(table), fsn_no, methods)
+
     return BoatAudit(
         simulated=is_simulated(db),
         statistics_over=tows,
         methods=methods,
         boat=boat,
-        tows=_tows(db, fsn_no, methods),
-        in_type=_of_boat(db, "type_outliers", fsn_no, methods),
+        tows=rows(db, _TOWS, fsn_no, methods),
+        in_type=of_boat("type_outliers"),
         type_size=type_facts(db, boat["boat_type"] or UNKNOWN_TYPE),
-        pooled=_of_boat(db, "pooled_curves", fsn_no, methods),
-        slow_tows=_of_boat(db, "slow_tows", fsn_no, methods),
-        repeat_pairs=_of_boat(db, "repeat_pairs", fsn_no, methods),
-        predicted=_of_boat(db, "predicted_cw", fsn_no, methods),
+        pooled=of_boat("pooled_curves"),
+        slow_tows=of_boat("slow_tows"),
+        repeat_pairs=of_boat("repeat_pairs"),
+        predicted=of_boat("predicted_cw"),
         options=rows(db, _OPTIONS, fsn_no, methods),
-        register=_of_boat(db, "register", fsn_no, methods),
+        register=of_boat("register"),
         set_aside=rows(db, _SET_ASIDE, fsn_no, boat["name"]),
     )
 
 
-def _of_boat(
-    db: duckdb.DuckDBPyConnection, table: str, fsn_no: str, methods: list[str]
-) -> list[Row]:
-    query = f"SELECT * FROM {table} WHERE fsn_no = ? AND list_contains(?, method) ORDER BY ALL"  # noqa: S608
-    return rows(db, query, fsn_no, methods)
+_OF_BOAT: Final = "SELECT * FROM {} WHERE fsn_no = $1 AND list_contains($2, method) ORDER BY ALL"
 
+_TOWS: Final = """
+WITH own AS (SELECT * FROM tows WHERE fsn_no = $1),
+points AS (
+    SELECT method, tow_id, list(p ORDER BY run) AS run_points
+    FROM run_points AS p SEMI JOIN own USING (tow_id) GROUP BY ALL
+), budgets AS (
+    SELECT method, tow_id, list(
+        {component: component, shared: shared, u_ratio: u_ratio, dof: dof}
+        ORDER BY u_ratio DESC, component
+    ) AS budget
+    FROM uncertainty_budget SEMI JOIN own USING (tow_id) GROUP BY ALL
+), of_curve AS (
+    SELECT c.*, m.interval, coalesce(run_points, []) AS run_points, coalesce(budget, []) AS budget
+    FROM curves AS c SEMI JOIN own USING (tow_id) JOIN methods AS m USING (method)
+    LEFT JOIN points USING (method, tow_id) LEFT JOIN budgets USING (method, tow_id)
+    WHERE list_contains($2, method)
+), curve_lists AS (
+    SELECT tow_id, list(c ORDER BY method) AS curves FROM of_curve AS c GROUP BY ALL
+), step_lists AS (
+    SELECT tow_id, list(s ORDER BY from_method, to_method, position) AS steps
+    FROM correction_steps AS s SEMI JOIN own USING (tow_id)
+    WHERE list_contains($2, from_method) AND list_contains($2, to_method) GROUP BY ALL
+)
+SELECT own.*, coalesce(curves, []) AS curves, coalesce(steps, []) AS steps
+FROM own LEFT JOIN curve_lists USING (tow_id) LEFT JOIN step_lists USING (tow_id)
+ORDER BY tow_date, tow_id
+"""
+"""A boat's tows with their curves, the runs and uncertainty of each, and what each step did."""
 
-def _tows(db: duckdb.DuckDBPyConnection, fsn_no: str, methods: list[str]) -> list[Row]:
-    """A boat's tows with their curves, the runs and uncertainty of each, and what each step did."""
-    curves = rows(db, _CURVES, fsn_no, methods)
-    run_points = _by(rows(db, _RUN_POINTS, fsn_no, methods), "tow_id", "method")
-    budgets = _by(rows(db, _BUDGET, fsn_no, methods), "tow_id", "method")
-    for curve in curves:
-        own = curve["tow_id"], curve["method"]
-        curve["run_points"] = run_points[own]
-        curve["budget"] = [{name: row[name] for name in _BUDGET_COLUMNS} for row in budgets[own]]
-    curves_of = _by(curves, "tow_id")
-    steps_of = _by(rows(db, _STEPS, fsn_no, methods, methods), "tow_id")
-    return [
-        tow | {"curves": curves_of[tow["tow_id"],], "steps": steps_of[tow["tow_id"],]}
-        for tow in rows(db, _TOWS, fsn_no)
-    ]
-
-
-def _by(listed: list[Row], *names: str) -> defaultdict[tuple[object, ...], list[Row]]:
-    """Rows by the values of some columns, in their order."""
-    grouped = defaultdict(list)
-    for row in listed:
-        grouped[tuple(row[name] for name in names)].append(row)
-    return grouped
-
-
-_TOWS = "SELECT * FROM tows WHERE fsn_no = ? ORDER BY tow_date, tow_id"
-
-_OF_BOAT = "tow_id IN (SELECT tow_id FROM tows WHERE fsn_no = ?)"
-
-_CURVES = f"""
-SELECT c.*, m.interval FROM curves AS c JOIN methods AS m USING (method)
-WHERE {_OF_BOAT} AND list_contains(?, method) ORDER BY method
-"""  # noqa: S608
-
-_RUN_POINTS = f"""
-SELECT * FROM run_points WHERE {_OF_BOAT} AND list_contains(?, method) ORDER BY run
-"""  # noqa: S608
-
-_BUDGET = f"""
-SELECT * FROM uncertainty_budget WHERE {_OF_BOAT} AND list_contains(?, method)
-ORDER BY u_ratio DESC, component
-"""  # noqa: S608
-
-_BUDGET_COLUMNS: Final = ("component", "shared", "u_ratio", "dof")
-
-_STEPS = f"""
-SELECT * FROM correction_steps
-WHERE {_OF_BOAT} AND list_contains(?, from_method) AND list_contains(?, to_method)
-ORDER BY from_method, to_method, position
-"""  # noqa: S608
-
-_OPTIONS = """
+_OPTIONS: Final = """
 SELECT o.* FROM option_effects AS o JOIN tows AS t USING (tow_id)
 WHERE t.fsn_no = ? AND list_contains(?, method) AND cw_effect_ratio IS NOT NULL
 ORDER BY tow_id, method, study, abs(ln(cw_effect_ratio)) DESC, option
 """
 
-_SET_ASIDE = r"""
+_SET_ASIDE: Final = r"""
 SELECT * FROM quarantine
 WHERE regexp_matches(message, '\b' || regexp_escape(?) || '\b')
    OR starts_with(lower(parse_filename(path)), lower(?) || ' ')

@@ -9,12 +9,12 @@ from math import hypot, log
 from typing import Final
 
 import duckdb
-import scipy
 
 from pipeline.consistency.eras import ERAS
 from pipeline.consistency.homogeneity import LEVEL
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.tables.row import Row
+from warehouse.queries.chosen_tows import ALL, NEWEST
 from warehouse.store.database import is_simulated, rows
 
 ENOUGH_POWER: Final = 0.8
@@ -40,34 +40,17 @@ class Audit:
 
 
 @dataclass(frozen=True)
-class TypeFacts:
-    """How many boats and tows there are of a type, and how they differ."""
-
-    boat_type: str
-    n_boats: int
-    n_towed: int
-    n_tows: int
-    first_season: int | None
-    last_season: int | None
-    lightest_kg: float | None
-    heaviest_kg: float | None
-    slowest_m_s: float | None
-    fastest_m_s: float | None
-
-
-@dataclass(frozen=True)
 class TypeStatistics:
     """All statistics of a type under one method.
 
     Attributes:
-        lines: rows of `type_consistency` with `follows`.
+        lines: rows of `type_lines` with `follows`.
         bends: the row of `type_homogeneity` with `equal_possible`, or `n` and `reason`.
         speed_trend: the row of that table with `follows`, or `n` and `reason`.
         shared: per pooling, what sharing a bend does to B and Cw.
         repeats: how repeat pairs spread, how many have an E_n, and of how many it is above 1.
         eras: a row of `era_shifts` each, or `era`, `n`, `apart` and `reason`.
         prediction: how far `predicted_cw` is off.
-        cw_closest: whether Cw at one speed spreads less about the line on weight than A and than B.
         hull_speed, tows_outside, outside, slow_tows: rows of their tables.
     """
 
@@ -82,13 +65,22 @@ class TypeStatistics:
     repeats: Row
     eras: list[Row]
     prediction: Row
-    cw_closest: bool | None
 
 
 @dataclass(frozen=True)
-class OneType(TypeFacts):
-    """A type, with its statistics under each method."""
+class OneType:
+    """How many boats and tows there are of a type, how they differ, its statistics by method."""
 
+    boat_type: str
+    n_boats: int
+    n_towed: int
+    n_tows: int
+    first_season: int | None
+    last_season: int | None
+    lightest_kg: float | None
+    heaviest_kg: float | None
+    slowest_m_s: float | None
+    fastest_m_s: float | None
     under: dict[str, TypeStatistics]
 
 
@@ -113,7 +105,7 @@ def types_audit(
 ) -> TypesAudit:
     """Facts and figures of the types under each method, what holds for all, and what differs."""
     audited = [
-        OneType(**vars(type_facts(db, name)), under={m: _type_under(db, name, m) for m in methods})
+        OneType(**type_facts(db, name), under={m: _type_under(db, name, m, tows) for m in methods})
         for name in types
     ]
     return TypesAudit(
@@ -126,68 +118,33 @@ def types_audit(
     )
 
 
-def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> TypeFacts:
-    """How many boats and tows there are of a type, and how they differ."""
-    return TypeFacts(**rows(db, _FACTS, boat_type)[0])
+def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> Row:
+    """How many boats and tows there are of a type, and how they differ: as in `OneType`."""
+    return rows(db, _FACTS, boat_type)[0]
 
 
-def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> TypeStatistics:
-    """All statistics of a type under one method."""
-    own = (method, boat_type)
+def _type_under(
+    db: duckdb.DuckDBPyConnection, boat_type: str, method: str, tows: str
+) -> TypeStatistics:
+    """All statistics of a type under one method; lines are of all tows, or of the newest chosen."""
+    found = {name: rows(db, query, method, boat_type) for name, query in _STATISTICS.items()}
     reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
-    absent = [{"n": 0, "reason": reason, "equal_possible": None, "follows": None}]
-    eras = {row["era"]: row for row in rows(db, _ERAS, *own)}
+    absent = {"n": 0, "reason": reason, "equal_possible": None, "follows": None}
     no_era = {"n": 0, "apart": None, "reason": "few_pairs"}
-    lines = rows(db, _LINES, *own)
-    return TypeStatistics(
-        lines=lines,
-        hull_speed=rows(db, _HULL_SPEED, *own),
-        tows_outside=_named(db, "compared_tows", "outside", "abs(deviation_sd) DESC", *own),
-        bends=(rows(db, _BENDS, *own) or absent)[0],
-        speed_trend=(rows(db, _TREND, *own) or absent)[0],
-        shared=rows(db, _SHARED, *own),
-        outside=_named(db, "type_outliers", "outside", "abs(deviation_sd) DESC", *own),
-        slow_tows=_named(db, "slow_tows", "slow", "power_w", *own),
-        repeats=rows(db, _REPEATS, *own)[0],
-        eras=[eras.get(era.name, {"era": era.name} | no_era) for era in ERAS[:-1]],
-        prediction=rows(db, _PREDICTION, *own)[0],
-        cw_closest=cw_closest(lines),
+    eras = {row["era"]: row for row in found.pop("eras")}
+    bends, trend, repeats, prediction = (
+        (found.pop(name) or [absent])[0]
+        for name in ("bends", "speed_trend", "repeats", "prediction")
     )
-
-
-def _named(
-    db: duckdb.DuckDBPyConnection, table: str, which: str, order: str, method: str, boat_type: str
-) -> list[Row]:
-    """Rows of a method and type for which a column says yes, with the boat's name."""
-    query = f"""
-        SELECT t.*, b.name FROM {table} AS t LEFT JOIN boats AS b USING (fsn_no)
-        WHERE t.method = ? AND t.boat_type = ? AND t.{which} ORDER BY {order}, tow_id"""  # noqa: S608
-    return rows(db, query, method, boat_type)
-
-
-def cw_closest(lines: list[Row]) -> bool | None:
-    """Whether Cw at one speed spreads less about the line on weight than A and than B.
-
-    None where the variances differ no more than an F test at 5 % lets them, or one is not known.
-    The three come from the same runs, so the test is on the safe side.
-    """
-    on_weight = {
-        line["quantity"]: (line["n_boats"] - 2, line["residual_sd_ratio"] ** 2)
-        for line in lines
-        if line["explaining"] == "weight_kg" and not line["reason"]
-    }
-    if not {"cw_standard_kg_m", "a_kg_m", "b_m_s"} <= on_weight.keys():
-        return None
-    cw, *others = (on_weight[name] for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s"))
-    if any(_larger(cw, other) for other in others):
-        return False
-    return True if all(_larger(other, cw) for other in others) else None
-
-
-def _larger(one: tuple[int, float], other: tuple[int, float]) -> bool:
-    """Whether a variance, with its degrees of freedom, is larger than another at 5 %."""
-    dof = max(one[0], 1), max(other[0], 1)
-    return one[1] > float(scipy.special.fdtri(*dof, 1.0 - LEVEL)) * other[1]
+    return TypeStatistics(
+        lines=rows(db, _LINES, method, boat_type, ALL if tows == ALL else NEWEST),
+        bends=bends,
+        speed_trend=trend,
+        repeats=repeats,
+        prediction=prediction,
+        eras=[eras.get(era.name, {"era": era.name} | no_era) for era in ERAS[:-1]],
+        **found,
+    )
 
 
 def differences(first: TypeStatistics, *others: TypeStatistics) -> list[str]:
@@ -196,18 +153,15 @@ def differences(first: TypeStatistics, *others: TypeStatistics) -> list[str]:
     One that follows weight and one in which no trend is seen do not differ by that alone.
 
     Returns:
-        `quantity explaining` of lines, `speed_trend`, the names of eras, `bends`, `closest`; of one
-        type, nothing.
+        `quantity explaining` of lines, `speed_trend`, the names of eras, `bends`; of one type,
+        nothing.
     """
     found = []
     for second in others:
         own, other = _intervals(first), _intervals(second)
         found += [name for name in own if name in other and _apart(own[name], other[name])]
-        verdicts = {
-            "bends": {one.bends["equal_possible"] for one in (first, second)},
-            "closest": {one.cw_closest for one in (first, second)},
-        }
-        found += [name for name, both in verdicts.items() if both == {True, False}]
+        if {first.bends["equal_possible"], second.bends["equal_possible"]} == {True, False}:
+            found.append("bends")
     return found
 
 
@@ -246,7 +200,8 @@ _FOLLOWS = "CASE WHEN slope IS NOT NULL THEN slope_lo > 0 OR slope_hi < 0 END AS
 """Whether the interval of a slope leaves out zero."""
 
 _LINES = f"""
-SELECT *, {_FOLLOWS} FROM type_consistency WHERE method = ? AND boat_type = ?
+SELECT * EXCLUDE tows, {_FOLLOWS} FROM type_lines
+WHERE method = ? AND boat_type = ? AND tows = ?
 ORDER BY quantity, explaining, within
 """  # noqa: S608
 
@@ -258,8 +213,6 @@ SELECT *, CASE WHEN reason != '' THEN NULL WHEN p_value < {LEVEL} THEN false
 FROM type_homogeneity WHERE method = ? AND boat_type = ?
 """  # noqa: S608
 """With a verdict: None where the test could not have seen a difference."""
-
-_HULL_SPEED = "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'"
 
 _SHARED = """
 SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
@@ -279,8 +232,6 @@ SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
 FROM repeat_pairs AS p JOIN boats AS b USING (fsn_no) WHERE p.method = ? AND {TYPE} = ?
 """  # noqa: S608
 
-_ERAS = "SELECT * FROM era_shifts WHERE method = ? AND boat_type = ?"
-
 _PREDICTION = """
 SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
        sqrt(avg(ln_ratio * ln_ratio)) AS rmse_ratio, avg(ln_ratio) AS mean_ratio,
@@ -288,6 +239,26 @@ SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
        count(*) FILTER (WHERE disagrees) AS n_disagree
 FROM predicted_cw WHERE method = ? AND boat_type = ?
 """
+
+_NAMED = """
+SELECT t.*, b.name FROM {} AS t LEFT JOIN boats AS b USING (fsn_no)
+WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
+"""
+"""Rows of tows for which a column says yes, with the boat's name."""
+
+_STATISTICS: Final = {
+    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'",
+    "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
+    "bends": _BENDS,
+    "speed_trend": _TREND,
+    "shared": _SHARED,
+    "outside": _NAMED.format("type_outliers", "outside", "abs(deviation_sd) DESC"),
+    "slow_tows": _NAMED.format("slow_tows", "slow", "power_w"),
+    "repeats": _REPEATS,
+    "eras": "SELECT * FROM era_shifts WHERE method = ? AND boat_type = ?",
+    "prediction": _PREDICTION,
+}
+"""What is asked of a method and type, by the part of `TypeStatistics`."""
 
 _REPRODUCIBILITY = """
 SELECT * FROM reproducibility WHERE list_contains(?, method) ORDER BY method, scope

@@ -15,8 +15,8 @@ import numpy as np
 import polars as pl
 
 from pipeline.consistency.eras import season_ranges
-from pipeline.consistency.lines import tow_outliers
 from pipeline.consistency.observed import Observed, newest, observe, of_trusted
+from pipeline.consistency.outliers import tow_outliers
 from pipeline.consistency.tables import line_tables, type_tables
 from pipeline.errors import MissingKnowledgeError
 
@@ -44,7 +44,7 @@ def choose(db: duckdb.DuckDBPyConnection, tows: str, methods: Sequence[str]) -> 
         return
     observed = chosen(_observed(db, methods), tows)
     if tows == ALL:
-        made = _over_all(db, observed)
+        made = {"type_outliers": tow_outliers(observed)}
     elif observed.table.is_empty():
         raise MissingKnowledgeError("no tow of {} has a curve that can be compared", tows)
     else:
@@ -119,11 +119,6 @@ def _observed(db: duckdb.DuckDBPyConnection, methods: Sequence[str]) -> Observed
         for frame in (curves, run_points)
     ]
     return observe(own[0], tows, boats, own[1])
-
-
-def _over_all(db: duckdb.DuckDBPyConnection, observed: Observed) -> dict[str, pl.DataFrame]:
-    lines = db.sql("SELECT * EXCLUDE tows FROM type_lines WHERE tows = 'all'").pl()
-    return {"type_consistency": lines, "type_outliers": tow_outliers(observed)}
 
 
 def _of_seasons(db: duckdb.DuckDBPyConnection, seasons: list[int]) -> dict[str, pl.DataFrame]:

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import polars as pl
 
 from pipeline.method.definition import Method
+from pipeline.register.changes import compare_lines, largest_first
 from pipeline.register.register import LINE
 from pipeline.studies.ladder import START, ladder
 from pipeline.tables.row import Row
 from warehouse.editions.compare import NO_STEPS
 from warehouse.queries.history import Draft, History
-from warehouse.queries.scenario import largest_first
 from warehouse.store.editions import Edition
 from warehouse.store.store import Store
 
@@ -68,7 +68,7 @@ def against_print(store: Store, method: Method, printed: Edition) -> RebaseRepor
 
 def _report(new: Draft, old: pl.DataFrame, against: str, rungs: pl.DataFrame) -> RebaseReport:
     history, method = new.history, new.method
-    lines = largest_first(old, new.register)
+    lines = largest_first(compare_lines(old, new.register).drop("causes"))
     most = (
         lines.drop_nulls("cw_ratio")
         .head(MOST_AFFECTED)

@@ -15,8 +15,7 @@ from pipeline import curve
 from pipeline.consistency.compared import beside_their_type
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.curve import VALID_RATIO, s_of_height
-from pipeline.register.changes import register_changes, side_by_side
-from pipeline.register.register import LINE
+from pipeline.register.changes import compare_lines, largest_first
 from warehouse.queries.chosen_tows import ALL, chosen
 from warehouse.queries.history import Draft
 
@@ -33,20 +32,6 @@ CURVE_COLUMNS: Final = (
 )
 
 
-def largest_first(before: pl.DataFrame, after: pl.DataFrame) -> pl.DataFrame:
-    """Every line of two registers: `register_changes` and `side_by_side`, most changed on top."""
-    return (
-        register_changes(before, after)
-        .drop("causes")
-        .join(side_by_side(before, after), on=LINE, maintain_order="left")
-        .sort(
-            pl.col("cw_ratio").log().abs().fill_null(float("inf")),
-            *LINE,
-            descending=[True, *(False for _ in LINE)],
-        )
-    )
-
-
 @dataclass(frozen=True)
 class Scenario:
     """Two drafts of one history, compared."""
@@ -59,11 +44,13 @@ class Scenario:
         """Every line of either register, with name and type; the largest change first.
 
         Returns:
-            Columns of `register_changes` and `side_by_side`, with `name` and `boat_type`. A line
+            Columns of `compare_lines` without causes, with `name` and `boat_type`. A line
             that appears or disappears comes before all that change.
         """
-        lines = largest_first(self.before.register, self.after.register)
-        return lines.join(self._names, on="fsn_no", how="left", maintain_order="left")
+        lines = compare_lines(self.before.register, self.after.register).drop("causes")
+        return largest_first(lines).join(
+            self._names, on="fsn_no", how="left", maintain_order="left"
+        )
 
     def summary(self) -> dict[str, object]:
         """How many lines change, who gains and loses, and by how much."""

@@ -1,0 +1,97 @@
+"""Statements: what there is to say of the results, each computed and worded once.
+
+A statement is made from tables by the module of its subject, and says the same on the site, in the
+terminal, in documents, in mail and in `--json`.
+"""
+
+import datetime as dt
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from dashboards.speech import Headline, Speech
+from pipeline.messages import Sentence
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number as it is shown, with its 95 % interval where that is known.
+
+    Attributes:
+        value: in `unit`.
+        digits: decimals that are shown.
+        sign: "+" where a plus is to be shown.
+    """
+
+    value: float
+    digits: int = 2
+    unit: str = "kg/m"
+    low: float | None = None
+    high: float | None = None
+    sign: str = ""
+
+    def __call__(self, speech: Speech) -> str:
+        """The number without its unit, which is in the wording."""
+        return speech.number(self.value, self.digits, self.sign)
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change from old to new, as a ratio; it is shown in per cent."""
+
+    ratio: float
+
+    def __call__(self, speech: Speech) -> str:
+        """The change in per cent, with its sign."""
+        return speech.per_cent(self.ratio)
+
+
+@dataclass(frozen=True)
+class EditionName:
+    """An edition, or a draft by its method."""
+
+    name: str
+
+    def __call__(self, speech: Speech) -> str:
+        """The edition as people call it."""
+        return speech.edition(self.name)
+
+
+@dataclass(frozen=True)
+class Statement:
+    """Something that tables say.
+
+    Attributes:
+        kind: its code.
+        wording: the sentence, with the names of its values in braces.
+        values: numbers, names, days, and other statements.
+        verdict: code of a judgement in it, such as `beyond`.
+        rests_on: the tables it was computed from.
+    """
+
+    kind: str
+    wording: Sentence
+    values: Mapping[str, "Value"] = field(default_factory=dict)
+    verdict: str = ""
+    rests_on: Sequence[str] = ()
+
+    def __call__(self, speech: Speech) -> str:
+        """The sentence in the language of a page."""
+        values = {name: _spoken(value, speech) for name, value in self.values.items()}
+        return speech.say(self.wording, **values)
+
+
+Value: TypeAlias = (
+    Number | Change | EditionName | Statement | Sentence | str | int | dt.date | Sequence["Value"]
+)
+
+
+def _spoken(value: Value, speech: Speech) -> object:
+    if isinstance(value, list):
+        return "; ".join(str(_spoken(one, speech)) for one in value)
+    return value(speech) if callable(value) else value
+
+
+def together(statements: Sequence[Statement]) -> Headline:
+    """Statements as one paragraph; those that go on a sentence begin with their own mark."""
+    return lambda speech: "".join(statement(speech) for statement in statements)

@@ -1,0 +1,407 @@
+"""What an owner asks of a boat: what changes, why, how certainly, and what follows."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import exp
+from typing import Final
+
+from markupsafe import Markup
+
+from dashboards import labels
+from dashboards.pictures import curve_picture, waterfall_picture
+from dashboards.speech import Speech
+from dashboards.statements import Change, EditionName, Number, Statement, Value
+from dashboards.statements.edition import NEGLIGIBLE, causes_of_line
+from dashboards.statements.race import place_in_race
+from pipeline.messages import say
+from pipeline.tables.row import Row
+from warehouse.queries.answers import answers, own_races, season_faults
+from warehouse.queries.documents import Curve, curve_of
+from warehouse.queries.views import DRAFT, Views
+
+LEAST_RANKED: Final = 2
+"""A place among fewer says nothing."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What there is to say of a boat and crew under an edition.
+
+    Attributes:
+        line: a row of `warehouse.queries.answers.answers`.
+        races: rows of `own_races` of this boat and crew.
+        curve: its curve, as `warehouse.queries.documents.curve_of` gives it.
+        faults: rows of `season_diagnosis` of its season that a person should look at.
+    """
+
+    line: Row
+    races: Sequence[Row]
+    curve: Curve
+    faults: Sequence[Row] = ()
+
+    @property
+    def statements(self) -> list[Statement]:
+        """The number first, or why there is none; then in order of what people ask."""
+        return [headline(self.line), *_below(self)]
+
+    def crew(self, speech: Speech) -> str:
+        """Which crew it is about."""
+        return crew_name(self.line, speech)
+
+    def waterfall(self, speech: Speech) -> Markup:
+        """What each cause did to the number; nothing where it did not change."""
+        line = self.line
+        if line["cw_ratio"] is None or line["change"] == "same":
+            return Markup()
+        old = line["old_cw_kg_m"]
+        caption = f"{speech.say('From the old number to the new, Cw in kg/m')}: {self._of(speech)}"
+        causes = [(speech.say(name), factor) for name, factor in causes_of_line(line)]
+        return waterfall_picture((old, old * line["cw_ratio"]), causes, speech, caption)
+
+    def picture(self, speech: Speech) -> Markup:
+        """Its curve; nothing where it has none."""
+        caption = f"{speech.say('Resistance curve')}: {self._of(speech)}"
+        return curve_picture(self.curve, self.line, speech, caption)
+
+    def _of(self, speech: Speech) -> str:
+        return f"{self.line['name']} {self.crew(speech)}"
+
+
+def answers_by_boat(views: Views, edition: str, only: str | None = None) -> dict[str, list[Answer]]:
+    """The answers about crews in an edition or draft, by boat.
+
+    Args:
+        only: the number of the one boat that is asked for; all when left out.
+    """
+    lines = answers(views, edition)
+    races = own_races(views, next(iter(lines["from_edition"].drop_nulls()), None), edition)
+    crew = ["fsn_no", "rowers", "crew_class"]
+    by_crew = races.partition_by(crew, as_dict=True, maintain_order=True)
+    faults = season_faults(views) if edition.startswith(DRAFT) else {}  # an edition holds none
+    by_boat: dict[str, list[Answer]] = defaultdict(list)
+    for line in (lines if only is None else lines.filter(fsn_no=only)).to_dicts():
+        own = by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts()
+        of_season = faults.get((line["method"], line["season"]), ())
+        by_boat[line["fsn_no"]].append(Answer(line, own, curve_of(line), of_season))
+    return by_boat
+
+
+def crew_name(line: Row, speech: Speech) -> str:
+    """How many rowers of which class: 8 rowers, women."""
+    return speech.say(
+        "{rowers} rowers, {people}", rowers=line["rowers"], people=labels.crew(line["crew_class"])
+    )
+
+
+def headline(line: Row) -> Statement:
+    """The number of a line and by how much it changes, or why there is none."""
+    rests_on = ("register", "register_changes")
+    if line["cw_kg_m"] is None:
+        status = labels.code(line["status"])
+        return Statement("no_number", say("No valid number: {status}."), {"status": status})
+    new = Number(line["cw_kg_m"], low=line["cw_lo_kg_m"], high=line["cw_hi_kg_m"])
+    if line["cw_ratio"] is None:
+        return Statement("cw", say("Cw is {new} kg/m."), {"new": new}, rests_on=rests_on)
+    ratio = line["cw_kg_m"] / line["old_cw_kg_m"]  # of the two that are shown, each at its speed
+    if abs(ratio - 1) <= NEGLIGIBLE:
+        wording = say("Cw stays {new} kg/m.")
+        return Statement("cw", wording, {"new": new}, "same", rests_on)
+    wording = (
+        say("Cw goes from {old} to {new} kg/m: {by} % lower.")
+        if ratio < 1
+        else say("Cw goes from {old} to {new} kg/m: {by} % higher.")
+    )
+    old, by = Number(line["old_cw_kg_m"]), Number(100 * abs(ratio - 1), 1, "%")
+    verdict = "lower" if ratio < 1 else "higher"
+    return Statement("cw", wording, {"new": new, "old": old, "by": by}, verdict, rests_on)
+
+
+def _below(answer: Answer) -> Iterator[Statement]:
+    line = answer.line
+    if line["cw_kg_m"] is not None:
+        yield from _change(line)
+        yield from _certainty(line)
+        yield from _best(line)
+        yield from _instruments(answer)
+        yield from _place(line)
+    yield from map(place_in_race, answer.races)
+    yield from _validity(line)
+    yield _objection(line)
+
+
+def _change(line: Row) -> Iterator[Statement]:
+    """Compared with what, why, and what it is worth in a race."""
+    if line["cw_ratio"] is None:
+        return
+    yield Statement(
+        "compared",
+        say("Compared: \u201c{new}\u201d with \u201c{old}\u201d."),
+        {"new": EditionName(line["edition"]), "old": EditionName(line["from_edition"])},
+    )
+    if line["old_declared_speed_m_s"] != line["declared_speed_m_s"]:
+        yield Statement(
+            "declared_speed",
+            say(
+                "The declared speed is another one: {new} instead of {old} m/s. At the old "
+                "speed Cw changes by {by}; what follows is about that."
+            ),
+            {
+                "old": Number(line["old_declared_speed_m_s"], unit="m/s"),
+                "new": Number(line["declared_speed_m_s"], unit="m/s"),
+                "by": Change(line["cw_ratio"]),
+            },
+        )
+    if line["change"] == "same":
+        return
+    each: list[Value] = [
+        Statement("cause", say("{name} {by}"), {"name": name, "by": Change(factor)})
+        for name, factor in causes_of_line(line)
+    ]
+    yield Statement(
+        "causes", say("Why: {causes}."), {"causes": each}, rests_on=("register_changes",)
+    )
+    if line["gain_in_two_hours_s"] is not None:
+        yield two_hours(line["gain_in_two_hours_s"])
+
+
+def two_hours(seconds: float) -> Statement:
+    """What a change is worth in a race of two hours [s]."""
+    wording = (
+        say("For the same power the crew may take {seconds} s longer over a race of two hours.")
+        if seconds > 0
+        else say("For the same power the crew has to row a race of two hours {seconds} s faster.")
+    )
+    values = {"seconds": Number(abs(seconds), 0, "s")}
+    return Statement("two_hours", wording, values, rests_on=("register_changes",))
+
+
+def _certainty(line: Row) -> Iterator[Statement]:
+    """The interval, what it leaves out, and whether the change exceeds it."""
+    if line["cw_lo_kg_m"] is not None and line["cw_hi_kg_m"] is not None:
+        yield interval(line, line["new_log_known"])
+    if line["change"] != "changed":
+        return
+    exceeds, of_one_tow = line["exceeds_interval"], line["old_tow_id"] == line["tow_id"]
+    verdict = {True: "beyond", False: "within", None: "not known"}[exceeds]
+    yield Statement("exceeds", VERDICTS[exceeds][of_one_tow], verdict=verdict)
+    if exceeds is not None and not line["old_log_known"]:
+        yield Statement(
+            "old_log_unknown",
+            say(
+                "The uncertainty of the old number leaves out the error of the log: it is too "
+                "small."
+            ),
+        )
+
+
+def interval(line: Row, log_known: bool) -> Statement:
+    """The interval of Cw, and whether the error of the log is in it."""
+    wording = (
+        say("With 95 % confidence Cw lies between {low} and {high} kg/m.")
+        if log_known
+        else say(
+            "The scatter of the runs alone leaves Cw between {low} and {high} kg/m; the "
+            "error of the log comes on top of that and is not known under this method."
+        )
+    )
+    ends = {"low": Number(line["cw_lo_kg_m"]), "high": Number(line["cw_hi_kg_m"])}
+    verdict = "complete" if log_known else "runs_alone"
+    return Statement("interval", wording, ends, verdict, ("curves",))
+
+
+UNKNOWN_VERDICT: Final = say(
+    "Whether the change is larger than the uncertainty cannot be told: that of one "
+    "of the numbers is not known."
+)
+VERDICTS: Final = {
+    True: (
+        say("The change is larger than the uncertainty of both numbers together."),
+        say(
+            "Both numbers come from the same tow; the new one lies outside the interval of the old."
+        ),
+    ),
+    False: (
+        say("The change lies within the uncertainty of both numbers together."),
+        say(
+            "Both numbers come from the same tow; the new one lies within the interval of the old."
+        ),
+    ),
+    None: (UNKNOWN_VERDICT, UNKNOWN_VERDICT),
+}
+"""Whether a change exceeds the uncertainty: of two tows, and of one."""
+
+
+def _best(line: Row) -> Iterator[Statement]:
+    """What the whole archive makes of the tow, and of its difference from the last one."""
+    if line["cw_best_kg_m"] is None or line["own_weight"] is None:
+        return
+    low, high = line["cw_best_lo_kg_m"], line["cw_best_hi_kg_m"]
+    yield Statement(
+        "best_estimate",
+        say(
+            "The best estimate from all tows of the archive is {best} kg/m ({low} to "
+            "{high}); {share} % of it rests on this tow."
+        ),
+        {
+            "best": Number(line["cw_best_kg_m"], low=low, high=high),
+            "low": Number(low),
+            "high": Number(high),
+            "share": Number(100 * line["own_weight"], 0, "%"),
+        },
+        rests_on=("curves", "best_estimate_weights"),
+    )
+    if line["best_moved_ratio"] is not None and abs(line["moved_ratio"] - 1) >= NEGLIGIBLE:
+        yield Statement(
+            "since_last_tow",
+            say(
+                "Against the tow of {before} Cw at equal speed is {moved}; by the best "
+                "estimate {kept}. What differs between the two comes from measuring rather "
+                "than from the boat."
+            ),
+            {
+                "before": line["season_before"],
+                "moved": Change(line["moved_ratio"]),
+                "kept": Change(line["best_moved_ratio"]),
+            },
+            rests_on=("repeat_pairs",),
+        )
+
+
+def _instruments(answer: Answer) -> Iterator[Statement]:
+    """What is known of the log of its season, and what may be wrong with the instruments."""
+    line = answer.line
+    if line["log_source"] == "estimated":
+        factor, low, high = (line[f"log_{part}"] for part in ("factor", "lo", "hi"))
+        yield Statement(
+            "log_read",
+            say(
+                "In {season} the log read {by} % too low (95 %: {low} to {high}); that is "
+                "corrected."
+            )
+            if factor > 1
+            else say(
+                "In {season} the log read {by} % too high (95 %: {low} to {high}); that is "
+                "corrected."
+            ),
+            {
+                "season": line["season"],
+                "by": Number(100 * abs(1 - 1 / factor), 1, "%"),
+                "low": Change(1 / high),
+                "high": Change(1 / low),
+            },
+            "low" if factor > 1 else "high",
+            ("log_factors",),
+        )
+    # A search that did not settle is said once, and not of every instrument.
+    found = [_fault(fault) for fault in answer.faults]
+    unsettled = [one for one in found if one.verdict == "not settled"][:1]
+    yield from (one for one in found if one.verdict != "not settled")
+    yield from unsettled
+
+
+FAULTS: Final = {
+    "fault": say(
+        "In {season} something is probably wrong: {instrument}, {size} (chance {chance} %)."
+    ),
+    "cannot be told": say(
+        "Whether something was wrong in {season} ({instrument}) cannot be told (chance {chance} %)."
+    ),
+    "not settled": say(
+        "The search for the errors of the instruments did not settle. What is "
+        "estimated of {season} cannot be relied on."
+    ),
+    "alarm": say(
+        "In {season} an instrument lies far from what is assumed: {instrument}, "
+        "{size}. A person should look."
+    ),
+}
+"""What is said of a season, by the verdict on an instrument."""
+
+
+def _fault(fault: Row) -> Statement:
+    """What may be wrong with one instrument."""
+    chance = fault["p_fault"]
+    values: dict[str, Value] = {
+        "instrument": labels.code(fault["instrument"]),
+        "season": fault["season"],
+        "chance": "" if chance is None else Number(100 * chance, 0, "%"),
+        "size": Statement("force", say("{force}\u00a0N"), {"force": _force(fault)})
+        if fault["unit"] == "N"
+        else Change(exp(fault["estimate"])),
+    }
+    verdict = fault["verdict"]
+    return Statement("fault", FAULTS[verdict], values, verdict, ("season_diagnosis",))
+
+
+def _force(fault: Row) -> Number:
+    return Number(fault["estimate"], 1, "N", sign="+")
+
+
+def _place(line: Row) -> Iterator[Statement]:
+    """Its place at equal power, within its type."""
+    few = line["type_size"] < LEAST_RANKED
+    if line["new_type_place"] is None or not line["boat_type"] or few:
+        return
+    same = line["old_type_place"] in (None, line["new_type_place"])
+    yield Statement(
+        "place_in_type",
+        say(
+            "At equal power per rower this boat ranks {place} of {size} of type {type} by "
+            "speed ({people})."
+        )
+        if same
+        else say(
+            "At equal power per rower this boat now ranks {place} of {size} of type {type} "
+            "by speed ({people}); it was {old}."
+        ),
+        {
+            "place": line["new_type_place"],
+            "old": line["old_type_place"] or "",
+            "size": line["type_size"],
+            "type": line["boat_type"],
+            "people": labels.crew(line["crew_class"]),
+        },
+        "same" if same else "moved",
+        ("register_changes",),
+    )
+
+
+def _validity(line: Row) -> Iterator[Statement]:
+    """Until when it counts, and the next tow."""
+    if line["valid_until"] is not None:
+        valid = line["status"] == "valid"
+        yield Statement(
+            "validity",
+            say("The tow of {tow} counts up to and including {until}.")
+            if valid
+            else say("The tow of {tow} counted up to and including {until}."),
+            {"until": line["valid_until"], "tow": line["tow_date"]},
+            line["status"],
+            ("register",),
+        )
+    if line["tow_speed_m_s"] is not None:
+        yield Statement(
+            "next_tow",
+            say("Next tow: at {speed} m/s ({reason})."),
+            {
+                "speed": Number(line["tow_speed_m_s"], unit="m/s"),
+                "reason": labels.code(line["speed_reason"]),
+            },
+            rests_on=("due_list",),
+        )
+
+
+def _objection(line: Row) -> Statement:
+    code = line["verification_code"]
+    asked: Value = ""
+    if code:
+        asked = Statement("code", say(" and verification code {code}"), {"code": code})
+    return Statement(
+        "objection",
+        say(
+            "Is something wrong? Tell the committee, and name {fsn_no}{code}. How the "
+            "number was made is shown below."
+        ),
+        {"fsn_no": line["fsn_no"], "code": asked},
+    )

@@ -1,0 +1,49 @@
+"""Who has to tow again, and whether towing more would be worth it."""
+
+import datetime as dt
+
+import polars as pl
+
+from dashboards.statements import Number, Statement
+from pipeline.messages import say
+
+MONTHS_AHEAD = dt.timedelta(days=365)
+WORTH = 0.9
+"""A set of tows is worth its trouble where it takes a tenth or more off the uncertainty."""
+
+
+def due(lines: pl.DataFrame) -> Statement:
+    """How many have to tow within a year."""
+    as_of, until = lines.select(pl.col("as_of").max()).item(), pl.col("valid_until")
+    return Statement(
+        "due",
+        say(
+            "Crews that have to tow within a year of {day}: {soon}; tows that have expired "
+            "by that day: {over}."
+        ),
+        {
+            "soon": lines.filter(until.is_between(as_of, as_of + MONTHS_AHEAD)).height,
+            "over": lines.filter(until < as_of).height,
+            "day": as_of,
+        },
+        rests_on=("due_list",),
+    )
+
+
+def retow(choice: pl.DataFrame) -> Statement:
+    """Whether the most informative tows are worth it."""
+    ends = pl.col("factor_sd_before_ratio").max(), pl.col("factor_sd_after_ratio").min()
+    before, after = choice.select(ends).row(0)
+    worth = after < WORTH * before
+    return Statement(
+        "retow",
+        say("These tows bring the uncertainty of the log factors from {before} to {after} %.")
+        if worth
+        else say(
+            "For that alone it is not worth it: these tows bring the uncertainty of the "
+            "log factors from {before} to {after} %."
+        ),
+        {"before": Number(100 * before, unit="%"), "after": Number(100 * after, unit="%")},
+        "worth it" if worth else "not worth it",
+        ("retow_choice",),
+    )

@@ -1,0 +1,89 @@
+"""A statement says the same wherever it stands: another value of it is shown on every surface."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from dashboards.documents import certificate, proposal
+from dashboards.site.boats import boat_pages
+from dashboards.site.pages import shared_pages
+from dashboards.site.render import Edition
+from dashboards.statements import Change, Number, Statement
+from tests.conftest import METHODS
+from warehouse.queries.views import Views
+from warehouse.store.methods import KnownMethods
+
+DRAFT = f"concept-{METHODS[-1]}"
+SENTINEL = 7654321
+SHOWN_ON = {
+    "register": {"register.html", "register"},
+    "changed_lines": {"index.html", "changes.html", "proposal"},
+    "statuses": {"quality.html"},
+    "cw": {"boat", "audit"},
+    "interval": {"boat", "audit", "certificate"},
+    "cause": {"boat", "audit"},
+    "two_hours": {"boat", "audit"},
+    "next_tow": {"boat", "audit"},
+}
+"""Pages, commands and documents that show a kind of statement."""
+
+
+def surfaces(store, herijk, kept):
+    """The text of every surface by its name."""
+    shown = {}
+    with Views(store) as views:
+        line = views.register().filter(edition=DRAFT).drop_nulls("cw_kg_m").row(0, named=True)
+        site, made = Edition(views, "en"), shared_pages(views)
+        pages = [
+            page for name in ("start", "register", "changes", "quality") for page in made[name]()
+        ]
+        shown |= {page.path: site.html(page) for page in pages}
+        own = dict(boat_pages(views, METHODS))[line["fsn_no"]]
+        shown["boat"] = site.html(own())
+        certificate.certificates(views, DRAFT, line["fsn_no"], "en")
+        against = f"concept-{METHODS[0]}"
+        proposal.proposal(views, [METHODS[-1]], against, "en", KnownMethods.of(store))
+    shown |= dict(zip(("certificate", "proposal"), map(json.dumps, kept), strict=True))
+    kept.clear()
+    commands = {
+        "audit": ("audit", line["fsn_no"], "--edition", DRAFT),
+        "register": ("register", DRAFT),
+    }
+    for name, command in commands.items():
+        shown[name] = herijk(*command, "--data", store.root)[1]
+    return {name: " ".join(text.split()) for name, text in shown.items()}
+
+
+def planted(kind, made):
+    """Makes statements of a kind say the sentinel in place of their first number."""
+    real = Statement.__init__
+
+    def init(self, *parts, **named):
+        real(self, *parts, **named)
+        if self.kind != kind:
+            return
+        name, value = next(
+            (n, v) for n, v in self.values.items() if isinstance(v, Number | Change | int)
+        )
+        if isinstance(value, Change):
+            other = Change(SENTINEL)
+        else:
+            other = SENTINEL if isinstance(value, int) else replace(value, value=SENTINEL)
+        object.__setattr__(self, "values", {**self.values, name: other})
+        made.append(self)
+
+    return init
+
+
+@pytest.mark.parametrize("kind", SHOWN_ON)
+def test_another_value_of_a_statement_is_shown_everywhere(kind, built, herijk, monkeypatch):
+    kept = []
+    for module in (certificate, proposal):
+        monkeypatch.setattr(module, "pdf", lambda _, content: kept.append(content) or b"")
+    made = []
+    monkeypatch.setattr(Statement, "__init__", planted(kind, made))
+    shown = surfaces(built.store, herijk, kept)
+    sentinel = str(100 * (SENTINEL - 1) if kind == "cause" else SENTINEL)
+    assert {name for name, text in shown.items() if sentinel in text} == SHOWN_ON[kind]
+    assert made

@@ -1,0 +1,119 @@
+"""Registers and due lists as the command prints them, on the day on which they are judged.
+
+The rule for the speed of the next tow is `pipeline.register.due`'s.
+"""
+
+import datetime as dt
+from dataclasses import dataclass
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.register.register import draft_name
+from pipeline.tables.row import Row
+from warehouse.queries.answers import current_edition
+from warehouse.queries.views import Views
+from warehouse.store.database import no_such_edition
+from warehouse.store.store import Store
+
+EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_curve"
+
+
+@dataclass(frozen=True)
+class RegisterReport:
+    """The register of an edition or draft.
+
+    Attributes:
+        edition: its name.
+        simulated: whether its tows are.
+        as_of: the day on which validity is judged.
+        lines: rows of `register` with `name`.
+    """
+
+    edition: str
+    simulated: bool
+    as_of: dt.date
+    lines: list[Row]
+
+
+@dataclass(frozen=True)
+class DueReport:
+    """Who is due under a method.
+
+    Attributes:
+        method: whose curves are used.
+        simulated: whether the archive is.
+        as_of: day on which validity is judged.
+        asked: whether that day was asked for; else it is that of the last tow or race.
+        lines: rows of `due_list` with `name`, `boat_type` and `urgency`.
+        retow_choice: rows of that table with `name`, `valid_until` and `tow_speed_m_s`.
+    """
+
+    method: str
+    simulated: bool
+    as_of: dt.date
+    asked: bool
+    lines: list[Row]
+    retow_choice: list[Row]
+
+
+def register_report(
+    store: Store, edition: str | None = None, as_of: dt.date | None = None
+) -> RegisterReport:
+    """The lines of an edition or draft, with the boat's name.
+
+    Args:
+        store: the data folder.
+        edition: its name; the newest, or the best draft, when left out.
+        as_of: the day on which validity is judged; that of the edition or draft when left out.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition, or no tow by that day.
+    """
+    with Views(store, as_of) as views:
+        chosen = edition or current_edition(views)
+        lines = views.register()
+        of_edition = lines.filter(edition=chosen)
+        if of_edition.is_empty():
+            raise no_such_edition(chosen, lines["edition"].unique())
+        simulated = views.simulated(chosen)
+    return RegisterReport(chosen, simulated, of_edition["as_of"][0], of_edition.to_dicts())
+
+
+def due_report(store: Store, method: str, as_of: dt.date | None = None) -> DueReport:
+    """Who is due under a method, at what speed, and which boats to tow again.
+
+    Args:
+        store: the data folder.
+        method: whose curves give the speeds.
+        as_of: the day on which validity is judged; that of the last tow or race when left out.
+
+    Raises:
+        MissingKnowledgeError: the method was not applied by the last rebuild.
+    """
+    with Views(store, as_of) as views:
+        due, choice = (views.ask(name) for name in ("due_list", "retow_choice"))
+        simulated = views.simulated(draft_name(method))
+    lines = due.filter(method=method).to_dicts()
+    if not lines:
+        raise MissingKnowledgeError(
+            "there is no due list of method {}; make it with: herijk rebuild "
+            "--archive DIR --data {} --method {}",
+            method,
+            store.root,
+            method,
+        )
+    return DueReport(
+        method=method,
+        simulated=simulated,
+        as_of=lines[0]["as_of"],
+        asked=as_of is not None,
+        lines=[line | {"urgency": _urgency(line)} for line in lines],
+        retow_choice=choice.filter(method=method).to_dicts(),
+    )
+
+
+def _urgency(line: Row) -> str:
+    if line["valid_until"] is None:
+        return NEVER
+    if line["status"] == "expired":
+        return EXPIRED
+    return THIS_YEAR if line["valid_until"].year == line["as_of"].year else LATER
