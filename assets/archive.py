@@ -1,8 +1,8 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
-import datetime as dt
 import logging
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any, Final
@@ -29,10 +29,6 @@ SEASONS: Final = dg.DynamicPartitionsDefinition(name="season")
 VERSION_TAG: Final = "dagster/data_version"
 
 GROUP: Final = "archive"
-LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
-    warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
-)
-"""Every rebuild looks through the archive, also when it finds no change."""
 
 
 @dg.multi_asset(
@@ -41,7 +37,6 @@ LOOKED_AT: Final = dg.FreshnessPolicy.time_window(
             name,
             code_version=code_hash(*READING),
             description=f"{name}: of the lists of the archive",
-            freshness_policy=LOOKED_AT if name == "listed_files" else None,
             group_name=GROUP,
         )
         for name in intake.INDEXED
@@ -76,70 +71,76 @@ def _columns(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
     return {"dagster/column_schema": dg.TableSchema(columns)}
 
 
-@dg.asset(
-    deps=["listed_tows", "listed_runs"],
-    code_version=code_hash(*READING, *ADDING),
-    metadata=_columns(SAMPLE_SCHEMA),
+@dg.multi_asset(
+    name="seasons_read",
+    specs=[
+        dg.AssetSpec(
+            "samples",
+            deps=["listed_tows", "listed_runs"],
+            description="The samples of the tows of seasons, in Parquet; faulty ones are set aside",
+            code_version=code_hash(*READING, *ADDING),
+            metadata=_columns(SAMPLE_SCHEMA),
+            group_name=GROUP,
+        ),
+        dg.AssetSpec(
+            "blocks",
+            deps=["samples"],
+            description="Sums over each second of each run of seasons",
+            code_version=code_hash(*ADDING),
+            metadata=_columns(BLOCK_SCHEMA),
+            group_name=GROUP,
+        ),
+    ],
     partitions_def=SEASONS,
-    group_name=GROUP,
 )
-def samples(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
-    """The samples of the tows of seasons, in Parquet; faulty tows are set aside."""
+def samples_and_blocks(
+    context: dg.AssetExecutionContext, setup: Setup
+) -> Iterator[dg.MaterializeResult]:
+    """Samples and blocks of the seasons of which the archive or the code changed."""
     store, root = setup.store, setup.archive_root
     asked, read = setup.wanted(context.partition_keys), set()
 
     def work() -> None:
         stale = intake.stale_seasons(store, root, asked)
-        tows, began = intake.count_listed(store, stale), time.monotonic()
+        listed = Counter(store.read("listed_tows", columns=["season"])["season"])
+        tows, began = sum(listed[season] for season in stale), time.monotonic()
         LOG.info(say("reading {} tows", tows))
         for season, _ in setup.map(partial(read_season, store.root, root), stale):
             read.add(season)
-            done = intake.count_listed(store, read)
+            done = sum(listed[season] for season in read)
             left_s = (time.monotonic() - began) * (tows - done) / done
             LOG.info(say("{} of {} tows were read; {:.0f} s left", done, tows, left_s))
 
     intake.index(store, root)
     mending(store, work, again=partial(intake.index, store, root))
-    yield dg.MaterializeResult()
+    yield dg.MaterializeResult(asset_key="samples")
     for season in asked:
         index = store.read("season_index", str(season))
-        faulty = index.drop_nulls("reason_code")
-        metadata = {
+        aside = index["reason_code"].drop_nulls().value_counts(sort=True)
+        about = {
             "dagster/row_count": int(index["samples"].sum()),
-            "tows": index.height - faulty.height,
-            "set_aside": dict(faulty["reason_code"].value_counts(sort=True).rows()),
+            "tows": index["reason_code"].null_count(),
+            "set_aside": dict(aside.rows()),
             "new": season in read,
         }
         contents = [store.contents(name, str(season)) for name in intake.READ]
-        _record(context, season, contents, metadata)
-
-
-@dg.asset(
-    deps=[samples],
-    code_version=code_hash(*ADDING),
-    metadata=_columns(BLOCK_SCHEMA),
-    partitions_def=SEASONS,
-    group_name=GROUP,
-)
-def blocks(context: dg.AssetExecutionContext, setup: Setup) -> Iterator[dg.MaterializeResult]:
-    """Sums over each second of each run of seasons."""
-    store, asked = setup.store, setup.wanted(context.partition_keys)
-    stale = {season for season in asked if intake.blocks_are_stale(store, season)}
-    for season in stale:
-        again = partial(intake.read_season, store, setup.archive_root, season)
-        mending(store, partial(intake.collect_blocks, store, season), again)
-    yield dg.MaterializeResult()
+        _record(context, "samples", str(season), contents, about)
+    yield dg.MaterializeResult(asset_key="blocks")
     for season in asked:
         rows = store.count_rows("blocks", str(season))
-        metadata = {"dagster/row_count": rows, "new": season in stale}
-        _record(context, season, store.contents("blocks", str(season)), metadata)
+        about = {"dagster/row_count": rows, "new": season in read}
+        _record(context, "blocks", str(season), store.contents("blocks", str(season)), about)
 
 
 def _record(
-    context: dg.AssetExecutionContext, season: int, state: object, metadata: Mapping[str, Any]
+    context: dg.AssetExecutionContext,
+    asset: str,
+    partition: str,
+    state: object,
+    metadata: Mapping[str, Any],
 ) -> None:
     """Records a season once more, with a version of its own: a result has one for a whole range."""
-    key, partition = context.asset_key, str(season)
+    key = dg.AssetKey(asset)
     here = dg.AssetRecordsFilter(asset_key=key, asset_partitions=[partition])
     (last,) = context.instance.fetch_materializations(here, limit=1).records
     assert last.asset_materialization is not None  # noqa: S101 - the event that Dagster just wrote

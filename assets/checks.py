@@ -73,14 +73,9 @@ def steps_multiply_to_the_total(setup: Setup) -> dg.AssetCheckResult:
 
 def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
     """No more of the listed tows are set aside than the settings allow."""
-    aside = setup.store.read("quarantine").filter(lost="tow")["tow_id"].n_unique()
-    listed = aside + setup.store.read("tows").height
-    limit = setup.settings.set_aside_share
-    return dg.AssetCheckResult(
-        passed=aside <= limit * listed,
-        severity=WARN,
-        metadata={"set_aside": aside, "listed": listed, "limit": limit},
-    )
+    aside = setup.store.read("quarantine").filter(lost="tow")["tow_id"].unique().sort().to_list()
+    listed = len(aside) + setup.store.count_rows("tows")
+    return _result(aside if len(aside) > setup.settings.set_aside_share * listed else [], WARN)
 
 
 def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:

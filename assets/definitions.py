@@ -6,8 +6,8 @@ from pathlib import Path
 import dagster as dg
 
 from assets import automation
-from assets.location import assets_of
 from assets.resources import Setup
+from assets.run import assets_of
 from assets.settings import Settings, read_settings
 
 

@@ -1,4 +1,4 @@
-"""A rebuild: the assets that are stale are made again, in one run of Dagster; then a report.
+"""A rebuild: all assets in one run of Dagster, where any of them is stale; then a report.
 
 What is stale is known from fingerprints. Dagster is imported when there is work to do: looking
 that there is none takes a second, importing it two.
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from assets import workers
 from assets.report import Done, Report, write_report
 from assets.settings import read_settings
-from assets.stale import stale_assets
+from assets.stale import is_stale
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from warehouse.derive.mending import mending
@@ -54,10 +54,9 @@ def rebuild(
 
         def work() -> None:
             logging.getLogger("herijk").info(say("looking at what the archive holds"))
-            stale = stale_assets(archive, store, known, seasons)
-            if stale:
+            if is_stale(archive, store, known, seasons):
                 workers.get_ready(dask)
-                checks[:] = make_assets(archive, data, methods, seasons, stale, done)
+                checks[:] = make_assets(archive, data, methods, seasons, done)
 
         mending(store, work, again=lambda: None)
         return write_report(store, done, checks, dt.datetime.now().astimezone())
@@ -68,17 +67,16 @@ def make_assets(
     data: Path,
     methods: Sequence[str],
     seasons: Collection[int] | None,
-    stale: Sequence[str],
     done: Done,
 ) -> "Sequence[dg.AssetCheckEvaluation]":
     """Has Dagster make assets, and notes what was done; gives what the checks said."""
-    from assets.instance import run_assets  # noqa: PLC0415 - see above
-    from assets.resources import Setup  # noqa: PLC0415
+    from assets.resources import Setup  # noqa: PLC0415 - see above
+    from assets.run import run_assets  # noqa: PLC0415
 
     setup = Setup(
         archive=str(archive), data=str(data), methods=list(methods), seasons=sorted(seasons or ())
     )
-    return run_assets(setup, stale, done)
+    return run_assets(setup, done)
 
 
 def check_apart(archive: Path, data: Path) -> None:

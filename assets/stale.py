@@ -1,4 +1,4 @@
-"""What a rebuild has to make, as fingerprints say. Dagster, slow to import, is not asked."""
+"""Whether a rebuild has work to do, as fingerprints say. Dagster, slow to import, is not asked."""
 
 from collections.abc import Collection, Sequence
 from pathlib import Path
@@ -9,7 +9,7 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import CATALOGUES, LANGUAGES
 from pipeline.method.definition import Method
 from warehouse.derive.database import DATABASE_TABLE
-from warehouse.derive.graph import DATABASE, STEPS
+from warehouse.derive.graph import STEPS
 from warehouse.derive.inputs import forget_other_methods
 from warehouse.intake import seasons as intake
 from warehouse.queries.change_report import is_reported
@@ -22,14 +22,10 @@ SITE_TABLE: Final = "site"
 """An empty table that remembers what the site was made from."""
 
 
-def stale_assets(
+def is_stale(
     archive: Path, store: Store, methods: Sequence[Method], wanted: Collection[int] | None
-) -> list[str]:
-    """Looks through the archive, and at what was made of it.
-
-    Returns:
-        What has to be made again, or to be confirmed as what it is made from is; nothing where all
-        is as it should be.
+) -> bool:
+    """Looks through the archive, and whether anything made of it has to be made again.
 
     Raises:
         MissingKnowledgeError: there is no archive, or nothing of the seasons that are wanted.
@@ -38,25 +34,12 @@ def stale_assets(
     intake.forget_unlisted_seasons(store)
     forget_other_methods(store, {method.name for method in methods})
     _check_listed(wanted, intake.listed_seasons(store))
-    again = {*intake.SEASON_TABLES} if intake.stale_seasons(store, archive, wanted) else set()
-    made: list[str] = []
-    others = _others_were_applied(store, methods)
-    for step in STEPS:
-        if others or not again.isdisjoint(step.reads) or step.stale(store, methods):
-            again.update(step.outputs)
-            made += step.outputs
-    if again.isdisjoint(DATABASE.outputs) and not is_reported(store):
-        made += DATABASE.outputs
-    if not (made or site_is_stale(store)):
-        return []
-    return [*intake.INDEXED, "samples", "blocks", *made, SITE_TABLE]
-
-
-def _others_were_applied(store: Store, methods: Sequence[Method]) -> bool:
-    """Whether the last rebuild applied other methods than these."""
-    if store.made_from("methods") is None:
-        return True
-    return list(store.read("methods")["method"]) != sorted(method.name for method in methods)
+    return (
+        bool(intake.stale_seasons(store, archive, wanted))
+        or any(step.stale(store, methods) for step in STEPS)
+        or not is_reported(store)
+        or site_is_stale(store)
+    )
 
 
 def _check_listed(wanted: Collection[int] | None, listed: Sequence[int]) -> None:

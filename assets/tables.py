@@ -9,6 +9,7 @@ import dagster as dg
 
 from assets.resources import Setup
 from assets.workers import make_step
+from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.graph import STEPS, catch_up
@@ -31,8 +32,23 @@ Methods, decisions and editions are no assets: the fingerprints know them.
 """
 
 
+TITLES: Final = {
+    "archive": say("boats, tows and what is set aside"),
+    "recordings": say("the recordings of each run"),
+    "method": say("curves under each method"),
+    "studies": say("what each step of a method changes"),
+    "lines": say("lines through the boats of a type"),
+    "consistency": say("whether equal boats are equal"),
+    "register": say("registers"),
+    "summaries": say("summaries"),
+    "database": say("the database"),
+}
+"""What a terminal says that a step makes, by its group."""
+
+
 def step_asset(step: Step) -> dg.AssetsDefinition:
     """The assets of a step: one per table."""
+    title = say("step {} of {}: {}", STEPS.index(step) + 1, len(STEPS), TITLES[step.group])
 
     @dg.multi_asset(
         name=step.name,
@@ -40,12 +56,12 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         specs=[_spec(step, table) for table in step.outputs],
     )
     def asset(setup: Setup) -> Iterator[dg.MaterializeResult]:
-        yield from make(step, setup)
+        yield from make(step, title, setup)
 
     return asset
 
 
-def make(step: Step, setup: Setup) -> Iterator[dg.MaterializeResult]:
+def make(step: Step, title: str, setup: Setup) -> Iterator[dg.MaterializeResult]:
     """Makes the tables of a step, or confirms them where what they are made of is unchanged."""
     store, methods = setup.store, setup.chosen_methods
     new: list[str] = []
@@ -53,7 +69,7 @@ def make(step: Step, setup: Setup) -> Iterator[dg.MaterializeResult]:
     def work() -> None:
         stale = step.stale(store, methods)
         if stale:
-            logging.getLogger("herijk").info(str(step.compute.__doc__).partition("\n")[0])
+            logging.getLogger("herijk").info(title)
         for scope, _ in setup.map(partial(make_step, step.name), stale):
             new.append(scope.at_hand.name)
 

@@ -89,7 +89,9 @@ def in_parallel(
 
 def read_season(data: Path, archive: Path, season: int) -> None:
     """Reads a season: its samples and blocks go into the lake."""
-    seasons.read_season(Store(data), archive, season)
+    store = Store(data)
+    seasons.read_season(store, archive, season)
+    seasons.collect_blocks(store, season)
 
 
 def make_step(name: str, scope: Scope) -> None:

@@ -55,7 +55,6 @@ def _make_directly(
     data: Path,
     methods: Sequence[str],
     seasons: Collection[int] | None,
-    _: Sequence[str],
     done: Done,
 ) -> list[object]:
     """What a rebuild makes without Dagster, and with empty tables where they are left out."""

@@ -35,35 +35,28 @@ CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(85
 MOST_BENT: Final = 0.9
 """r beyond which a curve tells nothing."""
 
+DEPARTURE: Final = ("ratio", "variance")
+
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
 
 
 def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
-    """Scatter of single run points: of the season, or of each tow alone."""
-    return pooled_scatter(c) if pooled else curve.own_scatter(c.free)
+    """Scatter of single run points: pooled over the tows of a season, or of each tow alone.
 
-
-def pooled_scatter(c: Computed) -> curve.Scatter:
-    """Scatter of single run points about their curve, pooled over the tows of a season."""
-    ratio, used, on_curve = _residuals(c)
-    return _of_height(*residual_scatter(ratio, used, _season(c)), used, on_curve)
+    Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0.
+    """
+    if not pooled:
+        return curve.own_scatter(c.free)
+    residual, used, on_curve = _residuals(c)
+    ratio, dof = residual_scatter(residual, used, _season(c))
+    known = np.isfinite(ratio) & used.any(axis=1)
+    height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
+    return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
 
 
 def _season(c: Computed) -> IntArray:
     return c.batch.of_tow("season").astype(np.int64)
-
-
-def _of_height(
-    ratio: FloatArray, dof: FloatArray, used: BoolArray, on_curve: FloatArray
-) -> curve.Scatter:
-    """A relative scatter in the coefficient of each tow.
-
-    Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0.
-    """
-    known = np.isfinite(ratio) & used.any(axis=1)
-    height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
-    return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
 
 
 def _residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
@@ -76,20 +69,6 @@ def _residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
     used = c.points.used & np.isfinite(on_curve) & c.free.converged[:, None]
     ratio = np.where(used, c.points.cw_kg_m / np.where(used, on_curve, 1.0) - 1.0, 0.0)
     return ratio, used, on_curve
-
-
-def _departure(c: Computed, speed_ratios: Sequence[float]) -> Departure:
-    """How far the hulls of a batch lie from their curves."""
-    ratio, used, _ = _residuals(c)
-    batch = c.batch
-    return Departure.of(
-        ratio,
-        used & batch.trusted[:, None],
-        c.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None],
-        batch.by_tow(batch.direction.astype(np.float64)),
-        batch.by_tow(batch.target_speed_ratio),
-        np.array(speed_ratios),
-    )
 
 
 def files_log_sd(c: Computed) -> FloatArray:
@@ -118,26 +97,6 @@ def run_point_ratio(c: Computed) -> FloatArray:
     return run_point_uncertainty(c.batch.blocks, c.windows.mask, season)
 
 
-def budget_of(
-    computed: Sequence[Computed], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
-) -> pl.DataFrame:
-    """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
-
-    Away from the declared speed the random part grows, and a speed error acts through the
-    elasticity there.
-
-    Args:
-        computed: all batches of a method.
-        estimated: its season factors, if it has estimated ones.
-        speed_ratios: those speeds / declared speed.
-
-    Returns:
-        Rows as `pipeline.uncertainty.propagation.budget` gives them.
-    """
-    misfit = misfit_of(computed, estimated, speed_ratios)
-    return pl.concat([_budget_of_batch(c, estimated, speed_ratios, misfit) for c in computed])
-
-
 def misfit_of(
     computed: Sequence[Computed], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
@@ -147,21 +106,25 @@ def misfit_of(
         `tow_id, speed_ratio, misfit` (as a ratio, hull over curve less 1) and `misfit_variance`; 0
         where no season factors are estimated: such a method is taken at its word.
     """
-    each = [_departure(c, speed_ratios) for c in computed]
+    each = []
+    for c in computed:
+        batch, (ratio, used, _) = c.batch, _residuals(c)
+        towed = c.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None]
+        way = batch.by_tow(batch.direction.astype(np.float64))
+        counts, target = used & batch.trusted[:, None], batch.by_tow(batch.target_speed_ratio)
+        each.append(Departure.of(ratio, counts, towed, way, target, np.array(speed_ratios)))
     tows = pl.concat([c.batch.tows.select("tow_id", "fsn_no") for c in computed])
     boat = tows["fsn_no"].rank("dense").to_numpy().astype(np.int64) - 1
-    value, variance = departure_of_boats(
-        Departure(*(np.concatenate([getattr(d, n) for d in each]) for n in ("ratio", "variance"))),
-        boat,
-    )
+    whole = Departure(*(np.concatenate([getattr(d, n) for d in each]) for n in DEPARTURE))
     asked = 0.0 if estimated is None else 1.0
+    value, variance = (asked * part for part in departure_of_boats(whole, boat))
     return pl.concat(
         [
             tows.select(
                 "tow_id",
-                pl.lit(ratio).alias("speed_ratio"),
-                pl.Series("misfit", asked * value[:, place]),
-                pl.Series("misfit_variance", asked * variance[:, place]),
+                speed_ratio=pl.lit(ratio),
+                misfit=pl.Series(value[:, place]),
+                misfit_variance=pl.Series(variance[:, place]),
             )
             for place, ratio in enumerate(speed_ratios)
         ]
@@ -190,32 +153,48 @@ def curve_points(computed: Sequence[Computed], bounds: pl.DataFrame) -> pl.DataF
     )
 
 
-def _budget_of_batch(
-    c: Computed,
+def budget_of(
+    computed: Sequence[Computed],
     estimated: SeasonFactors | None,
     speed_ratios: Sequence[float],
     misfit: pl.DataFrame,
 ) -> pl.DataFrame:
-    scatter = scatter_of(c, estimated is not None)
-    terms = _terms_of_tows(c, estimated, scatter)
+    """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
+
+    Away from the declared speed the random part grows, and a speed error acts through the
+    elasticity there.
+
+    Args:
+        computed: all batches of a method.
+        estimated: its season factors, if it has estimated ones.
+        speed_ratios: those speeds / declared speed.
+        misfit: as `misfit_of` gives it at these speeds.
+
+    Returns:
+        Rows as `pipeline.uncertainty.propagation.budget` gives them.
+    """
     cw, bend = pl.col("cw_kg_m"), pl.col("bend")
     r = (bend / (1.0 + bend) * pl.col("speed_ratio") ** 2).clip(-1.0, MOST_BENT)
-    random = np.concatenate([_random_ratio(c, scatter, ratio) for ratio in speed_ratios])
-    rows = (
-        _at_speeds(c, speed_ratios)
-        .with_columns(pl.Series("random_ratio", random))
-        .filter(cw.is_finite())
-        .join(terms, on="tow_id", maintain_order="left")
-        .join(misfit, on=["tow_id", "speed_ratio"], maintain_order="left")
-        .with_columns(
-            (2.0 / (1.0 - r)).alias("kappa"),
-            (pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt().alias("misfit_ratio"),
-            (pl.col("net_air_kg_m") / cw).alias("air_ratio"),
-            (pl.col("air_per_coefficient_kg_m") / cw).alias("air_per_coefficient"),
-            (pl.col("still_air_kg_m") / cw).alias("still_air_ratio"),
+    parts = []
+    for c in computed:
+        scatter = scatter_of(c, estimated is not None)
+        random = np.concatenate([_random_ratio(c, scatter, ratio) for ratio in speed_ratios])
+        rows = (
+            _at_speeds(c, speed_ratios)
+            .with_columns(random_ratio=pl.Series(random))
+            .filter(cw.is_finite())
+            .join(_terms_of_tows(c, estimated, scatter), on="tow_id", maintain_order="left")
+            .join(misfit, on=["tow_id", "speed_ratio"], maintain_order="left")
+            .with_columns(
+                kappa=2.0 / (1.0 - r),
+                misfit_ratio=(pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt(),
+                air_ratio=pl.col("net_air_kg_m") / cw,
+                air_per_coefficient=pl.col("air_per_coefficient_kg_m") / cw,
+                still_air_ratio=pl.col("still_air_kg_m") / cw,
+            )
         )
-    )
-    return budget(rows, _assumed(c, estimated))
+        parts.append(budget(rows, _assumed(c, estimated)))
+    return pl.concat(parts)
 
 
 def _at_speeds(c: Computed, speed_ratios: Sequence[float]) -> pl.DataFrame:
@@ -251,6 +230,8 @@ def _terms_of_tows(
     estimated = np.isfinite(c.estimated("ln_sd"))
     usual = USUAL_BEND if factors is None else _median_bend(c)
     bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual)
+    wanders = 0.0 if factors is None else factors.tow_log_sd_of(batch.of_tow("season"))
+    is_wandering = (factors is not None) & ~c.calibrated
     # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
     # taken off, and only what is put back for still air has it.
     taken_off = 0.0 if c.steps.wind.coefficients == "archive" else c.air_kg_m
@@ -258,26 +239,25 @@ def _terms_of_tows(
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = c.still_air_kg_m / np.maximum(c.air.still, 1e-9)
     felt_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
-    per_coefficient = batch.mean(still_unit - felt_unit, c.used)
     return batch.tows.select(
         "tow_id",
         "season",
-        pl.col("log1_part").alias("part"),
-        pl.Series("random_dof", scatter.dof),
-        pl.Series("bend", bend),
-        pl.Series("calibrated", c.calibrated),
-        pl.Series("askew_ratio", c.estimated("askew_ratio")).fill_nan(None),
-        pl.Series("log_sd", np.where(estimated, c.estimated("ln_sd"), 0.0)),
-        pl.Series("log_dof", np.where(estimated, c.estimated("dof"), np.inf)),
-        pl.Series("tow_log_sd", _tow_log_sd(c, factors)),
-        pl.Series("net_air_kg_m", net_air),
-        pl.Series("wind_ln_sd", c.wind_ln_sd).fill_nan(None),
-        pl.Series("air_per_coefficient_kg_m", per_coefficient),
-        pl.Series("wind_measured", batch.measured("wind")),
-        pl.Series("still_air_kg_m", batch.mean(c.still_air_kg_m, c.used)),
-        pl.Series("temperature_known", c.temperature_known),
-        pl.Series("water_off_c", c.water_off_c),
-        force_uncertainty(batch.tows).alias("force_sd"),
+        part="log1_part",
+        random_dof=pl.Series(scatter.dof),
+        bend=pl.Series(bend),
+        calibrated=pl.Series(c.calibrated),
+        askew_ratio=pl.Series(c.estimated("askew_ratio")).fill_nan(None),
+        log_sd=pl.Series(np.where(estimated, c.estimated("ln_sd"), 0.0)),
+        log_dof=pl.Series(np.where(estimated, c.estimated("dof"), np.inf)),
+        tow_log_sd=pl.Series(np.where(is_wandering, np.hypot(wanders, files_log_sd(c)), 0.0)),
+        net_air_kg_m=pl.Series(net_air),
+        wind_ln_sd=pl.Series(c.wind_ln_sd).fill_nan(None),
+        air_per_coefficient_kg_m=pl.Series(batch.mean(still_unit - felt_unit, c.used)),
+        wind_measured=pl.Series(batch.measured("wind")),
+        still_air_kg_m=pl.Series(batch.mean(c.still_air_kg_m, c.used)),
+        temperature_known=pl.Series(c.temperature_known),
+        water_off_c=pl.Series(c.water_off_c),
+        force_sd=force_uncertainty(batch.tows),
     )
 
 
@@ -298,14 +278,6 @@ def _median_bend(c: Computed) -> float:
     r = np.where(c.free.converged, c.free.s_s2_m2 * declared**2, np.nan)
     known = np.isfinite(r) & (r > 0.0) & (r < 1.0)
     return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
-
-
-def _tow_log_sd(c: Computed, estimated: SeasonFactors | None) -> FloatArray:
-    """Standard deviation of ln of the log factor from tow to tow, by era; 0 where calibrated."""
-    if estimated is None:
-        return np.zeros(c.batch.size)
-    log_sd = estimated.tow_log_sd_of(c.batch.of_tow("season"))
-    return np.where(c.calibrated, 0.0, np.hypot(log_sd, files_log_sd(c)))
 
 
 def _assumed(c: Computed, estimated: SeasonFactors | None) -> Assumed:

@@ -34,7 +34,8 @@ from pipeline.recompute.budget import (
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.facts import with_expected_water
 from pipeline.season_log import SeasonFactors, retow_choice
-from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, NOT_SETTLED
+from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
+from pipeline.season_log.factors import NOT_SETTLED
 from pipeline.steps.speed import log_factor
 from pipeline.tables.frames import dtypes
 from pipeline.tables.season_log import (
@@ -95,11 +96,12 @@ def as_tables(
 
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
     run_points = with_run_choice(together([_run_points(c, pooled) for c in computed]))
-    budget = budget_of(computed, estimated, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
+    speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
+    misfit = misfit_of(computed, estimated, speed_ratios)
+    budget = budget_of(computed, estimated, speed_ratios, misfit)
     bounds = combine(budget)
     curves = together([_curves(c, bounds.filter(at_declared), pooled) for c in computed])
-    misfit = misfit_of(computed, estimated, (DECLARED,))
-    curves = with_best(curves, estimated, budget.filter(at_declared), misfit)
+    curves = with_best(curves, estimated, budget.filter(at_declared), misfit.filter(at_declared))
     diagnosis = _diagnosis(estimated, computed)
     assessments = assess(curves, run_points, with_expected_water(tows), diagnosis)
     rejecting = [
@@ -120,8 +122,8 @@ def as_tables(
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
         curve_points=together([curve_points(computed, bounds)]) if with_bands else pl.DataFrame(),
-        season_diagnosis=diagnosis.select(name, pl.all()),
-        **{table: rows.select(name, pl.all()) for table, rows in _of_all_tows(estimated).items()},
+        season_diagnosis=together([diagnosis]),
+        **{table: together([rows]) for table, rows in _of_all_tows(estimated).items()},
         factors=estimated,
     )
 
@@ -210,45 +212,40 @@ def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
     With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
     A tow's own factor is in `run_points.speed_factor`.
     """
-    seasons = c.batch.tows["season"].unique().sort()
-    if c.steps.calibration.rule != "none":
-        rows = [_mean_factor(c, season) for season in seasons]
-    else:
-        rows = [_factor_row(c, season, estimated) for season in seasons]
-    schema = dtypes(LogFactors, without=["method"])
-    return pl.DataFrame(rows, schema=schema, orient="row")
+    if c.steps.calibration.rule == "none":
+        rows = [_factor_row(c, season, estimated) for season in c.batch.seasons]
+        return pl.DataFrame(rows, schema=dtypes(LogFactors, without=["method"]), orient="row")
+    ln_factor = pl.when(pl.Series(c.calibrated)).then(
+        pl.Series(np.log(c.known_factor * c.calibration_factor))
+    )
+    means = (
+        c.batch.tows.select("season", ln=ln_factor)
+        .group_by("season", maintain_order=True)
+        .agg(pl.col("ln").mean(), sd=pl.col("ln").std(), n=pl.col("ln").count())
+        .sort("season")
+    )
+    n = means["n"].to_numpy()
+    quantile = pl.Series(t_quantile(np.maximum(n - 1, 1)) / np.sqrt(np.maximum(n, 1)))
+    half = quantile * pl.col("sd")
+    return means.select(
+        "season",
+        factor=pl.col("ln").fill_null(0.0).exp(),
+        lo=(pl.col("ln") - half).exp(),
+        hi=(pl.col("ln") + half).exp(),
+        source=pl.when(pl.col("n") > 0).then(pl.lit("gps")).otherwise(pl.lit("none")),
+    )
 
 
 FactorRow = tuple[int, float, float | None, float | None, str]
 
 
-def _mean_factor(c: Computed, season: int) -> FactorRow:
-    mine = (c.batch.of_tow("season") == season) & c.calibrated
-    ln_factor = np.log((c.known_factor * c.calibration_factor)[mine])
-    n = len(ln_factor)
-    if n == 0:
-        return season, 1.0, None, None, "none"
-    mean = float(ln_factor.mean())
-    if n == 1:
-        return season, float(np.exp(mean)), None, None, "gps"
-    half = float(t_quantile(n - 1) * ln_factor.std(ddof=1) / np.sqrt(n))
-    return (
-        season,
-        float(np.exp(mean)),
-        float(np.exp(mean - half)),
-        float(np.exp(mean + half)),
-        "gps",
-    )
-
-
 def _factor_row(c: Computed, season: int, estimated: SeasonFactors | None) -> FactorRow:
-    speed = c.steps.speed
-    if estimated is not None and speed.correction == "estimated":
-        known = estimated.of_season(season)
-        if known is not None:
-            return (season, *known)
+    """Season, factor, its interval and source where tows are not calibrated on GPS."""
+    is_asked = estimated is not None and c.steps.speed.correction == "estimated"
+    if estimated is not None and is_asked and (known := estimated.of_season(season)) is not None:
+        return season, *known
     nothing = np.array([np.nan])
-    factor = float(log_factor(speed, nothing, nothing)[0])
+    factor = float(log_factor(c.steps.speed, nothing, nothing)[0])
     if estimated is not None and estimated.is_refused(season):
         return season, factor, None, None, NOT_SETTLED
     return season, factor, None, None, "none" if factor == 1.0 else "prescribed"

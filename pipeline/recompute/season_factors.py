@@ -16,10 +16,10 @@ from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.blocks.batch import Batch
 from pipeline.method.definition import Calibration, Steps
-from pipeline.recompute.budget import files_log_sd, force_uncertainty, pooled_scatter
+from pipeline.recompute.budget import files_log_sd, force_uncertainty, scatter_of
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors, estimate_season_factors
-from pipeline.season_log.network import GROUP
+from pipeline.season_log.archive_tows import LOG
 from pipeline.steps.calibration import gps_factor
 from pipeline.tables.keys import LINE
 
@@ -69,35 +69,24 @@ def without_factor(steps: Steps) -> Steps:
 def find_season_factors(computed: Sequence[Computed]) -> SeasonFactors:
     """The log factors of all seasons, from tows computed without them.
 
-    Tows of a line are compared at one true speed. A first estimate, from the speeds as read, says
-    what the logs read there. At those speeds themselves a log that is 6 % low would be compared at
-    the edge of what was towed, and all would hang on the bend.
+    Tows of a line are compared at one true speed: its median declared speed. A first estimate, from
+    the speeds as read, says what the logs read there. At those speeds themselves a log that is 6 %
+    low would be compared at the edge of what was towed, and all would hang on the bend.
 
     Args:
         computed: all batches under `without_factor`.
-    """
-    as_read = _estimate(computed, {})
-    known = as_read.instruments.drop_nulls("factor")
-    return _estimate(computed, dict(known.select("tow_id", pl.col("factor").log()).iter_rows()))
-
-
-def _estimate(computed: Sequence[Computed], ln_factor: Mapping[str, float]) -> SeasonFactors:
-    rows = _tow_rows(computed, ln_factor)
-    return estimate_season_factors(_with_calibrations(_with_kappa(rows)))
-
-
-def _tow_rows(computed: Sequence[Computed], ln_factor: Mapping[str, float]) -> pl.DataFrame:
-    """One row per tow with a sound curve, at one speed per line: its median declared speed.
-
-    Args:
-        computed: all batches under `without_factor`.
-        ln_factor: of the logs of tows, as far as it is known; 0 of the others.
     """
     declared = pl.concat([c.batch.tows.select(*LINE, "declared_speed_m_s") for c in computed])
     reference = declared.group_by(LINE, maintain_order=True).agg(
         pl.col("declared_speed_m_s").median().alias("speed")
     )
-    return pl.concat([_rows(c, reference, ln_factor) for c in computed]).drop_nulls("ln_cw")
+
+    def estimate(ln_factor: Mapping[str, float]) -> SeasonFactors:
+        rows = pl.concat([_rows(c, reference, ln_factor) for c in computed]).drop_nulls("ln_cw")
+        return estimate_season_factors(_with_calibrations(_with_kappa(rows)))
+
+    known = estimate({}).instruments.drop_nulls("factor")
+    return estimate(dict(known.select("tow_id", pl.col("factor").log()).iter_rows()))
 
 
 def instruments_of(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> pl.DataFrame:
@@ -137,7 +126,7 @@ def _rows(c: Computed, reference: pl.DataFrame, ln_factor: Mapping[str, float]) 
     water = _water_points(c)
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
-    errors = curve.covariance(water, curves, pooled_scatter(c), speed)
+    errors = curve.covariance(water, curves, scatter_of(c, pooled=True), speed)
     sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
     sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
@@ -224,19 +213,19 @@ def _with_calibrations(rows: pl.DataFrame) -> pl.DataFrame:
     the scatter within all such seasons; null where there are none.
     """
     y = pl.col("own_calibration_ln")
-    within = (y - y.mean().over(GROUP)) ** 2
+    within = (y - y.mean().over(LOG)) ** 2
     spread, tows, groups = (
         rows.drop_nulls("own_calibration_ln")
-        .select(within.sum().alias("spread"), pl.len(), pl.struct(GROUP).n_unique().alias("groups"))
+        .select(within.sum().alias("spread"), pl.len(), pl.struct(LOG).n_unique().alias("groups"))
         .row(0)
     )
     scatter = (
         math.sqrt(spread / (tows - groups)) if tows - groups >= FEWEST_OF_TYPE else LOG_SCATTER
     )
     return rows.with_columns(
-        y.mean().over(GROUP).alias("others_calibration_ln"),
-        pl.when(y.count().over(GROUP) > 0)
-        .then(scatter / y.count().over(GROUP).sqrt())
+        y.mean().over(LOG).alias("others_calibration_ln"),
+        pl.when(y.count().over(LOG) > 0)
+        .then(scatter / y.count().over(LOG).sqrt())
         .alias("others_calibration_sd"),
     )
 

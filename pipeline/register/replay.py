@@ -17,9 +17,6 @@ from pipeline.curve import VALID_RATIO, cw
 from pipeline.races.power import curve_of_lines
 from pipeline.races.race import fatigue_factor, mean_speed_m_s, power_per_rower_w
 from pipeline.register.register import LINE, NO_EMPTY_THWART
-from pipeline.tables.frames import dtypes
-from pipeline.tables.register import RaceChanges
-from pipeline.uncertainty.ensemble import share_first
 
 Fatigue = Literal["none", "known", "extend"]
 
@@ -27,14 +24,6 @@ RACE: Final = ("race", "race_date")
 CLASSIFICATION: Final = (*RACE, "crew_class")
 RESULT: Final = (*RACE, *LINE[:-1], "rowing_time_s")
 PODIUM: Final = 3
-
-WINNER_SCHEMA: Final = {
-    **{name: dtypes(RaceChanges)[name] for name in CLASSIFICATION},
-    "old_winner": pl.String(),
-    "new_winner": pl.String(),
-    "winner_changed": pl.Boolean(),
-    "change_probability": pl.Float64(),
-}
 
 CURVE: Final = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")
 
@@ -217,45 +206,53 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
         One row per race and class: `old_winner`, `new_winner` (boat; null where nobody has a
         power), `winner_changed` and `change_probability` (null where it is not known).
     """
-    rows = []
-    old, new = _placed_under_both(old, new), _placed_under_both(new, old)
-    for key, results in new.group_by(CLASSIFICATION, maintain_order=True):
-        before = old.filter(*(pl.col(n) == k for n, k in zip(CLASSIFICATION, key, strict=True)))
-        winners = [_winner(results_of) for results_of in (before, results)]
-        rows.append(
-            dict(zip(CLASSIFICATION, key, strict=True))
-            | {
-                "old_winner": None if winners[0] is None else winners[0][0],
-                "new_winner": None if winners[1] is None else winners[1][0],
-                "winner_changed": winners[0] != winners[1],
-                "change_probability": _change_probability(results, winners[0], members),
-            }
+    before, after = _placed_under_both(old, new), _placed_under_both(new, old)
+    both = after.select(CLASSIFICATION).unique(maintain_order=True)
+    for side, results in (("old", before), ("new", after)):
+        first = results.filter(rank=1).sort(LINE).group_by(CLASSIFICATION, maintain_order=True)
+        winners = first.agg(
+            pl.col("fsn_no").first().alias(f"{side}_winner"), _CREW.first().alias(side)
         )
-    return pl.DataFrame(rows, schema=WINNER_SCHEMA).sort(CLASSIFICATION)
-
-
-def _winner(results: pl.DataFrame) -> tuple[object, ...] | None:
-    first = results.filter(pl.col("rank") == 1).sort(LINE).select(LINE)
-    return None if first.is_empty() else first.row(0)
-
-
-def _change_probability(
-    results: pl.DataFrame, old_winner: tuple[object, ...] | None, members: pl.DataFrame
-) -> float | None:
-    named = pl.col("tow_id").fill_null(pl.concat_str(LINE, separator=" "))
-    crews = results.drop_nulls("rank").select(
-        *LINE, "power_w", "penalty_w", named, pl.col("declared_cw_kg_m").alias("cw_kg_m")
+        both = both.join(winners, on=CLASSIFICATION, how="left", maintain_order="left")
+    chances = _change_probabilities(after, both.select(*CLASSIFICATION, "old"), members)
+    return (
+        both.join(chances, on=CLASSIFICATION, how="left", maintain_order="left")
+        .with_columns(winner_changed=pl.col("old").ne_missing(pl.col("new")))
+        .select(*CLASSIFICATION, "old_winner", "new_winner", "winner_changed", "change_probability")
+        .sort(CLASSIFICATION)
     )
-    if members.is_empty() or old_winner is None or old_winner not in crews.select(LINE).rows():
-        return None
-    certain = crews.join(members, on="tow_id", how="anti").join(
-        members.select("member").unique(), how="cross"
+
+
+_CREW: Final = pl.concat_str(LINE, separator=" ")
+
+
+def _change_probabilities(
+    results: pl.DataFrame, old_winners: pl.DataFrame, members: pl.DataFrame
+) -> pl.DataFrame:
+    """Per race and class in which the old winner has a power, how likely another wins.
+
+    Power is proportional to Cw, and the error of Cw at the declared speed is taken for that at the
+    speed rowed: sound within the range in which a curve is valid. A penalty does not follow Cw.
+    """
+    if members.is_empty():
+        schema = {name: results.schema[name] for name in CLASSIFICATION}
+        return pl.DataFrame(schema=schema | {"change_probability": pl.Float64()})
+    drawn = members.select("tow_id", "member", drawn="cw_kg_m")
+    penalty = pl.col("penalty_w").fill_null(0.0)
+    grows = (pl.col("drawn") / pl.col("declared_cw_kg_m")).fill_null(1.0)
+    return (
+        results.drop_nulls("rank")
+        .with_columns(crew=_CREW)
+        .join(old_winners, on=CLASSIFICATION, maintain_order="left")
+        .filter((pl.col("crew") == pl.col("old")).any().over(CLASSIFICATION))
+        .join(drawn.select("member").unique().sort("member"), how="cross", maintain_order="left")
+        .join(drawn, on=["tow_id", "member"], how="left", maintain_order="left")
+        .with_columns(power=(pl.col("power_w") + penalty) * grows - penalty)
+        .group_by(*CLASSIFICATION, "member", maintain_order=True)
+        .agg(pl.col("crew").get(pl.col("power").arg_max()), pl.col("old").first())
+        .group_by(CLASSIFICATION, maintain_order=True)
+        .agg((pl.col("crew") != pl.col("old")).mean().alias("change_probability"))
     )
-    columns = ["tow_id", "member", "cw_kg_m"]
-    drawn = pl.concat([members.select(columns), certain.select(columns)])
-    shares = share_first(drawn, crews)
-    mine = pl.all_horizontal(pl.col(n) == w for n, w in zip(LINE, old_winner, strict=True))
-    return 1.0 - float(shares.filter(mine)["share"][0])
 
 
 def _fatigue(results: pl.DataFrame, rules: RaceRules) -> FloatArray:

@@ -8,9 +8,9 @@ boats are the stars, seasons the nights, tows calibrated on dGPS the absolute an
 Belongs here:
 
 - what is assumed (`assumed`), and the unknowns with their effects (`effects`);
-- the density of a boat's tows (`likelihood`), and the posterior of everything (`posterior`);
-- what it says of tows (`tows`), seasons (`diagnosis`) and factors (`estimate`);
-- what it all rests on (`network`);
+- the tows and what ties them together (`archive_tows`), and the density of a boat's (`boats`);
+- the posterior of everything (`fit`), and which faults there are (`faults`);
+- what it says of logs (`factors`), tows (`tow_estimates`) and seasons (`diagnosis`);
 - which boats to tow again (`retow_design`).
 
 Does not belong here: how Cw of a tow is computed, prescribed corrections (never data here), and

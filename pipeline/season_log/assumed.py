@@ -53,7 +53,7 @@ class Settings:
         zero_fault_n: zero of the load cell [N]; also its drift from the middle of a season.
         trend_fault_sd, change_fault_sd: ln factor of a log at the end of a season against its
             middle, and after it was replaced without a report.
-        reference_year: t0.
+        reference_year: from which ageing is counted.
     """
 
     era_starts: tuple[int, ...] = (2009, 2012)
@@ -89,16 +89,6 @@ class Settings:
     trend_fault_sd: float = 0.02
     change_fault_sd: float = 0.04
     reference_year: int = 2014
-
-    @property
-    def change_shares(self) -> tuple[float, ...]:
-        """Shares of gaps with an alteration, and of tows pulled askew."""
-        return self.changed_share, self.askew_share
-
-    @property
-    def change_counts(self) -> tuple[float, ...]:
-        """How many gaps and tows each of these shares counts for."""
-        return self.changed_gaps, self.askew_tows
 
 
 USUAL: Final = Settings()

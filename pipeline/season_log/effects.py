@@ -1,6 +1,6 @@
 """What every unknown of logs, load cells and boats does to the numbers of a tow.
 
-Belongs here: the list of unknowns, with what is assumed of each, and the slopes of ln Cw, bend and
+Belongs here: the effects, with what is assumed of each, and the slopes of ln Cw, bend and
 ln(GPS / log) by them. Does not: any estimate.
 
 A log that reads low (y = true speed / log speed = exp lambda) turns the boat's ln Cw at a speed
@@ -17,16 +17,18 @@ off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (meth
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from functools import cached_property
+from typing import Final, NamedTuple, Self
 
 import numpy as np
+import polars as pl
 
-from pipeline.arrays import BoolArray, FloatArray
+from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
 from pipeline.curve import LEAST_MARGIN
+from pipeline.season_log.archive_tows import LOG, ArchiveTows
 from pipeline.season_log.assumed import Settings
-from pipeline.season_log.network import Network
 
-LOG: Final = "log_scale"
+LOG_SCALE: Final = "log_scale"
 GPS_SCALE: Final = "gps_scale"
 FORCE: Final = "force_scale"
 ZERO: Final = "force_zero"
@@ -41,122 +43,151 @@ LENGTH: Final = "length"
 SEASON_BEND: Final = "season_bend"
 
 WAYS: Final = {
-    LOG: "speed",
-    TREND: "speed",
-    CHANGE: "speed",
+    **dict.fromkeys((LOG_SCALE, TREND, CHANGE), "speed"),
+    **dict.fromkeys((FORCE, WATER, FLEET, AGEING, WEIGHT, LENGTH), "level"),
+    **dict.fromkeys((ZERO, ZERO_DRIFT), "zero"),
     GPS_SCALE: "gps",
-    FORCE: "level",
-    WATER: "level",
-    FLEET: "level",
-    AGEING: "level",
-    WEIGHT: "level",
-    LENGTH: "level",
-    ZERO: "zero",
-    ZERO_DRIFT: "zero",
     SEASON_BEND: "bend",
 }
-"""By which way an unknown reaches the numbers of a tow."""
+"""By which way an effect reaches the numbers of a tow."""
 
-
-OF_BOATS: Final = frozenset({FLEET, AGEING, WEIGHT, LENGTH, SEASON_BEND})
-"""Unknowns of boats; all others are of instruments."""
+OF_BOATS: Final = (FLEET, AGEING, WEIGHT, LENGTH, SEASON_BEND)
+"""Effects of boats; all others are of instruments."""
 
 FEWEST_AFTER_CHANGE: Final = 3
 """Fewer tows before or after a change cannot be told from tows that are odd."""
 
 
-class Unknown(NamedTuple):
+class Effect(NamedTuple):
     """One unknown: how much of it a tow has, and what is assumed of it.
 
     Attributes:
         name: what it is.
-        season, group: which it is of, where it is of one; `group` is a row of `Network.groups`.
+        season, part: which it is of, where it is of one.
         share: (tows,) how much of it each tow has.
-        sd: standard deviation of the prior; of a fault, if there is one.
+        sd, mean: of the prior; of a fault, if there is one.
         chance: that there is such a fault; 1 for what there always is.
-        mean: of the prior.
+        first_tow: where it begins, of a log that changed.
     """
 
     name: str
     season: int | None
-    group: int | None
+    part: int
     share: FloatArray
     sd: float
-    chance: float = 1.0
     mean: float = 0.0
+    chance: float = 1.0
+    first_tow: str | None = None
 
 
-def unknowns_of(network: Network, settings: Settings) -> list[Unknown]:
-    """All unknowns of an archive: first what there always is, then possible faults."""
-    return [*_always(network, settings), *_faults(network, settings)]
+@dataclass(frozen=True)
+class Effects:
+    """All effects of an archive: first what there always is, then candidate faults; e effects.
+
+    Attributes:
+        frame: a row each, as `Effect` without `share`; `kind`, a number that all places where one
+            log may have changed have in common.
+        share: (tows, e) how much of each a tow has.
+    """
+
+    frame: pl.DataFrame
+    share: FloatArray
+
+    @classmethod
+    def of(cls, tows: ArchiveTows, settings: Settings) -> Self:
+        """The effects there may be in an archive."""
+        listed = [*_always(tows, settings), *_faults(tows, settings)]
+        rows = pl.DataFrame(listed, orient="row", schema_overrides={"first_tow": pl.String})
+        frame = rows.drop("share").with_columns(
+            kind=pl.struct("name", "season", "part", pl.col("chance") < 1.0).rank("dense")
+        )
+        return cls(frame, np.stack([effect.share for effect in listed], axis=1))
+
+    @cached_property
+    def name(self) -> StrArray:
+        """What each is, (e,)."""
+        return self.frame["name"].to_numpy().astype(str)
+
+    @cached_property
+    def way(self) -> StrArray:
+        """By which way each reaches the numbers of a tow, (e,)."""
+        return np.array([WAYS[name] for name in self.name.tolist()])
+
+    @cached_property
+    def prior(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Mean, variance and chance of each, (e,)."""
+        mean, sd, chance = (self.frame[name].to_numpy() for name in ("mean", "sd", "chance"))
+        return mean, sd**2, chance
+
+    @property
+    def always(self) -> IntArray:
+        """Places of what there always is."""
+        return np.flatnonzero(self.prior[2] == 1.0)
+
+    @property
+    def faults(self) -> IntArray:
+        """Places of faults that there may be."""
+        return np.flatnonzero(self.prior[2] < 1.0)
+
+    def design(self, slopes: "Slopes", chosen: IntArray) -> FloatArray:
+        """Slopes of the numbers by some effects, (tows, 3, chosen)."""
+        by = np.stack([slopes.ways[way] for way in self.way[chosen].tolist()], axis=2)
+        return np.asarray(by * self.share[:, None, chosen])
 
 
-def _always(network: Network, settings: Settings) -> Iterator[Unknown]:
-    season = network.numbers("season")
-    excess = rectification(network, settings)
-    for number, year in enumerate(network.groups["season"]):
-        mine = network.group == number
-        sd, mean = _log_prior(network, number, settings)
-        yield Unknown(LOG, year, number, mine * 1.0, sd, mean=mean)
-        yield Unknown(SEASON_BEND, year, number, mine * 1.0, settings.season_bend_sd)
-        if network.has_gps[number]:
-            with_gps = mine & np.isfinite(network.numbers("gps_ln_ratio"))
-            sd = float(np.hypot(settings.gps_season_sd, excess[with_gps].mean() / np.sqrt(3.0)))
-            yield Unknown(GPS_SCALE, year, number, mine * 1.0, sd)
+def _always(tows: ArchiveTows, settings: Settings) -> Iterator[Effect]:
+    season = tows.numbers("season")
+    for place, log in enumerate(tows.logs.iter_rows(named=True)):
+        mine, year, part = (tows.log == place) * 1.0, log["season"], log["part"]
+        sd, mean = (settings.log_sd, 0.0)
+        if log["calibrated"]:
+            sd, mean = log["prior_sd"], log["prior_ln"]
+        yield Effect(LOG_SCALE, year, part, mine, sd, mean)
+        yield Effect(SEASON_BEND, year, part, mine, settings.season_bend_sd)
+        if log["has_gps"]:
+            yield Effect(GPS_SCALE, year, part, mine, settings.gps_season_sd)
     for year in np.unique(season).astype(int).tolist():
-        sd = _force_sd(network, year, settings)
-        yield Unknown(FORCE, year, None, (season == year) * 1.0, sd)
-        unrecorded = (season == year) & ~network.tows["temperature_known"].to_numpy()
+        recorded = tows.frame.filter(season=year)["force_sd"].drop_nulls().to_numpy()
+        sd = float(np.median(recorded)) if len(recorded) else settings.force_sd
+        yield Effect(FORCE, year, 0, (season == year) * 1.0, sd)
+        unrecorded = (season == year) & ~tows.frame["temperature_known"].to_numpy()
         if unrecorded.any():
-            yield Unknown(WATER, year, None, unrecorded * 1.0, settings.water_sd)
+            yield Effect(WATER, year, 0, unrecorded * 1.0, settings.water_sd)
     for name, values, prior in (
         (AGEING, season - settings.reference_year, settings.ageing_per_year),
-        (WEIGHT, ln_size(network, "weight_kg"), settings.weight_elasticity),
-        (LENGTH, ln_size(network, "waterline_length_m"), settings.length_elasticity),
+        (WEIGHT, ln_size(tows, "weight_kg"), settings.weight_elasticity),
+        (LENGTH, ln_size(tows, "waterline_length_m"), settings.length_elasticity),
     ):
-        yield Unknown(name, None, None, values, prior.sd, mean=prior.mean)
+        yield Effect(name, None, 0, values, prior.sd, prior.mean)
 
 
-def _log_prior(network: Network, group: int, settings: Settings) -> tuple[float, float]:
-    """Standard deviation and mean of ln factor of a log: by other tows of it with dGPS, if any."""
-    if not network.calibrated[group]:
-        return settings.log_sd, 0.0
-    first = int(np.flatnonzero(network.group == group)[0])
-    sd, mean = (network.numbers(f"others_calibration_{name}")[first] for name in ("sd", "ln"))
-    return float(sd), float(mean)
-
-
-def _force_sd(network: Network, year: int, settings: Settings) -> float:
-    """Prior standard deviation of a season's load cell: by its records where there are any."""
-    recorded = network.tows.filter(season=year)["force_sd"].drop_nulls()
-    return settings.force_sd if recorded.is_empty() else float(np.median(recorded.to_numpy()))
-
-
-def _faults(network: Network, settings: Settings) -> Iterator[Unknown]:
-    season, chance = network.numbers("season"), settings.fault_chance
-    day = np.nan_to_num(network.numbers("day"))
+def _faults(tows: ArchiveTows, settings: Settings) -> Iterator[Effect]:
+    season, chance = tows.numbers("season"), settings.fault_chance
+    day = np.nan_to_num(tows.numbers("day"))
     years = np.unique(season).astype(int).tolist()
     for year in years:
         mine = season == year
-        yield Unknown(FORCE, year, None, mine * 1.0, settings.force_fault_sd, chance)
-        yield Unknown(ZERO, year, None, mine * 1.0, settings.zero_fault_n, chance)
+        yield Effect(FORCE, year, 0, mine * 1.0, settings.force_fault_sd, chance=chance)
+        yield Effect(ZERO, year, 0, mine * 1.0, settings.zero_fault_n, chance=chance)
         drift = _within(day, mine)
         if drift.any():
-            yield Unknown(ZERO_DRIFT, year, None, drift, settings.zero_fault_n, chance)
+            yield Effect(ZERO_DRIFT, year, 0, drift, settings.zero_fault_n, chance=chance)
     for year in years[1:]:
         later = (season >= year) * 1.0
-        yield Unknown(FLEET, year, None, later, settings.fleet_fault_sd, chance)
-    for number, year in enumerate(network.groups["season"]):
-        mine = network.group == number
+        yield Effect(FLEET, year, 0, later, settings.fleet_fault_sd, chance=chance)
+    for place, (year, part) in enumerate(tows.logs.select(LOG).rows()):
+        mine = tows.log == place
         drift = _within(day, mine)
         if not drift.any():
             continue
-        yield Unknown(TREND, year, number, drift, settings.trend_fault_sd, chance)
+        yield Effect(TREND, year, part, drift, settings.trend_fault_sd, chance=chance)
         starts = _starts(day[mine])
-        for first in starts:
-            after = (mine & (day >= first)) * 1.0
-            sd, each = settings.change_fault_sd, chance / len(starts)
-            yield Unknown(CHANGE, year, number, after, sd, each)
+        names = tows.frame["tow_id"].to_numpy()
+        for start in starts:
+            first = names[mine & (day == start)].min()
+            after = (mine & (day >= start)) * 1.0
+            each = chance / len(starts)
+            yield Effect(CHANGE, year, part, after, settings.change_fault_sd, 0.0, each, first)
 
 
 def _within(day: FloatArray, mine: BoolArray) -> FloatArray:
@@ -175,19 +206,13 @@ def _starts(day: FloatArray) -> list[float]:
     return [float(d) for d in first[enough]]
 
 
-def rectification(network: Network, settings: Settings) -> FloatArray:
-    """Half of the most by which noise across the course can lengthen a velocity, as a ratio."""
-    speed = network.numbers("declared_speed_m_s")
-    return np.asarray(0.25 * (settings.gps_noise_m_s / speed) ** 2, dtype=np.float64)
-
-
-def ln_size(network: Network, column: str) -> FloatArray:
+def ln_size(tows: ArchiveTows, column: str) -> FloatArray:
     """Ln of a size less its mean over the boat's tows, 0 for boats where a tow has none."""
-    size = network.numbers(column)
+    size = tows.numbers(column)
     known = size > 0
     ln = np.log(np.where(known, size, 1.0))
-    usable = network.boat_mean((~known).astype(np.float64)) == 0.0
-    return np.where(usable, ln - network.boat_mean(ln), 0.0)
+    usable = tows.boat_mean((~known).astype(np.float64)) == 0.0
+    return np.where(usable, ln - tows.boat_mean(ln), 0.0)
 
 
 @dataclass(frozen=True)
@@ -197,7 +222,7 @@ class Slopes:
     Attributes:
         predicted: (n, 3) for a boat of level 0 and its usual bend.
         state: (n, 3, 2) by the boat's level and bend.
-        ways: (n, 3) by each way in which an unknown acts.
+        ways: (n, 3) by each way in which an effect acts.
     """
 
     predicted: FloatArray

@@ -1,30 +1,27 @@
 """From tows to season factors: the joint posterior as tables."""
 
-from dataclasses import dataclass, replace
-from typing import Final
+from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
 
-from pipeline.arrays import FloatArray, IntArray
-from pipeline.choice import first_largest
+from pipeline.arrays import FloatArray
 from pipeline.errors import BrokenPromiseError
 from pipeline.quantiles import t_quantile
+from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.assumed import USUAL
-from pipeline.season_log.diagnosis import (
-    NOT_DETERMINED,
-    NOT_SETTLED,
-    season_diagnosis,
-    season_steps,
-)
+from pipeline.season_log.diagnosis import season_diagnosis, season_steps
 from pipeline.season_log.effects import AGEING
-from pipeline.season_log.guard import refused
-from pipeline.season_log.network import GROUP, Network
-from pipeline.season_log.posterior import Posterior, Problem, solve
-from pipeline.season_log.tows import best_estimates, instrument_errors
-
-ESTIMATED: Final = "estimated"
-GPS: Final = "gps"
+from pipeline.season_log.factors import (
+    GPS,
+    NOT_SETTLED,
+    factors_of,
+    guarded,
+    without_each_boat,
+)
+from pipeline.season_log.faults import solve
+from pipeline.season_log.fit import OF_TOWS, Problem
+from pipeline.season_log.tow_estimates import best_estimates, instrument_errors
 
 
 @dataclass(frozen=True)
@@ -33,8 +30,7 @@ class SeasonFactors:
 
     Attributes:
         factors: one row per season, part and log that has tows without dGPS calibration, sorted:
-            `season, part, factor, lo, hi, source, ln_sd, dof, n_tows, n_links, component,
-            influence, influence_boat, critical_boats`. See `estimate_season_factors`.
+            rows of the table `season_links`. See `estimate_season_factors`.
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
         tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
@@ -43,10 +39,10 @@ class SeasonFactors:
         ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
         drift_sd: standard deviation of what a boat drifts from that in a year.
         tows: what it was estimated from.
-        instruments: per tow, what its instruments did: `pipeline.season_log.tows`.
-        best: per tow, what all tows together say of its Cw; `weights`: what that rests on.
-        diagnosis: per season and instrument, what is wrong: `pipeline.season_log.diagnosis`;
-            `steps`: whether a season's step is the log's or the load cell's.
+        instruments: per tow, what its instruments did, and `best`, what all tows together say of
+            its Cw; `weights`: what that rests on (`tow_estimates`).
+        diagnosis: per season and instrument, what is wrong; `steps`: whether a season's step is the
+            log's or the load cell's (`pipeline.season_log.diagnosis`).
     """
 
     factors: pl.DataFrame
@@ -109,51 +105,46 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
             `q` = r / (1 - r) of its curve there; `ln_cw_sd, q_sd, ln_cw_q_cov`, their random part;
             `kappa`, elasticity 2 / (1 - r) of the line's true curve there, from pooled q;
             `weight_kg, waterline_length_m` (may be null);
-            `boat_type` (may be null); `altered`, reported, since the line's previous tow;
+            `altered`, reported, since the line's previous tow;
             `declared_speed_m_s`; `gps_ln_ratio`, ln(mean GPS / log), null without, with `gps_sd`,
             its random part; `anchored`, calibrated on dGPS: no log error is left;
-            `own_calibration_ln`, ln factor of the log by dGPS, null where it is not calibrated;
-            `others_calibration_ln`, the same by other tows, null without, with its `_sd`;
-            `force_sd`, of the load cell by its record, null without one;
+            `others_calibration_ln`, ln factor of the log by dGPS in other tows, null without, with
+            its `_sd`; `force_sd`, of the load cell by its record, null without one;
             `temperature_known`, of the water.
 
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
         GPS alone, `not determined` (numbers null) where neither ties it to an anchored season, and
         `not settled` where the search did not come to rest, and (numbers null) where the factor
-        contradicts what needs no model (`guard`).
+        contradicts what needs no model (`factors.guarded`). `ln_sd`, the standard deviation of
+        ln factor, is made up of three parts: `repeat_tows_sd`, by the scatter of repeat tows;
+        `gps_sd`, by plain GPS; `assumed_sd`, by what is assumed of log, load cell and boats.
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
         network (0 has the anchor). `influence` is the largest change of the factor when one boat
-        (`influence_boat`) is left out, and `critical_boats` how many boats would leave the season
-        undetermined.
+        (`influence_boat`) is left out.
 
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
     _refuse_unknown(tows)
-    network = Network.of(tows)
-    posterior = _guarded(solve(Problem.of(network, USUAL)))
-    fit = posterior.fit
-    ageing = int(np.flatnonzero(posterior.names == AGEING)[0])
-    ageing_per_year = float(posterior.mean[ageing])
-    ageing_sd = float(np.sqrt(posterior.covariance[ageing, ageing]))
-    along = _group_means(posterior)
-    covariance = _of_means(posterior, along @ posterior.covariance @ along.T)
-    change = _without_each_boat(posterior)
+    posterior = guarded(solve(Problem.of(ArchiveTows.of(tows), USUAL)))
+    fitted, change = posterior.fit, without_each_boat(posterior.fit)
+    factors, covariance = factors_of(posterior, change)
     instruments = instrument_errors(posterior, change)
     best, weights = best_estimates(posterior, instruments)
-    eras = len(USUAL.era_starts)
-    *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
     diagnosis = season_diagnosis(posterior)
+    sd = np.exp(0.5 * fitted.ln_variance).tolist()
+    *tow_log_sd, calibration_sd, drift_sd = sd[OF_TOWS:]
+    ageing = int(np.flatnonzero(fitted.name == AGEING)[0])
     return SeasonFactors(
-        factors=_described(posterior, along, covariance, change),
+        factors=factors,
         covariance=covariance,
         tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
         calibration_sd=calibration_sd,
-        tow_sd=float(np.exp(0.5 * fit.state.ln_variance[0])),
-        ageing_per_year=ageing_per_year,
-        ageing_sd=ageing_sd,
-        drift_sd=float(np.sqrt(fit.state.drift_variance)),
+        tow_sd=sd[0],
+        ageing_per_year=float(fitted.value[ageing]),
+        ageing_sd=float(np.sqrt(fitted.covariance[ageing, ageing])),
+        drift_sd=drift_sd,
         tows=tows,
         instruments=instruments,
         best=best,
@@ -177,103 +168,3 @@ def _refuse_unknown(tows: pl.DataFrame) -> None:
                 faulty[name][0],
                 faulty.height - 1,
             )
-
-
-def _guarded(posterior: Posterior) -> Posterior:
-    """The posterior, with the factors refused that contradict what needs no model."""
-    along = _group_means(posterior)
-    known = posterior.problem.network.determined
-    ln_factor, ln_sd = np.zeros(len(known)), np.zeros(len(known))
-    ln_factor[known] = along @ posterior.mean
-    ln_sd[known] = np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along))
-    network = replace(posterior.problem.network, refused=refused(posterior, ln_factor, ln_sd))
-    return replace(posterior, problem=replace(posterior.problem, network=network))
-
-
-def _group_means(posterior: Posterior) -> FloatArray:
-    """Mean ln factor over the tows of each determined group as a sum of unknowns."""
-    network = posterior.problem.network
-    share = posterior.problem.share[:, posterior.places] * posterior.of_log
-    groups = np.flatnonzero(network.determined)
-    means = [share[network.group == number].mean(axis=0) for number in groups]
-    return np.array(means).reshape(len(groups), len(posterior.places))
-
-
-def _of_means(posterior: Posterior, covariance: FloatArray) -> FloatArray:
-    """Covariance of the mean ln factors over tows, by that of what logs do in general.
-
-    The scatter of the tows is in their mean as well as in what they tell of the log: it is in the
-    difference only as far as the prior draws the estimate.
-    """
-    own = posterior.scatter_of_means[posterior.problem.network.determined]
-    drawn = own / posterior.problem.settings.log_sd**2
-    return np.asarray(covariance * (1.0 + drawn + drawn[:, None]) - np.diag(own))
-
-
-def _without_each_boat(posterior: Posterior) -> FloatArray:
-    """Change of every unknown of the fit when a boat is left out, (boats, unknowns)."""
-    fit, cluster = posterior.fit, posterior.problem.network.cluster
-    clusters = int(cluster.max()) + 1
-    information = np.zeros((clusters, len(fit.active), len(fit.active)))
-    score = np.zeros((clusters, len(fit.active)))
-    for boats in fit.boats:
-        whose = cluster[boats.rows[:, 0] // 3]
-        np.add.at(information, whose, boats.information)
-        np.add.at(score, whose, boats.score)
-    left = np.linalg.inv(fit.covariance) - information
-    return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
-
-
-def _described(
-    posterior: Posterior,
-    along: FloatArray,
-    covariance: FloatArray,
-    change: FloatArray,
-) -> pl.DataFrame:
-    """The factor of each group with its interval and what it rests on; see `SeasonFactors`.
-
-    Args:
-        along: as `_group_means` gives it.
-        covariance: of the determined ln factors.
-        change: of every unknown of the fit without each boat, (boats, unknowns).
-    """
-    network, fit = posterior.problem.network, posterior.fit
-    known = np.flatnonzero(network.determined)
-
-    def placed(values: FloatArray | IntArray) -> pl.Series:
-        """Numbers of the determined groups, null for the others."""
-        column = np.full(network.groups.height, np.nan)
-        column[known] = values
-        return pl.Series(column, dtype=pl.Float64).fill_nan(None)
-
-    mean = along @ posterior.mean
-    critical = network.critical[:, known]
-    move = np.where(critical, np.inf, np.abs(np.expm1(change @ along.T)) * np.exp(mean))
-    influence = move.max(axis=0, initial=0.0)
-    boat = first_largest(move) if move.size else np.zeros(len(known))
-    ln_factor, dof = placed(mean), placed(fit.dof(along))
-    sd = placed(np.sqrt(np.diag(covariance)))
-    half = _half_width(sd, dof)
-    by_gps_alone = (network.links == 0) & (network.has_gps | network.calibrated)
-    source = np.where(by_gps_alone, GPS, ESTIMATED) if fit.settled else NOT_SETTLED
-    source = np.where(network.component == 0, source, NOT_DETERMINED)
-    return network.groups.select(
-        *GROUP,
-        factor=ln_factor.exp(),
-        lo=(ln_factor - half).exp(),
-        hi=(ln_factor + half).exp(),
-        source=pl.Series(np.where(network.refused, NOT_SETTLED, source), dtype=pl.String),
-        ln_sd=sd,
-        dof=dof,
-        n_tows=pl.Series(np.bincount(network.group[network.group >= 0]), dtype=pl.Int64),
-        n_links=pl.Series(network.links, dtype=pl.Int64),
-        component=pl.Series(network.component, dtype=pl.Int64),
-        influence=placed(np.where(np.isfinite(influence), influence, np.nan)),
-        influence_boat=pl.Series(network.boat_names).gather(placed(boat).cast(pl.Int64)),
-        critical_boats=placed(critical.sum(axis=0)).cast(pl.Int64),
-    )
-
-
-def _half_width(sd: pl.Series, dof: pl.Series) -> pl.Series:
-    quantile = t_quantile(dof.fill_null(1.0).clip(1.0).to_numpy())
-    return sd * pl.Series(quantile)

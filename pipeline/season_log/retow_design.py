@@ -15,8 +15,8 @@ import polars as pl
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.choice import first_largest
 from pipeline.history import UNKNOWN_LOG_SD
+from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.estimate import SeasonFactors
-from pipeline.season_log.network import Network
 from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import LINE
 from pipeline.tables.season_log import RetowChoice
@@ -37,31 +37,30 @@ def retow_choice(estimated: SeasonFactors) -> pl.DataFrame:
         Rows of `RETOW_SCHEMA`: `seasons` are those without dGPS in which the boat was towed;
         `factor_sd_*_ratio` the root of the mean variance of all ln factors before and after.
     """
-    network = Network.of(estimated.tows)
-    if not network.groups.height:
+    tows = ArchiveTows.of(estimated.tows)
+    if not tows.logs.height:
         return pl.DataFrame(schema=RETOW_SCHEMA)
     covariance = _covariance(estimated)
-    tie, variance, current = _candidates(network, estimated)
-    season = network.groups["season"].to_numpy()
-    lines = _lines(network)
-    open_to_choice = current.copy()
+    tie, variance, is_candidate = _candidates(tows, estimated)
+    season = tows.logs["season"].to_numpy()
+    lines = tows.frame.unique("boat").sort("boat").select(LINE)
     rows: list[dict[str, object]] = []
     for position in range(1, MOST_BOATS + 1):
         shift = tie @ covariance
         gain = (shift**2).sum(axis=1) / ((shift * tie).sum(axis=1) + variance)
-        gain[~open_to_choice] = 0.0
+        gain[~is_candidate] = 0.0
         best = int(first_largest(gain))
         if gain[best] <= 0.0:
             break
         before = _typical_sd(covariance)
         step = np.outer(shift[best], shift[best]) / (shift[best] @ tie[best] + variance[best])
         covariance = covariance - step
-        open_to_choice[best] = False
+        is_candidate[best] = False
         rows.append(
-            dict(zip(LINE, lines[best], strict=True))
+            lines.row(best, named=True)
             | {
                 "position": position,
-                "seasons": ", ".join(str(s) for s in sorted(set(season[tie[best] > 0.0]))),
+                "seasons": ", ".join(map(str, np.unique(season[tie[best] > 0.0]).tolist())),
                 "factor_sd_before_ratio": before,
                 "factor_sd_after_ratio": _typical_sd(covariance),
             }
@@ -78,37 +77,29 @@ def _covariance(estimated: SeasonFactors) -> FloatArray:
 
 
 def _candidates(
-    network: Network, estimated: SeasonFactors
+    tows: ArchiveTows, estimated: SeasonFactors
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """What one more tow of each boat would compare with its earlier ones.
 
     Returns:
-        tie: (boats, groups) the error of the boat's mean ln Cw by each ln factor.
+        tie: (boats, logs) the error of the boat's mean ln Cw by each ln factor.
         variance: (boats,) of new less mean ln Cw beyond that.
         current: (boats,) whether it is how the boat and crew were left.
     """
-    kappa, random_sd, season = (network.numbers(n) for n in ("kappa", "ln_cw_sd", "season"))
-    loose = network.group >= 0
+    kappa, random_sd, season = (tows.numbers(n) for n in ("kappa", "ln_cw_sd", "season"))
+    boat, loose = tows.boat, tows.log >= 0
     log_sd = estimated.tow_log_sd_of(season)
     own = random_sd**2 + estimated.tow_sd**2 + np.where(loose, kappa * log_sd, 0.0) ** 2
-    boats = int(network.boat.max()) + 1
-    weight = np.bincount(network.boat, 1.0 / own, boats)
-    tie = np.zeros((boats, network.groups.height))
-    np.add.at(tie, (network.boat[loose], network.group[loose]), (kappa / own)[loose])
-    years = season.max() + 1.0 - np.bincount(network.boat, season / own, boats) / weight
+    weight = np.bincount(boat, 1.0 / own)
+    tie = np.zeros((len(weight), tows.logs.height))
+    np.add.at(tie, (boat[loose], tows.log[loose]), (kappa / own)[loose])
+    years = season.max() + 1.0 - np.bincount(boat, season / own) / weight
     new_tow = estimated.tow_sd**2 + float(np.median(random_sd)) ** 2
     moved = (estimated.ageing_sd * years) ** 2 + estimated.drift_sd**2 * years
     variance = new_tow + 1.0 / weight + moved
-    last = network.tows.select(pl.col("state") == pl.col("state").max().over(LINE)).to_series()
-    current = np.zeros(boats, dtype=bool)
-    current[network.boat[last.to_numpy()]] = True
+    last = tows.frame.select(pl.col("state") == pl.col("state").max().over(LINE)).to_series()
+    current = np.bincount(boat, last.to_numpy()) > 0
     return tie / weight[:, None], variance, current
-
-
-def _lines(network: Network) -> list[tuple[object, ...]]:
-    """Boat and crew of each boat index."""
-    first = np.unique(network.boat, return_index=True)[1]
-    return network.tows.select(LINE)[first].rows()
 
 
 def _typical_sd(covariance: FloatArray) -> float:

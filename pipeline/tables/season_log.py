@@ -26,14 +26,16 @@ class SeasonLinks(PerPart):
     n_tows = dy.Int32(description="tows of the season", min=0)
     n_links = dy.Int32(description="boats also towed in other seasons", min=0)
     component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
-    critical_boats = dy.Int32(
-        description="boats without any of which the season is undetermined", nullable=True, min=0
-    )
     factor = column.number("1", "true speed / log speed; empty: not determined", nullable=True)
     lo = column.number("1", "lower end of its 95 % interval", nullable=True)
     hi = column.number("1", "upper end", nullable=True)
     ln_sd = column.number("1", "standard deviation of ln factor", nullable=True)
     dof = column.number("1", "its degrees of freedom", nullable=True)
+    repeat_tows_sd = column.number("1", "part of ln_sd by scatter of repeat tows", nullable=True)
+    gps_sd = column.number("1", "part of ln_sd by plain GPS", nullable=True)
+    assumed_sd = column.number(
+        "1", "part of ln_sd by what is assumed of log, load cell and boats", nullable=True
+    )
     influence = column.number("1", "largest change when one boat is left out", nullable=True)
     influence_boat = column.text("that boat", nullable=True)
 

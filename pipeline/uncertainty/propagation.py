@@ -245,6 +245,8 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     coefficient = pl.col("air_per_coefficient") * assumed.wind_coefficient
     wind_speed = pl.col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
     no_wind = pl.col("still_air_ratio") * assumed.unmeasured_wind
+    single, season, archive = map(pl.lit, (SINGLE, SEASON, ARCHIVE))
+    per_c, formula = assumed.temperature_ratio_per_c, assumed.temperature_formula_ratio
     effects = {
         "random": pl.col("random_ratio"),
         "misfit": pl.col("misfit_ratio"),
@@ -254,38 +256,36 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
         "anemometer": 2.0 * wind_speed * pl.col("air_ratio"),
         "mass": pl.lit(assumed.mass_ratio),
-        "temperature": (
-            (assumed.temperature_ratio_per_c * temperature_c) ** 2
-            + assumed.temperature_formula_ratio**2
-        ).sqrt(),
+        "temperature": ((per_c * temperature_c) ** 2 + formula**2).sqrt(),
         "straightness": pl.col("askew_ratio").fill_null(assumed.straightness_ratio),
         "season_log": kappa * pl.col("log_sd"),
     }
-    shared = {
-        "force": pl.lit(SEASON),
-        "wind": pl.when("wind_measured").then(pl.lit(ARCHIVE)).otherwise(pl.lit(SINGLE)),
-        "anemometer": pl.lit(SEASON),
-        "temperature": pl.when(known).then(pl.lit(SINGLE)).otherwise(pl.lit(SEASON)),
-        "season_log": pl.lit(SEASON),
+    shared = dict.fromkeys(COMPONENTS, single) | {
+        "force": season,
+        "wind": pl.when("wind_measured").then(archive).otherwise(single),
+        "anemometer": season,
+        "temperature": pl.when(known).then(single).otherwise(season),
+        "season_log": season,
     }
-    dof = {
+    dof = dict.fromkeys(COMPONENTS, pl.lit(np.inf)) | {
         "random": pl.col("random_dof"),
         "season_log": pl.col("log_dof"),
     }
-    parts = [
-        tows.select(
-            "tow_id",
-            "speed_ratio",
-            pl.lit(name).alias("component"),
-            shared.get(name, pl.lit(SINGLE)).alias("shared"),
-            _key(name, shared.get(name, pl.lit(SINGLE))).alias("key"),
-            effects[name].cast(pl.Float64).alias("effect_ratio"),
-            effects[name].cast(pl.Float64).abs().alias("u_ratio"),
-            dof.get(name, pl.lit(np.inf)).cast(pl.Float64).alias("dof"),
-        )
-        for name in COMPONENTS
-    ]
-    return pl.concat(parts)
+    return pl.concat(
+        [
+            tows.select(
+                "tow_id",
+                "speed_ratio",
+                component=pl.lit(name),
+                shared=shared[name],
+                key=_key(name, shared[name]),
+                effect_ratio=effects[name].cast(pl.Float64),
+                u_ratio=effects[name].cast(pl.Float64).abs(),
+                dof=dof[name].cast(pl.Float64),
+            )
+            for name in COMPONENTS
+        ]
+    )
 
 
 def _key(component: str, shared: pl.Expr) -> pl.Expr:

@@ -12,18 +12,16 @@ import pytest
 from polars.testing import assert_frame_equal
 
 import assets.instance
-import assets.location
+import assets.run
 import assets.tables
 import warehouse.derive.step
-from assets.instance import QUIET_LOG
-from assets.location import assets_of
 from assets.resources import Setup
+from assets.run import QUIET_LOG, assets_of
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.schemas import TABLES
 from tests.assets.page import page
 from tests.assets.test_rebuild import (
     assert_same_tables,
-    mended_while_read,
     samples_files,
     spoil,
 )
@@ -111,8 +109,8 @@ def test_what_dagster_calls_stale_has_all_that_is_and_nothing_after_a_rebuild(
         for module in (warehouse.derive.step, assets.tables):
             monkeypatch.setattr(module, "code_hash", lambda *_: "other")
         steps = [assets.tables.step_asset(step) for step in STEPS]
-        kept = [a for a in assets.location.ASSETS if a not in assets.tables.STEP_ASSETS]
-        monkeypatch.setattr(assets.location, "ASSETS", [*kept, *steps])
+        kept = [a for a in assets.run.ASSETS if a not in assets.tables.STEP_ASSETS]
+        monkeypatch.setattr(assets.run, "ASSETS", [*kept, *steps])
 
     def agrees_after(change, ask):
         change(bench)
@@ -160,14 +158,7 @@ def test_damaged_blocks_of_a_tow_are_made_again(bench, built, instance):
     file = next((bench.data / "lake" / "blocks" / "season=2009").iterdir())
     file.write_bytes(file.read_bytes()[:100])
     bench.store.table_path("blocks", "2009").unlink()
-    assert materialise(bench, instance, "blocks", season=2009).success
-    assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
-
-
-def test_a_season_of_an_archive_that_changes_is_read_again(bench, built, instance, monkeypatch):
-    read = mended_while_read(bench, monkeypatch)
     assert materialise(bench, instance, "samples", "blocks", season=2009).success
-    assert read
     assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
 
 

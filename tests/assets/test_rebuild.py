@@ -84,17 +84,6 @@ def mended_while_read(bench: Workbench, monkeypatch: pytest.MonkeyPatch) -> list
     return when_read(monkeypatch, lambda read: len(read) > 1 or file.write_bytes(kept))
 
 
-def test_every_listed_tow_is_a_row_of_tows_and_of_every_method(built):
-    per_season = built.table("tows").group_by("season").len().sort("season").rows()
-    assert per_season == [(season, SMALL.tows_per_season) for season in SMALL.seasons]
-    assert built.table("quarantine").height == 0
-    tow_ids = set(built.table("tows")["tow_id"])
-    for method in METHODS:
-        assert set(built.table("curves").filter(method=method)["tow_id"]) == tow_ids
-        points = built.table("run_points").filter(method=method)
-        assert points.height == 6 * len(tow_ids)
-
-
 def test_a_second_rebuild_does_nothing(bench, files_read):
     before, database = bench.lake_files(), bench.store.database.stat()
     assert bench.rebuild().done == Done(seasons=[], methods=[], database=False)
@@ -130,27 +119,6 @@ def test_a_spoiled_file_leaves_alone_and_a_mended_one_comes_back_by_itself(
     assert files_read == [tow, tow]
     assert_same_tables(without_studies(bench.tables()), without_studies(built.tables()))
     assert bench.lake_files().keys() == before.keys()
-
-
-def test_a_removed_row_takes_its_samples_blocks_and_rows_along(bench, built, files_read):
-    file = samples_files(bench, 2009)[0]
-    tow, before = tow_of(bench, file), bench.lake_files()
-    file.unlink()
-    lines = (bench.archive / TOWS_2009).read_text("cp1252").split("\n")
-    kept = [line for line in lines if not line.startswith(f"{tow};")]
-    assert len(kept) == len(lines) - 1
-    (bench.archive / TOWS_2009).write_text("\n".join(kept), "cp1252")
-    bench.rebuild(ONE)
-    assert files_read == []
-    assert bench.table("quarantine").height == 0
-    for name in ("tows", "run_points", "curves"):
-        others = built.table(name).filter(pl.col("tow_id") != tow)
-        if name != "tows":
-            others = others.filter(pl.col("method").is_in(ONE))
-        assert_frame_equal(bench.table(name), others, check_exact=True)
-    after = bench.lake_files()
-    assert len(before) - len(after) == 2
-    assert after.items() <= before.items()
 
 
 def test_a_removed_season_leaves(bench, files_read):

@@ -105,17 +105,6 @@ def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):
     assert first == "Seasons of which the archive has no tow any more: 2002"
 
 
-def test_a_second_rebuild_reports_that_nothing_changed(bench):
-    bench.rebuild()
-    report = bench.rebuild()
-    assert report.nothing_changed
-    assert report.headlines == ["Nothing changed since the last report."]
-    assert latest(bench)["nothing_changed"]
-    page = (bench.data / "report" / "latest.html").read_text("utf-8")
-    assert "Eerste verslag" in page
-    assert "GESIMULEERD" in page
-
-
 def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, monkeypatch):
     bench.rebuild()
     spoil(samples_files(bench, 2009)[3])

@@ -265,6 +265,17 @@ def test_a_new_register_that_surely_has_another_winner():
     assert found["change_probability"] == 1.0
 
 
+def test_a_penalty_does_not_follow_cw():
+    """In the member both lose the same watts, whatever Cw is."""
+    rows = results(("X", 7600, 0.0, 20.0), ("Y", 7600))
+    lines = lines_with_tows(("X", 34.0, 5.0, "x"), ("Y", 30.0, 5.0, "y"))
+    x, y = lines["cw_kg_m"]
+    even = winners_of(lines, lines, ensemble(x=[1.1 * x], y=[1.1 * y]), rows)
+    higher = winners_of(lines, lines, ensemble(x=[1.6 * x], y=[1.1 * y]), rows)
+    assert (even["old_winner"], even["change_probability"]) == ("Y", 0.0)
+    assert higher["change_probability"] == 1.0
+
+
 def test_where_nothing_can_be_counted_nothing_is_said():
     rows = results(("X", 7600), ("Y", 7600))
     both = lines_with_tows(("X", 31.2, 5.0, "x"), ("Y", 30.0, 5.0, "y"))

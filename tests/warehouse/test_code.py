@@ -65,4 +65,4 @@ def test_the_hash_is_of_the_bytes(monkeypatch, tmp_path):
 def test_steps_come_after_those_whose_tables_they_read():
     made = [set(step.outputs) for step in STEPS]
     for number, step in enumerate(STEPS):
-        assert not step.reads & set().union(*made[number:]), step.name
+        assert not {*step.inputs} & set().union(*made[number:]), step.name

@@ -21,8 +21,6 @@ from warehouse.derive.archive_tables import NothingSoundError
 from warehouse.derive.database import database_without_tows
 from warehouse.derive.inputs import (
     ARCHIVE_TABLES,
-    IN_DATABASE,
-    OTHERS,
     Scope,
     argument,
     state,
@@ -67,12 +65,6 @@ class Step:
     def inputs(self) -> tuple[str, ...]:
         """What the step reads, as `warehouse.derive.inputs` knows it."""
         return tuple(inspect.signature(self.compute).parameters)
-
-    @cached_property
-    def reads(self) -> frozenset[str]:
-        """The tables among them."""
-        tables = {name for name in self.inputs if name == "blocks" or name not in OTHERS}
-        return frozenset(tables | {*(IN_DATABASE if "all_tables" in self.inputs else ())})
 
     @property
     def per_method(self) -> bool:

@@ -230,8 +230,3 @@ def _listed(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
     tows = store.read("listed_tows").filter(pl.col("season") == season).sort("tow_id")
     runs = store.read("listed_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
     return tows, runs.sort("tow_id", "run")
-
-
-def count_listed(store: Store, seasons: Collection[int]) -> int:
-    """Tows listed in the given seasons."""
-    return store.read("listed_tows").filter(pl.col("season").is_in(list(seasons))).height

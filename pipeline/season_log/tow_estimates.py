@@ -14,9 +14,10 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.model import Boats
 from pipeline.quantiles import LEVEL as INTERVAL_LEVEL
-from pipeline.season_log.effects import FORCE, ZERO, ZERO_DRIFT, slopes
-from pipeline.season_log.likelihood import LEVEL, Patterns
-from pipeline.season_log.posterior import Fit, Posterior, Problem
+from pipeline.season_log.boats import LEVEL, Patterns
+from pipeline.season_log.effects import FORCE, ZERO, ZERO_DRIFT
+from pipeline.season_log.faults import Posterior
+from pipeline.season_log.fit import Fit, Problem, level_of_boats
 
 BISECTIONS: Final = 40
 LIKELY: Final = 0.05
@@ -32,49 +33,47 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     A fault counts where it is likelier than not, and not at all where it is not.
 
     Args:
-        change: of every unknown of the fit without each boat, (boats, unknowns).
+        change: of every effect of the fit without each boat, (boats, effects).
 
     Returns:
-        `tow_id, log`, `factor` of the log (null where the season is not determined; 1 with dGPS),
+        `tow_id`, `factor` of the log (null where the season is not determined; 1 with dGPS),
         `force_factor` and `force_zero_n` of the load cell: read = true x factor + zero; `bend`, q
         of the boat; `askew_ratio`, what being pulled askew may have added to ln Cw (root mean
         square; not corrected, and 0 where it is unlikely); `ln_sd` and `dof` of what the
         instruments do to ln Cw, per unit of the elasticity 2 + 2 q; `others_ln_ratio`, change of ln
-        Cw with the instruments as the other boats alone show them. In the order of the network.
+        Cw with the instruments as the other boats alone show them. In the order of the tows.
     """
-    problem, network, speed = posterior.problem, posterior.problem.network, posterior.of_log
-    level = np.where(posterior.of_boats, 0.0, posterior.design[:, LEVEL])
-    share = problem.share[:, posterior.places]
-    corrected = np.isin(posterior.places, problem.faults)
-    force = corrected & (posterior.names == FORCE)
-    zero = corrected & np.isin(posterior.names, (ZERO, ZERO_DRIFT))
-    variance = ((level @ posterior.covariance) * level).sum(axis=1)
-    own = np.append(posterior.scatter_of_means, 0.0)[network.group]  # -1, anchored, reads the last
-    by_log = posterior.fit.slopes.ways["speed"][:, LEVEL] ** 2
+    fitted, problem, speed = posterior.fit, posterior.fit.problem, posterior.fit.of_log
+    level = np.where(fitted.of_boats, 0.0, fitted.design[:, LEVEL])
+    force = fitted.is_fault & (fitted.name == FORCE)
+    zero = fitted.is_fault & np.isin(fitted.name, (ZERO, ZERO_DRIFT))
+    variance = ((level @ fitted.covariance) * level).sum(axis=1)
+    own = np.append(fitted.scatter_of_means, 0.0)[problem.tows.log]  # -1, anchored, reads the last
+    by_log = fitted.slopes.ways["speed"][:, LEVEL] ** 2
     variance += own * (2.0 * variance / problem.settings.log_sd**2 - by_log)
-    determined = network.log_known
     known = np.sqrt(np.maximum(variance, 0.0)) / (2.0 + 2.0 * problem.q)
     applied = np.where(speed | force | zero, level, 0.0)
-    others = -(applied * change[network.cluster]).sum(axis=1)
-    return network.tows.select(
+    others = -(applied * change[problem.tows.frame["hull"].to_numpy()]).sum(axis=1)
+    share, value, determined = fitted.share, fitted.value, posterior.log_known
+    return problem.tows.frame.select(
         "tow_id",
-        _where(determined, "factor", np.exp(share[:, speed] @ posterior.mean[speed])),
-        pl.Series("force_factor", np.exp(share[:, force] @ posterior.mean[force])),
-        pl.Series("force_zero_n", share[:, zero] @ posterior.mean[zero]),
+        _where(determined, "factor", np.exp(share[:, speed] @ value[speed])),
+        pl.Series("force_factor", np.exp(share[:, force] @ value[force])),
+        pl.Series("force_zero_n", share[:, zero] @ value[zero]),
         pl.Series("bend", problem.q),
-        pl.Series("askew_ratio", _askew(posterior.fit, len(problem.q))),
+        pl.Series("askew_ratio", _askew(fitted)),
         pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
-        pl.Series("dof", posterior.fit.dof(level)),
+        pl.Series("dof", fitted.dof(level)),
         _where(determined, "others_ln_ratio", others),
     )
 
 
-def _askew(fit: Fit, tows: int) -> FloatArray:
+def _askew(fitted: Fit) -> FloatArray:
     """Root mean square of what being pulled askew added to ln Cw of each tow."""
-    square = np.zeros(tows)
-    for group, boats in zip(fit.groups, fit.boats, strict=True):
+    square = np.zeros(len(fitted.problem.q))
+    for group, boats in zip(fitted.problem.groups, fitted.boats, strict=True):
         pull = boats.pull[..., LEVEL::3]
-        own = np.einsum("bpkk->bpk", fit.precision(group))[..., LEVEL::3]
+        own = np.einsum("bpkk->bpk", fitted.precision(group))[..., LEVEL::3]
         variance = group.excess_variance
         mean = group.excess + variance * pull
         weight = boats.weight[:, :, None] * group.askew
@@ -98,60 +97,45 @@ def best_estimates(
         instruments: as `instrument_errors` gives them.
 
     Returns:
-        `tow_id, as_measured, ln_cw, sd, lo, hi` (95 %), in the order of the network: ln Cw by the
+        `tow_id, as_measured, ln_cw, sd, lo, hi` (95 %), in the order of the tows: ln Cw by the
         tow alone with the corrections of `instrument_errors`, then by all; and the shares
         `tow_id, rests_on, weight` that sum to 1 per tow.
     """
-    problem, network = posterior.problem, posterior.problem.network
-    true_level = np.where(posterior.of_boats, posterior.design[:, LEVEL], 0.0)
+    fitted, problem = posterior.fit, posterior.fit.problem
     numbers = np.zeros((len(problem.q), 4))
     shares = []
-    for group, boats in zip(posterior.fit.groups, posterior.fit.boats, strict=True):
-        numbers[group.tow], weight = _of_boats(group, boats, posterior, true_level)
-        tows = group.tow.shape[1]
-        shares.append(
-            pl.DataFrame(
-                {
-                    "tow": np.repeat(group.tow, tows, axis=1).ravel(),
-                    "other": np.tile(group.tow, (1, tows)).ravel(),
-                    "weight": weight.ravel(),
-                }
-            )
-        )
-    base = problem.boat_level + true_level @ posterior.mean
+    for group, boats in zip(problem.groups, fitted.boats, strict=True):
+        numbers[group.tow], weight = _of_boats(group, boats, fitted)
+        tow, other = np.broadcast_arrays(group.tow[:, :, None], group.tow[:, None])
+        shares.append(pl.DataFrame({"tow": tow.ravel(), "other": other.ravel(), "weight": weight}))
+    base = problem.boat_level + level_of_boats(fitted)
     ln_cw, sd, lo, hi = numbers.T
-    names = network.tows["tow_id"]
-    lost_tows = np.flatnonzero(~network.log_known)
+    best = problem.tows.frame.select(
+        "tow_id",
+        pl.Series("as_measured", _as_measured(problem, instruments)),
+        pl.Series("ln_cw", base + ln_cw),
+        pl.Series("sd", sd),
+        pl.Series("lo", base + lo),
+        pl.Series("hi", base + hi),
+    )
+    alone = (pl.col("tow") == pl.col("other")).cast(pl.Float64)
+    names = problem.tows.frame["tow_id"]
     weights = (
         pl.concat(shares)
-        .with_columns(
-            pl.when(pl.col("tow").is_in(lost_tows.tolist()))
-            .then((pl.col("tow") == pl.col("other")).cast(pl.Float64))
-            .otherwise("weight")
-            .alias("weight")
+        .join(
+            pl.DataFrame({"known": posterior.log_known}).with_row_index("tow").cast({"tow": int}),
+            on="tow",
+            maintain_order="left",
         )
+        .with_columns(pl.when("known").then("weight").otherwise(alone).alias("weight"))
         .filter(pl.col("weight").abs() >= LEAST_WEIGHT)
         .sort("tow", "other")
-        .select(
-            "tow",
-            "other",
-            pl.col("weight") / pl.col("weight").sum().over("tow"),
-        )
+        .with_columns(pl.col("weight") / pl.col("weight").sum().over("tow"))
     )
-    return (
-        network.tows.select(
-            "tow_id",
-            pl.Series("as_measured", _as_measured(problem, instruments)),
-            pl.Series("ln_cw", base + ln_cw),
-            pl.Series("sd", sd),
-            pl.Series("lo", base + lo),
-            pl.Series("hi", base + hi),
-        ),
-        weights.select(
-            tow_id=names.gather(weights["tow"]),
-            rests_on=names.gather(weights["other"]),
-            weight=weights["weight"],
-        ),
+    return best, weights.select(
+        tow_id=names.gather(weights["tow"]),
+        rests_on=names.gather(weights["other"]),
+        weight="weight",
     )
 
 
@@ -161,37 +145,32 @@ def _as_measured(problem: Problem, errors: pl.DataFrame) -> FloatArray:
         errors[name].fill_null(1.0).to_numpy()
         for name in ("factor", "force_factor", "force_zero_n")
     )
-    by_log = slopes(problem.q, problem.force_n, np.log(factor), problem.reference_ln).predicted
+    by_log = problem.slopes(np.log(factor)).predicted[:, LEVEL]
     by_force = np.log(scale) - np.log1p(-zero / problem.force_n)
-    return np.asarray(problem.network.numbers("ln_cw") - by_log[:, LEVEL] - by_force)
+    return np.asarray(problem.tows.numbers("ln_cw") - by_log - by_force)
 
 
-def _of_boats(
-    group: Patterns, boats: Boats, posterior: Posterior, true_level: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Boats with the same number of tows: (boats, tows, 4) numbers, (boats, tows, tows) shares."""
-    tow = group.tow
-    count, tows = tow.shape
-    state = posterior.fit.slopes.state[tow][..., 0]
+def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, FloatArray]:
+    """Boats with the same number of tows: (boats, tows, 4) numbers, and the shares, flat."""
+    count, tows = group.tow.shape
+    state = fitted.slopes.state[group.tow][..., 0]
     # Covariance of the level at each tow with every number of the boat, per pattern.
-    drift = posterior.fit.state.drift_variance * group.drift
-    level = group.level + drift[:, None]
-    with_level = np.einsum("bpkl,bli->bpkli", level, state)
-    with_level = with_level.reshape(count, -1, tows, 3 * tows)
-    gain = with_level @ posterior.fit.precision(group)
-    prior = np.einsum("bpkk->bpk", level)
-    variance = prior - (gain * with_level).sum(axis=3)
-    by = true_level[tow][:, None] - gain @ boats.design[:, None]
+    level = group.level + (fitted.drift_variance * group.years)[:, None]
+    with_level = np.einsum("bpkl,bli->bpkli", level, state).reshape(count, -1, tows, 3 * tows)
+    gain = with_level @ fitted.precision(group)
+    variance = np.einsum("bpkk->bpk", level) - (gain * with_level).sum(axis=3)
+    of_all = np.where(fitted.of_boats, fitted.design[:, LEVEL], 0.0)
+    by = of_all[group.tow][:, None] - gain @ boats.design[:, None]
     mean = np.einsum("bpkn,bpn->bpk", with_level, boats.pull)
-    shared = np.einsum("bpkf,fg,bpkg->bpk", by, posterior.covariance, by, optimize=True)
+    shared = np.einsum("bpkf,fg,bpkg->bpk", by, fitted.covariance, by, optimize=True)
     variance = np.maximum(variance + shared, 1e-12)
     weight = np.repeat(boats.weight[:, :, None], tows, axis=2)
     average = (weight * mean).sum(axis=1)
     spread = (weight * (variance + (mean - average[:, None]) ** 2)).sum(axis=1)
     bounds = _quantiles(weight, mean, np.sqrt(variance))
-    numbers = np.stack([average, np.sqrt(spread), *bounds], axis=2)
     on_level = gain.reshape(count, -1, tows, tows, 3)[..., LEVEL]
-    return numbers, np.einsum("bp,bpkl->bkl", boats.weight, on_level)
+    shares = np.einsum("bp,bpkl->bkl", boats.weight, on_level)
+    return np.stack([average, np.sqrt(spread), *bounds], axis=2), shares.ravel()
 
 
 def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> list[FloatArray]:

@@ -1,0 +1,178 @@
+"""Which faults there are: each joins or leaves the model by its odds, one at a time.
+
+A fault enters by what one step from a fit promises, and stays by its own fit or not at all.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+import scipy
+
+from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.choice import first_largest
+from pipeline.model import Scores
+from pipeline.season_log.fit import Fit, Problem, fit
+
+MOST_FAULTS: Final = 12
+ROUGH: Final = 1e-4
+"""Movement at which a fit is good enough to ask which faults there are."""
+
+
+class Candidates(NamedTuple):
+    """What each fault that there may be, by itself, would do to a normal posterior; k effects.
+
+    Attributes:
+        ln_odds: of it, (faults,).
+        shows: whether a fault of one standard deviation of its prior would be likelier than not.
+        shift: how much the effects of the fit fall per unit of the fault, (k, faults).
+    """
+
+    ln_odds: FloatArray
+    shows: BoolArray
+    shift: FloatArray
+
+    @classmethod
+    def of(
+        cls, problem: Problem, scores: Scores, covariance: FloatArray, away: FloatArray | float
+    ) -> Self:
+        """Each fault added by itself to a posterior whose mean is `away` from where scores are."""
+        _, prior, chance = (p[problem.effects.faults] for p in problem.effects.prior)
+        pull = scores.pull - scores.across.T @ np.broadcast_to(away, len(covariance))
+        known = prior * scores.information(covariance)
+        variance = prior / (1.0 + known)
+        ln_prior = scipy.special.logit(chance) - 0.5 * np.log1p(known)
+        return cls(
+            0.5 * pull**2 * variance + ln_prior,
+            0.5 * known**2 / (1.0 + known) + ln_prior > 0.0,
+            covariance @ scores.across,
+        )
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """What is known of all effects, and of the faults that were left out of the model.
+
+    Attributes:
+        fit: with the faults that are likelier than not.
+        chance: (faults,) probability of each fault, in the order of `Effects.faults`; 0 where its
+            own fit did not bear out what one step promised.
+        instead: (faults, faults) probability of the other fault if the one were not there, and
+            was in the model.
+        shows: (faults,) whether a fault of the usual size would be likelier than not.
+        hidden_by: (faults,) effect of the fit that would move most, in standard deviations.
+        refused: (logs,) whether the factor of a log contradicts what needs no model (`guard`).
+    """
+
+    fit: Fit
+    chance: FloatArray
+    instead: FloatArray
+    shows: BoolArray
+    hidden_by: IntArray
+    refused: BoolArray
+
+    @property
+    def determined(self) -> BoolArray:
+        """Logs that are tied to the anchor and not refused, (logs,)."""
+        tied = self.fit.problem.tows.logs["component"].to_numpy() == 0
+        return np.asarray(tied & ~self.refused)
+
+    @property
+    def log_known(self) -> BoolArray:
+        """Tows whose log is determined, and anchored ones, (tows,)."""
+        return np.append(self.determined, [True])[self.fit.problem.tows.log]
+
+
+def solve(problem: Problem) -> Posterior:
+    """The posterior of everything, with the faults that the archive shows."""
+    rough = _with_needed_faults(problem, _with_needed_faults(problem, None, changes=False))
+    sharp = fit(problem, rough.active, rough)
+    return _posterior(replace(sharp, settled=rough.settled and sharp.settled))
+
+
+def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = True) -> Fit:
+    """The fit with every fault that is likelier than not, and without the others.
+
+    A log that was replaced is easily taken for many tows pulled askew, and then is not missed. From
+    a start where no boat had changed it is found; what changed boats do without is left again.
+
+    Where the promise of one step and a fault's own fit disagree it would come and go, at one place
+    after the other, so no fault leads to the kinds of faults of an earlier model.
+    """
+    active = problem.effects.always if start is None else start.active
+    fitted = fit(problem, active, start, ROUGH, changes)
+    fitted_before: set[tuple[int, ...]] = set()
+    for _ in range(2 * MOST_FAULTS):
+        fitted_before.add(_kinds(fitted))
+        chosen = _better(fitted, fitted_before)
+        if chosen is None:
+            return fitted
+        fitted = fit(problem, chosen, fitted, ROUGH, changes)
+        if fitted.is_fault.sum() > MOST_FAULTS:
+            break
+    return replace(fitted, settled=False)
+
+
+def _kinds(fitted: Fit, also: int | None = None) -> tuple[int, ...]:
+    """Kinds of the faults of a model, and of one more, sorted."""
+    places = fitted.active[fitted.is_fault].tolist() + ([] if also is None else [also])
+    return tuple(sorted(fitted.problem.effects.frame["kind"].gather(places).to_list()))
+
+
+def _better(fitted: Fit, fitted_before: set[tuple[int, ...]]) -> IntArray | None:
+    """The effects with the fault that is missed most, or without the one that is not needed.
+
+    Args:
+        fitted_before: kinds of faults of the models that no fault is to lead to.
+    """
+    places, ln_odds = _in_fit(fitted)
+    if len(places) and ln_odds.min() < 0.0:
+        return np.delete(fitted.active, places[int(ln_odds.argmin())])
+    problem, faults = fitted.problem, fitted.problem.effects.faults
+    more = Candidates.of(problem, _scores(fitted), fitted.covariance, 0.0).ln_odds
+    there = [_kinds(fitted, also) in fitted_before for also in faults.tolist()]
+    more[np.isin(faults, fitted.active) | there] = -np.inf
+    best = int(first_largest(more))
+    return np.append(fitted.active, faults[best]) if more[best] > 0.0 else None
+
+
+def _scores(fitted: Fit) -> Scores:
+    """The scores of all faults that there may be."""
+    effects = fitted.problem.effects
+    design = effects.design(fitted.slopes, effects.faults)
+    return Scores.of(fitted.boats, design.reshape(-1, design.shape[2]))
+
+
+def _in_fit(fitted: Fit) -> tuple[IntArray, FloatArray]:
+    """Faults in the fit, as places among its effects, and their ln odds (Savage-Dickey)."""
+    places = np.flatnonzero(fitted.is_fault)
+    _, prior, chance = (p[fitted.active[places]] for p in fitted.problem.effects.prior)
+    variance = np.diag(fitted.covariance)[places]
+    square = fitted.value[places] ** 2 / variance
+    return places, 0.5 * (square + np.log(variance / prior)) + scipy.special.logit(chance)
+
+
+def _posterior(fitted: Fit) -> Posterior:
+    """The fit, with how likely each fault is beside it or in place of one of its own."""
+    problem, faults = fitted.problem, fitted.problem.effects.faults
+    scores, (places, ln_odds) = _scores(fitted), _in_fit(fitted)
+    own = np.searchsorted(faults, fitted.active[places])
+    more = Candidates.of(problem, scores, fitted.covariance, 0.0)
+    # What the search has tried and rejected by its own fit has odds of one step still.
+    chance = np.where(more.ln_odds > 0.0, 0.0, scipy.special.expit(more.ln_odds))
+    chance[own] = scipy.special.expit(ln_odds)
+    instead = np.zeros((len(faults), len(faults)))
+    for place, fault, odds in zip(places.tolist(), own.tolist(), ln_odds.tolist(), strict=True):
+        along = fitted.covariance[:, place] / fitted.covariance[place, place]
+        without = fitted.covariance - np.outer(along, fitted.covariance[place])
+        others = Candidates.of(problem, scores, without, -along * fitted.value[place])
+        instead[fault] = scipy.special.expit(others.ln_odds - odds)
+        instead[fault, own] = 0.0
+    return Posterior(
+        fitted,
+        chance,
+        instead,
+        more.shows,
+        first_largest(np.abs(more.shift) / np.sqrt(np.diag(fitted.covariance))[:, None]),
+        np.zeros(problem.tows.logs.height, dtype=bool),
+    )
