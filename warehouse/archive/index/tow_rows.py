@@ -31,7 +31,7 @@ def read_tow_lists(
             continue
         entries += [
             Entry(row, file.path, file.season or _year_of(row), profiles)
-            for row in tow_list.per_tow(rows)
+            for row in tow_list.with_ids(rows)
         ]
     return entries, unread_seasons
 
