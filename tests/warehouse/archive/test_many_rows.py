@@ -7,7 +7,7 @@ import pytest
 from pipeline.errors import DefectiveInputError
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.index.comparisons import unique_ids, unique_samples
-from warehouse.archive.index.entry import Entry
+from warehouse.archive.index.tow_rows import Entry
 from warehouse.archive.lists.boats import Boats
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.row import ListRow, Reading

@@ -12,7 +12,7 @@ from pipeline.messages import say
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.faults import Fault, fault_from
-from warehouse.archive.index.entry import Entry
+from warehouse.archive.index.tow_rows import Entry
 from warehouse.archive.lists import tows as tow_list
 from warehouse.archive.lists.boats import Boats
 from warehouse.archive.profile.definition import Profiles
