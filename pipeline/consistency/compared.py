@@ -33,8 +33,6 @@ from pipeline.tables.frames import frame_of
 ROWED_RATIO: Final = (0.60, 0.70)
 """Presentation 2015: "We roeien op ca. 60-70% van de rompsnelheid"."""
 
-FEWEST_LENGTHS: Final = 6
-
 
 def compared_tows(observed: Observed) -> pl.DataFrame:
     """All tows with what is compared: A, B and Cw at the standard speed, and hull speed.
@@ -104,8 +102,7 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
     """Is B hull speed, and at what part of hull speed are boats towed?
 
     Of a boat with several tows the median counts, so that it counts once. The interval of the
-    median rests on order statistics; the slope is that of ln B on ln waterline length, 0.5 if B
-    went with hull speed. Of seasons only all types together.
+    median rests on order statistics. Of seasons only all types together.
 
     Args:
         compared: rows of `compared_tows`.
@@ -128,13 +125,13 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
             typed = tows.filter(pl.col("boat_type") != UNKNOWN_TYPE)
             groups += typed.group_by("method", "boat_type", maintain_order=True)
         rows += [
-            {"method": m, "tows": choice, "boat_type": t} | _hull_row(group, t)
+            {"method": m, "tows": choice, "boat_type": t} | _hull_row(group)
             for (m, t), group in groups
         ]
     return frame_of(HullSpeed, rows).sort("method", "tows", "boat_type")
 
 
-def _hull_row(tows: pl.DataFrame, boat_type: str) -> dict[str, object]:
+def _hull_row(tows: pl.DataFrame) -> dict[str, object]:
     ratio = tows["tow_hull_ratio"]
     with_b = tows.drop_nulls("b_hull_ratio")
     row: dict[str, object] = {
@@ -153,14 +150,4 @@ def _hull_row(tows: pl.DataFrame, boat_type: str) -> dict[str, object]:
     if interval is not None:
         _, lo, hi = interval
         row |= {"b_ratio_lo": lo, "b_ratio_hi": hi, "b_is_hull_speed": lo <= 1.0 <= hi}
-    return row | (_length_slope(boats) if boat_type == ALL_TYPES else {})
-
-
-def _length_slope(boats: pl.DataFrame) -> dict[str, float]:
-    """Slope of ln B on ln length over boats, and the share of its spread that it explains."""
-    x, y = (np.log(boats[name].to_numpy()) for name in ("waterline_length_m", "b_m_s"))
-    if len(x) < FEWEST_LENGTHS or np.ptp(x) < 1e-9:
-        return {}
-    slope = float(np.polyfit(x, y, 1)[0])
-    explained = slope**2 * float(x.var() / y.var()) if y.var() > 0.0 else 0.0
-    return {"length_slope": slope, "length_r2": explained}
+    return row

@@ -23,7 +23,7 @@ from pipeline.consistency.observed import (
     newest,
     q_at,
 )
-from pipeline.curve import LEAST_MARGIN, VALID_RATIO
+from pipeline.curve import LEAST_MARGIN
 from pipeline.history import SLOW_POWER_W
 from pipeline.hull import hull_speed_m_s
 from pipeline.quantiles import NORMAL
@@ -42,17 +42,6 @@ LOW, MIDDLE, HIGH = "low", "middle", "high"
 MIDDLE_RATIO: Final = (0.67, 0.80)
 """Tow speed / hull speed: between these "the curve is relatively flat", below it the wave
 resistance rises (Cw-kromme, R. Pot 2015, "Totale weerstand")."""
-
-ADVANTAGED, DISADVANTAGED = "advantaged", "disadvantaged"
-TEXT_SAYS: Final = {
-    (HIGH, "faster"): DISADVANTAGED,
-    (HIGH, "slower"): DISADVANTAGED,
-    (MIDDLE, "faster"): DISADVANTAGED,
-    (MIDDLE, "slower"): ADVANTAGED,
-    (LOW, "faster"): ADVANTAGED,
-}
-"""Who is wronged by a race faster or slower than the curve counts (Cw-kromme, R. Pot 2015, "Effect
-van verkeerde snelheid kiezen"); of a low tow raced slower the text says nothing."""
 
 FEWEST_BOATS: Final = 4
 FEWEST_OTHERS: Final = 2
@@ -162,22 +151,21 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     raced_speed = table["raced_speed_m_s"].to_numpy().astype(np.float64)
     beyond = np.isfinite(raced_speed) & ~counts_at(tows, raced_speed)
     chosen = tows.take(np.flatnonzero(is_slow(table, BORDERLINE_POWER_W) | beyond))
-    declared, raced_speed = chosen.column("declared_speed_m_s"), chosen.column("raced_speed_m_s")
+    raced_speed = chosen.column("raced_speed_m_s")
     raced_cw = curve_anywhere(chosen, raced_speed)
     bend = _bend_of_others(chosen, newest(tows.take(np.flatnonzero(~slow))))
     numbers = {"raced_power_w": power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))}
     names = (f"power_ratio_raced{end}" for end in ("", "_lo", "_hi"))
     numbers |= dict(zip(names, _power_ratio(chosen, bend, raced_speed), strict=True))
-    ratio = declared / hull_speed_m_s(chosen.column("waterline_length_m"))
-    case = speed_case(ratio)
+    hull = hull_speed_m_s(chosen.column("waterline_length_m"))
+    ratio = chosen.column("declared_speed_m_s") / hull
     high = chosen.table["crew_class"].replace_strict(RACED_POWER_W, return_dtype=pl.Float64)
     return (
         chosen.table.with_columns(
             *(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in numbers.items()),
             pl.Series("slow", is_slow(chosen.table), pl.Boolean),
             pl.Series("tow_hull_ratio", ratio, pl.Float64),
-            pl.Series("speed_case", case, pl.String),
-            pl.Series("text_says", _text_says(case, raced_speed / declared), pl.String),
+            pl.Series("speed_case", speed_case(ratio), pl.String),
         )
         .with_columns((pl.col("raced_power_w") > high).alias("raced_high"))
         .select(SlowTows.column_names())
@@ -200,16 +188,6 @@ def speed_case(tow_hull_ratio: FloatArray) -> list[str]:
     """Which of the three cases of Cw-kromme each tow is, by its speed / hull speed."""
     low, high = MIDDLE_RATIO
     return [LOW if r < low else MIDDLE if r < high else HIGH for r in tow_hull_ratio]
-
-
-def _text_says(case: list[str], raced_ratio: FloatArray) -> list[str | None]:
-    """What the text expects of a race at that part of the tow speed; null where it counts."""
-    slowest, fastest = VALID_RATIO
-    expected: list[str | None] = []
-    for one, ratio in zip(case, raced_ratio, strict=True):
-        pace = "faster" if ratio > fastest else "slower" if ratio < slowest else ""
-        expected.append(TEXT_SAYS.get((one, pace)))
-    return expected
 
 
 def _power_ratio(tows: Observed, s_s2_m2: FloatArray, speed_m_s: FloatArray) -> FloatArray:

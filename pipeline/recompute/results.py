@@ -139,9 +139,6 @@ def _run_points(c: Computed, pooled: bool) -> pl.DataFrame:
     numbers = {
         "window_start_s": c.windows.start_s,
         "window_end_s": c.windows.end_s,
-        "end_speed_m_s": c.windows.ends.speed_m_s,
-        "end_force_ratio": c.windows.ends.force_ratio,
-        "end_wind_m_s": c.windows.ends.wind_m_s,
         "speed_factor": c.speed_factor,
         "speed_m_s": c.speed_m_s,
         "gross_cw_kg_m": c.by_true_speed(means.gross_kg_m),

@@ -122,8 +122,6 @@ class HullSpeed(PerMethod):
     b_ratio_hi = column.number("1", "upper end", nullable=True)
     b_share_within_5pct = column.number("1", "share of B within 5 % of hull speed", nullable=True)
     b_is_hull_speed = dy.Bool(description="the interval of the median holds 1", nullable=True)
-    length_slope = column.number("1", "ln B per ln length; 0.5 if B is hull speed", nullable=True)
-    length_r2 = column.number("1", "share of the spread of ln B explained", nullable=True)
 
 
 class TypeOutliers(PerCrewTow):
@@ -204,11 +202,6 @@ class SlowTows(PerCrewTow):
     raced_speed_m_s = column.speed("fastest of them, through the water", nullable=True)
     raced_power_w = column.number("W", "power per rower there by its own curve", nullable=True)
     raced_high = dy.Bool(description="over 100 W (women 57 W)", nullable=True)
-    text_says = column.text(
-        "whom Cw-kromme (2015) expects wronged at that speed: advantaged, disadvantaged; empty "
-        "where the curve counts or the text is silent",
-        nullable=True,
-    )
     power_ratio_raced = column.number("1", "power ratio at the raced speed", nullable=True)
     power_ratio_raced_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
     power_ratio_raced_hi = column.number("1", "upper end", nullable=True)

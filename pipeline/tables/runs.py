@@ -17,11 +17,11 @@ class RunPoints(PerTow):
         "why the rest was cut: codes, comma separated, or by_hand and the reason"
     )
     lost_s = column.number("s", "most that is left out of a channel", min=0)
-    end_speed_m_s = column.number("m/s", "log speed, end of window less start", nullable=True)
-    end_force_ratio = column.number("1", "force, the same, / its mean", nullable=True)
-    end_wind_m_s = column.number("m/s", "apparent wind speed, the same", nullable=True)
     ends_ratio = column.number(
-        "1", "largest of these three / its limit; empty where the method has none", nullable=True
+        "1",
+        "largest change of speed, force or wind from its start to its end / its limit; empty "
+        "where the method has none",
+        nullable=True,
     )
     speed_factor = column.number("1", "true speed / log speed", min_exclusive=0, nullable=True)
     speed_m_s = column.speed("mean true speed", nullable=True)

@@ -48,15 +48,6 @@ def test_one_anemometer_for_all_seasons_is_known_from_all():
     assert (np.abs(errors) < 1.96 * np.array(sds)).mean() > 0.85
 
 
-def test_a_season_without_wind_has_what_the_others_let_expect():
-    seen = ratios(np.full(4, 0.8))
-    nothing = np.where(SEASONS == 2012, np.nan, seen.ahead)
-    found = anemometer_of_seasons(replace(seen, ahead=nothing))
-    assert found.tows.tolist() == [25, 0, 25, 25]
-    assert found.ln_scale[1] == pytest.approx(np.log(0.8), abs=0.02)
-    assert found.sd[1] > found.sd[0]
-
-
 def test_a_log_that_is_not_known_says_little_of_the_wind():
     seen = ratios([0.94, 1.0, 1.0, 1.0])
     by_log = replace(seen, shared_sd=np.where(SEASONS == 2010, 0.06, 0.0))

@@ -68,13 +68,6 @@ def test_whatever_is_known_all_factors_multiply_to_the_change(factors):
     assert math.prod(c["factor"] for c in found) == pytest.approx(1.1, rel=1e-12)
 
 
-def test_what_is_not_explained_is_named_after_its_ground():
-    first, rest = causes(parts(("code", None, 1.05)))
-    assert first == {"cause": "code", "factor": 1.05}
-    assert rest["factor"] == pytest.approx(1.1 / 1.05)
-    assert rest["cause"] == "code"
-
-
 def test_the_steps_of_a_ladder_go_to_the_lines_of_their_tow_in_order():
     ladder = pl.DataFrame(
         {
@@ -123,12 +116,6 @@ def test_a_change_is_held_against_the_intervals_of_both(width, exceeds):
         for name, a in (("o", 40.0), ("n", 44.0))
     )
     assert compare_lines(old, new)["exceeds_interval"].item() is exceeds
-
-
-@pytest.mark.parametrize(("tow", "cause"), [("t", "method"), ("u", "tow"), (None, "printed")])
-def test_a_line_that_names_no_tow_is_not_said_to_rest_on_another(tow, cause):
-    old = OLD.with_columns(tow_id=pl.lit(tow, pl.String))
-    assert json.loads(register_changes(old, NEW)["causes"].item())[0]["cause"] == cause
 
 
 def test_a_new_curve_that_ends_below_the_old_speed_gives_no_ratio():

@@ -2,7 +2,6 @@
 
 import json
 
-import numpy as np
 import polars as pl
 import pytest
 from hypothesis import given
@@ -59,14 +58,6 @@ def test_ratios_follow_from_the_two_curves(a, b, v0):
     assert cause == {"cause": "method", "factor": row["cw_ratio"]}
 
 
-def test_a_flat_curve_has_a_time_too():
-    row = change([("FSN1", "t", 2.5, 40.0, None)], [("FSN1", "t", 2.5, 44.0, None)]).row(
-        0, named=True
-    )
-    assert row["cw_ratio"] == pytest.approx(1.1)
-    assert row["time_ratio"] == pytest.approx(1.1 ** (1 / 3), rel=1e-9)
-
-
 def test_kinds_of_change():
     old = [
         ("FSN1", "t1", 2.5, 40.0, 5.0),
@@ -97,10 +88,3 @@ def test_five_hundredths_of_a_per_cent_is_the_same(factor, kind):
         ].item()
         == kind
     )
-
-
-def test_a_line_that_lost_its_curve_is_removed_and_one_that_never_had_any_is_not_there():
-    lines = [("FSN1", None, None, None, None), ("FSN2", "t2", 2.5, 40.0, 5.0)]
-    found = change([("FSN1", "t1", 2.5, 40.0, 5.0), ("FSN2", "t2", 2.5, 40.0, 5.0)], lines)
-    assert found["change"].to_list() == ["removed", "same"]
-    assert np.array_equal(change(lines, lines)["fsn_no"], ["FSN2"])

@@ -5,7 +5,6 @@ import polars as pl
 import pytest
 
 from pipeline.studies import claims
-from pipeline.tables.schemas import TABLES
 
 LINE = {"fsn_no": "FSN1", "rowers": 8, "crew_class": "H"}
 
@@ -63,20 +62,6 @@ def test_print_is_compared_at_the_printed_speed_by_the_first_register_that_print
     assert summary["tows"] == 1
     assert summary["median_ratio"] == row["cw_ratio"]
     assert summary["share_within_1pct"] == 0.0
-
-
-def test_a_line_printed_without_its_speed_has_no_cw_to_compare():
-    curves = pl.DataFrame([CURVE | {"cw_kg_m": 40.0, "declared_speed_m_s": 2.5}])
-    tows = pl.DataFrame([{**LINE, "tow_id": "a", "tow_date": 1}])
-    line = pl.DataFrame(
-        [printed(2014, 41.0, speed=None)], schema_overrides={"declared_speed_m_s": pl.Float64}
-    )
-    found = claims.print_reproduction(line, curves, tows)
-    assert TABLES["print_reproduction"].speed_m_s.nullable
-    row = found.row(0, named=True)
-    assert (row["speed_m_s"], row["cw_kg_m"], row["cw_ratio"]) == (None, None, None)
-    assert (row["printed_a_kg_m"], row["a_kg_m"]) == (30.0, 30.0)
-    assert claims.print_summary(found).is_empty()
 
 
 def test_run_statistics_are_those_of_the_tool():

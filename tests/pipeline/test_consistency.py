@@ -1,7 +1,6 @@
 """Consistency of boats: against independent implementations, known truth, and degenerate input."""
 
 import datetime as dt
-from itertools import product
 
 import numpy as np
 import polars as pl
@@ -200,34 +199,10 @@ def test_a_slow_tow_raced_hard_says_whom_its_curve_favours():
     race = raced((curves,), "2016-002", 2.8)
     found = slow_tows(observe(curves, tows, boats, points), race).filter("slow").row(0, named=True)
     assert found["raced_speed_m_s"] == pytest.approx(2.8)
-    assert (found["speed_case"], found["text_says"]) == ("low", "advantaged")
+    assert found["speed_case"] == "low"
     assert found["raced_high"]
     # More power is computed than was delivered: that is the advantage.
     assert found["power_ratio_raced_lo"] > 1.1
-
-
-def test_each_case_of_the_text_says_who_is_wronged():
-    # Length from "v_r = 1,25 x wortel(lengte)", for tows at 2.5 m/s.
-    cases = {"low": 0.60, "middle": 0.73, "high": 0.85}
-    raced_at = {"faster": 1.2, "slower": 0.8, "within": 1.1}
-    expected = {
-        ("low", "faster"): "advantaged", ("low", "slower"): None,
-        ("middle", "faster"): "disadvantaged", ("middle", "slower"): "advantaged",
-        ("high", "faster"): "disadvantaged", ("high", "slower"): "disadvantaged",
-    }  # fmt: skip
-    both = list(product(cases, raced_at))
-    curves, tows, boats, points = fleet(4, boats=len(both), speeds_m_s=np.full(len(both), 2.5))
-    length = [(2.5 / cases[case] / 1.25) ** 2 for case, _ in both]
-    tows = tows.with_columns(waterline_length_m=pl.Series(length))
-    races = pl.concat(
-        raced((curves,), tow_id, 2.5 * raced_at[pace])
-        for tow_id, (_, pace) in zip(curves["tow_id"], both, strict=True)
-    )
-    found = slow_tows(observe(curves, tows, boats, points), races)
-    said = dict(zip(found["tow_id"], found.select("speed_case", "text_says").rows(), strict=True))
-    for tow_id, (case, pace) in zip(curves["tow_id"], both, strict=True):
-        if pace != "within" or tow_id in said:
-            assert said[tow_id] == (case, expected.get((case, pace)))
 
 
 # Every choice of tows
@@ -286,17 +261,6 @@ def test_reproducibility_recovers_the_spread_of_a_tow():
     # Pairs share a tow, so the spread rests on about 90 instead of 120 differences.
     assert found["sd_ratio"] == pytest.approx(0.03, rel=4 / np.sqrt(2 * 90))
     assert found["run_sd_ratio"] == pytest.approx(0.001, rel=4 / np.sqrt(2 * 720))
-
-
-def test_a_pair_is_compared_by_the_instruments_of_other_boats():
-    curves, tows, *_ = fleet(21, boats=1, seasons=(2014, 2016), speeds_m_s=[2.5])
-    by_others = curves.with_columns(
-        (pl.col("cw_kg_m") * pl.col("season").replace_strict({2014: 1.01, 2016: 1.0})).alias(
-            "cw_others_kg_m"
-        )
-    )
-    own, others = (repeat_pairs(c, tows)["ln_ratio"][0] for c in (curves, by_others))
-    assert others == pytest.approx(own - np.log(1.01))
 
 
 def test_no_pair_across_an_alteration():

@@ -86,34 +86,8 @@ def test_errors_are_as_large_as_the_budget_says(world):
     assert np.mean(squares) == pytest.approx(1.0, abs=4 * error_of_mean)
 
 
-def test_chance_in_a_gps_is_covered_by_what_repeat_tows_show(world):
-    """It stays in each tow's calibration, and no run of the tow tells how large it is."""
-    chance = np.exp(0.006 * np.random.default_rng(1).standard_normal(world.blocks.runs.height))
-    otherwise = reading(world, gps=chance)
-    made = recompute(shipped_method("rebased"), otherwise.tows, otherwise.blocks, with_bands=False)
-    held = made.curves.join(world.truth, on="tow_id").drop_nulls("cw_kg_m")
-    inside = held["cw_at_15c_kg_m"].is_between(held["cw_lo_kg_m"], held["cw_hi_kg_m"])
-    assert inside.mean() >= least_share(held.height)
-
-
 def test_intervals_of_b_hold_the_truth(tows):
     found = tows.drop_nulls("b_lo_m_s")
     upper = found["b_hi_m_s"].fill_null(float("inf"))
     inside = found["true_b_m_s"].is_between(found["b_lo_m_s"], upper)
     assert inside.mean() >= least_share(found.height)
-
-
-def test_run_points_scatter_about_their_curves_as_the_unrest_within_the_runs_says(made):
-    """Each season's two estimates within a factor of two: the first also has in it what differs
-    from run to run (current, helm), the second what is taken off (wind, inertia)."""
-    used = made.run_points.filter("used").with_columns(
-        pl.col("tow_id").str.head(4).alias("season"),
-        (pl.col("cw_kg_m") / pl.col("fitted_cw_kg_m") - 1.0).alias("residual"),
-    )
-    dof = pl.len() - 2 * pl.col("tow_id").n_unique()
-    seasons = used.group_by("season").agg(
-        ((pl.col("residual") ** 2).sum() / dof).sqrt().alias("scatter"),
-        (pl.col("u_ratio") ** 2).mean().sqrt().alias("within"),
-    )
-    assert seasons.height == len(SEASONS)
-    assert (seasons["scatter"] / seasons["within"]).is_between(0.5, 2.0).all()

@@ -5,10 +5,9 @@ import datetime as dt
 import polars as pl
 import pytest
 
+from pipeline.register.due import IN_RANGE as REALISTIC
 from pipeline.register.due import (
-    HIGHEST_W,
     LIKE_BOATS,
-    LOWEST_W,
     NOT_RACED,
     NOTHING_KNOWN,
     REALLY_ROWED_SO,
@@ -16,7 +15,6 @@ from pipeline.register.due import (
     TOO_FAST,
     due_list,
 )
-from pipeline.register.due import IN_RANGE as REALISTIC
 
 AS_OF = dt.date(2018, 6, 1)
 A, B, ROWERS = 31.6, 4.44, 8
@@ -84,13 +82,6 @@ def test_a_realistic_speed_stays():
     assert power(row["lowest_speed_m_s"]) == pytest.approx(70)
     assert power(row["highest_speed_m_s"]) == pytest.approx(90)
     assert not row["beyond_curve"]
-
-
-def test_the_range_is_that_of_the_source_for_either_class():
-    assert (LOWEST_W, HIGHEST_W) == ({"H": 70.0, "D": 40.0}, {"H": 90.0, "D": 55.0})
-    row = due(line("X", 1.98, "D"))["X"]
-    assert power(row["lowest_speed_m_s"]) == pytest.approx(40)
-    assert power(row["highest_speed_m_s"]) == pytest.approx(55)
 
 
 def test_a_speed_that_takes_too_much_is_brought_down():

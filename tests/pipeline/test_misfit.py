@@ -50,17 +50,6 @@ def test_hyperbolas_have_none():
     assert np.sqrt(mean**2 + variance).max() < 0.004
 
 
-def test_tows_that_do_not_tell_have_what_the_others_show():
-    found, boat, _ = departures(0.02)
-    lost = boat == 0
-    blind = Departure(
-        np.where(lost[:, None], 0.0, found.ratio), np.where(lost[:, None], np.inf, found.variance)
-    )
-    mean, variance = departure_of_boats(blind, boat)
-    assert mean[lost].tolist() == [[0.0]] * PER_BOAT
-    assert variance[lost].min() > variance[~lost].max()
-
-
 def departure_of_residuals(residuals, target):
     return Departure.of(
         residuals,
@@ -70,13 +59,6 @@ def departure_of_residuals(residuals, target):
         np.broadcast_to(target, residuals.shape),
         np.array([1.0]),
     )
-
-
-def test_two_speeds_show_no_shape():
-    residuals = SCATTER * np.random.default_rng(2).standard_normal((TOWS, 6))
-    two = np.where(TARGET == 1.1, 1.0, TARGET)
-    assert np.isfinite(departure_of_residuals(residuals, TARGET).variance).all()
-    assert np.isinf(departure_of_residuals(residuals, two).variance).all()
 
 
 @pytest.mark.parametrize("rounding", [0.0, 1e-16])

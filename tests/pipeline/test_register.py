@@ -4,7 +4,6 @@ import datetime as dt
 
 import polars as pl
 import pytest
-from polars.testing import assert_frame_equal
 
 from pipeline.method.definition import RegisterRule
 from pipeline.register.register import draft_register, lines_of_all_days
@@ -63,15 +62,6 @@ def test_a_tow_is_valid_to_the_end_of_the_fifth_calendar_year(on, status):
     line = register(on=on).filter(fsn_no="FSN2")
     assert line["valid_until"].item() == dt.date(2015, 12, 31)
     assert line["status"].item() == status
-
-
-def test_a_line_without_a_curve_has_no_numbers():
-    without = register().filter(pl.col("status").is_in(["rejected", "never_towed"]))
-    assert without.select(NUMBERS).null_count().row(0) == (2,) * len(NUMBERS)
-
-
-def test_the_order_of_tows_does_not_matter():
-    assert_frame_equal(register(ROWS[::-1]), register())
 
 
 def test_a_tow_with_a_thwart_left_free_is_a_line_of_its_own():

@@ -40,11 +40,6 @@ def line(*decisions, on=ON, rule=RegisterRule()):  # noqa: B008 - frozen
     return draft_register(CURVES, TOWS, NOBODY, on, rule, table).row(0, named=True)
 
 
-def test_a_tow_after_the_day_does_not_exist_yet():
-    assert line()["tow_id"] == "new"
-    assert line(on=dt.date(2016, 3, 1))["tow_id"] == "later"
-
-
 def test_an_excluded_tow_gives_way_to_the_one_before():
     assert line(("new", "exclude"))["tow_id"] == "middle"
 
@@ -60,13 +55,6 @@ def test_a_line_of_excluded_tows_alone_says_so():
     assert found["tow_id"] is found["cw_kg_m"] is None
 
 
-@pytest.mark.parametrize(
-    ("rule", "year"), [(RegisterRule(), 2019), (RegisterRule(valid_years=3), 2017)]
-)
-def test_the_rule_says_how_many_calendar_years(rule, year):
-    assert line(rule=rule)["valid_until"] == dt.date(year, 12, 31)
-
-
 @pytest.mark.parametrize(("season", "year"), [(2014, 2020), (2015, 2019)])
 def test_tows_of_the_season_in_the_rule_and_later_count_six_years(season, year):
     rule = RegisterRule(six_years_from=season)
@@ -79,13 +67,6 @@ def test_the_rule_stands_in_the_method_and_changes_no_curve():
     other = parse_method(text.replace("valid_years = 5", "valid_years = 4"), "x.toml")
     assert other.validity.valid_years == 4
     assert other.content_hash == shipped_method("rebased").content_hash
-
-
-def test_a_method_takes_the_rule_of_the_one_it_extends():
-    head = 'name = "own"\ntitle = "own"\nextends = "rebased"\n'
-    assert parse_method(head, "own.toml").validity == shipped_method("rebased").validity
-    own = parse_method(head + "[register]\nvalid_years = 2\n", "own.toml").validity
-    assert (own.valid_years, own.six_years_from) == (2, 2023)
 
 
 def test_an_unknown_key_of_the_rule_is_named():

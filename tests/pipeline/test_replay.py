@@ -90,11 +90,6 @@ def test_outside_the_known_points_fatigue_is_refused_or_extended_by_name():
     assert replay(one, rows, RaceRules(fatigue="extend"))["fatigue_factor"].item() == 1.0
 
 
-def test_the_stream_comes_off_the_distance():
-    found = replay(register(("X", 30.0, 5.0)), results(("X", 8000, 400.0)), PLAIN)
-    assert found["power_w"].item() == pytest.approx(power(30.0, 5.0, 18000 / 8000))
-
-
 def test_a_boat_without_a_curve_has_no_power_and_no_rank():
     held = register(
         ("X", 30.0, 5.0), ("FLAT", 30.0, None), ("LOW", 30.0, 2.0), ("NONE", None, None)
@@ -184,15 +179,6 @@ def test_a_speed_where_the_curve_does_not_hold_is_marked(speed, remark):
     assert found["power_w"].item() == pytest.approx(power(30.0, 5.0, speed * 2.35))
 
 
-def test_a_line_without_b_is_no_constant():
-    """Where B is not determined Cw falls from A to Cw at the declared speed, and goes on so."""
-    falling = register(("X", 30.0, None)).with_columns(cw_kg_m=27.0)
-    at_declared = replay(falling, results(("X", 18400.0 / 2.35)), PLAIN)
-    assert at_declared["cw_kg_m"].item() == pytest.approx(27.0)
-    faster = replay(falling, results(("X", 18400.0 / 2.5)), PLAIN)["cw_kg_m"].item()
-    assert faster == pytest.approx(30.0 / (1.0 + (30.0 / 27.0 - 1.0) * (2.5 / 2.35) ** 2))
-
-
 @pytest.mark.parametrize(
     ("thwarts", "given", "chosen"),
     [
@@ -254,15 +240,6 @@ def test_how_likely_another_wins_is_counted_in_the_members():
     assert (found["old_winner"], found["new_winner"]) == ("X", "X")
     assert not found["winner_changed"]
     assert found["change_probability"] == pytest.approx(0.25)
-
-
-def test_a_new_register_that_surely_has_another_winner():
-    rows = results(("X", 7600), ("Y", 7600))
-    old = lines_with_tows(("X", 31.2, 5.0, "x"), ("Y", 30.0, 5.0, "y"))
-    new = lines_with_tows(("X", 29.0, 5.0, "x"), ("Y", 30.0, 5.0, None))
-    found = winners_of(old, new, ensemble(x=[new["cw_kg_m"][0]] * 3), rows)
-    assert (found["old_winner"], found["new_winner"], found["winner_changed"]) == ("X", "Y", True)
-    assert found["change_probability"] == 1.0
 
 
 def test_a_penalty_does_not_follow_cw():

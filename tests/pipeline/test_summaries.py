@@ -45,21 +45,6 @@ def test_steps_of_a_season_multiply_as_those_of_its_tows():
     assert found["factor"].product() ** 2 == pytest.approx(0.8 * 1.1 * 0.9)
 
 
-def test_an_option_s_middle_holds_nine_tenths_of_the_tows():
-    effects = pl.DataFrame(
-        {
-            "method": "a",
-            "study": "tool",
-            "option": "wind.averaging_s",
-            "cw_effect_ratio": [*(1.0 + k / 100 for k in range(101)), None],
-        }
-    )
-    row = summaries.option_summary(effects).row(0, named=True)
-    assert row["tows"] == 101
-    assert row["median_ratio"] == pytest.approx(1.5)
-    assert (row["lo_ratio"], row["hi_ratio"]) == pytest.approx((1.05, 1.95))
-
-
 def test_counts_of_all_seasons_are_those_of_each_together():
     run_points = pl.DataFrame(
         {"method": "a", "tow_id": ["t1", "t3"], "used": [True, False], "reason": ["", "no_window"]}
@@ -71,16 +56,3 @@ def test_counts_of_all_seasons_are_those_of_each_together():
     assert set(of_all.rows()) == set(summed.select(of_all.columns).rows())
     assert ("a", "flag", "few_runs", 2) in of_all.rows()
     assert ("a", "run", "no_window", 1) in of_all.rows()
-
-
-def test_a_check_is_counted_where_it_was_made():
-    assessments = pl.DataFrame(
-        {
-            "method": "a",
-            "check": ["x", "x", "y"],
-            "severity": "flag",
-            "flagged": [True, False, False],
-        }
-    )
-    found = summaries.check_counts(assessments).sort("check")
-    assert found.select("check", "tows", "beyond").rows() == [("x", 2, 1), ("y", 1, 0)]

@@ -14,7 +14,7 @@ from pipeline.uncertainty.propagation import (
     residual_scatter,
     run_point_uncertainty,
 )
-from tests.pipeline.season_worlds import as_blocks, run_noise, run_point_ratios
+from tests.pipeline.season_worlds import as_blocks, run_point_ratios
 
 
 def tows(**changed):
@@ -61,18 +61,6 @@ def test_white_noise_gives_the_error_of_a_mean():
     assert sd[-1] == pytest.approx(0.03 / np.sqrt(50), rel=0.08)
 
 
-def test_windows_too_short_or_empty_tell_nothing():
-    blocks = as_blocks(run_noise(np.random.default_rng(4), 40, 50))
-    window = blocks.n > 0
-    window[0] = False
-    window[1, 8:] = False
-    sd = run_point_uncertainty(blocks, window, np.zeros(40, int))
-    assert np.isinf(sd[:2]).all()
-    assert np.isfinite(sd[2:]).all()
-    short = as_blocks(np.zeros((4, 6)))
-    assert np.isinf(run_point_uncertainty(short, short.n > 0, np.zeros(4, int))).all()
-
-
 def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():
     rng = np.random.default_rng(5)
     season = np.repeat([2010, 2014], 500)
@@ -104,18 +92,6 @@ def test_the_budget_of_a_usual_tow():
     assert 100 * combine(held)["u_ratio"][0] == pytest.approx(1.6, abs=0.06)
 
 
-def test_a_tow_without_dgps_has_the_log_and_the_season_in_place_of_calibration():
-    held = budget(
-        tows(calibrated=False, log_sd=0.0035, log_dof=25.0, tow_log_sd=0.012, season=2010)
-    )
-    assert u_of(held, "calibration") == pytest.approx(2.86 * 0.012)
-    assert u_of(held, "season_log") == pytest.approx(2.86 * 0.0035)
-    alone = pl.col("shared") == "single"
-    single, shared = (combine(held.filter(part))["u_ratio"][0] for part in (alone, ~alone))
-    assert single > 2 * shared
-    assert combine(held)["u_ratio"][0] == pytest.approx(np.hypot(single, shared))
-
-
 def test_keys_say_what_tows_have_in_common():
     rows = [tows(), tows(tow_id="2014-002"), tows(tow_id="2015-001", season=2015)]
     held = budget(pl.concat(rows))
@@ -132,14 +108,6 @@ def test_keys_say_what_tows_have_in_common():
     assert {name for name, count in keys.items() if count == 1} == {"wind"}
     season = {"force", "anemometer", "temperature", "season_log"}
     assert {name for name, count in keys.items() if count == 2} == season
-
-
-def test_a_recorded_temperature_is_the_tows_own():
-    known, unknown = budget(tows(temperature_known=True)), budget(tows())
-    assert u_of(known, "temperature") < 0.5 * u_of(unknown, "temperature")
-    kind = pl.col("component") == "temperature"
-    assert known.filter(kind)["shared"].to_list() == ["single"]
-    assert unknown.filter(kind)["shared"].to_list() == ["season"]
 
 
 def test_interval_takes_few_degrees_of_freedom_into_account():

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import duckdb
-import numpy as np
 import polars as pl
 import pytest
 
@@ -66,15 +65,6 @@ def test_equal_bends_are_possible_only_by_a_test_that_could_have_failed(
     assert under(bench, "Kuikensloep").bends["equal_possible"] is verdict
 
 
-def test_repeats_of_a_type_are_those_of_its_boats(built):
-    boats = built.table("boats").filter(boat_type="Kuikensloep")["fsn_no"].to_list()
-    pairs = built.table("repeat_pairs").filter(method="rebased-2015")
-    own = pairs.filter(pairs["fsn_no"].is_in(boats))["ln_ratio"].to_numpy()
-    found = under(built, "Kuikensloep").repeats
-    assert found["n_pairs"] == len(own) > 0
-    assert found["sd_ratio"] == pytest.approx(np.sqrt((own**2).mean() / 2))
-
-
 @pytest.fixture
 def of(built):
     """Statistics of two types with the given slopes and verdicts, and nothing else to compare."""
@@ -130,11 +120,6 @@ def test_an_unknown_name_lists_the_types_and_a_boat(built):
         audit(built.store, ["Kromhout"])
     for expected in (*types_of(built), "'Kromhout'", "FSN1"):
         assert expected in str(error.value)
-
-
-def test_a_method_that_the_tables_do_not_hold_is_named_with_those_they_do(built):
-    with pytest.raises(MissingKnowledgeError, match=r"'rebased'.*as-published, rebased-2015"):
-        audit(built.store, ["Kuikensloep"], "rebased")
 
 
 def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):

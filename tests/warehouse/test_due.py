@@ -6,10 +6,8 @@ import polars as pl
 import pytest
 
 from dashboards.labels import CODES
-from herijk.cli.registers_text import URGENCIES
 from pipeline.register.due import NOT_RACED
 from pipeline.register.register import draft_name
-from warehouse.queries.registers import due_report
 from warehouse.store.decisions import FILE_NAME
 
 METHOD = "rebased-2015"
@@ -23,16 +21,6 @@ def test_every_line_of_the_register_is_on_the_list(built):
     last_tow, last_race = built.table("tows")["tow_date"].max(), due["as_of"].max()
     assert due["as_of"].n_unique() == 1
     assert last_race >= last_tow
-
-
-def test_the_report_tells_who_is_due(built):
-    report = due_report(built.store, METHOD)
-    assert report.simulated
-    assert {line["urgency"] for line in report.lines} <= URGENCIES.keys()
-    expired = [line for line in report.lines if line["urgency"] == "expired"]
-    assert all(line["valid_until"] < report.as_of for line in expired)
-    days = [line["valid_until"] for line in report.lines if line["valid_until"]]
-    assert days == sorted(days)
 
 
 def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
@@ -65,9 +53,3 @@ def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
         assert due["tow_id"][1] not in bench.table(table).filter(draft)["tow_id"].to_list()
     assert due["tow_id"][1] not in after["tow_id"].to_list()
     assert not bench.rebuild().done.database
-
-
-def test_a_draft_has_no_verification_code(built):
-    assert (
-        built.table("register")["verification_code"].null_count() == built.table("register").height
-    )

@@ -70,12 +70,6 @@ def new_code(monkeypatch):
         monkeypatch.setattr(f"warehouse.editions.{room}.code_version", lambda: "0.2.0+other")
 
 
-def test_an_edition_against_itself_is_the_same(published):
-    lines = diff(published.store, "2014-1", "2014-1").lines
-    assert set(lines["change"]) == {"same"}
-    assert names(lines) == set()
-
-
 def test_between_methods_only_steps_are_causes_and_they_multiply(published):
     lines = diff(published.store, "2014-1", "2014-2").lines
     assert lines["cw_ratio"].null_count() == 0
@@ -83,14 +77,6 @@ def test_between_methods_only_steps_are_causes_and_they_multiply(published):
     assert {cause for cause, _ in found} <= {"method"}
     assert {"wind", "temperature", "run_point"} <= {step for _, step in found}
     assert_factors_multiply(lines)
-
-
-def test_log_factors_of_the_editions_are_used_and_not_estimated_again(published, monkeypatch):
-    def refuse(*_):
-        raise AssertionError("estimated again")
-
-    monkeypatch.setattr(pipeline.studies.ladder, "season_factors", refuse)
-    assert_factors_multiply(diff(published.store, "2014-1", "2014-2").lines)
 
 
 def test_one_option_shows_under_its_own_step_alone(bench_of_editions):
@@ -135,18 +121,6 @@ def stretch(bench, tow_id, factor):
     bench.stretch_force(tow["samples_path"], factor)
 
 
-def test_the_code_alone_shows_as_code(bench_of_editions, monkeypatch):
-    bench = bench_of_editions
-    bench.publish("a")
-    new_code(monkeypatch)
-    bench.rebuild(AS_PUBLISHED)
-    bench.publish("b")
-    lines = diff(bench.store, "a", "b").lines
-    assert set(lines["change"]) == {"changed"}
-    assert names(lines) == {("code", None)}
-    assert_factors_multiply(lines)
-
-
 def test_method_code_and_one_file_together_are_told_apart(bench_of_editions, monkeypatch):
     bench = bench_of_editions
     bench.publish("a", "as-published")
@@ -186,6 +160,8 @@ def test_another_tow_shows_as_tow_beside_the_steps(bench_of_editions):
 
 
 def test_the_summary_names_gainers_losers_and_the_largest(published):
+    same = diff(published.store, "2014-1", "2014-1").lines
+    assert (set(same["change"]), names(same)) == ({"same"}, set())
     found = report(diff(published.store, "2014-1", "2014-2"))
     moved = [r for r in found.rows if r["change"] == "changed"]
     assert found.gain.lines + found.loss.lines == len(moved)
@@ -249,15 +225,6 @@ def towed_twice(bench):
         if mine.height > 1:
             return row, mine
     raise AssertionError
-
-
-def test_a_printed_line_of_the_same_tow_differs_by_what_was_printed(bench_of_editions):
-    bench = bench_of_editions
-    bench.publish("a")
-    line, tows = towed_twice(bench)
-    publish_printed_row(bench, line, tows["tow_date"][-1])
-    lines = diff(bench.store, "printed", "a").lines.filter(change="changed")
-    assert names(lines) == {("printed", None)}
 
 
 def test_a_printed_line_of_an_earlier_tow_is_told_apart_from_the_newer_tow(bench_of_editions):

@@ -1,9 +1,7 @@
 """An edition's folder: whole or not at all, killed anywhere and on a disk that is really full."""
 
-import os
 import subprocess
 import sys
-import textwrap
 
 import pytest
 
@@ -72,55 +70,6 @@ def test_killed_at_every_step_there_is_nothing_or_all_of_it(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert int(done.stdout) > 3 * len(CONTENTS)
-
-
-FULL_DISK = """
-import sys
-from pathlib import Path
-from pipeline.errors import BrokenPromiseError
-from tests.warehouse.test_editions_folder import CONTENTS
-from warehouse.store.editions import edition_names, write_folder
-from warehouse.store.store import Store
-
-store = Store(Path(sys.argv[1]))
-write_folder(store, "old", lambda: {"file": b"small"})
-try:
-    write_folder(store, "new", lambda: CONTENTS)
-except BrokenPromiseError as error:
-    assert edition_names(store) == ["old"]
-    assert sorted(f.name for f in store.editions.iterdir() if f.is_dir()) == ["old"]
-    print(error)
-"""
-
-
-def in_small_disk(script, folder):
-    """Runs a script with a disk of 16 kB mounted at the folder, in a namespace of its own."""
-    mount = f"mount -t tmpfs -o size=16k tmpfs {folder}"
-    run = f'exec {sys.executable} -c "$SCRIPT" {folder}'
-    return subprocess.run(
-        ["unshare", "-rm", "sh", "-c", f"{mount} && {run}"],
-        check=False,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        env=os.environ | {"SCRIPT": textwrap.dedent(script)},
-    )
-
-
-def can_mount(folder):
-    try:
-        return in_small_disk("print('yes')", folder).stdout == "yes\n"
-    except OSError:
-        return False
-
-
-def test_a_full_disk_leaves_the_old_editions_and_says_what_to_do(tmp_path):
-    if not can_mount(tmp_path):
-        pytest.skip("no disk can be mounted here; a full disk is played in test_editions_publish")
-    done = in_small_disk(FULL_DISK, tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "No space left on device" in done.stdout
-    assert "Nothing was published; make room" in done.stdout
 
 
 def test_a_folder_that_cannot_be_made_is_one_sentence(tmp_path):

@@ -13,10 +13,10 @@ import pytest
 from polars.testing import assert_frame_equal
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from pipeline.method.definition import parse_method, shipped_method
+from pipeline.method.definition import shipped_method
 from pipeline.register.register import LINE
 from tests.warehouse.edition_bench import terms
-from warehouse.derive.published import published_made_from, published_tables
+from warehouse.derive.published import published_tables
 from warehouse.editions import publish as publish_module
 from warehouse.editions import sheets
 from warehouse.editions.compare import diff
@@ -24,7 +24,6 @@ from warehouse.editions.making import MADE
 from warehouse.editions.publish import publish_printed
 from warehouse.store.decisions import FILE_NAME
 from warehouse.store.editions import (
-    CHANGES,
     edition_names,
     read_edition,
     read_manifest,
@@ -38,7 +37,6 @@ FILES = {
     "register.csv",
     "register.xlsx",
     "inputs.csv",
-    "datapackage.json",
     "manifest.json",
     "method.toml",
     "decisions.json",
@@ -68,56 +66,42 @@ def test_an_edition_holds_everything_behind_it(published):
     assert about.seal == about.expected_seal
     assert about.method_hash == shipped_method("as-published").content_hash
     assert edition_of(published).tables.keys() == set(TABLES)
+    edition = edition_of(published, "2014-2")
+    shipped = shipped_method("rebased")
+    assert edition.method.content_hash == edition.manifest.method_hash == shipped.content_hash
+    assert (edition.method.validity, edition.method.extends) == (shipped.validity, None)
+    assert edition.manifest.previous == "2014-1"
+    rows = published_tables(published.store)
+    own = rows["register"].filter(edition="2014-2")
+    codes = [*LINE, "verification_code"]
+    assert own.select(codes).equals(edition.register.select(codes))
+    assert set(rows["register_changes"]["to_edition"]) == {"2014-2"}
+    assert set(rows["lineage"]["edition"]) == {"2014-1", "2014-2"}
+
+
+def test_what_counts_is_judged_on_the_day_of_the_edition(bench_of_editions):
+    """A line of an expired tow has no numbers, a later tow does not count, nor an excluded one."""
+    bench, tow = bench_of_editions, bench_of_editions.tow(2014)
+    bench.publish("2018-1", valid_from=dt.date(2018, 6, 1))
+    register = edition_of(bench, "2018-1").register
+    expired = register.filter(status="expired")
+    assert expired["tow_date"].dt.year().unique().to_list() == [2009]
+    assert expired["cw_kg_m"].null_count() == expired["a_kg_m"].null_count() == expired.height > 0
+    assert register.filter(status="valid")["cw_kg_m"].null_count() == 0
+    bench.publish("2013-1", valid_from=dt.date(2013, 1, 1))
+    towed = edition_of(bench, "2013-1").register.drop_nulls("tow_date")
+    assert towed["tow_date"].dt.year().unique().to_list() == [2009]
+    decide(bench, tow["tow_id"], "uitsluiten")
+    bench.publish("x")
+    assert line_of(bench, tow)["tow_id"] != tow["tow_id"]
+    kept = json.loads((folder(bench, "x") / "decisions.json").read_text())
+    assert kept[0] | {"reden": "wind", "wie": "SKC"} == kept[0]
 
 
 @pytest.mark.parametrize("name", MADE)
 def test_an_edition_holds_what_the_rebuild_made(published, name):
     made = published.store.read(name, "rebased")
     assert_frame_equal(edition_of(published, "2014-2").tables[name], made, rel_tol=1e-12)
-
-
-def test_all_editions_as_rows_of_the_warehouse(published):
-    tables = published_tables(published.store)
-    register = {"register", "register_history", "register_changes"}
-    assert tables.keys() == {"editions", "lineage"} | register
-    editions = tables["editions"].select("edition", "kind", "previous").rows()
-    assert editions == [("2014-1", "recomputed", None), ("2014-2", "recomputed", "2014-1")]
-    heights = [edition_of(published, name).register.height for name in ("2014-1", "2014-2")]
-    assert tables["register"]["edition"].value_counts().sort("edition").rows() == [
-        ("2014-1", heights[0]),
-        ("2014-2", heights[1]),
-    ]
-    codes = tables["register"].select("edition", *LINE, "verification_code")
-    own = edition_of(published, "2014-2").register
-    assert codes.filter(edition="2014-2").equals(own.select(codes.columns))
-    assert set(tables["register_changes"]["to_edition"]) == {"2014-2"}
-    assert set(tables["lineage"]["edition"]) == {"2014-1", "2014-2"}
-    assert published_made_from(published.store).keys() == {"2014-1", "2014-2"}
-
-
-def test_the_method_text_stands_alone(published):
-    text = (folder(published, "2014-2") / "method.toml").read_text(encoding="utf-8")
-    method = parse_method(text, "method.toml")
-    shipped = shipped_method("rebased")
-    assert method.content_hash == shipped.content_hash
-    assert method.validity == shipped.validity
-    assert method.extends is None
-
-
-def test_a_line_of_an_expired_tow_has_no_numbers(bench_of_editions):
-    bench_of_editions.publish("2018-1", valid_from=dt.date(2018, 6, 1))
-    register = edition_of(bench_of_editions, "2018-1").register
-    expired = register.filter(pl.col("status") == "expired")
-    assert expired["tow_date"].dt.year().unique().to_list() == [2009]
-    assert expired.height > 0
-    assert expired["cw_kg_m"].null_count() == expired["a_kg_m"].null_count() == expired.height
-    assert register.filter(pl.col("status") == "valid")["cw_kg_m"].null_count() == 0
-
-
-def test_a_later_tow_does_not_count_in_an_earlier_edition(bench_of_editions):
-    bench_of_editions.publish("2013-1", valid_from=dt.date(2013, 1, 1))
-    towed = edition_of(bench_of_editions, "2013-1").register.drop_nulls("tow_date")
-    assert towed["tow_date"].dt.year().unique().to_list() == [2009]
 
 
 # Sheets
@@ -158,26 +142,6 @@ def test_numbers_in_the_sheets_are_those_of_the_register(published):
             assert cells["Cw [kg/m]"] == pytest.approx(line["cw_kg_m"], abs=5e-4)
             assert printed["Cw [kg/m]"] == f"{line['cw_kg_m']:.3f}".replace(".", ",")
             assert cells["sleepdatum"] == line["tow_date"]
-
-
-def test_the_data_package_validates_with_its_own_tool(published):
-    import frictionless  # noqa: PLC0415 - takes seconds to import
-
-    report = frictionless.validate(str(folder(published) / "datapackage.json"))
-    assert report.valid, report.flatten(["type", "message"])
-    assert report.stats["tasks"] == 2
-
-
-def test_the_largest_changes_are_those_of_the_table(published):
-    text = (folder(published, "2014-2") / "notice.md").read_text(encoding="utf-8")
-    changes = edition_of(published, "2014-2").tables[CHANGES].drop_nulls("cw_ratio")
-    by_size = changes.filter(change="changed").sort(
-        pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False]
-    )
-    rows = [line.split(" | ") for line in text.splitlines() if line.startswith("| FSN")]
-    assert [row[0].removeprefix("| ") for row in rows] == by_size["fsn_no"].head(10).to_list()
-    shown = [f"{100 * (ratio - 1):+.2f} %" for ratio in by_size["power_ratio"].head(10)]
-    assert [row[5] for row in rows] == shown
 
 
 # Verification codes
@@ -274,16 +238,6 @@ def line_of(bench, tow, edition="x"):
     ).row(0, named=True)
 
 
-def test_an_excluded_tow_does_not_count_and_the_edition_says_so(bench_of_editions):
-    tow = bench_of_editions.tow(2014)
-    decide(bench_of_editions, tow["tow_id"], "uitsluiten")
-    bench_of_editions.publish("x")
-    line = line_of(bench_of_editions, tow)
-    assert line["tow_id"] != tow["tow_id"]
-    kept = json.loads((folder(bench_of_editions, "x") / "decisions.json").read_text())
-    assert kept[0] | {"reden": "wind", "wie": "SKC"} == kept[0]
-
-
 def test_a_decision_about_an_unknown_tow_stops_the_publication(bench_of_editions):
     decide(bench_of_editions, "1999-001", "uitsluiten")
     with pytest.raises(MissingKnowledgeError, match=r"1999-001.*mend the sleep_id"):
@@ -315,18 +269,6 @@ def publish_register_of(bench, season=2012, edition="gedrukt-2012"):
     return publish_printed(bench.store, season, terms(edition, dt.date(2012, 5, 1)))
 
 
-def test_a_printed_register_stands_as_an_edition(with_printed):
-    publish_register_of(with_printed)
-    edition = edition_of(with_printed, "gedrukt-2012")
-    assert edition.manifest.kind == "as_printed"
-    assert edition.method is None
-    by_boat = {row["fsn_no"]: row for row in edition.register.iter_rows(named=True)}
-    assert by_boat["FSN900"]["cw_kg_m"] == 41.63
-    assert by_boat["FSN900"]["basis"] == "printed"
-    assert by_boat["FSN901"]["status"] == "no_valid_curve"
-    assert by_boat["FSN901"]["cw_kg_m"] is None
-
-
 def test_a_printed_register_with_a_line_that_cannot_be_read_is_not_published(with_printed):
     file = with_printed.archive / "sloepregister" / "sloepregister_2012.csv"
     file.write_text(
@@ -342,6 +284,11 @@ def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(wit
     corrected = shipped_method("corrected-2013")
     with_printed.rebuild((corrected, shipped_method("as-published")))
     with_printed.publish("2014-1", "corrected-2013", carry="gedrukt-2012")
+    printed = edition_of(with_printed, "gedrukt-2012")
+    assert (printed.manifest.kind, printed.method) == ("as_printed", None)
+    lines = printed.register.select("fsn_no", "cw_kg_m", "basis", "status").rows()
+    assert ("FSN900", 41.63, "printed", "valid") in lines
+    assert ("FSN901", None, None, "no_valid_curve") in lines
     register = edition_of(with_printed).register
     line = register.filter(pl.col("fsn_no") == "FSN900").row(0, named=True)
     assert (line["basis"], line["status"]) == ("printed_rebased", "valid")

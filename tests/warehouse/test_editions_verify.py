@@ -15,7 +15,6 @@ from tests.warehouse.edition_bench import terms
 from warehouse.derive.graph import METHOD
 from warehouse.derive.inputs import Scope
 from warehouse.editions.chain import chain_head
-from warehouse.editions.inputs import same_tows, unchanged_tows
 from warehouse.editions.lineage import lineage
 from warehouse.editions.publish import publish_printed
 from warehouse.editions.verify import verify
@@ -54,19 +53,9 @@ def test_untouched_editions_pass_and_come_out_equal_when_made_again(published):
         assert one.equal == one.made_again == register.height > 0
 
 
-def test_a_missing_file_is_named(published_copy):
-    names = ["register.csv", "tows.parquet"]
-    for name in names:
-        (folder(published_copy) / name).unlink()
-    findings, wrong = found(published_copy, kind="altered")
-    assert wrong
-    assert [f.where for f in findings] == names
-
-
 @FILES_ALONE
-@pytest.mark.parametrize("content", [b"", b"{}", b"\xff\xfe"])
-def test_a_damaged_description_does_not_stop_the_others(published_copy, content):
-    (folder(published_copy) / "manifest.json").write_bytes(content)
+def test_a_damaged_description_does_not_stop_the_others(published_copy):
+    (folder(published_copy) / "manifest.json").write_bytes(b"\xff\xfe")
     report = verify(published_copy.store)
     assert report.wrong
     assert [e.edition for e in report.editions] == ["2014-2"]
@@ -81,25 +70,15 @@ def test_an_added_file_is_a_notice(published_copy):
 
 
 @FILES_ALONE
-def test_a_swapped_samples_file_is_named(published_copy):
+def test_swapped_and_missing_samples_files_are_named(published_copy):
     first, second = (published_copy.tow(season)["samples_path"] for season in (2009, 2014))
     content = (published_copy.archive / first).read_bytes()
     (published_copy.archive / second).write_bytes(content)
-    findings, wrong = found(published_copy, kind="swapped")
-    assert wrong
-    assert {(f.edition, f.where) for f in findings} == {
-        ("2014-1", second),
-        ("2014-2", second),
-    }
-
-
-@FILES_ALONE
-def test_a_missing_samples_file_is_named(published_copy):
-    path = published_copy.tow(2014)["samples_path"]
-    (published_copy.archive / path).unlink()
-    findings, wrong = found(published_copy, kind="missing")
-    assert wrong
-    assert {f.where for f in findings} == {path}
+    (published_copy.archive / first).unlink()
+    for kind, path in (("swapped", second), ("missing", first)):
+        findings, wrong = found(published_copy, kind=kind)
+        assert wrong
+        assert {(f.edition, f.where) for f in findings} == {("2014-1", path), ("2014-2", path)}
 
 
 def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
@@ -112,9 +91,8 @@ def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
     file.write_text(text.replace(row, row.replace(f",{weight},", ",777,", 1)), encoding="utf-8")
     findings, wrong = found(published_copy, edition="2014-1", kind="swapped")
     assert wrong
-    assert [f.message for f in findings] == [
-        f"tow {tow['tow_id']}: weight_kg is 777.0; it was {tow['weight_kg']}"
-    ]
+    assert [f.where for f in findings] == [f"tow {tow['tow_id']}"]
+    assert f"weight_kg {tow['weight_kg']:g} > 777" in findings[0].message
 
 
 def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_copy):
@@ -158,17 +136,6 @@ def test_an_edition_of_a_method_with_options_that_are_gone_was_made_by_other_cod
     assert read_edition(published_copy.store, "2014-2").method is not None
     own = [f for f in verify(published_copy.store).findings if f.edition == "2014-2"]
     assert any("made by other code" in finding.message for finding in own)
-
-
-def test_a_fact_that_was_not_recorded_then_is_no_change_of_input(published):
-    edition = read_edition(published.store, "2014-1")
-    assert len(unchanged_tows(published.store, edition)) == edition.tables["tows"].height
-    fewer = edition.tables | {"tows": edition.tables["tows"].drop("boat_type")}
-    assert same_tows(fewer, edition.tables) == set(edition.tables["tows"]["tow_id"])
-    heavier = edition.tables | {
-        "tows": edition.tables["tows"].with_columns(pl.col("weight_kg") + 1)
-    }
-    assert same_tows(heavier, edition.tables) == frozenset()
 
 
 @FILES_ALONE
@@ -233,13 +200,6 @@ def test_a_changed_printed_register_is_named_and_so_is_its_line(carrying):
     assert {f.kind for f in findings} == {"swapped", "differs"}
 
 
-def test_an_edition_whose_printed_source_is_gone_cannot_be_made_again(carrying):
-    shutil.rmtree(folder(carrying, "printed"))
-    findings, wrong = found(carrying, kind="unchecked")
-    assert wrong
-    assert "there is no edition printed" in findings[0].message
-
-
 # A chain of editions, and what a new seal does not hide
 
 
@@ -296,7 +256,6 @@ FORGERIES = {
     "release notes": lambda path: reworded(path, "toelichting.md", "e", "a"),
     "list of inputs": lambda path: reworded(path, "inputs.csv", ";meetdata;", ";lijst;"),
     "decisions": lambda path: reworded(path, "decisions.json", "[]", "[ ]"),
-    "package": lambda path: reworded(path, "datapackage.json", "2014-2", "2014-3"),
 }
 
 

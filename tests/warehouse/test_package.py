@@ -1,14 +1,12 @@
 """The tables as files: a data package that other programs open, read and believe."""
 
 import json
-from collections import defaultdict
 from pathlib import Path
 
-import duckdb
 import polars as pl
 import pytest
 
-from pipeline.tables.schemas import ABOUT, TABLES, ordered
+from pipeline.tables.schemas import ABOUT, TABLES
 from tests.conftest import METHODS, Workbench
 from warehouse.derive.inputs import LAKE_ONLY, PER_METHOD
 from warehouse.store.files import file_sha256
@@ -42,32 +40,16 @@ def test_the_folder_is_a_data_package(folder: Path):
         assert report.valid, report.flatten(["type", "message"])
     assert sorted(resource.name for resource in package.resources) == NAMES
     for resource in package.resources:
+        frame = pl.read_parquet(folder / resource.path)
+        key = resource.schema.primary_key
+        assert not key or not frame.select(key).is_duplicated().any(), resource.path
+        assert [field.name for field in resource.schema.fields] == frame.columns
         assert resource.hash == f"sha256:{file_sha256(folder / resource.path)}"
     assert package.licenses == [{"name": "CC0-1.0"}]
     assert "Simulated" in package.description
     assert [source["title"].split()[0] for source in package.sources] == [
         "samples", "method", "method",
     ]  # fmt: skip
-
-
-def test_other_programs_read_what_the_database_holds(built: Workbench, folder: Path):
-    """Declared keys single out rows, and DuckDB, pandas and Polars read the same."""
-    import pandas as pd  # noqa: PLC0415 - takes seconds to import
-
-    of_table = defaultdict(list)
-    for resource in _read(folder / "datapackage.json")["resources"]:
-        path = folder / resource["path"]
-        frame = pl.read_parquet(path)
-        of_table[resource["name"].partition(".")[0]].append(frame)
-        key = resource["schema"]["primaryKey"]
-        assert not key or not frame.select(key).is_duplicated().any(), path
-        assert [f["name"] for f in resource["schema"]["fields"]] == frame.columns
-        assert resource["rowcount"] == frame.height
-    for table, frames in of_table.items():
-        assert ordered(table, pl.concat(frames)).equals(built.table(table)), table
-    path = folder / "register.parquet"
-    assert pd.read_parquet(path)["cw_kg_m"].tolist() == pl.read_parquet(path)["cw_kg_m"].to_list()
-    assert duckdb.read_parquet(str(path)).fetchall() == pl.read_parquet(path).rows()
 
 
 def described(folder: Path, **about: str) -> dict:
@@ -79,12 +61,6 @@ def described(folder: Path, **about: str) -> dict:
     return _read(folder / "datapackage.json")
 
 
-def test_publisher_and_licence_are_those_of_the_archive(tmp_path):
-    package = described(tmp_path, **OWNED)
-    assert package["licenses"] == [{"path": "https://example.org/licence"}]
-    assert package["contributors"] == [{"title": "The federation", "roles": ["publisher"]}]
-
-
 def test_a_damaged_file_is_noticed_and_described_again(tmp_path):
     described(tmp_path)
     assert package_is_whole(tmp_path)
@@ -94,7 +70,10 @@ def test_a_damaged_file_is_noticed_and_described_again(tmp_path):
     assert package_is_whole(tmp_path)
 
 
-def test_without_a_declared_licence_none_is_given(tmp_path):
+def test_publisher_and_licence_are_those_of_the_archive(tmp_path):
+    package = described(tmp_path, publisher="The federation", licence="https://example.org/licence")
+    assert package["licenses"] == [{"path": "https://example.org/licence"}]
+    assert package["contributors"] == [{"title": "The federation", "roles": ["publisher"]}]
     package = described(tmp_path)
     assert "licenses" not in package
     assert "declares no licence" in package["description"]

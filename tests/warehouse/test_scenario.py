@@ -4,13 +4,11 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import parse_method, shipped_method
 from pipeline.register.register import LINE
 from tests.conftest import METHODS
 from warehouse.queries.history import History
 from warehouse.queries.scenario import Scenario
-from warehouse.store.store import Store
 
 UNTOWABLE = """
 name = "none"
@@ -27,11 +25,6 @@ def history(built):
 @pytest.fixture(scope="module")
 def scenario(history):
     return Scenario(*(history.under(shipped_method(name)) for name in METHODS))
-
-
-def test_an_empty_data_folder_says_how_to_fill_it(tmp_path):
-    with pytest.raises(MissingKnowledgeError, match="herijk rebuild --archive"):
-        History.of(Store(tmp_path))
 
 
 def test_a_draft_is_the_register_of_the_warehouse(scenario, built):
@@ -58,16 +51,6 @@ def test_tows_of_types_are_those_of_the_warehouse(scenario, built):
     assert_frame_equal(found.select(columns), stored.select(columns), check_row_order=False)
     for tows, own in (("newest", pl.col("newest")), ("2014", pl.col("season") == 2014)):
         assert set(scenario.type_tows(tows)["tow_id"]) == set(stored.filter(own)["tow_id"])
-
-
-def test_remembered_windows_change_nothing(history):
-    method = shipped_method("rebased")
-    fresh = History(
-        history.tows, history.boats, history.crews, history.blocks, history.last_day, simulated=True
-    ).under(method)
-    again = history.under(method), history.under(method)
-    for draft in again:
-        assert_frame_equal(draft.made.curves, fresh.made.curves)
 
 
 def test_changes_are_counted_and_the_largest_stands_above(scenario, built):

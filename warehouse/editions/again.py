@@ -4,7 +4,6 @@ What comes out otherwise does not say whether the code changed or the edition di
 head of the chain knows (see `verify`).
 """
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -15,10 +14,10 @@ from pydantic import ValidationError
 from pipeline.errors import HerijkError, MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.register.register import LINE
-from pipeline.tables.row import Row
 from pipeline.tables.schemas import TABLES
 from warehouse.editions import sheets
 from warehouse.editions.chain import Finding
+from warehouse.editions.compare import parts_of
 from warehouse.editions.contents import contents_of
 from warehouse.editions.inputs import NOT_INPUT, SAMPLES, input_files, same_tows
 from warehouse.editions.making import made_again
@@ -35,11 +34,17 @@ from warehouse.store.editions import (
 from warehouse.store.store import Store
 
 SAME_NUMBER: Final = 1e-9
-"""Relative difference up to which a number made again is the same.
+"""Difference up to which a number made again is the same, as a part of the largest of its column.
 
 Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
 
 INPUT_TABLES: Final = ("tows", "tow_runs")
+ROWS: Final = {
+    "tows": "tow {tow_id}",
+    "tow_runs": "tow {tow_id}, run {run}",
+    "register": "{fsn_no} {rowers}{crew_class}",
+}
+"""Tables of which every row that differs is named, and how."""
 CANNOT: Final = (HerijkError, ValidationError, OSError, ValueError, pl.exceptions.PolarsError)
 
 
@@ -111,17 +116,8 @@ def _inputs(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
         for name in was.columns
         if name in now.columns and name not in NOT_INPUT and not name.endswith("_sha256")
     ]
-    key = TABLES[table].primary_key()
-    for one, other, unequal in _differences(was.select(facts), now.select(facts), key):
-        row = one or other or {}
-        name = "tow " + ", run ".join(str(row[k]) for k in key)
-        if other is None:
-            message = say("{} is no longer in the warehouse", name)
-            yield Finding(edition.manifest.edition, "missing", name, message)
-            continue
-        for fact in unequal:
-            message = say("{}: {} is {}; it was {}", name, fact, other[fact], row[fact])
-            yield Finding(edition.manifest.edition, "swapped", name, message)
+    why = say("the lists of the archive say so now")
+    yield from _rows(edition, table, was.select(facts), now.select(facts), "swapped", why)
 
 
 def _lines(edition: Edition, again: Edition) -> Iterator[Finding]:
@@ -130,16 +126,17 @@ def _lines(edition: Edition, again: Edition) -> Iterator[Finding]:
     was, now = edition.tables, again.tables
     if "tows" in was and len(same_tows(was, now)) < was["tows"].height:
         why = say("tows that went into it changed")
-    for one, other, unequal in _differences(edition.register, again.register, LINE):
-        if one is None:
-            message = say("made again, there is a line that the edition has not: {}", why)
-        else:
-            made = other or {}
-            what = ", ".join(f"{n} {_text(one.get(n))} > {_text(made.get(n))}" for n in unequal)
-            message = say("made again, {}: {}", what, why)
-        row = one or other or {}
-        where = f"{row['fsn_no']} {row['rowers']}{row['crew_class']}"
-        yield Finding(edition.manifest.edition, "differs", where, message)
+    yield from _rows(edition, "register", edition.register, again.register, "differs", why)
+
+
+def _rows(
+    edition: Edition, table: str, was: pl.DataFrame, now: pl.DataFrame, kind: str, why: str
+) -> Iterator[Finding]:
+    """Rows that come out otherwise, each with what it was and is, and why."""
+    for row in differences(was, now, TABLES[table].primary_key()).iter_rows(named=True):
+        what = ", ".join(f"{n} {_text(row[n])} > {_text(row[f'{n} now'])}" for n in row["columns"])
+        message = say("made again, {}: {}", what, why)
+        yield Finding(edition.manifest.edition, kind, ROWS[table].format(**row), message)
 
 
 def _tables(edition: Edition, again: Edition) -> Iterator[Finding]:
@@ -150,10 +147,12 @@ def _tables(edition: Edition, again: Edition) -> Iterator[Finding]:
 
 def _table(edition: Edition, table: str, now: pl.DataFrame) -> Iterator[Finding]:
     was = edition.tables.get(table, now.clear())
-    key = TABLES[table].primary_key()
-    unequal = {name for *_, names in _differences(was, now, key) for name in names}
-    if unequal:
-        message = say("made again, it comes out otherwise in {}", ", ".join(sorted(unequal)))
+    both = was.drop("causes", strict=False), now.drop("causes", strict=False)
+    names = {*differences(*both, TABLES[table].primary_key())["columns"].explode()}
+    if "causes" in now.columns and differences(parts_of(was), parts_of(now), LINE).height:
+        names.add("causes")  # a text with numbers, which are compared as such
+    if names:
+        message = say("made again, it comes out otherwise in {}", ", ".join(sorted(names)))
         yield Finding(edition.manifest.edition, "differs", table + PARQUET, message)
 
 
@@ -161,24 +160,21 @@ def _files(store: Store, edition: Edition) -> Iterator[Finding]:
     """Sheets, texts and lists that do not say what the tables of the edition say."""
     manifest, path = edition.manifest, edition_path(store, edition.manifest.edition)
     bare = {name: frame for name, frame in edition.tables.items() if name != CHANGES}
-    files = _made_from(sheets.read_inputs(path), bare.get("tows"))
+    # Lists are taken as stated: `verify` looks at them.
+    files = sheets.read_inputs(path).select("path", "sha256", "kind")
+
+    if "tows" in bare:
+        files = input_files(bare["tows"], files.filter(pl.col("kind") != SAMPLES))
     expected = contents_of(store, Edition(manifest, bare, edition.method), files)
     if CHANGES + PARQUET in expected:
         yield from _table(edition, CHANGES, pl.read_parquet(expected[CHANGES + PARQUET]))
     for file in sorted({*expected, *manifest.files} - {MANIFEST}):
-        if file.endswith(PARQUET):
+        if file.endswith(PARQUET) and file in expected:
             continue
         found = (path / file).read_bytes() if (path / file).exists() else b""
         if _is_unlike(file, expected.get(file, b""), found):
             message = say("{} does not say what the tables of the edition say", file)
             yield Finding(manifest.edition, "differs", file, message)
-
-
-def _made_from(stated: list[tuple[str, str, str]], tows: pl.DataFrame | None) -> pl.DataFrame:
-    """What the edition was made from, by its tows; lists as stated: `verify` looks at them."""
-    schema = dict.fromkeys(("path", "kind", "sha256"), pl.String())
-    files = pl.DataFrame(stated, schema, orient="row").select("path", "sha256", "kind")
-    return files if tows is None else input_files(tows, files.filter(pl.col("kind") != SAMPLES))
 
 
 def _is_unlike(file: str, was: bytes, now: bytes) -> bool:
@@ -188,56 +184,47 @@ def _is_unlike(file: str, was: bytes, now: bytes) -> bool:
     return not now or sheets.read_xlsx_cells(was) != sheets.read_xlsx_cells(now)
 
 
-def _differences(
-    was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]
-) -> Iterator[tuple[Row | None, Row | None, list[str]]]:
-    """Rows that differ, as they were and are, and in which columns; None where there is none.
+def differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.DataFrame:
+    """Rows that differ by more than `SAME_NUMBER`; one that is there twice stands beside the first.
 
-    Numbers are the same up to `SAME_NUMBER` of the largest of their column.
+    Returns:
+        The columns of both (`name` and `name now`), `there` and `there now`: null where there is no
+        such row; and `columns`: those that differ.
     """
     names = list(dict.fromkeys([*was.columns, *now.columns]))
-    limits = {c.name: SAME_NUMBER * _largest(c) for c in was if c.dtype.is_float()}
-    before, after = (_by_key(frame, key) for frame in (was, now))
-    for place in before | after:
-        one, other = before.get(place), after.get(place)
-        unequal = [
-            name
-            for name in names
-            if not _same((one or {}).get(name), (other or {}).get(name), limits.get(name, 0.0))
-        ]
-        if unequal:
-            yield one, other, unequal
-
-
-def _by_key(frame: pl.DataFrame, key: Sequence[str]) -> dict[tuple[object, ...], Row]:
-    """Rows by their key; one that is there twice stands beside the first."""
-    count = pl.int_range(pl.len()).over(key)
-    places = frame.select(*key, count.alias("count")).rows()
-    return dict(zip(places, frame.iter_rows(named=True), strict=True))
-
-
-def _largest(numbers: pl.Series) -> float:
-    largest = numbers.abs().max()
-    return largest if isinstance(largest, float) else 0.0
-
-
-def _same(was: object, now: object, limit: float) -> bool:
-    if isinstance(was, float) and isinstance(now, float):
-        return abs(now - was) <= limit
-    return was == now or _same_factors(was, now)
-
-
-def _same_factors(was: object, now: object) -> bool:
-    """Whether two texts list the same causes, with factors up to the last digits."""
-    try:
-        before, after = json.loads(str(was)), json.loads(str(now))
-        return type(before) is type(after) is list and all(
-            one.keys() == other.keys()
-            and all(_same(one[name], other[name], SAME_NUMBER) for name in one)
-            for one, other in zip(before, after, strict=True)
+    before, after = (
+        frame.with_columns(
+            *(pl.lit(None).alias(name) for name in names if name not in frame.columns),
+            pl.int_range(pl.len()).over(key).alias("row"),
+            pl.lit(value=True).alias("there"),
         )
-    except (ValueError, TypeError, AttributeError):  # not a list of causes
-        return False
+        for frame in (was, now)
+    )
+    pairs = before.join(
+        after,
+        on=[*key, "row"],
+        how="full",
+        coalesce=True,
+        suffix=" now",
+        nulls_equal=True,
+        maintain_order="left_right",
+    )
+    unequal = {name: _unequal(pairs, name) for name in ("there", *names) if name not in key}
+    columns = (pl.when(differs).then(pl.lit(name)) for name, differs in unequal.items())
+    return pairs.filter(pl.any_horizontal(unequal.values())).with_columns(
+        columns=pl.concat_list(columns).list.drop_nulls()
+    )
+
+
+def _unequal(pairs: pl.DataFrame, name: str) -> pl.Expr:
+    """Where a column of pairs of rows differs."""
+    one, other = pl.col(name), pl.col(f"{name} now")
+    if not (pairs.schema[name].is_float() and pairs.schema[f"{name} now"].is_float()):
+        return one.ne_missing(other)
+    largest = pairs[name].abs().max()
+    limit = SAME_NUMBER * (largest if isinstance(largest, float) else 0.0)
+    far = ~((one - other).abs() <= limit)
+    return (one.is_null() != other.is_null()) | far.fill_null(value=False)
 
 
 def _text(value: object) -> str:

@@ -21,13 +21,11 @@ from warehouse.store.editions import (
     INPUTS,
     MANIFEST,
     METHOD,
-    PACKAGE,
     PARQUET,
     XLSX,
     Edition,
     read_edition,
 )
-from warehouse.store.package import Rights
 from warehouse.store.store import Store
 
 
@@ -59,8 +57,6 @@ def contents_of(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str
         **{name: text.encode("utf-8") for name, text in written.items()},
         **{name + PARQUET: _parquet(frame) for name, frame in tables.items()},
     }
-    summary, rights = notes.summary(edition), Rights.of(store)
-    contents[PACKAGE] = sheets.package_bytes(manifest, contents, summary, rights)
     hashes = {name: hashlib.sha256(c).hexdigest() for name, c in sorted(contents.items())}
     sealed = manifest.model_copy(update={"files": hashes}).sealed()
     contents[MANIFEST] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")

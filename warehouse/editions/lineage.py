@@ -11,7 +11,7 @@ import polars as pl
 from pipeline.errors import MissingKnowledgeError
 from pipeline.register.register import LINE
 from pipeline.tables.row import Row
-from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
+from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed
 from warehouse.store.boats import boats_named, the_boat
 from warehouse.store.editions import Edition, Manifest, edition_path, read_edition
 from warehouse.store.store import Store
@@ -80,9 +80,8 @@ def lineage(store: Store, edition: str, boat: str) -> Lineage:
 
 def _line(edition: Edition, row: Row) -> LineLineage:
     frame = pl.DataFrame([row], schema=edition.register.schema)
-    cells = printed_cells(frame, REGISTER_FIELDS)[0]
-    printed = {one.header: cell for one, cell in zip(REGISTER_FIELDS, cells, strict=True)}
-    line = LineLineage(row, printed, row[CODE_FIELD.column])
+    cells = printed(frame, REGISTER_FIELDS).row(0, named=True)
+    line = LineLineage(row, cells, row[CODE_FIELD.column])
     if row["tow_id"] is None or "tows" not in edition.tables:
         return line
     tows, curves, run_points = (

@@ -128,9 +128,9 @@ def made_again(store: Store, edition: Edition) -> Edition:
     if edition.method is None:
         path = edition_path(store, edition.manifest.edition)
         files = sheets.read_inputs(path)
-        if not files:
+        if files.is_empty():
             raise BrokenPromiseError("{}/{} names no file", path.name, INPUTS)
-        return as_printed(store, edition.manifest, files[0][0])
+        return as_printed(store, edition.manifest, files["path"][0])
     tows = edition.tables["tows"]
     known = [name for name in JUDGED if name in tows.columns]
     return recomputed(

@@ -81,16 +81,6 @@ def _template(name: str) -> jinja2.Template:
     return environment.get_template(name)
 
 
-def summary(edition: Edition) -> str:
-    """One paragraph in Dutch: what it is, from when, by whose decision."""
-    facts = _facts(edition, DUTCH)
-    simulated = "GESIMULEERD, geen metingen van de federatie. " if facts["simulated"] else ""
-    return (
-        f"{simulated}Sloepenregister {facts['edition']}, geldt vanaf {facts['valid_from']}. "
-        f"Besluit: {facts['decision']}. Rekenmethode: {facts['method']}."
-    )
-
-
 def _facts(edition: Edition, language: Language) -> dict[str, object]:
     manifest = edition.manifest
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)

@@ -1,4 +1,4 @@
-"""The register as people read it: CSV and XLSX with Dutch headers, and the data package.
+"""The register as people read it: CSV and XLSX with Dutch headers.
 
 The cells of the CSV are the printed register: they are what the verification code of a line covers,
 together with the line's inputs and method. Nothing is computed here but text and hashes.
@@ -12,9 +12,8 @@ import io
 import json
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 import polars as pl
 import python_calamine
@@ -22,17 +21,18 @@ import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from pipeline.register.register import NO_EMPTY_THWART
 from warehouse.editions.words import STATUSES
-from warehouse.store.editions import CSV, INPUTS, Manifest
-from warehouse.store.package import Rights
+from warehouse.store.editions import INPUTS, Manifest
 
 REGISTER_SHEET: Final = "register"
 A4: Final = 9
 """The paper's number in a spreadsheet."""
-BOM: Final = "\ufeff"
 CODE_LENGTH: Final = 10
-CODE_HEADER: Final = "controlecode"
 FORMULA: Final = re.compile(r"(^|[;,\t\r\n])(\s*)([=+\-@])")
 """What a spreadsheet takes for a formula, also behind a separator that it splits a cell at."""
+
+TEXT_STAYS_TEXT: Final = dict.fromkeys(
+    ("strings_to_formulas", "strings_to_urls", "strings_to_numbers"), False
+)
 
 FieldType = Literal["string", "number", "integer", "date"]
 
@@ -44,83 +44,60 @@ BASIS_WORDS: Final = {
 }
 
 
-@dataclass(frozen=True)
-class Field:
+class Field(NamedTuple):
     """A column of a sheet: its Dutch header, where its values come from, and how they look."""
 
     header: str
     column: str
-    type: FieldType
-    description: str
+    type: FieldType = "string"
     decimals: int = 3
 
 
-LOWER_END: Final = (
-    "ondergrens van het 95 %-interval; bij een methode die de fout van de log niet schat: van de "
-    "spreiding van de runs alleen, de fout van de log zit er niet in"
-)
 REGISTER_FIELDS: Final = (
-    Field("fsn_nr", "fsn_no", "string", "nummer van de sloep bij de federatie"),
-    Field("ht_nr", "ht_no", "string", "nummer in het HT-register"),
-    Field("sloep", "name", "string", "naam"),
-    Field("type", "boat_type", "string", "type sloep"),
-    Field("roeiers", "rowers", "integer", "aantal roeiers waarvoor de regel geldt"),
-    Field("klasse", "crew_class", "string", "H heren, D dames"),
-    Field(
-        "lege doft",
-        "empty_thwart",
-        "string",
-        "doft waarop geen roeiers zitten: de kromme is alleen geldig als die leeg is",
-    ),
-    Field("status", "status", "string", "geldig, of waarom er geen geldige kromme is"),
-    Field("nakijken", "flags", "string", "ja: de commissie moet nog naar deze sleep kijken"),
-    Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", "opgegeven snelheid", 2),
-    Field("A [kg/m]", "a_kg_m", "number", "de weerstand bij snelheid 0"),
-    Field(
-        "B [m/s]",
-        "b_m_s",
-        "number",
-        "leeg waar hij niet bepaald is: Cw stijgt daar niet met de snelheid, en A en Cw "
-        "bij de roeisnelheid bepalen samen de kromme",
-    ),
-    Field("Cw [kg/m]", "cw_kg_m", "number", "Cw bij de roeisnelheid"),
-    Field("Cw laagst [kg/m]", "cw_lo_kg_m", "number", LOWER_END),
-    Field("Cw hoogst [kg/m]", "cw_hi_kg_m", "number", "bovengrens"),
-    Field("sleep_id", "tow_id", "string", "sleep die telt"),
-    Field("sleepdatum", "tow_date", "date", "dag van die sleep"),
-    Field("geldig tot en met", "valid_until", "date", "laatste dag waarop de regel telt"),
-    Field("beoordeeld op", "as_of", "date", "dag waarop de geldigheid is bekeken"),
-    Field("lengte [m]", "waterline_length_m", "number", "lengte op de waterlijn die dag", 2),
-    Field("breedte [m]", "beam_m", "number", "breedte die dag", 2),
-    Field("hoogte [m]", "bow_height_m", "number", "boeghoogte die dag", 2),
-    Field("gewicht [kg]", "weight_kg", "number", "lege sloep met riemen die dag", 0),
-    Field("basis", "basis", "string", "waar de getallen vandaan komen"),
-    Field("editie", "edition", "string", "uitgave van het register"),
-    Field("methode", "method", "string", "rekenmethode"),
+    Field("fsn_nr", "fsn_no"),
+    Field("ht_nr", "ht_no"),
+    Field("sloep", "name"),
+    Field("type", "boat_type"),
+    Field("roeiers", "rowers", "integer"),
+    Field("klasse", "crew_class"),
+    Field("lege doft", "empty_thwart"),
+    Field("status", "status"),
+    Field("nakijken", "flags"),
+    Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", 2),
+    Field("A [kg/m]", "a_kg_m", "number"),
+    Field("B [m/s]", "b_m_s", "number"),
+    Field("Cw [kg/m]", "cw_kg_m", "number"),
+    Field("Cw laagst [kg/m]", "cw_lo_kg_m", "number"),
+    Field("Cw hoogst [kg/m]", "cw_hi_kg_m", "number"),
+    Field("sleep_id", "tow_id"),
+    Field("sleepdatum", "tow_date", "date"),
+    Field("geldig tot en met", "valid_until", "date"),
+    Field("beoordeeld op", "as_of", "date"),
+    Field("lengte [m]", "waterline_length_m", "number", 2),
+    Field("breedte [m]", "beam_m", "number", 2),
+    Field("hoogte [m]", "bow_height_m", "number", 2),
+    Field("gewicht [kg]", "weight_kg", "number", 0),
+    Field("basis", "basis"),
+    Field("editie", "edition"),
+    Field("methode", "method"),
 )
-LINE_KEY: Final = ["fsn_nr", "roeiers", "klasse", "lege doft"]
-CODE_FIELD: Final = Field(
-    CODE_HEADER, "verification_code", "string", "hash van invoer, methode en getallen van de regel"
-)
+CODE_FIELD: Final = Field("controlecode", "verification_code")
 SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 """The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
 
-INPUT_FIELDS: Final = (
-    Field("bestand", "path", "string", "bestand, vanaf de map van het archief"),
-    Field("soort", "kind", "string", "meetdata, lijst of register"),
-    Field("sha256", "sha256", "string", "hash van de inhoud"),
-)
-
-Cells = list[list[str]]
+INPUT_FIELDS: Final = (Field("bestand", "path"), Field("soort", "kind"), Field("sha256", "sha256"))
 
 
-def printed_cells(frame: pl.DataFrame, fields: Sequence[Field]) -> Cells:
-    """The cells of a sheet as they are printed, without the header."""
+def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
+    """The cells of a sheet as they are printed, by header."""
     words = _in_words(frame)
-    columns = [
-        [_printed(value, field) for value in words[field.column].to_list()] for field in fields
-    ]
-    return [list(row) for row in zip(*columns, strict=True)]
+    return pl.DataFrame(
+        {
+            field.header: [_printed(value, field) for value in words[field.column]]
+            for field in fields
+        },
+        schema={field.header: pl.String() for field in fields},
+    )
 
 
 def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str]:
@@ -130,10 +107,10 @@ def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str
         frame: lines with the columns of `REGISTER_FIELDS` and `inputs_sha256`.
         method_hash: content hash of the method; None for a register as printed.
     """
-    cells = printed_cells(frame, REGISTER_FIELDS)
+    lines = printed(frame, REGISTER_FIELDS).rows()
     return [
-        _code([inputs, method_hash, *row])
-        for inputs, row in zip(frame["inputs_sha256"].to_list(), cells, strict=True)
+        _code([inputs, method_hash, *line])
+        for inputs, line in zip(frame["inputs_sha256"], lines, strict=True)
     ]
 
 
@@ -142,52 +119,52 @@ def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
     text = io.StringIO(newline="")
     writer = csv.writer(text, delimiter=";", lineterminator="\r\n")
     writer.writerow([field.header for field in fields])
-    writer.writerows(printed_cells(frame, fields))
-    return (BOM + text.getvalue()).encode("utf-8")
+    writer.writerows(printed(frame, fields).rows())
+    return text.getvalue().encode("utf-8-sig")
 
 
-def read_inputs(edition: Path) -> list[tuple[str, str, str]]:
-    """File, kind and SHA-256 of what an edition was made from.
+def read_inputs(edition: Path) -> pl.DataFrame:
+    """What an edition was made from: `path`, `kind` and `sha256` of each file.
 
     A row of another width was changed, which is found where the files themselves are looked at.
     """
-    text = (edition / INPUTS).read_bytes().decode("utf-8-sig", errors="replace")
-    rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=";"))[1:]
-    return [(row[0], row[1], row[2]) for row in rows if len(row) == len(INPUT_FIELDS)]
+    path, names = edition / INPUTS, [field.column for field in INPUT_FIELDS]
+    content = path.read_bytes() if path.exists() else b""
+    text = content.decode("utf-8-sig", errors="replace")
+    rows = [
+        row
+        for row in csv.reader(io.StringIO(text, newline=""), delimiter=";")
+        if len(row) == len(names)
+    ]
+    return pl.DataFrame(rows[1:], schema=dict.fromkeys(names, pl.String()), orient="row")
 
 
 def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], manifest: Manifest) -> bytes:
     """A sheet as XLSX, numbers as numbers and days as days, with what the edition is beside it."""
     target = io.BytesIO()
-    options = {
-        "in_memory": True,
-        "strings_to_formulas": False,
-        "strings_to_urls": False,
-        "strings_to_numbers": False,
-    }
     words = _in_words(frame)
-    columns = [words[f.column].alias(f.header) for f in fields]
-    rounded = pl.DataFrame(
-        column.round(field.decimals) if field.type == "number" else column
-        for column, field in zip(columns, fields, strict=True)
+    cells = words.select(
+        (pl.col(f.column).round(f.decimals) if f.type == "number" else pl.col(f.column)).alias(
+            f.header
+        )
+        for f in fields
     )
-    with xlsxwriter.Workbook(target, options) as book:
+    with xlsxwriter.Workbook(target, {"in_memory": True, **TEXT_STAYS_TEXT}) as book:
         created = dt.datetime.combine(manifest.published_on, dt.time())
         book.set_properties({"title": f"Sloepenregister {manifest.edition}", "created": created})
-        rounded.write_excel(
+        sheet = cells.write_excel(
             book,
             REGISTER_SHEET,
             column_formats={field.header: _number_format(field) for field in fields},
             autofit=True,
             freeze_panes=(1, 1),
-        )
-        sheet = book.get_worksheet_by_name(REGISTER_SHEET)
+        ).get_worksheet_by_name(REGISTER_SHEET)
         sheet.repeat_rows(0)
         sheet.set_landscape()
         sheet.set_paper(A4)
         sheet.fit_to_pages(1, 0)
-        said = pl.DataFrame(list(_said(manifest).items()), ["editie", "waarde"], orient="row")
-        said.write_excel(book, "editie", include_header=False, autofit=True)
+        about = pl.DataFrame(list(_about(manifest).items()), ["editie", "waarde"], orient="row")
+        about.write_excel(book, "editie", include_header=False, autofit=True)
     return target.getvalue()
 
 
@@ -197,7 +174,7 @@ def _number_format(field: Field) -> str:
     return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
 
 
-def _said(manifest: Manifest) -> dict[str, str]:
+def _about(manifest: Manifest) -> dict[str, str]:
     """What an edition is, in words."""
     return {
         "editie": manifest.edition,
@@ -222,54 +199,6 @@ def read_xlsx_cells(content: bytes) -> dict[str, list[list[Any]]]:
         return {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
     except python_calamine.CalamineError as error:
         raise ValueError(f"no XLSX: {error}") from error
-
-
-def package_bytes(
-    manifest: Manifest, contents: dict[str, bytes], notes: str, rights: Rights
-) -> bytes:
-    """The Frictionless descriptor of the CSV files of an edition."""
-    package = {
-        "profile": "tabular-data-package",
-        "name": manifest.edition.lower(),
-        "title": f"Sloepenregister {manifest.edition}",
-        "description": notes,
-        "version": manifest.edition,
-        "created": f"{manifest.published_on}T00:00:00Z",
-        **rights.described,
-        "resources": [
-            _resource("register", CSV, contents[CSV], SHEET_FIELDS, LINE_KEY),
-            _resource("inputs", INPUTS, contents[INPUTS], INPUT_FIELDS, ["bestand"]),
-        ],
-    }
-    return (json.dumps(package, indent=1, ensure_ascii=False) + "\n").encode("utf-8")
-
-
-def _resource(
-    name: str, path: str, content: bytes, fields: Sequence[Field], key: list[str]
-) -> dict[str, object]:
-    return {
-        "profile": "tabular-data-resource",
-        "name": name,
-        "path": path,
-        "format": "csv",
-        "mediatype": "text/csv",
-        "encoding": "utf-8-sig",
-        "bytes": len(content),
-        "hash": f"sha256:{hashlib.sha256(content).hexdigest()}",
-        "dialect": {"delimiter": ";", "lineTerminator": "\r\n", "quoteChar": '"', "header": True},
-        "schema": {
-            "fields": [_field(field) for field in fields],
-            "primaryKey": key,
-            "missingValues": [""],
-        },
-    }
-
-
-def _field(field: Field) -> dict[str, Any]:
-    described = {"name": field.header, "type": field.type, "description": field.description}
-    if field.type == "number":
-        described |= {"decimalChar": ","}
-    return described
 
 
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
@@ -297,6 +226,6 @@ def _printed(value: Any, field: Field) -> str:
 
 
 def _code(parts: Sequence[str | None]) -> str:
-    text = json.dumps(list(parts), ensure_ascii=False, separators=(",", ":"))
+    text = json.dumps(parts, ensure_ascii=False, separators=(",", ":"))
     digest = hashlib.sha256(text.encode("utf-8")).digest()
     return base64.b32encode(digest).decode("ascii")[:CODE_LENGTH]

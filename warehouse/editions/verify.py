@@ -26,7 +26,6 @@ from warehouse.editions.inputs import LIST
 from warehouse.intake import seasons as intake
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.editions import (
-    INPUTS,
     Manifest,
     edition_names,
     manifest_path,
@@ -122,7 +121,7 @@ def _swapped(path: Path, archive: Path | None, hashes: FileHashes) -> Iterator[F
         )
         yield Finding(path.name, "unchecked", "archive", message)
         return
-    for file, kind, sha256 in sheets.read_inputs(path) if (path / INPUTS).exists() else []:
+    for file, kind, sha256 in sheets.read_inputs(path).rows():
         gone = PARTS.join(part for part in file.split(PARTS) if not (archive / part).is_file())
         if gone:
             message = say("{} is gone from the archive; put it back", gone)
