@@ -58,7 +58,7 @@ def _check_listed(wanted: Collection[int] | None, listed: Sequence[int]) -> None
 def site_made_from(store: Store) -> str:
     """The database, and the code and files that make pages of it."""
     folder = Path(__file__).parents[1] / "dashboards"
-    files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates", "guides"}]
+    files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates"}]
     files += Path(CATALOGUES).rglob("*.mo")
     files += [guide_file(name, language) for name in GUIDES for language in LANGUAGES]
     return fingerprint(

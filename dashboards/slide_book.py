@@ -1,495 +1,419 @@
-"""The slide book: every chart of the presentation of 24 January 2015 over this archive.
+"""The slides: what the presentation of 24 January 2015 asked, over this archive.
 
-A slide is a figure with its rows, a title, and a sentence that says what it shows, made from the
-figures of the tables. Does not belong here: what a figure looks like (`dashboards.figures.slides`),
-the statistics behind a sentence (`pipeline.consistency`), and files (`dashboards.slides`).
+Each slide says one finding, shows it in one chart before and after correction, and explains its
+marks. All numbers come from tables. Does not belong here: what a chart looks like
+(`dashboards.figures.slides`), and the PDF and the page (`dashboards.slides`, `.site.slides`).
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import nullcontext
-from functools import cached_property, partial
+from functools import partial
 from typing import Final, NamedTuple
 
 import polars as pl
 
 from dashboards import labels
-from dashboards.figures.slides import EXPLAINING, QUANTITIES
-from dashboards.slide_rows import (
-    RECOMPUTED_SEASON,
-    boats_of_slides,
-    by_tows,
-    compared_frame,
-    lines_frame,
-    methods_of,
-    pair_of_types,
-)
+from dashboards.figures.slides import ENDS, PAIRS
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
-from pipeline.messages import Say, Sentence, ngettext, say
-from pipeline.studies.options import AS_READ, SPEEDS, TICKS
+from pipeline.messages import Sentence, ngettext, say
+from pipeline.studies.options import SPEEDS, TICKS
 from pipeline.tables.row import Row
-from warehouse.queries.chosen_tows import ALL, STATED, rows_of, spoken_range, with_choices
+from warehouse.derive.studies import STUDIED_METHOD
+from warehouse.queries.chosen_tows import ALL
 from warehouse.queries.views import Views
+from warehouse.store.boats import the_boat
 from warehouse.store.unforeseen import Border
 
-RECOMPUTED: Final = (("cw", "weight"), ("b", "speed"), ("cw", "speed"))
-"""What the presentation shows of the recomputed season."""
+TYPES: Final = ("kromhout", "kuiken")
+"""The types of the presentation; where an archive has others, the two with most tows."""
+BOATS: Final = ("razende snol", "mare australis", "twirre")
+"""The boats of the presentation; where an archive has others, the three towed most often."""
 
-RACED_COLUMNS: Final = (
-    *("method", "label", "speed_case", "power_w", "raced_power_w"),
-    *("power_ratio_raced", "power_ratio_raced_lo", "power_ratio_raced_hi"),
+FEWEST: Final = 6
+"""What fewer boats, tows or pairs than this say is no finding."""
+CLEAR_R2: Final = 0.3
+"""From here on a line without a clear slope is not called "no relation": too few boats tell."""
+
+CONCLUDING: Final = ("eras", "cw_weight", "hull speed")
+"""How the names of the slides begin whose findings the conclusion repeats."""
+
+QUANTITIES: Final = {"a": say("A"), "b": say("B"), "cw": say("Cw at the standard speed")}
+EXPLAINING: Final = {"weight": say("weight"), "speed": say("declared speed")}
+COLUMNS: Final = {
+    "a": "a_kg_m",
+    "b": "b_m_s",
+    "cw": "cw_standard_kg_m",
+    "weight": "weight_kg",
+    "speed": "declared_speed_m_s",
+}
+TOW_COLUMNS: Final = (
+    *("method", "boat_type", "crew_class", "fsn_no", "label", "outside", "beyond_curve"),
+    *("weight_kg", "declared_speed_m_s", "waterline_length_m", "hull_speed_m_s"),
+    *("tow_hull_ratio", "b_hull_ratio"),
+    *(column for quantity, ends in ENDS.items() for column in (quantity, *ends)),
 )
 
-OF: Final = {
-    "b": say("B"),
-    "a": say("A"),
-    "cw": say("Cw at the standard speed"),
-}
-AGAINST: Final = {
-    "weight": say("{y} against weight: {types}"),
-    "speed": say("{y} against tow speed: {types}"),
-    "length": say("{y} against length: {types}"),
-}
-IN_SENTENCES: Final = {
-    "weight": say("weight"),
-    "speed": say("tow speed"),
-    "length": say("length"),
-}
-IS_HULL_SPEED: Final = {
-    True: say("It may be: B lies at {ratio} times hull speed ({lo} to {hi}; {boats}, {after})."),
-    False: say(
-        "No: B lies at {ratio} times hull speed ({lo} to {hi}; {boats}, {after}); "
-        "{share} lie within 5 % of it."
-    ),
-    None: say("Too few boats with a B to tell ({boats})."),
-}
-
-CLEAR_R2: Final = 0.3
-"""From here on a line without a clear slope is not called "no link": too few boats tell."""
+CREWS_MARKED: Final = say("A circle is a men's crew, a triangle a women's crew.")
+LINE_MARKED: Final = say(
+    "The line is the best straight fit with its 95 % interval. A bar is the 95 % interval of a "
+    "tow; a dashed bar leaves out the error of the log. An open mark was towed too slowly or too "
+    "fast for the standard speed. A tow that is an outlier in Cw is named."
+)
 
 
 class Slide(NamedTuple):
-    """A figure by name, its rows, and what is said above it, in one part per line."""
+    """A finding, the figure that shows it with its rows, and what explains it."""
 
     name: str
     figure: str
     rows: pl.DataFrame
-    title: str
-    said: Sequence[str]
-
-    @property
-    def sentence(self) -> str:
-        """What is said, as one text."""
-        return " ".join(self.said)
-
-
-class Asked(NamedTuple):
-    """What the slides are about: types, those of the presentation when none; tows; boats."""
-
-    types: Sequence[str] = ()
-    tows: str = ALL
-    boats: Sequence[str] = ()
-
-
-THE_PRESENTATION: Final = Asked()
-"""Its types, boats, and all tows."""
+    finding: Sentence
+    notes: Sequence[Sentence]
+    source: str
+    """The table that the finding comes from."""
 
 
 def slides(
-    views: Views, say: Say, asked: Asked = THE_PRESENTATION, border: Border = nullcontext
+    views: Views,
+    types: Sequence[str] = (),
+    boats: Sequence[str] = (),
+    border: Border = nullcontext,
 ) -> Iterator[Slide]:
     """Every slide of which the archive has something to show, each made within a border.
 
+    Args:
+        views: the tables.
+        types: types of boat by the beginning of their name; those of the presentation when none.
+        boats: by number or name; those of the presentation when none.
+        border: stands round the work on each slide.
+
     Raises:
-        MissingKnowledgeError: there is no such type, boat or choice of tows.
+        MissingKnowledgeError: there is no such type or boat, or nothing to compare.
     """
-    for name, make in _makers(Book(views, say, asked.tows), asked):
+    book = Book(views)
+    made: list[Slide] = []
+    for name, make in _makers(book, types, boats):
         with border(f"slide {name}"):
-            yield from make()
+            for slide in make():
+                made.append(slide)
+                yield slide
+    with border("slide conclusion"):
+        yield from book.conclusion(made)
 
 
-def _makers(about: "Book", asked: Asked) -> Iterator[tuple[str, Callable[[], Iterable[Slide]]]]:
-    """What makes each slide, or those of a boat."""
-    types = about.types(asked.types)
-    pairs = [(y, x, about.tows) for y in QUANTITIES for x in EXPLAINING]
-    if RECOMPUTED_SEASON in about.choices and about.tows == ALL:
-        pairs += [(y, x, RECOMPUTED_SEASON) for y, x in RECOMPUTED]
-    for y, x, tows in pairs:
-        yield f"{y} {x} {tows}", partial(about.against, y, x, types, tows)
-    yield "hull speed", about.hull_speed
-    yield "towed at", about.towed_at
-    yield "raced beyond", about.raced_beyond
-    yield "eras", about.eras
-    for boat in boats_of_slides(about.views, about.compared, asked.boats):
-        yield boat, partial(about.boat, boat)
-    yield "ticks fleet", about.tick_effects
+def _makers(
+    book: "Book", types: Sequence[str], boats: Sequence[str]
+) -> Iterator[tuple[str, Callable[[], Iterable[Slide]]]]:
+    yield "eras", book.eras
+    for boat_type in book.chosen_types(types):
+        for figure in PAIRS:
+            yield f"{figure} {boat_type}", partial(book.against, figure, boat_type)
+    yield "hull speed", book.hull_speed
+    yield "towed at", book.towed_at
+    yield "options", book.options
+    for fsn_no in book.chosen_boats(boats):
+        yield fsn_no, partial(book.boat, fsn_no)
 
 
 class Book:
-    """The slides of an archive in one language, over a choice of tows."""
+    """The slides of an archive: its tows before and after correction."""
 
-    def __init__(self, views: Views, say: Say, tows: str = ALL) -> None:
-        self.views, self.say, self.tows = views, say, tows
-        held = views.table("compared_tows")["method"].unique().to_list()
-        if not held and not views.table("tows").is_empty():
+    def __init__(self, views: Views) -> None:
+        self.views = views
+        known = views.table("methods")["method"].to_list()
+        label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
+        compared = views.ask("compared_tows").with_columns(label=label)
+        held = compared["method"].unique().to_list()
+        methods = [name for name in known if name in held]
+        if not methods and not views.table("tows").is_empty():
             raise MissingKnowledgeError(
                 "no type of boat has curves to compare: there are no slides"
             )
-        if tows not in STATED:
-            views.choose(tows, list({*methods_of(held), *methods_of(held, tows)}))
-        self.held, self.compared = held, compared_frame(views)
-        lines = views.table("type_lines").filter(within="all")
-        self.choices = lines["tows"].unique().sort().to_list()
-        keys = ("boat_type", "tows", "quantity", "explaining", "method")
-        self._lines = {tuple(row[k] for k in keys): row for row in lines.iter_rows(named=True)}
+        wanted = [name for name in methods if name == STUDIED_METHOD]
+        self.ends = (methods[0], [*methods, *wanted][-1]) if methods else ("", "")
+        self.tows = compared.filter(pl.col("method").is_in(self.ends))
+        self._lines = views.table("type_lines").filter(within="all")
+        self._line_points = views.table("type_line_points")
 
-    def types(self, wanted: Sequence[str]) -> list[str]:
-        """The types asked for, or those of the presentation."""
-        known = by_tows(self.compared)
-        chosen = []
+    def chosen_types(self, wanted: Sequence[str]) -> list[str]:
+        """The types asked for, or those of the presentation, or the two with most tows."""
+        counts = self.tows.filter(pl.col("boat_type") != UNKNOWN_TYPE)["boat_type"].value_counts()
+        known = counts.sort("count", "boat_type", descending=[True, False])["boat_type"].to_list()
+        like = {
+            name: [one for one in known if one.casefold().startswith(name.casefold())]
+            for name in wanted or TYPES
+        }
         for name in wanted:
-            like = [t for t in known if t.casefold().startswith(name.casefold())]
-            if not like:
+            if not like[name]:
                 raise MissingKnowledgeError(
                     "there is no type {!r}; the types are {}", name, ", ".join(sorted(known))
                 )
-            chosen.append(like[0])
-        return chosen or pair_of_types(self.compared)
+        return [one for found in like.values() for one in found] or known[: len(TYPES)]
 
-    def ends(self, tows: str = ALL) -> tuple[str, str]:
-        """The methods before and after all corrections."""
-        methods = methods_of(self.held, tows)
-        return methods[0], methods[-1]
+    def chosen_boats(self, wanted: Sequence[str]) -> list[str]:
+        """FSN numbers of the boats asked for, or those of the presentation, or towed most often."""
+        if wanted:
+            return [the_boat(self.views.table("boats"), name) for name in wanted]
+        seasons = (
+            self.tows.group_by("fsn_no", "name", maintain_order=True)
+            .agg(pl.col("season").n_unique())
+            .sort("season", "fsn_no", descending=[True, False])
+        )
+        presented = seasons.filter(pl.col("name").str.to_lowercase().is_in(BOATS))
+        return (presented if presented.height else seasons.head(len(BOATS)))["fsn_no"].to_list()
 
-    def method(self, name: str) -> str:
-        """A method as people call it."""
-        return self.say(labels.method(name))
+    # -- Types ------------------------------------------------------------------------------------
 
-    def against(
-        self, quantity: str, explaining: str, types: list[str], tows: str
-    ) -> Iterator[Slide]:
-        """A quantity against an explaining variable, of some types and tows."""
-        own = pl.col("boat_type").is_in(types)
-        own &= pl.col("method").is_in(methods_of(self.held, tows))
-        drawn = self._line_points.filter(own, tows=self._stated(tows))
-        rows = pl.concat([self.compared.filter(rows_of(tows), own), drawn], how="diagonal_relaxed")
-        title = self.say(AGAINST[explaining], y=self.say(OF[quantity]), types=" / ".join(types))
+    def drawn(self, boat_type: str, tows: str = ALL, figure: str = "") -> pl.DataFrame:
+        """The tows of a type and the lines fitted to them, of one figure or of all."""
+        own = self.tows.filter(boat_type=boat_type)
         if tows != ALL:
-            words = self.say(labels.code(tows)) if tows in STATED else spoken_range(tows)
-            title += self.say(", {tows} only", tows=words)
-        said = [self.line((quantity, explaining), name, tows, self.ends(tows)) for name in types]
-        yield Slide(
-            f"{quantity} {explaining} {tows}", f"slide_{quantity}_{explaining}", rows, title, said
+            own = own.filter("newest")
+        lines = self._line_points.filter(
+            pl.col("method").is_in(self.ends), tows=tows, boat_type=boat_type
         )
+        if figure:
+            y, x = (COLUMNS[name] for name in PAIRS[figure])
+            lines = lines.filter(quantity=y, explaining=x)
+        return pl.concat([own.select(TOW_COLUMNS), lines.drop("tows")], how="diagonal_relaxed")
 
-    @cached_property
-    def _line_points(self) -> pl.DataFrame:
-        return lines_frame(self.views)
-
-    def _stated(self, tows: str) -> str:
-        """The choice as tables have it: statistics of a range of seasons are over all its tows."""
-        return tows if tows in self.choices else ALL
-
-    def line(self, of: tuple[str, str], boat_type: str, tows: str, ends: tuple[str, str]) -> str:
-        """What the line of a type says under the methods at both ends, and its outliers.
-
-        `of` are quantity and explaining variable.
-        """
-        (quantity, *_), explaining = QUANTITIES[of[0]], EXPLAINING[of[1]]
-        key = (boat_type, self._stated(tows), quantity, explaining)
-        before, after = (self._lines.get((*key, method)) for method in ends)
-        counted = self._counted(after)
-        if after is None or after["slope"] is None:
-            return self.say(
-                "{type}: too few boats for a line ({counted}).", type=boat_type, counted=counted
+    def against(self, figure: str, boat_type: str) -> Iterator[Slide]:
+        """Whether a quantity follows what may explain it; of few boats nothing is said."""
+        line = self.line(figure, boat_type, ALL, self.ends[1])
+        if line and line["slope"] is not None and line["n_boats"] >= FEWEST:
+            yield Slide(
+                f"{figure} {boat_type}",
+                f"slide_{figure}",
+                self.drawn(boat_type, figure=figure),
+                say("{type}: {verdict}", type=boat_type, verdict=_verdict(figure, line)),
+                [self.fit(figure, boat_type), CREWS_MARKED, LINE_MARKED],
+                "type_lines",
             )
-        words = {
-            "y": self.say(OF[of[0]]),
-            "x": self.say(IN_SENTENCES[of[1]]),
-        }
-        said = self.say(
-            "{type}: {verdict}. R² {r2_after} {after}, {r2_before} {before}; {counted}.",
-            type=boat_type,
-            verdict=self.say(_verdict(after), **words),
-            before=self.method(ends[0]),
-            after=self.method(ends[1]),
-            r2_before=_share(before["r2"] if before else None),
-            r2_after=_share(after["r2"]),
-            counted=counted,
+
+    def line(self, figure: str, boat_type: str, tows: str, method: str) -> Row | None:
+        """The line fitted to a type under a method."""
+        y, x = (COLUMNS[name] for name in PAIRS[figure])
+        found = self._lines.filter(
+            quantity=y, explaining=x, boat_type=boat_type, tows=tows, method=method
         )
-        names = self._outliers.get((boat_type, self._stated(tows)))
-        return f"{said} {self.say('Outliers in Cw: {names}.', names=names)}" if names else said
+        return found.row(0, named=True) if found.height else None
 
-    def _counted(self, line: Row | None) -> str:
-        """How many tows of how many boats."""
-        n, boats = (line["n"], line["n_boats"]) if line else (0, 0)
-        return self.say("{tows} of {boats}", tows=self._tows(n), boats=self._boats(boats))
+    def in_words(self, figure: str, boat_type: str, tows: str) -> list[Sentence]:
+        """What the line of a type says, and how well it fits."""
+        line = self.line(figure, boat_type, tows, self.ends[1])
+        if line is None or line["slope"] is None:
+            return [say("Too few boats for a line ({boats}).", boats=_boats(line))]
+        return [
+            say("{verdict}.", verdict=_verdict(figure, line)),
+            self.fit(figure, boat_type, tows),
+        ]
 
-    def _tows(self, n: int) -> str:
-        return self.say(ngettext("1 tow", "{n} tows", n))
-
-    def _boats(self, n: int) -> str:
-        return self.say(ngettext("1 boat", "{n} boats", n))
-
-    @cached_property
-    def _outliers(self) -> dict[tuple[str, str], str]:
-        """Tows outside their type after correction, by type and choice: boat, crew and season."""
-        names = (
-            with_choices(self.compared)
-            .filter(pl.col("outside"), method=self.ends()[1])
-            .explode("tows")
-            .group_by("boat_type", "tows", maintain_order=True)
-            .agg(pl.col("label").str.join(", "))
-        )
-        return {(boat_type, tows): label for boat_type, tows, label in names.iter_rows()}
-
-    def hull_speed(self) -> Iterator[Slide]:
-        """B against length, and against hull speed."""
-        own = rows_of(self.tows) & (pl.col("boat_type") != UNKNOWN_TYPE)
-        known = self._compared_methods().filter(own)
-        said = [self.b_and_hull_speed(self.tows)]
-        yield Slide("hull speed", "slide_hull_speed", known, self.say("Is B hull speed?"), said)
-
-    def b_and_hull_speed(self, tows: str) -> str:
-        """Whether B is hull speed."""
-        after, of_all = self.ends()[1], self._hull_speed(tows)
-        return self.say(
-            IS_HULL_SPEED[of_all["b_is_hull_speed"]],
-            after=self.method(after),
-            ratio=self._digits(of_all["b_ratio"]),
-            lo=self._digits(of_all["b_ratio_lo"]),
-            hi=self._digits(of_all["b_ratio_hi"]),
-            boats=self._boats(of_all["n_boats"]),
-            share=_share(of_all["b_share_within_5pct"]),
+    def fit(self, figure: str, boat_type: str, tows: str = ALL) -> Sentence:
+        """The share of the spread that a line explains, before and after."""
+        before, after = (self.line(figure, boat_type, tows, method) for method in self.ends)
+        assert after, "a line that is described was fitted"  # noqa: S101
+        return say(
+            "R² is {after:.0f} % {method}, {before} {old_method}: the share of the spread that {x} "
+            "explains, in {tows} of {boats}.",
+            x=EXPLAINING[PAIRS[figure][1]],
+            after=100 * after["r2"],
+            before=say("{:.0f} %", 100 * before["r2"]) if before else say("not known"),
+            method=labels.method(self.ends[1]),
+            old_method=labels.method(self.ends[0]),
+            tows=ngettext("1 tow", "{n} tows", after["n"]),
+            boats=_boats(after),
         )
 
-    def _hull_speed(self, tows: str) -> Row:
-        """The statistics of all types together."""
-        return self._hull_speeds.row(by_predicate=pl.col("tows") == self._stated(tows), named=True)
-
-    @cached_property
-    def _hull_speeds(self) -> pl.DataFrame:
-        return self.views.table("hull_speed").filter(method=self.ends()[1], boat_type=ALL)
-
-    def _compared_methods(self) -> pl.DataFrame:
-        return self.compared.filter(pl.col("method").is_in(methods_of(self.held)))
-
-    def towed_at(self) -> Iterator[Slide]:
-        """Tow speed as part of hull speed."""
-        after = pl.col("method") == self.ends()[1]
-        rows = self.compared.filter(rows_of(self.tows), after)
-        rows = rows.with_columns(newest_method="method")
-        said = [self.part_of_hull_speed(self.tows)]
-        yield Slide(
-            "towed at",
-            "slide_towed_at",
-            rows,
-            self.say("At what part of hull speed are boats towed?"),
-            said,
-        )
-
-    def part_of_hull_speed(self, tows: str) -> str:
-        """At what part of hull speed boats are towed."""
-        of_all = self._hull_speed(tows)
-        return self.say(
-            "Half of the tows lie above {ratio} of hull speed; {share} lie between 60 and "
-            "70 %, where the presentation puts rowing.",
-            ratio=_share(of_all["tow_ratio"]),
-            share=_share(of_all["tow_share_60_70"]),
-        )
-
-    def raced_beyond(self) -> Iterator[Slide]:
-        """Race power by curves that are used where they do not count."""
-        label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
-        rows = self.views.ask("slow_tows").with_columns(label.alias("label"))
-        rows = rows.filter(
-            pl.col("power_ratio_raced").is_not_null(),
-            pl.col("method").is_in(methods_of(self.held)),
-        )
-        after = rows.filter(method=self.ends()[1])
-        if after.is_empty():
-            return
-        both = after.filter(pl.col("raced_high") & (pl.col("power_w") < _low_power()))
-        sentence = self.say(
-            "Towed with little power or raced off their own curve: {n}. The own curve of "
-            "{up} of these gives too much power, of {down} too little (the interval leaves "
-            "out 1). Towed under 70 W (women 40) and raced above 100 W (women 57): {both}.",
-            n=self._tows(after.height),
-            up=after.filter(pl.col("power_ratio_raced_lo") > 1).height,
-            down=after.filter(pl.col("power_ratio_raced_hi") < 1).height,
-            both=", ".join(both["label"]) or self.say("no tow"),
-        )
-        title = self.say("Boats that race faster than their curve holds")
-        drawn = rows.select(RACED_COLUMNS)
-        yield Slide("raced beyond", "slide_raced_beyond", drawn, title, [sentence])
+    # -- All boats --------------------------------------------------------------------------------
 
     def eras(self) -> Iterator[Slide]:
-        """Seasons that stand apart, before and after."""
-        rows = self.views.table("era_shifts").filter(
-            pl.col("shift_ratio").is_not_null(),
-            pl.col("method").is_in(methods_of(self.held)),
-            boat_type=ALL,
+        """Whether seasons with other instruments stand apart, before and after."""
+        shifts = self.views.table("era_shifts").filter(
+            pl.col("shift_ratio").is_not_null(), pl.col("method").is_in(self.ends), boat_type=ALL
         )
-        of = {(r["method"], r["era"]): r for r in rows.iter_rows(named=True)}
-        ends = self.ends()
+        of = {(row["method"], row["era"]): row for row in shifts.iter_rows(named=True)}
         said = [
-            self.say(
-                "From a tow of {era} to the next of the same boat: {before}; {after}.",
+            say(
+                "From a tow of {era} to the next of the same boat: {before}, {after}",
                 era=era,
-                before=self._apart(of[ends[0], era]),
-                after=self._apart(of[ends[1], era]),
+                before=_shift(of[self.ends[0], era]),
+                after=_shift(of[self.ends[1], era]),
             )
-            for era in rows["era"].unique().sort()
-            if all((name, era) in of for name in ends)
+            for era in shifts["era"].unique().sort()
+            if all((method, era) in of for method in self.ends)
         ]
         if said:
-            yield Slide(
-                "eras", "eras", rows, self.say("Do tows of an era differ from later ones?"), said
+            marks = say(
+                "A point is the median over boats that were towed again, with ageing taken off; "
+                "a bar is its 95 % interval. At 1 nothing differs."
             )
+            rest = [say("{finding}.", finding=finding) for finding in said[1:]]
+            yield Slide("eras", "eras", shifts, said[0], [*rest, marks], "era_shifts")
 
-    def _apart(self, row: Row) -> str:
-        """Whether the next tow of the same boats stands apart from those of an era, old to new."""
-        return self.say(
-            "{method} it stands apart, Cw {shift} ({lo} to {hi})"
-            if row["apart"]
-            else "{method} no difference is seen, {shift} ({lo} to {hi})",
-            method=self.method(row["method"]),
-            shift=self._signed(row["shift_ratio"] - 1.0),
-            lo=self._signed(row["lo"] - 1.0),
-            hi=self._signed(row["hi"] - 1.0),
-        )
-
-    def boat(self, fsn_no: str) -> Iterator[Slide]:
-        """One boat over the years, and what the tool's ticks do to one of its tows."""
-        own = self._compared_methods().filter(fsn_no=fsn_no)
-        if own.is_empty():
+    def hull_speed(self) -> Iterator[Slide]:
+        """Whether B, which only the fit gives, is hull speed, which the length gives."""
+        of_all = self._hull_speed()
+        is_it = of_all["b_is_hull_speed"]
+        if is_it is None or of_all["n_boats"] < FEWEST:
             return
-        name = own["name"][0]
-        common = own.select("method", "tow_id", "standard_speed_m_s")
-        rows = self.views.ask("curve_points_of", fsn_no).join(
-            common, on=["method", "tow_id"], maintain_order="left"
+        verdict = say("B may be hull speed") if is_it else say("B is not hull speed")
+        finding = say(
+            "{verdict}: it lies at {ratio:.2f} times hull speed",
+            verdict=verdict,
+            ratio=of_all["b_ratio"],
         )
-        title = self.say("{name} through the years", name=name)
-        yield Slide(f"years {name}", "slide_boat_years", rows, title, self._years(own))
-        yield from self._ticks(own.sort("season", "tow_id"))
+        notes = [
+            say(
+                "Median of {boats} {method}, 95 % interval {lo:.2f} to {hi:.2f}; {share:.0f} % of "
+                "the tows lie within 5 %.",
+                boats=_boats(of_all),
+                method=labels.method(self.ends[1]),
+                lo=of_all["b_ratio_lo"],
+                hi=of_all["b_ratio_hi"],
+                share=100 * of_all["b_share_within_5pct"],
+            ),
+            say("On the dashed line B is hull speed."),
+            CREWS_MARKED,
+        ]
+        rows = self._tows_with("b_m_s")
+        yield Slide("hull speed", "slide_hull_speed", rows, finding, notes, "hull_speed")
 
-    def _ticks(self, own: pl.DataFrame) -> Iterator[Slide]:
-        """The tow of 2014, as on the slide, or the boat's newest."""
-        of_2014 = own.filter(season=int(RECOMPUTED_SEASON))
-        tow = (of_2014 if of_2014.height else own).row(-1, named=True)
-        rows = self.views.ask("option_curves_of", tow["tow_id"]).filter(
-            pl.col("method") == self._ticked()
+    def towed_at(self) -> Iterator[Slide]:
+        """At what part of hull speed boats are towed."""
+        of_all = self._hull_speed()
+        if of_all["n_boats"] < FEWEST:
+            return
+        finding = say(
+            "Half of the tows were made above {ratio:.0f} % of hull speed",
+            ratio=100 * of_all["tow_ratio"],
         )
+        notes = [
+            say(
+                "{share:.0f} % of the tows lie between 60 and 70 % of hull speed, where the "
+                "presentation puts rowing: between the dashed lines.",
+                share=100 * of_all["tow_share_60_70"],
+            ),
+            CREWS_MARKED,
+        ]
+        rows = self._tows_with("tow_hull_ratio").filter(method=self.ends[1])
+        yield Slide("towed at", "slide_towed_at", rows, finding, notes, "hull_speed")
+
+    def _hull_speed(self) -> Row:
+        """The statistics of all types together, after correction."""
+        found = self.views.table("hull_speed")
+        return found.filter(method=self.ends[1], boat_type=ALL, tows=ALL).row(0, named=True)
+
+    def _tows_with(self, column: str) -> pl.DataFrame:
+        return self.tows.select(TOW_COLUMNS).filter(pl.col(column).is_not_null())
+
+    def options(self) -> Iterator[Slide]:
+        """What the options of the tool of 2015 do to all boats."""
+        tool = pl.col("option").is_in([*TICKS, *SPEEDS])
+        rows = self.views.table("option_summary").filter(tool, study="tool")
+        rows = rows.filter(pl.col("tows") >= FEWEST, method=rows["method"].max())
         if rows.is_empty():
             return
-        effects = self.views.table("option_effects").filter(
-            method=self._ticked(), study="tool", tow_id=tow["tow_id"]
+        most = rows.sort((pl.col("median_ratio") - 1).abs(), "option").row(-1, named=True)
+        finding = say(
+            "Of the options of 2015, {option} changes Cw most: by {by:.1f} %",
+            option=labels.code(most["option"]),
+            by=100 * abs(most["median_ratio"] - 1),
         )
-        at_read = rows.filter(speed=AS_READ)["cw_kg_m"].to_numpy()
-        sentence = self.say(
-            "{tow}: the highest of {n} curves lies {spread} above the lowest (Cw at the "
-            "declared speed, log as read, {method}). On average over the other choices: "
-            "{effects}.",
-            tow=tow["label"],
-            spread=_share(float(at_read.max() / at_read.min()) - 1.0),
-            n=len(at_read),
-            method=self.method(self._ticked()),
-            effects=self._effects(dict(effects.select("option", "cw_effect_ratio").rows())),
-        )
-        title = self.say("{tow}: all combinations of the four options of 2015", tow=tow["label"])
-        yield Slide(f"ticks {tow['name']}", "slide_ticks", rows, title, [sentence])
-
-    def _ticked(self) -> str:
-        """The method under which the ticks are shown: the last of those studied."""
-        held = self.views.table("option_summary").filter(study="tool")["method"].to_list()
-        return ([name for name in methods_of(self.held) if name in held] or [""])[-1]
-
-    def _effects(self, of: dict[str, float | None], tows: dict[str, int] | None = None) -> str:
-        """What ticks and speeds do to Cw, the largest first.
-
-        Args:
-            of: the ratio that each makes.
-            tows: over how many; told of those over fewer than the others.
-        """
-        most = max(tows.values()) if tows else 0
-        fewer = {o: f" ({self._tows(n)})" for o, n in (tows or {}).items() if n < most}
-        known = {o: e - 1.0 for o, e in of.items() if e is not None and o in (*TICKS, *SPEEDS)}
-        largest = sorted(known, key=lambda option: -abs(known[option]))
-        return ", ".join(
-            f"{self.say(labels.code(o))} {self._signed(known[o])}{fewer.get(o, '')}"
-            for o in largest
-        )
-
-    def tick_effects(self) -> Iterator[Slide]:
-        """What the ticks do to all boats."""
-        rows = self.views.table("option_summary").filter(study="tool")
-        own = rows.filter(method=self._ticked())
-        if own.is_empty():
-            return
-        sentence = self.say(
-            "The median change of Cw over {tows}: {effects} ({method}). The bar holds the "
-            "middle 90 % of the tows.",
-            method=self.method(self._ticked()),
-            tows=self._tows(max(own["tows"].to_list())),
-            effects=self._effects(
-                dict(own.select("option", "median_ratio").rows()),
-                dict(own.select("option", "tows").rows()),
-            ),
-        )
-        title = self.say("What the options of 2015 do to all boats")
-        yield Slide("ticks fleet", "slide_tick_effects", rows, title, [sentence])
-
-    def _years(self, own: pl.DataFrame) -> list[str]:
-        """How far the tows of each crew lie apart at the common speed."""
-        before, after = self.ends()
-        cw = pl.col("cw_standard_kg_m")
-        crews = (
-            own.drop_nulls("cw_standard_kg_m")
-            .group_by("method", crew=pl.format("{}{}", "rowers", "crew_class"), maintain_order=True)
-            .agg(pl.len().alias("n"), (cw.max() / cw.min()).log().alias("spread"))
-            .filter(pl.col("n") > 1)
-        )
-        spread = {(m, c): (n, value) for m, c, n, value in crews.sort("crew").iter_rows()}
-        said = [
-            self.say(
-                "{crew}: Cw at {speed} m/s spreads by {after_spread} {after}, {before_spread} "
-                "{before} (highest / lowest of {n}).",
-                speed=self._digits(own["standard_speed_m_s"][0]),
-                crew=crew,
-                n=n,
-                before=self.method(before),
-                after=self.method(after),
-                before_spread=_share(spread.get((before, crew), (0, None))[1]),
-                after_spread=_share(value),
+        notes = [
+            say(
+                "A point is the median change of Cw over {tows} ({method}); a bar holds the middle "
+                "90 % of the tows. At 1 an option changes nothing.",
+                method=labels.method(most["method"]),
+                tows=ngettext("1 tow", "{n} tows", most["tows"]),
             )
-            for (method, crew), (n, value) in spread.items()
-            if method == after
         ]
-        return said or [self.say("Every crew was towed once: there is nothing to compare.")]
+        yield Slide("options", "slide_options", rows, finding, notes, "option_summary")
 
-    def _digits(self, value: float | None) -> str:
-        """A number with two decimals, as this language writes it."""
-        return "-" if value is None else self.say("{:.2f}", value)
+    def boat(self, fsn_no: str) -> Iterator[Slide]:
+        """How far the tows of one boat lie apart through the years."""
+        own = pl.col("method").is_in(self.ends)
+        pairs = self.views.ask("repeat_pairs").filter(own, fsn_no=fsn_no)
+        points = self.views.ask("curve_points_of", fsn_no).filter(own)
+        largest = [
+            pairs.filter(method=method).sort((pl.col("cw_ratio") - 1).abs()).tail(1)
+            for method in self.ends
+        ]
+        if any(frame.is_empty() for frame in largest):
+            return
+        before, after = (100 * abs(frame["cw_ratio"][0] - 1) for frame in largest)
+        finding = say(
+            "{name}: from one tow to the next Cw differs by up to {after:.1f} %, "
+            "{method} by {before:.1f} %",
+            name=points["name"][0],
+            before=before,
+            after=after,
+            method=labels.method(self.ends[0]),
+        )
+        notes = [
+            say(
+                "The curves of all seasons; each from 85 to 115 % of the declared speed. Compared "
+                "are successive tows of the same crew, without alteration between them."
+            )
+        ]
+        rows = points.select("method", "tow_id", "season", "crew", "speed_m_s", "cw_kg_m")
+        yield Slide(f"years {fsn_no}", "slide_boat_years", rows, finding, notes, "repeat_pairs")
 
-    def _signed(self, ratio: float) -> str:
-        """A change in per cent with one decimal, as this language writes it."""
-        return self.say("{:+z.1f} %", 100 * ratio)
+    def conclusion(self, made: Sequence[Slide]) -> Iterator[Slide]:
+        """How well a tow repeats itself, before and after; then what other slides found."""
+        rows = self.views.table("reproducibility").filter(pl.col("method").is_in(self.ends))
+        known = rows.filter(
+            pl.col("sd_ratio").is_not_null(), pl.col("n_pairs") >= FEWEST, scope=ALL
+        )
+        of_all = {row["method"]: row for row in known.iter_rows(named=True)}
+        if len(of_all) < len(self.ends):
+            return
+        before, after = (of_all[method] for method in self.ends)
+        finding = say(
+            "Conclusion: the random error of one tow is {after:.1f} %; it was {before:.1f} %",
+            after=100 * after["sd_ratio"],
+            before=100 * before["sd_ratio"],
+        )
+        notes = [
+            say(
+                "Of {pairs} repeat tows {after:.0f} % lie within 2 % of the tow before; "
+                "{method} it was {before:.0f} %. The presentation promised a large majority.",
+                pairs=after["n_pairs"],
+                after=100 * after["share_within_2pct"],
+                before=100 * before["share_within_2pct"],
+                method=labels.method(self.ends[0]),
+            ),
+            *(
+                say("{finding}.", finding=slide.finding)
+                for slide in made
+                if slide.name.startswith(CONCLUDING)
+            ),
+        ]
+        yield Slide("conclusion", "reproducibility", rows, finding, notes, "reproducibility")
 
 
-def _low_power() -> pl.Expr:
-    return pl.col("crew_class").replace_strict({"H": 70.0, "D": 40.0}, return_dtype=pl.Float64)
+def _boats(line: Row | None) -> Sentence:
+    return ngettext("1 boat", "{n} boats", line["n_boats"] if line else 0)
 
 
-def _verdict(line: Row) -> Sentence:
+def _verdict(figure: str, line: Row) -> Sentence:
     """Whether a slope's interval leaves out zero, and on which side; else whether it could."""
+    quantity, explaining = PAIRS[figure]
+    words = {"y": QUANTITIES[quantity], "x": EXPLAINING[explaining]}
     if line["slope_lo"] > 0:
-        return say("{y} rises with {x}")
+        return say("{y} rises with {x}", **words)
     if line["slope_hi"] < 0:
-        return say("{y} falls with {x}")
+        return say("{y} falls with {x}", **words)
     if (line["r2"] or 0.0) >= CLEAR_R2:
-        return say("too few boats to tell whether {y} goes with {x}")
-    return say("no relation seen between {y} and {x}")
+        return say("too few boats to tell whether {y} goes with {x}", **words)
+    return say("no relation seen between {y} and {x}", **words)
 
 
-def _share(ratio: float | None) -> str:
-    return "-" if ratio is None else f"{100 * ratio:.0f} %"
+def _shift(row: Row) -> Sentence:
+    """What becomes of Cw at the next tow of the same boat."""
+    words = {"by": 100 * abs(row["shift_ratio"] - 1), "method": labels.method(row["method"])}
+    if not row["apart"]:
+        return say("{method} no difference is seen", **words)
+    if row["shift_ratio"] < 1:
+        return say("{method} Cw falls by {by:.1f} %", **words)
+    return say("{method} Cw rises by {by:.1f} %", **words)

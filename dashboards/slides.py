@@ -1,84 +1,66 @@
-"""The slide book as files: every slide as SVG and PNG, and all of them as one PDF."""
+"""The slides as one PDF, a finding on each page."""
 
-import io
-import textwrap
+from collections.abc import Sequence
 from contextlib import nullcontext
-from pathlib import Path
-from typing import Final
-
-import altair as alt
-import pypdf
-import vl_convert
+from typing import Any, Final
 
 from dashboards import drawn, labels
-from dashboards.audit_plots import file_name
+from dashboards.documents import pdf
 from dashboards.figures import FIGURES
-from dashboards.slide_book import THE_PRESENTATION, Asked, Slide, slides
-from pipeline.messages import speaker
+from dashboards.slide_book import Slide, slides
+from pipeline.messages import Say, say, speaker
 from warehouse.queries.views import Views
-from warehouse.store.database import open_results
-from warehouse.store.files import written_beside
-from warehouse.store.store import Store
 from warehouse.store.unforeseen import Border
 
-WIDTH_OF_TEXT: Final = 140
-MARGIN: Final = 24
-"""White around a slide [px]."""
+WIDE: Final = {"width": 900, "height": 270}
+PANEL: Final = {"width": 430, "height": 270}
+"""Size of a chart, and of each of two panels [px]."""
+
+TITLE: Final = say("The questions of 2015, answered by this archive")
+SOURCE: Final = say("Source: all tows of this archive, table {table}.")
 
 
-def write_slides(
-    store: Store,
-    folder: Path,
+def slide_book(
+    views: Views,
     language: str,
-    asked: Asked = THE_PRESENTATION,
+    types: Sequence[str] = (),
+    boats: Sequence[str] = (),
     border: Border = nullcontext,
-) -> list[Path]:
-    """Writes every slide as SVG and PNG, and all of them as one PDF.
-
-    Args:
-        store: where the database lies.
-        folder: where they go; made if it is not there.
-        language: nl or en.
-        asked: types, one or two; tows, `all`, `newest`, a season or a
-            range of them; boats by number or name.
-        border: stands round the work on each slide.
+) -> bytes:
+    """All slides as PDF; a slide that Herijk itself fails on is left out.
 
     Raises:
-        MissingKnowledgeError: there is no such type, boat or choice of tows, or no database.
+        MissingKnowledgeError: there is no such type or boat, or nothing to compare.
     """
     say = speaker(language)
-    open_results(store.database).close()  # says so where there is no tow
-    with Views(store) as views:
-        simulated = views.about().get("simulated") == "true"
-        made = list(slides(views, say, asked, border))
-    folder.mkdir(parents=True, exist_ok=True)
-    book, written = pypdf.PdfWriter(), []
-    for number, slide in enumerate(made, 1):
+    pages = []
+    for slide in slides(views, types, boats, border):
         with border(f"slide {slide.name} drawn"):
-            svg = _svg(slide, language, simulated)
-            png, page = vl_convert.svg_to_png(svg, scale=2.0), vl_convert.svg_to_pdf(svg)
-            stem = folder / file_name(f"{number:02d} {slide.name}")
-            written += [_put(Path(f"{stem}.svg"), svg.encode()), _put(Path(f"{stem}.png"), png)]
-            book.append(io.BytesIO(page))
-    pages = io.BytesIO()
-    book.write(pages)
-    return [*written, _put(folder / f"slides-{language}.pdf", pages.getvalue())]
+            pages.append(_page(slide, language, say))
+    simulated = views.about().get("simulated") == "true"
+    content = {
+        "language": language,
+        "title": say(TITLE),
+        "simulated": say(labels.SIMULATED) if simulated else "",
+        "slides": pages,
+    }
+    return pdf("slides.typ", content)
 
 
-def _put(path: Path, content: bytes) -> Path:
-    with written_beside(path) as beside:
-        beside.write_bytes(content)
-    return path
+def unbroken(text: str) -> str:
+    """A text whose per cent signs stay with their numbers."""
+    return text.replace(" %", "\u00a0%")
 
 
-def _svg(slide: Slide, language: str, simulated: bool) -> str:
-    say = speaker(language)
-    said = [
-        *slide.said,
-        *([say(labels.SIMULATED)] if simulated else []),
-    ]
-    lines = [line for text in said for line in textwrap.wrap(text, WIDTH_OF_TEXT)]
-    title = alt.Title(slide.title, subtitle=lines, anchor="start", offset=12)
-    chart = FIGURES[slide.figure](slide.rows, say).properties(title=title, padding=MARGIN)
-    spec = chart.to_dict(validate=False)
-    return drawn.svg(spec, language)
+def _page(slide: Slide, language: str, say: Say) -> dict[str, Any]:
+    spec: dict[str, Any] = FIGURES[slide.figure](slide.rows, say).to_dict(validate=False)
+    if "facet" in spec:
+        spec["spec"] |= PANEL
+    else:
+        spec |= WIDE if isinstance(spec.get("height"), int) else {"width": WIDE["width"]}
+    return {
+        "finding": unbroken(say(slide.finding)),
+        "chart": drawn.svg(spec, language),
+        "notes": [unbroken(say(note)) for note in slide.notes],
+        "source": say(SOURCE, table=slide.source),
+    }

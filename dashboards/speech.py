@@ -1,8 +1,10 @@
 """Numbers and texts as people of one language write them."""
 
+import datetime as dt
 from collections.abc import Callable, Sequence
 from typing import Final, TypeAlias
 
+from babel.dates import format_date
 from markupsafe import Markup, escape
 
 from dashboards import labels
@@ -40,6 +42,10 @@ class Speech:
     def per_cent(self, ratio: float) -> str:
         """A ratio as a change in per cent, with its sign."""
         return f"{self.number(100 * (ratio - 1), 1, '+')}\u00a0%"
+
+    def day(self, day: dt.date) -> str:
+        """A day as prose has it: 4 June 2018."""
+        return format_date(day, "d\u00a0MMMM\u00a0y", locale=self.language)
 
     def edition(self, edition: str) -> str:
         """An edition as people call it: a draft by its method."""

@@ -1,5 +1,6 @@
 """The certificate of a boat and crew: one page A4, and all of an edition in one file."""
 
+import datetime as dt
 from contextlib import nullcontext
 from typing import Final
 
@@ -164,4 +165,7 @@ def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
         (say(labels.column("decision")), line["decision"]),
         (say(labels.column("empty_thwart")), line["empty_thwart"] or say(labels.code("none"))),
     ]
-    return [(name, "\u2013" if value is None else str(value)) for name, value in rows]
+    days = {name: speech.day(value) for name, value in rows if isinstance(value, dt.date)}
+    return [
+        (name, days.get(name, "\u2013" if value is None else str(value))) for name, value in rows
+    ]

@@ -14,7 +14,7 @@ import polars as pl
 
 from dashboards import labels
 from dashboards.colours import OKABE_ITO
-from dashboards.figures import boat, slides, style, tool
+from dashboards.figures import boat, slides, style
 from dashboards.figures.charts import (
     CHANGE,
     CW,
@@ -42,6 +42,9 @@ DECLARED: Final = ("declared_speed_m_s", say("Declared speed [m/s]"))
 A: Final = ("a_kg_m", labels.column("a_kg_m"))
 B: Final = ("b_m_s", labels.column("b_m_s"))
 STANDARD: Final = ("cw_standard_kg_m", say("Cw at the standard speed [kg/m]"))
+LENGTH: Final = ("waterline_length_m", say("Waterline length [m]"))
+QUANTITIES: Final = {"a": A, "b": B, "cw": STANDARD}
+EXPLAINING: Final = {"weight": WEIGHT, "speed": DECLARED}
 
 
 def _against(quantity: Column, explaining: Column) -> Figure:
@@ -203,19 +206,15 @@ FIGURES: Final[dict[str, Figure]] = {
     "ladder": _ladder,
     "changes": _gains,
     "statuses": _statuses,
-    "slide_hull_speed": slides.b_and_hull_speed,
-    "slide_towed_at": slides.towed_at,
-    "slide_raced_beyond": slides.raced_beyond,
     "slide_boat_years": slides.boat_years,
-    "slide_ticks": tool.ticks,
-    "slide_tick_effects": bars(
-        "option", ("median_ratio", CHANGE), (*TICKS, *SPEEDS, *JUDGED), ("lo_ratio", "hi_ratio"),
-        facet=("method", style.methods_named),
+    "slide_options": bars(
+        "option", ("median_ratio", CHANGE), (*TICKS, *SPEEDS), ("lo_ratio", "hi_ratio")
     ),
+    "slide_hull_speed": slides.b_and_hull_speed(LENGTH, B),
+    "slide_towed_at": slides.towed_at(LENGTH, DECLARED),
     **{
-        f"slide_{quantity}_{explaining}": slides.against(quantity, explaining)
-        for quantity in slides.QUANTITIES
-        for explaining in slides.EXPLAINING
+        f"slide_{name}": slides.against(QUANTITIES[y], EXPLAINING[x])
+        for name, (y, x) in slides.PAIRS.items()
     },
 }  # fmt: skip
 """Every figure by name."""

@@ -33,6 +33,7 @@ SPEED: Final = say("Speed through water [m/s]")
 CW: Final = say("Cw [kg/m]")
 CHANGE: Final = say("Cw after / Cw before")
 SPREAD: Final = say("Standard deviation / Cw")
+Marks = Callable[[Say], Sequence[alt.Chart]]
 BULK: Final = 2.0
 """Axes reach so many interquartile ranges beyond the quartiles; points further out are marked at
 the edge, so that one boat cannot squeeze all others."""
@@ -50,8 +51,11 @@ def scatter(
     line: str = "",
     brush: bool = False,
     height: int = 240,
+    beneath: Marks = lambda _: (),
 ) -> Figure:
     """Points of one quantity against another, which lead to the `page` of their boat.
+
+    A point that is `beyond_curve` is open.
 
     Args:
         x: the quantity along the axis at the bottom.
@@ -62,16 +66,21 @@ def scatter(
         line: `same`, where x and y are equal; `x` or `y` at one; none.
         brush: whether boats can be chosen by dragging, as `brush`, and one stands out, as `chosen`.
         height: of the chart or of each panel [px].
+        beneath: other marks of the same axes, beneath the points.
     """
     (x_field, x_title), (y_field, y_title) = x, y
+    known = f"isValid(datum.{x_field}) && isValid(datum.{y_field})"
 
     def figure(frame: pl.DataFrame, say: Say) -> Drawing:
         across = number(alt.X, f"{x_field}_seen", say(x_title))
         up = number(alt.Y, f"{y_field}_seen", say(y_title))
+        looks = look(say)
         point = (
             alt.Chart()
-            .mark_point(filled=True, cursor="pointer")
-            .encode(across, up, *look(say), href="page:N", tooltip=tips(say, *tip))
+            .transform_filter(known)
+            .mark_point(cursor="pointer", strokeWidth=1.5)
+            .encode(across, up, *looks, fill=looks[0], href="page:N", tooltip=tips(say, *tip))
+            .encode(fillOpacity=alt.condition("datum.beyond_curve", alt.value(0), alt.value(1)))
         )
         if brush:
             dragged = alt.selection_interval(name="brush")
@@ -81,7 +90,7 @@ def scatter(
             ).add_params(dragged, alt.param(name="chosen", value=""))
         else:
             point = point.encode(size=alt.value(60), opacity=alt.value(0.85))
-        layers = [*_lines(line, x_field), point, *_far(x_field, y_field)]
+        layers = [*_lines(line, x_field), *beneath(say), point, *_far(x_field, y_field)]
         drawing = alt.layer(*layers, data=frame).properties(height=height)
         whole = _panels(drawing, facet, say) if facet else drawing.properties(width=WIDTH)
         return _within_bulk(whole, x_field, y_field)
@@ -90,20 +99,20 @@ def scatter(
 
 
 def _within_bulk(chart: Drawing, *fields: str) -> Drawing:
-    """With each quantity as `_seen`: as it is, or at the edge of where most values are."""
+    """With each quantity as `_seen`: as it is, or at the edge of where most values are.
+
+    That edge is `_lowest` and `_highest`.
+    """
     for field in fields:
-        reach = f"{BULK} * (datum.{field}_q3 - datum.{field}_q1)"
-        low, high = f"datum.{field}_q1 - {reach}", f"datum.{field}_q3 + {reach}"
+        q1, q3 = f"datum.{field}_q1", f"datum.{field}_q3"
+        reach = f"({q3} > {q1} ? {BULK} * ({q3} - {q1}) : 0.2 * abs({q1}))"
         quartiles: dict[str, Any] = {f"{field}_{q}": f"{q}({field})" for q in ("q1", "q3")}
+        ends = {f"{field}_lowest": f"{q1} - {reach}", f"{field}_highest": f"{q3} + {reach}"}
+        seen = f"clamp(datum.{field}, datum.{field}_lowest, datum.{field}_highest)"
         chart = (
-            chart.transform_filter(f"isValid(datum.{field})")
-            .transform_joinaggregate(**quartiles)
-            .transform_calculate(
-                **{
-                    f"{field}_seen": f"datum.{field}_q3 > datum.{field}_q1"
-                    f" ? clamp(datum.{field}, {low}, {high}) : datum.{field}"
-                }
-            )
+            chart.transform_joinaggregate(**quartiles)
+            .transform_calculate(**ends)
+            .transform_calculate(**{f"{field}_seen": seen})
         )
     return chart
 
@@ -115,9 +124,10 @@ def _far(x: str, y: str) -> list[alt.Chart]:
         shown = f"format(datum.{field}, '.3~g')"
         above = f"{shown} + '{high}'" if field == x else f"'{high}' + {shown}"
         text = f"datum.{field} > datum.{field}_seen ? {above} : '{low}' + {shown}"
+        known = f"isValid(datum.{x}) && isValid(datum.{y})"
         marks.append(
             alt.Chart()
-            .transform_filter(f"abs(datum.{field} - datum.{field}_seen) > 1e-9")
+            .transform_filter(f"{known} && abs(datum.{field} - datum.{field}_seen) > 1e-9")
             .transform_calculate(far=text)
             .mark_text(fontSize=10, dy=-10, color=GREY)
             .encode(alt.X(f"{x}_seen:Q"), alt.Y(f"{y}_seen:Q"), alt.Text("far:N"))

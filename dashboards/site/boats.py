@@ -19,6 +19,8 @@ from dashboards.site.parts import (
     draft_of,
     methods_select,
     once_for_methods,
+    race_path,
+    type_path,
 )
 from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say
@@ -279,13 +281,26 @@ def _page(fsn_no: str, boats: _Boats, methods: Sequence[str], told: Sequence[Ans
     return Page(
         boat_path(fsn_no),
         say("Boat"),
-        [replace(facts, folded=True), *_sections(own)],
+        [*_related(told), replace(facts, folded=True), *_sections(own)],
         name=name,
         selects=selects,
         json=boats.json(fsn_no),
         answers=told,
         subtitle=subtitle,
     )
+
+
+def _related(answers: Sequence[Answer]) -> list[Section]:
+    """The pages of its type and of its races."""
+    names = filter(None, (one.line["boat_type"] for one in answers))
+    types = {name: type_path(name) for name in names}
+    races = {
+        f"{race['race']} {race['race_date']}": race_path(race["race"], race["race_date"])
+        for one in answers
+        for race in one.races
+    }
+    pages = [(path, name) for name, path in (types | races).items()]
+    return [Section("boat_related", say("Its type and its races"), pages=pages)] if pages else []
 
 
 DRAWN = {

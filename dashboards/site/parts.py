@@ -17,7 +17,6 @@ from dashboards.statements.boat import Answer
 from pipeline.messages import Sentence, say
 from pipeline.register.register import draft_name
 from warehouse.derive.studies import STUDIED_METHOD
-from warehouse.queries.chosen_tows import ALL, NEWEST, choices_of, spoken_range
 
 
 @dataclass(frozen=True)
@@ -65,8 +64,6 @@ class Chart:
             are drawn, and rows where the column is empty. A column may hold lists: then one of
             its values has to be chosen.
         says: what it shows, in one sentence.
-        said: name of the page's data that holds such a sentence, in `nl` and `en`, for what the
-            selectors say: rows of this `figure`, with the columns that it follows.
     """
 
     figure: str
@@ -74,7 +71,6 @@ class Chart:
     caption: Sentence
     follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
     says: Headline | None = None
-    said: str = ""
 
 
 def _as_it_is(option: str, _: Speech) -> str:
@@ -226,15 +222,6 @@ def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "
 def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
     """A selector of editions; drafts by the name of their method."""
     return Select(name, say("Edition"), editions, chosen, named=lambda e, speech: speech.edition(e))
-
-
-def tows_select(compared: pl.DataFrame) -> Select:
-    """A selector of tows: all, the newest of each crew, or those of an era or a season."""
-    words = {ALL: say("all tows"), NEWEST: labels.code("newest")}
-    return Select(
-        "tows", say("Tows"), choices_of(compared["season"]), ALL,
-        named=lambda tows, s: s.say(words[tows]) if tows in words else spoken_range(tows),
-    )  # fmt: skip
 
 
 def boat_path(fsn_no: str) -> str:

@@ -15,9 +15,6 @@ from pipeline.messages import LANGUAGES, Sentence, say
 from warehouse.queries.views import Views
 from warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, edition_path
 
-_SHORT: Final = Path(__file__).parent / "guides"
-"""The documents in short."""
-
 _TEXTS: Final = {
     "notice": (say("Notice to the members"), NOTICE, NOTICE_EN),
     "release_notes": (say("Release notes"), NOTES, NOTES_EN),
@@ -38,24 +35,13 @@ TITLES: Final = {
 
 
 def guide_pages() -> Iterator[Page]:
-    """The documents in short, then whole."""
+    """The documents of the project, as they are shipped with the program."""
     links = {f"{name}.md": f"{name}.html" for name in GUIDES}
     for name in GUIDES:
         nl, en = (guide_file(name, language).read_text(encoding="utf-8") for language in LANGUAGES)
-        prose = _in_language((nl, en), links)
-        short = Section("guide_in_short", say("In short"), prose=_in_language(_short(name), {}))
-        whole = Section(
-            "guide_whole",
-            say("The whole text"),
-            say("The document of the project, as it is shipped with the program."),
-            prose=prose,
-        )
-        yield Page(f"{name}.html", TITLES[name][0], [short, whole])
-
-
-def _short(name: str) -> tuple[str, str]:
-    nl, en = (_SHORT / f"{name}.{language}.md" for language in LANGUAGES)
-    return nl.read_text(encoding="utf-8"), en.read_text(encoding="utf-8")
+        title = TITLES[name][0]
+        section = Section("guide", title, prose=_in_language((nl, en), links))
+        yield Page(f"{name}.html", title, [section])
 
 
 def guide_links() -> list[tuple[str, Sentence, Sentence]]:

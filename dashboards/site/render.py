@@ -114,7 +114,7 @@ def _write_pages(border: Border, views: Views, folder: Path) -> None:
     """Writes every page in both languages."""
     editions = [Edition(views, language) for language in LANGUAGES]
     methods = method_names(views)
-    makers = shared_pages(views) | {"slides": lambda: [slides_page(views, methods)]}
+    makers = shared_pages(views) | {"slides": lambda: [slides_page(views)]}
     for name, make in makers.items():
         with border(f"pages {name}"):
             for page in make():

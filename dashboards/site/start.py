@@ -59,10 +59,7 @@ ABOUT: Final = {
     ),
     "slides": (
         say("Presentation 2015"),
-        say(
-            "Every chart of the presentation of 24 January 2015, over all seasons, before "
-            "and after."
-        ),
+        say("What the presentation of 24 January 2015 asked, answered before and after."),
     ),
 }
 """The same of the pages that `About` leads to."""

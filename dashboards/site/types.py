@@ -22,10 +22,10 @@ from dashboards.site.parts import (
     type_path,
     with_page,
 )
-from dashboards.site.slides import drawn_rows, sentences
+from dashboards.slide_book import Book
 from dashboards.speech import Headline
 from dashboards.statements.boat_type import homogeneity
-from pipeline.messages import say
+from pipeline.messages import Sentence, say
 from warehouse.queries.chosen_tows import NEWEST
 from warehouse.queries.views import Views
 
@@ -44,7 +44,8 @@ LINE_COLUMNS = (
 LINES_OF = pl.col("quantity").is_in(["b_m_s", "a_kg_m", "cw_standard_kg_m"]) & pl.col(
     "explaining"
 ).is_in(["weight_kg", "declared_speed_m_s"])
-TYPE_FIGURES = ("slide_cw_weight", "slide_cw_speed", "slide_b_weight")
+TYPE_FIGURES = ("cw_weight", "cw_speed", "b_weight")
+"""Of `dashboards.figures.slides`."""
 OUTLIER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
     *("expected", "deviation_sd", "candidates"),
@@ -139,16 +140,16 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     tows = once_for_methods(tows.select("method", "boat_type", *TOW_COLUMNS))
     lines = views.table("type_lines").filter(shown, LINES_OF, tows=NEWEST)
     tests = views.table("type_homogeneity")
-    points, fits = drawn_rows(views)
-    drawn = [
-        points.filter(pl.col("tows").list.contains(NEWEST)).drop("tows"),
-        fits.filter(pl.col("tows").list.contains(NEWEST)).drop("tows"),
-    ]
-    said = sentences(views).filter(tows=NEWEST)
+    book = Book(views)
     for boat_type in views.type_names():
         own = pl.col("boat_type") == boat_type
         charts = [
-            Chart(name, "slides", labels.FIGURES[name], says=_told(said.filter(own, figure=name)))
+            Chart(
+                f"slide_{name}",
+                "slides",
+                labels.FIGURES[f"slide_{name}"],
+                says=_said(book.in_words(name, boat_type, NEWEST)),
+            )
             for name in TYPE_FIGURES
         ]
         listed_tows = Table(
@@ -191,9 +192,9 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             ],
             name=boat_type,
             selects=[methods_select(methods)],
-            data={"slides": [frame.filter(own) for frame in drawn]},
+            data={"slides": [book.drawn(boat_type, NEWEST)]},
         )
 
 
-def _told(said: pl.DataFrame) -> Headline:
-    return lambda speech: " ".join(said[speech.language])
+def _said(sentences: Sequence[Sentence]) -> Headline:
+    return lambda speech: " ".join(map(speech.say, sentences))

@@ -89,6 +89,8 @@ Value: TypeAlias = (
 def _spoken(value: Value, speech: Speech) -> object:
     if isinstance(value, list):
         return "; ".join(str(_spoken(one, speech)) for one in value)
+    if isinstance(value, dt.date):
+        return speech.day(value)
     return value(speech) if callable(value) else value
 
 

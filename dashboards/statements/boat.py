@@ -4,24 +4,33 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import exp
-from typing import Final
-
-from markupsafe import Markup
+from typing import Final, NamedTuple
 
 from dashboards import labels
-from dashboards.pictures import curve_picture, waterfall_picture
+from dashboards.pictures import waterfall_picture
 from dashboards.speech import Speech
 from dashboards.statements import Change, EditionName, Number, Statement, Value
 from dashboards.statements.edition import NEGLIGIBLE, causes_of_line
 from dashboards.statements.race import place_in_race
-from pipeline.messages import say
+from pipeline.messages import Sentence, say
 from pipeline.tables.row import Row
 from warehouse.queries.answers import answers, own_races, season_faults
-from warehouse.queries.documents import Curve, curve_of
 from warehouse.queries.views import DRAFT, Views
 
 LEAST_RANKED: Final = 2
 """A place among fewer says nothing."""
+
+
+NUMBER: Final = say("Your number")
+WHY: Final = say("Why")
+FAIR: Final = say("Is it fair?")
+
+
+class Block(NamedTuple):
+    """The statements that answer one question of an owner, the main one first."""
+
+    title: Sentence
+    statements: Sequence[Statement]
 
 
 @dataclass(frozen=True)
@@ -31,41 +40,44 @@ class Answer:
     Attributes:
         line: a row of `warehouse.queries.answers.answers`.
         races: rows of `own_races` of this boat and crew.
-        curve: its curve, as `warehouse.queries.documents.curve_of` gives it.
         faults: rows of `season_diagnosis` of its season that a person should look at.
     """
 
     line: Row
     races: Sequence[Row]
-    curve: Curve
     faults: Sequence[Row] = ()
 
     @property
+    def blocks(self) -> list[Block]:
+        """The number, or why there is none; where it comes from; how far it can be trusted."""
+        line = self.line
+        number = [headline(line), *_power(line), *_place(line), *_validity(line)]
+        why = [*_change(line), *_log(line), *map(place_in_race, self.races)]
+        fair = [*_certainty(line), *_best(line), *_faults(self.faults), *_next_tow(line)]
+        if line["cw_kg_m"] is None:
+            why, fair = list(map(place_in_race, self.races)), list(_next_tow(line))
+        found = [(NUMBER, number), (WHY, why), (FAIR, [*fair, _objection(line)])]
+        return [Block(title, statements) for title, statements in found if statements]
+
+    @property
     def statements(self) -> list[Statement]:
-        """The number first, or why there is none; then in order of what people ask."""
-        return [headline(self.line), *_below(self)]
+        """All that is said, in the order of the blocks."""
+        return [statement for block in self.blocks for statement in block.statements]
 
     def crew(self, speech: Speech) -> str:
         """Which crew it is about."""
         return crew_name(self.line, speech)
 
-    def waterfall(self, speech: Speech) -> Markup:
-        """What each cause did to the number; nothing where it did not change."""
+    def waterfall(self, speech: Speech) -> str:
+        """What each cause did to the number, as a picture; nothing where it did not change."""
         line = self.line
         if line["cw_ratio"] is None or line["change"] == "same":
-            return Markup()
+            return ""
         old = line["old_cw_kg_m"]
-        caption = f"{speech.say('From the old number to the new, Cw in kg/m')}: {self._of(speech)}"
+        title = speech.say("From the old number to the new, Cw in kg/m")
+        caption = f"{title}: {line['name']} {self.crew(speech)}"
         causes = [(speech.say(name), factor) for name, factor in causes_of_line(line)]
         return waterfall_picture((old, old * line["cw_ratio"]), causes, speech, caption)
-
-    def picture(self, speech: Speech) -> Markup:
-        """Its curve; nothing where it has none."""
-        caption = f"{speech.say('Resistance curve')}: {self._of(speech)}"
-        return curve_picture(self.curve, self.line, speech, caption)
-
-    def _of(self, speech: Speech) -> str:
-        return f"{self.line['name']} {self.crew(speech)}"
 
 
 def answers_by_boat(views: Views, edition: str, only: str | None = None) -> dict[str, list[Answer]]:
@@ -83,7 +95,7 @@ def answers_by_boat(views: Views, edition: str, only: str | None = None) -> dict
     for line in (lines if only is None else lines.filter(fsn_no=only)).to_dicts():
         own = by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts()
         of_season = faults.get((line["method"], line["season"]), ())
-        by_boat[line["fsn_no"]].append(Answer(line, own, curve_of(line), of_season))
+        by_boat[line["fsn_no"]].append(Answer(line, own, of_season))
     return by_boat
 
 
@@ -117,17 +129,19 @@ def headline(line: Row) -> Statement:
     return Statement("cw", wording, {"new": new, "old": old, "by": by}, verdict, rests_on)
 
 
-def _below(answer: Answer) -> Iterator[Statement]:
-    line = answer.line
-    if line["cw_kg_m"] is not None:
-        yield from _change(line)
-        yield from _certainty(line)
-        yield from _best(line)
-        yield from _instruments(answer)
-        yield from _place(line)
-    yield from map(place_in_race, answer.races)
-    yield from _validity(line)
-    yield _objection(line)
+def _power(line: Row) -> Iterator[Statement]:
+    """What it asks of each rower."""
+    if line["new_power_w"] is None:
+        return
+    yield Statement(
+        "power",
+        say("That asks {power} W of each rower at {speed} m/s."),
+        {
+            "power": Number(line["new_power_w"], 0, "W"),
+            "speed": Number(line["declared_speed_m_s"], unit="m/s"),
+        },
+        rests_on=("register",),
+    )
 
 
 def _change(line: Row) -> Iterator[Statement]:
@@ -139,6 +153,7 @@ def _change(line: Row) -> Iterator[Statement]:
         say("Compared: \u201c{new}\u201d with \u201c{old}\u201d."),
         {"new": EditionName(line["edition"]), "old": EditionName(line["from_edition"])},
     )
+    yield from _tows(line)
     if line["old_declared_speed_m_s"] != line["declared_speed_m_s"]:
         yield Statement(
             "declared_speed",
@@ -163,6 +178,23 @@ def _change(line: Row) -> Iterator[Statement]:
     )
     if line["gain_in_two_hours_s"] is not None:
         yield two_hours(line["gain_in_two_hours_s"])
+
+
+def _tows(line: Row) -> Iterator[Statement]:
+    """Which tows the numbers come from where they are two, and why the newer one counts."""
+    if line["old_tow_id"] == line["tow_id"] or None in (line["old_tow_date"], line["tow_date"]):
+        return
+    wording = (
+        say(
+            "The old number comes from the tow of {old}, the new one from that of {new}: the boat "
+            "was reported as altered in between."
+        )
+        if line["altered"]
+        else say("The old number comes from the tow of {old}, the new one from that of {new}.")
+    )
+    values: dict[str, Value] = {"old": line["old_tow_date"], "new": line["tow_date"]}
+    verdict = "altered" if line["altered"] else ""
+    yield Statement("two_tows", wording, values, verdict, ("tows", "register"))
 
 
 def two_hours(seconds: float) -> Statement:
@@ -268,9 +300,8 @@ def _best(line: Row) -> Iterator[Statement]:
         )
 
 
-def _instruments(answer: Answer) -> Iterator[Statement]:
-    """What is known of the log of its season, and what may be wrong with the instruments."""
-    line = answer.line
+def _log(line: Row) -> Iterator[Statement]:
+    """What is known of the log of its season."""
     if line["log_source"] == "estimated":
         factor, low, high = (line[f"log_{part}"] for part in ("factor", "lo", "hi"))
         yield Statement(
@@ -293,8 +324,12 @@ def _instruments(answer: Answer) -> Iterator[Statement]:
             "low" if factor > 1 else "high",
             ("log_factors",),
         )
+
+
+def _faults(faults: Sequence[Row]) -> Iterator[Statement]:
+    """What may be wrong with the instruments of its season."""
     # A search that did not settle is said once, and not of every instrument.
-    found = [_fault(fault) for fault in answer.faults]
+    found = [_fault(fault) for fault in faults]
     unsettled = [one for one in found if one.verdict == "not settled"][:1]
     yield from (one for one in found if one.verdict != "not settled")
     yield from unsettled
@@ -340,8 +375,7 @@ def _force(fault: Row) -> Number:
 
 def _place(line: Row) -> Iterator[Statement]:
     """Its place at equal power, within its type."""
-    few = line["type_size"] < LEAST_RANKED
-    if line["new_type_place"] is None or not line["boat_type"] or few:
+    if line["new_type_place"] is None or not line["boat_type"] or line["type_size"] < LEAST_RANKED:
         return
     same = line["old_type_place"] in (None, line["new_type_place"])
     yield Statement(
@@ -368,7 +402,7 @@ def _place(line: Row) -> Iterator[Statement]:
 
 
 def _validity(line: Row) -> Iterator[Statement]:
-    """Until when it counts, and the next tow."""
+    """Until when it counts."""
     if line["valid_until"] is not None:
         valid = line["status"] == "valid"
         yield Statement(
@@ -380,6 +414,10 @@ def _validity(line: Row) -> Iterator[Statement]:
             line["status"],
             ("register",),
         )
+
+
+def _next_tow(line: Row) -> Iterator[Statement]:
+    """At what speed to tow next."""
     if line["tow_speed_m_s"] is not None:
         yield Statement(
             "next_tow",

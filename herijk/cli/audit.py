@@ -5,7 +5,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import PATH, as_json_text, data_option, json_option, show
+from herijk.cli.options import (
+    PATH,
+    archive_option,
+    as_json_text,
+    data_option,
+    json_option,
+    show,
+)
+from herijk.cli.registers import BEST
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, tell
@@ -84,6 +92,33 @@ def audit(
         click.echo("\n" + audit_text.lineage_text(behind))
     if drawn:
         click.echo("\n" + tell("{} plots in {}", len(drawn), plots))
+
+
+@click.command(cls=Command)
+@argument("tow_id", metavar="TOW", help="Number of the tow in the list of the season.")
+@archive_option
+@data_option
+@option("--method", help="Method; that of the newest edition, or else rebased, when left out.")
+@json_option
+def assess(tow_id: str, archive: Path, data: Path, method: str | None, as_json: bool) -> None:
+    """What a tow shows while the boat waits: provisional, and nothing is stored."""
+    from herijk.cli.audit_text import assessment_text
+    from pipeline.method.definition import COMPLETE
+    from warehouse.queries import assess as tows
+    from warehouse.store.editions import edition_names, method_of_edition
+    from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
+
+    store = Store(data)
+    editions = edition_names(store)
+    known = KnownMethods.of(store)
+    chosen = (
+        method_of_edition(store, editions[-1])
+        if editions and method is None
+        else known.get(method or BEST)
+    )
+    found = tows.assess(store, archive, tow_id, chosen)
+    show(found, lambda report: assessment_text(report, chosen.interval == COMPLETE), as_json)
 
 
 def _plots(store: "Store", report: "BoatAudit | TypesAudit", folder: Path) -> list[Path]:

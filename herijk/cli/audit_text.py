@@ -9,6 +9,7 @@ import polars as pl
 from dashboards.labels import candidate, code_in_words
 from dashboards.statements.boat import Answer, answers_by_boat
 from dashboards.statements.boat_type import homogeneity
+from dashboards.statements.tow import statements as tow_statements
 from herijk.cli.render import (
     cell,
     codes,
@@ -25,6 +26,7 @@ from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import current_edition
+from warehouse.queries.assess import Assessment
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import OneType, TypesAudit
 from warehouse.queries.views import Views
@@ -69,6 +71,27 @@ def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
         if chosen not in known:
             raise no_such_edition(chosen, known)
         return answers_by_boat(views, chosen, boat["fsn_no"]).get(boat["fsn_no"], [])
+
+
+TOW: Final = (
+    "run direction window_start_s window_end_s cut_reason speed_m_s cw_kg_m fitted_cw_kg_m reason"
+)
+
+
+def assessment_text(report: Assessment, log_known: bool) -> str:
+    """What a tow on the quay shows, its runs, and what to look at."""
+    tow = with_crew(report.tow)
+    said = [statement(speech()) for statement in tow_statements(report, log_known)]
+    checks = [cells | {"check": code_in_words(cells["check"])} for cells in report.checks]
+    lost = [f"  {place(row)}: {why_set_aside(row)}" for row in report.lost]
+    parts = [
+        "\n".join([f"{tow['tow_id']} {tow['name'] or tow['fsn_no']}, {tow['crew']}", *said]),
+        section(tell("Its runs"), table(report.runs, TOW)),
+        *([section(tell("To look at"), table(checks, "check observed limit unit"))] * bool(checks)),
+        *([section(tell("Set aside"), *lost)] * bool(lost)),
+        tell("Nothing was stored; the next rebuild makes the number anew."),
+    ]
+    return page(parts, report.simulated)
 
 
 TOWS: Final = (

@@ -88,36 +88,27 @@ def proposal(
 
 @export.command()
 @data_option
-@option("--out", type=PATH, help="Folder for them. Default: slides in --data.")
-@option("--type", "types", multiple=True, help="Type of boat; repeat for two together.")
-@option("--tows", default="all", metavar="all|newest|SEASON|A:B", help="Which tows are drawn.")
-@option(
-    "--boat",
-    "boats",
-    multiple=True,
-    help="Boat through the years, by number or name; repeat for more.",
-)
+@option("--out", type=PATH, help="File to write, a PDF.")
+@option("--type", "types", multiple=True, help="Type of boat; repeat for more.")
+@option("--boat", "boats", multiple=True, help="Boat, by number or name; repeat for more.")
 @json_option
 def slides(
     data: Path,
     out: Path | None,
     types: tuple[str, ...],
-    tows: str,
     boats: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
-    from dashboards.slide_book import Asked
-    from dashboards.slides import write_slides
+    """What the 2015 presentation asked, over this archive: a finding and a chart per slide."""
+    from dashboards.slides import slide_book
+    from warehouse.queries.views import Views
     from warehouse.store.store import Store
     from warehouse.store.unforeseen import documents
 
-    if len(types) > 2:
-        raise click.UsageError(tell("give one or two types"))
-    store, asked = Store(data), Asked(types, tows, boats)
-    with documents(store.root, "slides") as border:
-        written = write_slides(store, out or store.root / "slides", LANGUAGE.get(), asked, border)
-        show_files(written, as_json)
+    store = Store(data)
+    with documents(store.root, "slides") as border, Views(store) as views:
+        made = slide_book(views, LANGUAGE.get(), types, boats, border)
+        _write(made, out or store.root / "documents" / "slides.pdf", as_json)
 
 
 def _write(content: bytes | None, path: Path, as_json: bool) -> None:

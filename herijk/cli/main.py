@@ -16,7 +16,7 @@ from typing import Final, NoReturn
 import click
 
 from herijk.cli.archive import check, init, simulate
-from herijk.cli.audit import audit
+from herijk.cli.audit import assess, audit
 from herijk.cli.export import export
 from herijk.cli.methods import compare, methods
 from herijk.cli.registers import publish, register, seasons, verify
@@ -28,7 +28,7 @@ from warehouse.store.machine_faults import REASSURANCE, machine_faults_explained
 
 SECTIONS: Final = {
     say("Begin"): ("init", "check", "rebuild", "simulate"),
-    say("Look"): ("audit", "register", "seasons", "workbench"),
+    say("Look"): ("assess", "audit", "register", "seasons", "workbench"),
     say("Change the method"): ("methods", "compare"),
     say("Publish"): ("publish", "verify", "export"),
     say("Run it as a service"): ("serve",),
@@ -67,7 +67,7 @@ def app() -> None:
     """Recomputes the history of the Dutch rowing-sloop register from its tow tests."""
 
 
-for _command in (init, check, rebuild, simulate, audit, register, seasons, workbench):
+for _command in (init, check, rebuild, simulate, assess, audit, register, seasons, workbench):
     app.add_command(_command)
 for _command in (methods, compare, publish, verify, export, serve):
     app.add_command(_command)

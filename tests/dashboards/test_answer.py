@@ -23,19 +23,23 @@ LINE = {
     "gain_in_two_hours_s": -79.2, "exceeds_interval": False, "old_log_known": True,
     "new_log_known": True, "old_type_place": 3, "new_type_place": 2, "type_size": 5,
     "status": "valid", "tow_date": dt.date(2017, 3, 10), "valid_until": dt.date(2022, 12, 31),
-    "tow_id": "2017-1", "old_tow_id": "2015-1",
+    "tow_id": "2017-1", "old_tow_id": "2015-1", "old_tow_date": dt.date(2015, 3, 12),
+    "altered": True, "new_power_w": 84.4,
     "season": 2017, "season_before": 2013, "moved_ratio": 1.021, "best_moved_ratio": 1.004,
     "cw_best_kg_m": 31.2, "cw_best_lo_kg_m": 30.9, "cw_best_hi_kg_m": 31.5, "own_weight": 0.74,
     "log_source": "estimated", "log_factor": 1.04, "log_lo": 1.03, "log_hi": 1.05,
     "tow_speed_m_s": 2.25, "speed_reason": "brought_down", "verification_code": "ABCDEFGHIJ",
 }  # fmt: skip
 RACE = {"race": "Spiegelrace", "race_date": dt.date(2018, 6, 4), "race_size": 35}
-CURVE = [(1.96, 29.8, 60.0), (2.31, 31.01, 90.0), (2.66, 32.6, 140.0)]
 
 
 def said(speech=NL, races=(), faults=(), **other):
-    answer = Answer(LINE | other, races, CURVE, faults)
+    answer = Answer(LINE | other, races, faults)
     return "\n".join(statement(speech) for statement in answer.statements)
+
+
+def plain(text):
+    return text.replace("\N{NO-BREAK SPACE}", " ")
 
 
 def test_old_and_new_number_by_how_much_and_why():
@@ -66,11 +70,18 @@ def test_an_interval_that_leaves_the_log_out_says_so():
     assert "zit de fout van de log niet" in said(old_log_known=False)
 
 
+def test_two_tows_are_named_and_an_alteration_between_them():
+    text = plain(said())
+    assert "proef van 12 maart 2015, het nieuwe uit die van 10 maart 2017: daartussen" in text
+    assert "als verbouwd" not in said(altered=False)
+    assert "Het oude getal" not in said(old_tow_id="2017-1")
+
+
 def test_the_place_in_a_race_is_not_the_place_at_equal_power():
     text = said(races=[RACE | {"old_rank": 12, "new_rank": 11}])
     assert "naar snelheid op plaats 2 van 5 van het type Vlet (dames); dat was 3" in text
     moved = "plaats 11 van de 35 ploegen die in beide edities een plaats hebben; dat was 12"
-    assert f"Spiegelrace 2018-06-04: {moved}" in text
+    assert f"Spiegelrace 4\N{NO-BREAK SPACE}juni\N{NO-BREAK SPACE}2018: {moved}" in text
 
 
 def test_places_that_swap_on_the_podium_are_told():
@@ -88,8 +99,10 @@ def test_a_race_in_which_only_one_edition_has_a_line_is_not_compared():
 
 
 def test_valid_comes_with_its_day():
-    assert "telt tot en met 2022-12-31" in said()
-    assert "telde tot en met 2022-12-31" in said(status="expired", cw_kg_m=None, cw_ratio=None)
+    assert "telt tot en met 31 december 2022" in plain(said())
+    assert "telde tot en met 31 december 2022" in plain(
+        said(status="expired", cw_kg_m=None, cw_ratio=None)
+    )
 
 
 def test_a_percentage_beside_two_numbers_is_that_of_the_two():
@@ -179,7 +192,7 @@ def test_how_to_object_names_boat_and_code():
 
 
 def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
-    picture = Answer(LINE, (), CURVE).waterfall(NL)
+    picture = Answer(LINE, ()).waterfall(NL)
     # A bar for a number would have to begin at zero.
     assert (picture.count("<rect"), picture.count("<path")) == (2, 2)
     assert re.search(r'aria-label="[^"]*Tr\w+wes', picture)
@@ -187,13 +200,13 @@ def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
 
 def test_the_waterfall_ends_at_the_new_number_though_small_causes_have_no_bar():
     causes = json.dumps([{"cause": "tow", "factor": 0.9674}, {"cause": "code", "factor": 0.9996}])
-    picture = Answer(LINE | {"causes": causes}, (), CURVE).waterfall(NL)
+    picture = Answer(LINE | {"causes": causes}, ()).waterfall(NL)
     assert picture.count("<rect") == 1
     assert ">31,01<" in picture
 
 
 def test_names_in_pictures_are_escaped():
-    picture = Answer(LINE | {"name": "<script>"}, (), CURVE).waterfall(NL)
+    picture = Answer(LINE | {"name": "<script>"}, ()).waterfall(NL)
     assert "<script>" not in picture
 
 

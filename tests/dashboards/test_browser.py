@@ -446,20 +446,6 @@ def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(
     assert page.locator(".answer .headline").count() >= 1
 
 
-def test_what_a_chart_says_follows_the_selectors(visitor):
-    page = visitor.open("slides.html")
-    figure = page.locator("#slides-weight figure[data-figure=slide_cw_weight]")
-    figure.scroll_into_view_if_needed()
-    figure.locator(".drawn svg.marks").wait_for()
-    said = figure.locator(".says")
-    before = said.inner_text()
-    page.locator("select[name=tows]").select_option("2014")
-    figure.locator(".picked", has_text="2014").wait_for()
-    after = said.inner_text()
-    assert after != before
-    assert after.endswith(".")
-
-
 def test_everything_is_reached_by_keyboard(visitor):
     page = visitor.open("register.html")
     page.keyboard.press("Tab")

@@ -1,95 +1,109 @@
-"""The slide book: what each slide holds and says, and the files."""
+"""The slides: what each holds and says, and the PDF."""
 
-import itertools
-import re
+import io
 
+import polars as pl
 import pypdf
 import pytest
 
-from dashboards import slide_book as book
-from dashboards import slides as files
-from dashboards.figures.slides import METHODS
-from dashboards.site.slides import sentences
+from dashboards import slide_book
+from dashboards.slides import slide_book as as_pdf
 from pipeline.errors import MissingKnowledgeError
-from pipeline.messages import LANGUAGES, speaker
+from pipeline.messages import LANGUAGES
+from warehouse.queries.chosen_tows import NEWEST
 from warehouse.queries.views import Views
 
 
 @pytest.fixture(scope="module")
-def made(built):
+def views(built):
     with Views(built.store) as views:
-        return {language: list(book.slides(views, speaker(language))) for language in LANGUAGES}
+        yield views
+
+
+@pytest.fixture
+def book(views):
+    return slide_book.Book(views)
+
+
+def line(**differs):
+    return {
+        "slope_lo": -1.0,
+        "slope_hi": 1.0,
+        "r2": 0.1,
+        "n": 9,
+        "n_boats": 7,
+        "slope": 0.5,
+    } | differs
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_every_slide_has_rows_a_title_and_a_whole_sentence(made, language):
-    for slide in made[language]:
+def test_every_slide_has_a_finding_rows_and_a_source(views, language):
+    made = list(slide_book.slides(views))
+    assert len({slide.name for slide in made}) == len(made) >= 3
+    for slide in made:
         assert slide.rows.height
-        assert slide.title
-        assert slide.sentence.endswith(".")
-        assert "{" not in slide.title + slide.sentence
-    names = [slide.name for slide in made[language]]
-    assert len(set(names)) == len(names) >= 14
+        assert set(slide.rows["method"]) <= set(views.table("methods")["method"])
+        assert views.has(slide.source)
+        texts = [text.spoken(language) for text in (slide.finding, *slide.notes)]
+        assert all(texts)
+        assert "{" not in "".join(texts)
+    pairs = views.table("reproducibility").filter(scope="all")["n_pairs"].min()
+    assert (made[-1].name == "conclusion") == (pairs >= slide_book.FEWEST)
 
 
-def test_a_b_and_cw_stand_against_weight_speed_and_length(made):
-    named = {slide.figure for slide in made["nl"]}
-    pairs = itertools.product(("a", "b", "cw"), ("weight", "speed", "length"))
-    assert {f"slide_{y}_{x}" for y, x in pairs} <= named
+@pytest.mark.parametrize(
+    ("differs", "verdict"),
+    [
+        ({"slope_lo": 0.1}, "B rises with weight"),
+        ({"slope_hi": -0.1}, "B falls with weight"),
+        ({}, "no relation seen between B and weight"),
+        ({"r2": 0.5}, "too few boats to tell whether B goes with weight"),
+    ],
+)
+def test_a_verdict_follows_the_interval_of_the_slope(differs, verdict):
+    assert slide_book._verdict("b_weight", line(**differs)) == verdict
 
 
-def test_the_tows_of_all_seasons_are_drawn_under_every_method(made, built):
-    rows = next(s.rows for s in made["nl"] if s.figure == "slide_cw_weight")
-    tows = rows.filter(kind="tow")
-    assert tows["season"].unique().sort().to_list() == [2009, 2014]
-    assert set(tows["method"]) == set(METHODS) & set(built.table("methods")["method"])
-    of_2014 = next(s.rows for s in made["nl"] if s.name == "cw weight 2014")
-    assert of_2014.filter(kind="tow")["season"].unique().to_list() == [2014]
+def test_nothing_is_found_in_the_line_of_a_few_boats(book, monkeypatch):
+    (boat_type, *_) = book.chosen_types(())
+    for boats, slides in ((slide_book.FEWEST, 1), (slide_book.FEWEST - 1, 0)):
+        monkeypatch.setattr(book, "line", lambda *_, n=boats: line(n_boats=n))
+        assert len(list(book.against("b_weight", boat_type))) == slides
 
 
-def test_a_range_of_seasons_draws_its_tows_alone(built):
-    with Views(built.store) as views:
-        first = next(book.slides(views, speaker("en"), book.Asked(tows="2014:2015")))
-    assert first.rows.filter(kind="tow")["season"].unique().to_list() == [2014]
-    assert first.rows.filter(kind="line").height
-    assert "2014\N{EN DASH}2015" in first.title
+@pytest.mark.parametrize(
+    ("shift", "apart", "said"),
+    [
+        (0.877, True, "re-based Cw falls by 12.3 %"),
+        (1.02, True, "re-based Cw rises by 2.0 %"),
+        (0.99, False, "re-based no difference is seen"),
+    ],
+)
+def test_an_era_is_compared_from_old_to_new(shift, apart, said):
+    row = {"method": "rebased", "shift_ratio": shift, "apart": apart}
+    assert slide_book._shift(row) == said
 
 
-def test_pages_say_of_every_choice_and_type_how_many_tows_it_rests_on(built):
-    with Views(built.store) as views:
-        said = sentences(views).filter(figure="slide_cw_weight")
-        lines = views.table("type_lines").filter(
-            method=book.Book(views, speaker("en")).ends()[1],
-            quantity="cw_standard_kg_m",
-            explaining="weight_kg",
-        )
-    both = said.join(lines, on=["tows", "boat_type"])
-    assert {"all", "newest", "2009", "2014"} == set(both["tows"])
-    for row in both.iter_rows(named=True):
-        assert re.search(rf"\b{row['n']} tows? of {row['n_boats']} boats?\b", row["en"])
-        assert re.search(rf"\b{row['n']} (proef|proeven) van {row['n_boats']} sloep", row["nl"])
+def test_a_page_says_of_a_type_how_many_tows_its_line_rests_on(book):
+    for boat_type in book.chosen_types(()):
+        found = book.line("cw_weight", boat_type, NEWEST, book.ends[1])
+        said = " ".join(book.in_words("cw_weight", boat_type, NEWEST))
+        assert (f"{found['n']} tow" in said) == (found["slope"] is not None)
+        drawn = book.drawn(boat_type, NEWEST)
+        assert set(drawn["boat_type"]) == {boat_type}
+        assert drawn.filter(pl.col("quantity").is_null()).height
 
 
-def test_an_era_is_told_from_old_to_new_in_per_cent(built):
-    row = {"method": "rebased", "shift_ratio": 0.877, "lo": 0.85, "hi": 0.9, "apart": True}
-    with Views(built.store) as views:
-        said = book.Book(views, speaker("en"))._apart(row)
-    assert "-12.3 % (-15.0 % to -10.0 %)" in said
+def test_a_type_that_is_not_there_is_refused(views):
+    with pytest.raises(MissingKnowledgeError, match="Galjas"):
+        list(slide_book.slides(views, ["Galjas"]))
 
 
-def test_a_type_or_choice_of_tows_that_is_not_there_is_told(built):
-    with Views(built.store) as views:
-        for types, tows in ((["Galjas"], "all"), ([], "1999")):
-            with pytest.raises(MissingKnowledgeError, match=r"Galjas|1999"):
-                list(book.slides(views, speaker("en"), book.Asked(types, tows)))
-
-
-def test_slides_are_written_as_pictures_and_as_one_document(built, made, tmp_path, monkeypatch):
-    few = made["en"][6:8]
-    monkeypatch.setattr(files, "slides", lambda *_: iter(few))
-    written = files.write_slides(built.store, tmp_path / "book", "en")
-    assert [path.suffix for path in written] == [".svg", ".png", ".svg", ".png", ".pdf"]
-    assert len(pypdf.PdfReader(written[-1]).pages) == 2
-    svg = written[0].read_text(encoding="utf-8")
-    assert few[0].title in svg
-    assert "SIMULATED" in svg
+def test_the_pdf_has_a_page_for_each_slide(views):
+    made = list(slide_book.slides(views))
+    pages = pypdf.PdfReader(io.BytesIO(as_pdf(views, "nl"))).pages
+    assert len(pages) == len(made)
+    for slide, page in zip(made, pages, strict=True):
+        text = " ".join(page.extract_text().split())
+        assert slide.finding.spoken("nl") in text
+        assert "GESIMULEERD" in text

@@ -95,7 +95,6 @@ def test_a_wrong_folders_file_is_named(herijk, tmp_path, monkeypatch, text):
             "publish x --printed 2014 --carry y --valid-from 2014-06-01 --decision d",
             "--carry goes with --method",
         ),
-        ("export slides --type a --type b --type c", "one or two types"),
         ("due", "No such command 'due'"),
     ],
 )
@@ -113,7 +112,6 @@ def test_wrong_arguments_are_status_2_and_a_sentence(herijk, call, said):
         ("register --frob", "Er is geen optie '--frob'"),
         ("register --as-of gisteren", "schrijf een dag als 2026-05-08"),
         ("compare a b --fatigue x", "'--fatigue': 'x' is niet een van 'none', 'known'"),
-        ("export slides --type a --type b --type c", "geef een of twee types"),
     ],
 )
 def test_wrong_arguments_are_named_in_dutch(herijk, call, said):

@@ -131,6 +131,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
 
         - `old_type_place`, `new_type_place` and `type_size` among boats of its type and class;
         - `old_log_known` and `new_log_known`: whether the interval holds the error of the log;
+        - whether the boat was `altered` before this tow, and the `old_tow_date`;
         - what `due_list` says of the next tow;
         - its best estimate `cw_best_*`, and `own_weight`, the share that rests on the tow itself;
         - by what factor the tow (`moved_ratio`) and its best estimate (`best_moved_ratio`) differ
@@ -146,11 +147,13 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     logs = behind("log_factors").select(
         "method", "season", log_factor="factor", log_lo="lo", log_hi="hi", log_source="source"
     )
-    seasons = behind("tows").select("tow_id", "season")
+    tows = behind("tows").select("tow_id", "season", "altered", "tow_date")
+    old_tows = tows.select(old_tow_id="tow_id", old_tow_date="tow_date")
     joined = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .join(known, on="edition", how="left", maintain_order="left")
-        .join(seasons, on="tow_id", how="left", maintain_order="left")
+        .join(tows.drop("tow_date"), on="tow_id", how="left", maintain_order="left")
+        .join(old_tows, on="old_tow_id", how="left", maintain_order="left")
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
         .join(_best_estimates(behind), on=["method", "tow_id"], how="left", maintain_order="left")
         .join(logs, on=["method", "season"], how="left", maintain_order="left")

@@ -77,18 +77,6 @@ def rows_of(tows: str) -> pl.Expr:
     return pl.col("newest") if tows == NEWEST else pl.col("season").is_in(_seasons(tows))
 
 
-def with_choices(tows: pl.DataFrame) -> pl.DataFrame:
-    """With the choices that each tow, by its `season` and `newest`, belongs to: a list `tows`."""
-    season = pl.col("season")
-    belongs = {ALL: pl.lit(value=True), NEWEST: pl.col("newest")} | {
-        name: season.is_between(*ends) for name, ends in season_ranges(tows["season"]).items()
-    }
-    names = [pl.when(belonging).then(pl.lit(name)) for name, belonging in belongs.items()]
-    return tows.with_columns(
-        pl.concat_list(*names, season.cast(pl.String)).list.drop_nulls().alias("tows")
-    )
-
-
 def choices_of(seasons: Iterable[int]) -> list[str]:
     """Every choice that tables and pages hold, of tows of these seasons."""
     known = sorted(set(seasons))

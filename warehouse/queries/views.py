@@ -4,7 +4,6 @@ Reads the database; writes and computes nothing: every number here is in a table
 """
 
 import datetime as dt
-from collections.abc import Sequence
 from functools import cached_property
 from typing import Final, Self
 
@@ -12,7 +11,6 @@ import polars as pl
 
 from pipeline.register.register import LINE, with_empty_thwart
 from warehouse.queries.as_of import lay_over, lay_published
-from warehouse.queries.chosen_tows import choose
 from warehouse.store.database import open_results
 from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
 from warehouse.store.store import Store
@@ -82,10 +80,6 @@ class Views:
             return self.about().get("simulated") == "true"
         return read_manifest(edition_path(self.store, edition)).simulated
 
-    def choose(self, tows: str, methods: Sequence[str]) -> None:
-        """From now on the statistics of types are over these tows: see `chosen_tows.choose`."""
-        choose(self._db, tows, methods)
-
     def type_names(self) -> list[str]:
         """Types of which a boat is listed, sorted."""
         return self.ask("types")["boat_type"].to_list()
@@ -141,10 +135,6 @@ LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
 ORDER BY c.method, c.flag, lower(b.name), c.fsn_no, t.tow_date
 """,
     # Curves of a tow under the tool's ticks, with boat and declared speed.
-    "option_curves_of": """
-SELECT o.*, t.fsn_no, t.declared_speed_m_s FROM option_curves AS o JOIN tows AS t USING (tow_id)
-WHERE tow_id = ? ORDER BY ALL
-""",
     # Boats that differ from their type, furthest first; Cw itself instead of its logarithm.
     "outliers": """
 SELECT t.* REPLACE (
@@ -211,10 +201,6 @@ SELECT *, 100 * (exp(level_step) - 1) AS level_step_percent, 100 * level_step_sd
 FROM season_steps
 """,
     # Tows made with little power or raced off their curve, with the boat's name.
-    "slow_tows": """
-SELECT t.*, coalesce(b.name, t.fsn_no) AS name
-FROM slow_tows AS t LEFT JOIN boats AS b USING (fsn_no) ORDER BY method, tow_id
-""",
     # Curves per method, season and status.
     "statuses": """
 SELECT method, CAST(scope AS INTEGER) AS season, code AS status, number

@@ -217,17 +217,13 @@
     await document.fonts.load('12px "Open Sans"'); // labels are measured with it
     if (turn !== figure.turn) return;
     const words = window.HERIJK_WORDS;
-    const { figure: name, caption, data: source, said } = figure.dataset;
+    const { figure: name, caption, data: source } = figure.dataset;
     const spec = structuredClone(window.HERIJK_FIGURES[name]);
     const rows = rowsOf(source, figure);
     spec.datasets = { rows };
     fit(spec, figure.clientWidth);
     place.hidden = rows.length === 0;
     figure.querySelector(".picked").textContent = picked(figure) + (rows.length ? "" : `: ${words.no_values}`);
-    if (said) {
-      const told = rowsOf(said, figure).filter((row) => row.figure === name);
-      figure.querySelector(".says").textContent = told.map((row) => row[language]).join(" ");
-    }
     tabulate(figure, rows, words);
     const made = await window.vegaEmbed(place, spec, {
       actions: { export: true, source: false, compiled: false, editor: false },

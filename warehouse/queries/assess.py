@@ -1,0 +1,147 @@
+"""A tow on the quay: what it shows, before a rebuild has seen it and without storing anything.
+
+The data folder is copied as links into a folder that is thrown away. There the archive is read as
+it lies there now, and the steps of a build are made as far as the curves of one method. So the
+number is that of the next rebuild, unless the archive or the method changes before it.
+"""
+
+import os
+import shutil
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import polars as pl
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method.definition import Method
+from pipeline.tables.keys import LINE
+from pipeline.tables.row import Row
+from warehouse.derive.graph import ARCHIVE, METHOD
+from warehouse.intake import seasons as intake
+from warehouse.store.store import Store
+
+LEFT_BEHIND: Final = shutil.ignore_patterns("site", "report", "dagster", "*.duckdb*", "*.lock")
+"""What a build does not read."""
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """What a tow shows under one method; nothing of it is stored.
+
+    Attributes:
+        method: its name.
+        simulated: the archive says that it is simulated.
+        tow: its row of `tows`, with `name` and `boat_type`.
+        curve: its row of `curves`.
+        runs: its rows of `run_points`.
+        checks: its rows of `assessments` that are beyond their limit.
+        lost: what is set aside of it: rows of `quarantine`.
+        own_before: the newest earlier curve of this boat and crew, with `tow_date`; its `cw_kg_m`
+            and interval are at the declared speed of this tow. None where there is none.
+        of_type: `n`, and `median`, `lowest` and `highest` Cw [kg/m] at that speed, of the other
+            boats of its type and class, each by its newest tow.
+    """
+
+    method: str
+    simulated: bool
+    tow: Row
+    curve: Row
+    runs: list[Row]
+    checks: list[Row]
+    lost: list[Row]
+    own_before: Row | None
+    of_type: Row
+
+
+def assess(store: Store, archive: Path, tow_id: str, method: Method) -> Assessment:
+    """Reads a tow that lies in the archive, and computes it among all others.
+
+    Raises:
+        MissingKnowledgeError: the archive lists no such tow, or it cannot be used; the message says
+            why.
+    """
+    with tempfile.TemporaryDirectory(prefix="herijk-assess-") as folder:
+        copy = Store(Path(folder, "data"))
+        if store.root.exists():
+            shutil.copytree(
+                store.root.resolve(), copy.root, copy_function=os.symlink, ignore=LEFT_BEHIND
+            )
+        intake.index(copy, archive)
+        listed = copy.read("listed_tows").filter(tow_id=tow_id)
+        if listed.is_empty():
+            raise _not_usable(tow_id, copy.read("list_faults"))
+        season = listed["season"][0]
+        intake.read_season(copy, archive, season)
+        intake.collect_blocks(copy, season)
+        for step in (ARCHIVE, METHOD):
+            for scope in step.scopes(copy, [method]):
+                step.make(scope)
+        return _assessment(copy, tow_id, method.name)
+
+
+def _not_usable(tow_id: str, faults: pl.DataFrame) -> MissingKnowledgeError:
+    """Why a tow is not there: what was set aside of it, or that nothing names it."""
+    own = faults.filter(tow_id=tow_id)["message"].to_list()
+    if own:
+        return MissingKnowledgeError("tow {} cannot be used: {}", tow_id, "; ".join(own))
+    return MissingKnowledgeError(
+        "the tow lists of the archive name no tow {}; add its line to the list, and its file to "
+        "the folder of the season",
+        tow_id,
+    )
+
+
+def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
+    boats, tows, curves = store.read("boats"), store.read("tows"), store.read("curves", method)
+    set_aside = store.read("quarantine").filter(tow_id=tow_id)
+    named = tows.join(
+        boats.select("fsn_no", "name", "boat_type"), on="fsn_no", how="left", maintain_order="left"
+    )
+    own = named.filter(tow_id=tow_id)
+    if own.is_empty():
+        raise _not_usable(tow_id, set_aside)
+    tow = own.row(0, named=True)
+    others = curves.join(
+        named.select("tow_id", "tow_date", "boat_type"), on="tow_id", maintain_order="left"
+    )
+    others = _at_speed(others, tow["declared_speed_m_s"]).filter(
+        pl.col("tow_id") != tow_id, pl.col("tow_date") <= tow["tow_date"]
+    )
+    before = others.filter(**{name: tow[name] for name in LINE}).sort("tow_date").tail(1)
+    like = others.filter(
+        pl.col("fsn_no") != tow["fsn_no"], crew_class=tow["crew_class"], boat_type=tow["boat_type"]
+    )
+    newest = like.sort("tow_date", maintain_order=True).unique(LINE, keep="last")
+    runs, checks = (
+        store.read(name, method).filter(tow_id=tow_id) for name in ("run_points", "assessments")
+    )
+    return Assessment(
+        method=method,
+        simulated=bool(store.read("about_archive")["simulated"][0]),
+        tow=tow,
+        curve=curves.filter(tow_id=tow_id).row(0, named=True),
+        runs=runs.sort("run").to_dicts(),
+        checks=checks.filter("flagged").to_dicts(),
+        lost=set_aside.to_dicts(),
+        own_before=next(iter(before.to_dicts()), None),
+        of_type=newest.select(
+            n=pl.len(),
+            median=pl.col("cw_kg_m").median(),
+            lowest=pl.col("cw_kg_m").min(),
+            highest=pl.col("cw_kg_m").max(),
+        ).row(0, named=True),
+    )
+
+
+def _at_speed(curves: pl.DataFrame, speed_m_s: float) -> pl.DataFrame:
+    """Curves with Cw = A / (1 - (v/B)^2) and its interval at a speed; those that end below it go.
+
+    The interval keeps its width in per cent.
+    """
+    bend = 1.0 - (speed_m_s / pl.col("b_m_s").fill_null(float("inf"))) ** 2
+    cw, own = pl.col("a_kg_m") / bend, pl.col("cw_kg_m")
+    ends = {name: cw * pl.col(name) / own for name in ("cw_lo_kg_m", "cw_hi_kg_m")}
+    sound = curves.filter(pl.col("status") != "rejected", bend > 0).drop_nulls("a_kg_m")
+    return sound.with_columns(**ends, cw_kg_m=cw)
