@@ -212,7 +212,7 @@ class _SideBySide:
         def squares(rows: FloatArray, begins: IntArray, whose: IntArray) -> FloatArray:
             """Variance that the unknowns give each row, of as many unknowns."""
             if design.shape[1] <= FEW_UNKNOWNS:
-                return np.einsum("ij,ijk,ik->i", rows, covariance[whose], rows, optimize=True)
+                return np.asarray(np.einsum("ij,ijk,ik->i", rows, covariance[whose], rows))
             parts = zip(np.split(rows, begins[1:]), covariance, strict=True)
             return np.concatenate([((one @ own) * one).sum(axis=1) for one, own in parts])
 
