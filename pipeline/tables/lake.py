@@ -159,7 +159,6 @@ class FailedTows(dy.Schema):
     """Tows on which Herijk itself failed."""
 
     tow_id = column.tow_id()
-    tow_key = column.text("hash of its row of the list, with those of its samples")
     told = column.text("kind and first words of the error")
 
 

@@ -154,14 +154,6 @@ def test_a_damaged_table_that_an_asset_reads_is_made_again(bench, built, instanc
     assert bench.store.read("curves", METHODS[0]).equals(built.store.read("curves", METHODS[0]))
 
 
-def test_damaged_blocks_of_a_tow_are_made_again(bench, built, instance):
-    file = next((bench.data / "lake" / "blocks" / "season=2009").iterdir())
-    file.write_bytes(file.read_bytes()[:100])
-    bench.store.table_path("blocks", "2009").unlink()
-    assert materialise(bench, instance, "samples", "blocks", season=2009).success
-    assert bench.store.read("blocks", "2009").equals(built.store.read("blocks", "2009"))
-
-
 def test_records_are_kept_where_dagster_home_says(bench, tmp_path, monkeypatch):
     monkeypatch.setenv("DAGSTER_HOME", str(tmp_path / "home"))
     with assets.instance.instance_of(bench.store) as instance:

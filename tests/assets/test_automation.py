@@ -65,14 +65,6 @@ def test_a_file_that_came_changed_or_went_asks_for_one_rebuild(archive, change, 
     assert [sensor.tick() for _ in range(3)] == [0, asked, 0]
 
 
-def test_while_files_are_copied_nothing_is_asked(archive):
-    sensor = Ticks(archive)
-    for number in range(3):
-        (archive / f"new{number}.csv").write_text("z")
-        assert sensor.tick() == 0
-    assert sensor.tick() == 1
-
-
 class MailServer(socketserver.StreamRequestHandler):
     """Takes mail as SMTP says, from who logs in with the right password."""
 

@@ -200,7 +200,7 @@ def test_the_old_database_stays_when_a_step_fails(bench, built, monkeypatch):
             "warehouse.derive.method_tables.recompute",
             BrokenPromiseError("a promise was broken"),
         ),
-        ("warehouse.store.database._describe", OSError("disk full")),
+        ("warehouse.derive.database._add_table", OSError("disk full")),
     ):
         with monkeypatch.context() as patched:
             patched.setattr(place, mock.Mock(side_effect=error))

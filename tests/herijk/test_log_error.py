@@ -17,7 +17,7 @@ from herijk.simulate import World, WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.definition import shipped_method
 from tests.warehouse.edition_bench import EditionBench
-from warehouse.store.database import build_database
+from warehouse.derive.database import build_database
 
 SEASONS = (2009, 2010, 2011, 2014, 2015, 2016)
 SETTINGS = WorldSettings(SEASONS, tows_per_season=5, rate_hz=20, seed=6)

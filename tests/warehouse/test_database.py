@@ -1,17 +1,19 @@
 """The database is swapped in whole, and says what its columns mean."""
 
 import re
-import threading
+import subprocess
 
 import duckdb
+import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.tables.schemas import ABOUT, STUDY, TABLES
+from pipeline.tables.schemas import ABOUT, TABLES
 from pipeline.tables.views import VIEWS
+from tests.assets.test_machine_faults import mounted
 from tests.conftest import Workbench
+from warehouse.derive.database import build_database
 from warehouse.derive.inputs import LAKE_ONLY
-from warehouse.store.database import build_database
 
 CONTRACT = {
     "boats": "fsn_no, ht_no, name, boat_type",
@@ -76,67 +78,6 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
     assert comments["curves", "cw_kg_m"] == "Cw at the declared speed [kg/m]"
 
 
-def test_working_tables_of_studies_are_in_a_schema_of_their_own(built: Workbench):
-    with duckdb.connect(built.store.database, read_only=True) as db:
-        placed = db.sql("SELECT table_name FROM duckdb_tables() WHERE schema_name = 'study'")
-        assert {name for (name,) in placed.fetchall()} == {*STUDY}
-        with pytest.raises(duckdb.CatalogException):
-            db.table("promise")
-    assert built.table("promise").columns == TABLES["promise"].column_names()
-
-
-ENOUGH_VERSIONS = 4
-
-
-def test_readers_never_see_an_error_or_half_of_a_database(tmp_path):
-    path, stop = tmp_path / "warehouse.duckdb", threading.Event()
-    seen: list[tuple[int, int]] = []
-    errors: list[Exception] = []
-
-    def build(version: int) -> None:
-        rows = pl.DataFrame({"version": [version] * 1000})
-        build_database(path, {"first": rows, "second": rows})
-
-    def poll() -> None:
-        while not stop.is_set():
-            try:
-                with duckdb.connect(path, read_only=True) as db:
-                    first, second = (
-                        db.execute(
-                            f"SELECT min(version), max(version), count(*) FROM {t}"  # noqa: S608
-                        ).fetchone()
-                        for t in ("first", "second")
-                    )
-                assert first == second
-                assert first[0] == first[1]
-                seen.append((first[0], first[2]))
-            except Exception as error:
-                errors.append(error)
-                return
-
-    build(0)
-    # One reader: connections of one process to one path share a database while any of them is open.
-    reader = threading.Thread(target=poll)
-    reader.start()
-    for version in range(1, 1000):
-        build(version)
-        if errors or len({held for held, _ in seen}) > ENOUGH_VERSIONS:
-            break
-    stop.set()
-    reader.join()
-    assert errors == []
-    assert {count for _, count in seen} == {1000}
-    assert len({version for version, _ in seen}) > ENOUGH_VERSIONS
-
-
-def test_a_reader_that_has_the_old_database_open_keeps_it(tmp_path):
-    path = tmp_path / "warehouse.duckdb"
-    build_database(path, {"t": pl.DataFrame({"x": [1]})})
-    with duckdb.connect(path, read_only=True) as db:
-        build_database(path, {"t": pl.DataFrame({"x": [2, 3]})})
-        assert db.execute("SELECT x FROM t").fetchall() == [(1,)]
-
-
 def test_a_failed_build_leaves_the_old_database_and_no_litter(tmp_path):
     path = tmp_path / "warehouse.duckdb"
     build_database(path, {"t": pl.DataFrame({"x": [1]})})
@@ -145,6 +86,20 @@ def test_a_failed_build_leaves_the_old_database_and_no_litter(tmp_path):
     assert [f.name for f in tmp_path.iterdir()] == ["warehouse.duckdb"]
     with duckdb.connect(path, read_only=True) as db:
         assert db.execute("SELECT x FROM t").fetchall() == [(1,)]
+
+
+def test_a_database_that_does_not_fit_on_the_disk_is_not_put_in_place(tmp_path):
+    mounted(tmp_path / "disk", 1_000_000)
+    try:
+        path = tmp_path / "disk" / "warehouse.duckdb"
+        build_database(path, {"t": pl.DataFrame({"x": [1]})})
+        numbers = np.random.default_rng(1).random(200_000)
+        with pytest.raises(duckdb.Error):
+            build_database(path, {"t": pl.DataFrame({"x": numbers})})
+        with duckdb.connect(path, read_only=True) as db:
+            assert db.execute("SELECT x FROM t").fetchall() == [(1,)]
+    finally:
+        subprocess.run(["umount", str(tmp_path / "disk")], check=True)
 
 
 def test_views_answer_and_programs_of_last_year_can_open_the_file(built: Workbench):

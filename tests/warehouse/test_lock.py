@@ -1,6 +1,5 @@
 """One writer at a time; a lock that dies with its owner; leftovers of the dead are removed."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -9,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.errors import UnavailableError
-from warehouse.store.lock import OWNER_FILE, only_writer
+from warehouse.store.lock import only_writer
 
 HOLD = """
 import sys, time
@@ -38,15 +37,9 @@ def holder(tmp_path):
     process.communicate()
 
 
-def _owner(folder: Path) -> Path:
-    return folder / OWNER_FILE
-
-
-def test_the_second_says_who_holds_the_lock_and_touches_nothing(holder, tmp_path):
-    with pytest.raises(UnavailableError) as told, only_writer(tmp_path):
+def test_the_second_stops_and_touches_nothing(holder, tmp_path):
+    with pytest.raises(UnavailableError, match="being rebuilt already"), only_writer(tmp_path):
         pass
-    message = str(told.value)
-    assert f"process {holder.pid} on {os.uname().nodename} since 2" in message
     assert (tmp_path / "lake" / ".herijk-half.parquet").exists()
 
 
@@ -55,8 +48,6 @@ def test_the_lock_dies_with_its_owner_and_the_next_clears_up(holder, tmp_path):
     holder.wait()
     with only_writer(tmp_path):
         assert not (tmp_path / "lake" / ".herijk-half.parquet").exists()
-        assert _owner(tmp_path).read_text().split()[0] == str(os.getpid())
-    assert not _owner(tmp_path).exists()
 
 
 def test_leftovers_of_publications_are_left_to_publishing(tmp_path):

@@ -4,7 +4,6 @@ The archive is sound; a fault is put in by changing the unit in a header or the 
 """
 
 import datetime as dt
-import math
 import re
 import shutil
 from collections.abc import Callable
@@ -129,48 +128,6 @@ def test_a_tow_in_another_unit_is_set_aside_with_the_likely_unit(archive, change
     assert not archive.doubts()
 
 
-def test_half_a_season_in_another_unit_costs_that_half(archive):
-    wrong = sorted(archive.season(2016))[5:]
-    for tow in wrong:
-        archive.change(tow, header("kracht", "kgf"))
-    archive.collect()
-    found = archive.quarantined()
-    assert set(found) == set(wrong)
-    assert all("5 tows of season 2016" in m and "kgf" in m for _, m in found.values())
-    assert not archive.doubts()
-
-
-def vane(angle: Callable[[float], float], speed: str = "wind") -> Callable[[str], str]:
-    """Gives the vane other angles, and the wind the speed of another column."""
-
-    def changed(text: str) -> str:
-        head, *rows = text.splitlines()
-        names = head.split(";")
-        vane_at = next(
-            i for i, name in enumerate(names) if name.startswith(("wind [gra", "wind [°"))
-        )
-        wind_at = next(i for i, name in enumerate(names) if name.startswith("wind [m/s"))
-        speed_at = wind_at if speed == "wind" else names.index(f"{speed} [m/s]")
-        cells = [row.split(";") for row in rows]
-        for row in cells:
-            row[vane_at] = f"{angle(float(row[vane_at].replace(',', '.'))):.4f}".replace(".", ",")
-            row[wind_at] = row[speed_at]
-        return "\n".join([head, *(";".join(row) for row in cells)]) + "\n"
-
-    return changed
-
-
-def test_angles_in_radians_are_told_from_still_air(archive):
-    """In still air only the boat's own speed is felt, from straight ahead."""
-    archive.change("2016-007", vane(math.radians))
-    archive.change("2016-003", vane(lambda degrees: degrees / 180.0, speed="log1"))
-    archive.collect()
-    found = archive.quarantined()
-    assert set(found) == {"2016-007"}
-    assert found["2016-007"][0] == "wind_not_plausible"
-    assert "radians" in found["2016-007"][1]
-
-
 def test_a_log_replaced_within_a_season_is_seen_as_a_part_and_doubts_no_tow():
     """Logs may differ by 6 %: the joint model needs these tows to say by how much."""
     size = {"seasons": (2010, 2015), "tows_per_season": 12, "rate_hz": 10, "seed": 3}
@@ -206,17 +163,6 @@ def test_a_turned_vane_is_gross_in_a_tow_and_in_a_season_and_a_dead_anemometer_i
         assert abs(first.size - 180.0) < 20.0
     dead = wind_changed(world, season[4:5], wind_x=0.0, wind_y=0.0, wind_v=0.0, back=True)
     assert [(s.causes, s.is_gross) for s in dead if s.quantity == "wind"] == [((), False)]
-
-
-def test_an_archive_is_simulated_as_long_as_it_says_so(archive):
-    """Also where nothing else of it changed, and it was read before."""
-    profile = archive.root / "archief.toml"
-    said = profile.read_text("utf-8")
-    for is_simulated in (False, True):
-        text = said if is_simulated else said.replace("simulated = true", "simulated = false")
-        profile.write_text(text, "utf-8")
-        bring_in(archive.store, archive.root)
-        assert archive.store.read("about_archive")["simulated"].to_list() == [is_simulated]
 
 
 def test_a_season_in_another_unit_is_set_aside_as_a_season_in_one_sentence(archive):

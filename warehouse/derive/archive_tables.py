@@ -2,7 +2,6 @@
 
 import dataclasses
 import datetime as dt
-from collections.abc import Mapping
 
 import polars as pl
 
@@ -17,19 +16,7 @@ from warehouse.archive.lists.windows import outside_run
 from warehouse.derive.inputs import Blocks
 from warehouse.derive.plausible import gross_faults, judge, with_doubts
 from warehouse.derive.same_samples import CONTENT, same_samples
-from warehouse.store.unforeseen import UNFORESEEN, sentence, with_keys
-
-
-class NothingSoundError(MissingKnowledgeError):
-    """No tow of the archive can be used.
-
-    Attributes:
-        tables: what is known all the same, of which the quarantine says why.
-    """
-
-    def __init__(self, message: str, tables: Mapping[str, pl.DataFrame]) -> None:
-        super().__init__(message)
-        self.tables = tables
+from warehouse.store.unforeseen import UNFORESEEN, sentence
 
 
 def archive_tables(
@@ -47,7 +34,7 @@ def archive_tables(
     """Boats, sound tows with their runs and windows, and everything that was set aside.
 
     Raises:
-        NothingSoundError: no tow is sound.
+        MissingKnowledgeError: no tow is sound.
     """
     index = _with_failed(season_index, season_tows, failed_tows)
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
@@ -79,22 +66,18 @@ def archive_tables(
         "quarantine": _dated(set_aside, quarantine_before, today),
     }
     if tables["tows"].is_empty():
-        raise NothingSoundError(_why_nothing(tables["quarantine"]), tables)
+        raise MissingKnowledgeError(_why_nothing(tables["quarantine"]))
     return tables
 
 
 def _with_failed(index: pl.DataFrame, listed: pl.DataFrame, failed: pl.DataFrame) -> pl.DataFrame:
-    """The index with the fault of the tows that make Herijk itself fail, as they are listed."""
-    if failed.is_empty():
-        return index
-    mine = failed.join(with_keys(listed), on=["tow_id", "tow_key"], maintain_order="left")
+    """The index with the fault of the tows that make Herijk itself fail."""
+    mine = failed.join(listed, on="tow_id", maintain_order="left")
     told = mine.select("samples_path", "tow_id", "told").iter_rows()
     faults = [Fault(path, tow, None, UNFORESEEN, sentence(tow, why)) for path, tow, why in told]
     of_today = frame_of(Faults, map(dataclasses.asdict, faults))
-    return pl.concat(
-        [index.join(of_today, on="tow_id", how="anti", maintain_order="left"), of_today],
-        how="diagonal",
-    )
+    others = index.join(of_today, on="tow_id", how="anti", maintain_order="left")
+    return pl.concat([others, of_today], how="diagonal")
 
 
 def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
@@ -171,8 +154,8 @@ def _why_nothing(set_aside: pl.DataFrame) -> str:
     counted = ", ".join(f"{number} x {reason}" for reason, number in causes)
     first = set_aside.row(0, named=True)
     return say(
-        "no tow can be used: {} rows or files are set aside ({}). All are in the table "
-        "quarantine. See them by cause with: herijk check ARCHIVE. The first: {}: {}",
+        "no tow can be used: {} rows or files are set aside ({}). See them by cause with: herijk "
+        "check ARCHIVE. The first: {}: {}",
         set_aside.height,
         counted,
         first["path"],

@@ -8,6 +8,7 @@ from pipeline.consistency.eras import era_shifts
 from pipeline.method.definition import Method
 from pipeline.studies.claims import promise
 from pipeline.studies.summaries import check_counts, option_summary, quality_counts, season_ladder
+from pipeline.tables.views import VIEWS
 from warehouse.derive import consistency, database, registers, summaries
 from warehouse.derive.archive_tables import archive_tables
 from warehouse.derive.inputs import (
@@ -26,11 +27,7 @@ from warehouse.store.store import Store
 
 ARCHIVE: Final = Step("archive", archive_tables, ARCHIVE_TABLES)
 METHOD: Final = Step("method", method_tables, METHOD_TABLES)
-STUDIES: Final = Step(
-    "studies",
-    study_tables,
-    STUDY_TABLES,
-)
+STUDIES: Final = Step("studies", study_tables, STUDY_TABLES)
 LINES: Final = Step("lines", consistency.line_tables, LINE_TABLES)
 TYPES: Final = Step("consistency", consistency.type_tables, TYPE_TABLES)
 REGISTERS: Final = Step(
@@ -42,18 +39,14 @@ DATABASE: Final = Step(
     "database",
     database.warehouse_database,
     (database.DATABASE_TABLE,),
-    code=(*COMPUTING, "warehouse.store.database", "warehouse.store.package"),
-    also=database.MEANINGS,
+    code=(*COMPUTING, "warehouse.store.package"),
+    also=str((database.MEANINGS, VIEWS)),
     is_whole=database.is_whole,
 )
 
 STEPS: Final = (
     ARCHIVE,
-    Step(
-        "recordings",
-        summaries.recording_tables,
-        ("trace_seconds", "run_statistics"),
-    ),
+    Step("recordings", summaries.recording_tables, ("trace_seconds", "run_statistics")),
     *(METHOD, STUDIES, LINES, TYPES),
     *(
         Step("consistency", compute, (compute.__name__,))

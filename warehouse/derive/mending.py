@@ -69,18 +69,17 @@ def failed_tows(
         tows: all of them.
         error: with which the step failed.
     """
-    most = max(1, int(LARGEST_SHARE * len(tows)))
-
-    def failing(chosen: Sequence[str], found: int) -> list[str]:
-        if not chosen or found > most or not _fails(compute, chosen, error):
-            return []
+    most, alone = max(1, int(LARGEST_SHARE * len(tows))), list[str]()
+    left = [list(tows)] if len(tows) > 1 else []
+    while left and len(alone) <= most:
+        chosen = left.pop()
+        if not _fails(compute, chosen, error):
+            continue
         if len(chosen) == 1:
-            return list(chosen)
-        half = len(chosen) // 2
-        first = failing(chosen[:half], found)
-        return first + failing(chosen[half:], found + len(first))
-
-    alone = failing(tows, 0) if len(tows) > 1 else []
+            alone += chosen
+        else:
+            half = len(chosen) // 2
+            left += [chosen[half:], chosen[:half]]
     if not 0 < len(alone) <= most:
         return None
     return FailedTowsError(tuple(alone), in_short(error), traced(error))
@@ -93,9 +92,7 @@ def _fails(
     try:
         compute(tows)
     except BaseException as error:
-        if not is_unforeseen(error):
-            return False
-        return _place(error) == _place(as_before)
+        return is_unforeseen(error) and _place(error) == _place(as_before)
     return False
 
 

@@ -15,8 +15,8 @@ from typing import Final
 import numpy as np
 import polars as pl
 import scipy
+from scipy.spatial import cKDTree
 
-from pipeline.arrays import FloatArray, IntArray
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.messages import say
 from pipeline.tables.frames import frame_of
@@ -29,6 +29,9 @@ CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind
 
 ROUNDING: Final = 2e-4
 """Relative: what rounding to two decimals leaves of a mean over a thousand samples, and more."""
+
+SMALLEST: Final = 1e-9
+"""Stands for a mean of 0, which has no logarithm."""
 
 
 def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
@@ -62,8 +65,9 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
 def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
     """The runs with `content`, a number that runs of one measurement have in common."""
     sums = runs.select(CONTENT).to_numpy()
-    means = sums[:, 1:] / np.maximum(sums[:, :1], 1.0)
-    one, other = _near(means)
+    means = np.nan_to_num(sums[:, 1:] / np.maximum(sums[:, :1], 1.0))
+    near = cKDTree(np.log(np.maximum(np.abs(means), SMALLEST)))
+    one, other = near.query_pairs(ROUNDING, p=np.inf, output_type="ndarray").T
     tow = runs["tow_id"].rank("dense").to_numpy().astype(np.int64)
     between = np.sort(np.column_stack([tow[one], tow[other]]), axis=1)
     _, pair, often = np.unique(between, axis=0, return_inverse=True, return_counts=True)
@@ -73,20 +77,6 @@ def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
     )
     _, content = scipy.sparse.csgraph.connected_components(links, directed=False)
     return runs.with_columns(pl.Series("content", content))
-
-
-def _near(means: FloatArray) -> tuple[IntArray, IntArray]:
-    """Pairs of rows that differ by rounding at most, found in the order of the first column."""
-    order = np.argsort(means[:, 0], kind="stable")
-    ordered, pairs = means[order], []
-    for step in range(1, len(order)):
-        close = np.abs(ordered[step:] - ordered[:-step]) <= ROUNDING * np.abs(ordered[step:])
-        if not close[:, 0].any():
-            break
-        first = np.flatnonzero(close.all(axis=1))
-        pairs.append((order[first], order[first + step]))
-    one, other = zip(*pairs, strict=True) if pairs else ([np.zeros(0, int)], [np.zeros(0, int)])
-    return np.concatenate(one), np.concatenate(other)
 
 
 def _faults(same: pl.DataFrame) -> Iterator[Fault]:

@@ -17,8 +17,6 @@ from pipeline.method.definition import Method
 from pipeline.recompute.run_cache import RunCache
 from pipeline.tables.frames import dtypes
 from pipeline.tables.schemas import TABLES, conform
-from warehouse.derive.archive_tables import NothingSoundError
-from warehouse.derive.database import database_without_tows
 from warehouse.derive.inputs import (
     ARCHIVE_TABLES,
     Scope,
@@ -111,7 +109,7 @@ class Step:
 
         Raises:
             FailedTowsError: some tows make the step fail; without them it can be made.
-            NothingSoundError: no tow is sound.
+            MissingKnowledgeError: no tow is sound.
         """
         try:
             made_from = self.made_from(scope)
@@ -127,11 +125,6 @@ class Step:
         root, failure = scope.store.root, self._failure(scope)
         try:
             made = self._computed(scope)
-        except NothingSoundError as error:
-            set_aside = conform(QUARANTINE, error.tables[QUARANTINE])
-            scope.store.write(QUARANTINE, set_aside, "")
-            database_without_tows(scope.store, error.tables)
-            raise
         except BaseException as error:
             if not is_unforeseen(error):
                 raise

@@ -17,7 +17,7 @@ from pipeline.tables.row import Row
 from warehouse.queries.audit_types import TYPE, Audit, TypesAudit, type_facts, types_audit
 from warehouse.queries.chosen_tows import NEWEST, choose
 from warehouse.store.boats import boats_named, plain, the_boat
-from warehouse.store.database import is_simulated, open_results, rows
+from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
 
 TYPE_METHODS: Final = ("as-published", "rebased-2015", "rebased")
@@ -70,7 +70,7 @@ def audit(
     Raises:
         MissingKnowledgeError: there is no such boat, type or method, or no database.
     """
-    with open_results(store.database) as db:
+    with open_database(store.database) as db:
         methods = _methods(db, method)
         usual: list[str] = [name for name in TYPE_METHODS if name in methods]
         of_types = methods if method or not usual else usual

@@ -7,7 +7,7 @@ or one type is in `warehouse.queries.audit`.
 from dataclasses import dataclass
 
 from pipeline.tables.row import Row
-from warehouse.store.database import is_simulated, open_database, open_results, rows
+from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
 
 FIRST_FAULTS = 10
@@ -87,7 +87,7 @@ def rebuild_report(store: Store) -> RebuildReport:
 
 def log_error_report(store: Store, method: str) -> LogErrorReport:
     """The log factor of every season under a method, and what the estimated ones rest on."""
-    with open_results(store.database) as db:
+    with open_database(store.database) as db:
         return LogErrorReport(
             simulated=is_simulated(db),
             method=method,

@@ -11,7 +11,7 @@ import polars as pl
 
 from pipeline.register.register import LINE, with_empty_thwart
 from warehouse.queries.as_of import lay_over, lay_published
-from warehouse.store.database import open_results
+from warehouse.store.database import open_database
 from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
 from warehouse.store.store import Store
 
@@ -23,7 +23,7 @@ class Views:
 
     def __init__(self, store: Store, as_of: dt.date | None = None) -> None:
         self.store = store
-        self._db = open_results(store.database)
+        self._db = open_database(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
         lay_published(self._db, store)
         if as_of is not None:

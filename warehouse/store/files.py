@@ -17,18 +17,11 @@ AT_FDCWD, RENAME_EXCHANGE = -100, 2
 
 
 @contextmanager
-def written_beside(path: Path, replace: bool = True) -> Iterator[Path]:
+def written_beside(path: Path) -> Iterator[Path]:
     """Gives a temporary path in the same folder and, if all went well, renames it to `path`.
 
     The content is synced before the rename, and the rename replaces an older file at once; after
     an error or a kill the older file is still there, whole.
-
-    Args:
-        path: the file.
-        replace: whether it may be there already.
-
-    Raises:
-        FileExistsError: it is there and may not be replaced.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(prefix=TEMPORARY_PREFIX, suffix=path.suffix, dir=path.parent)
@@ -38,10 +31,7 @@ def written_beside(path: Path, replace: bool = True) -> Iterator[Path]:
         yield beside
         sync(beside)
         beside.chmod(0o644)
-        if replace:
-            beside.replace(path)
-        else:
-            path.hardlink_to(beside)
+        beside.replace(path)
         sync(path.parent)
     finally:
         beside.unlink(missing_ok=True)
@@ -67,13 +57,10 @@ def file_sha256(path: Path) -> str:
 
 
 def write_new(path: Path, text: str) -> None:
-    """Writes a text file that was not there, whole or not at all.
-
-    Raises:
-        FileExistsError: there is one already; it is left as it is.
-    """
-    with written_beside(path, replace=False) as beside:
-        beside.write_bytes(text.encode())
+    """Writes a text file that was not there; raises FileExistsError where there is one."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("xb") as file:
+        file.write(text.encode())
 
 
 def put_in_place(beside: Path, target: Path) -> None:

@@ -1,14 +1,10 @@
 """One writer at a time in a data folder, and clearing up after writers that were killed.
 
-The lock is the operating system's and dies with its owner, however that ends; who holds it is in a
-file beside it. Readers need no lock: what they read is replaced whole. Publishing an edition has a
-lock of its own, in `editions`.
+The lock is the operating system's and dies with its owner, however that ends. Readers need none:
+what they read is replaced whole. Publishing an edition has a lock of its own, in `editions`.
 """
 
-import datetime as dt
-import os
 import shutil
-import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,11 +13,9 @@ from typing import Final
 from filelock import FileLock, Timeout
 
 from pipeline.errors import UnavailableError
-from pipeline.messages import say
 from warehouse.store.files import TEMPORARY_PREFIX
 
 LOCK_FILE: Final = "rebuild.lock"
-OWNER_FILE: Final = "rebuild.owner"
 _NOT_OURS: Final = {"audit", "dagster", "editions"}
 """Folders of the data folder in which others write, without the lock."""
 
@@ -38,41 +32,29 @@ def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
         wait: wait for another writer to end, instead of giving up.
 
     Raises:
-        UnavailableError: another writer is at work; the message says which.
+        UnavailableError: another writer is at work.
     """
     root.mkdir(parents=True, exist_ok=True)
     folder = root.resolve()
     if folder in _held:
         yield
         return
-    lock, owner = FileLock(folder / LOCK_FILE), folder / OWNER_FILE
+    lock = FileLock(folder / LOCK_FILE)
     try:
         lock.acquire(blocking=wait)
     except Timeout as error:
         raise UnavailableError(
-            "{} is being rebuilt already, by {}. Wait until that is done, or stop that process; "
-            "its lock goes with it",
+            "{} is being rebuilt already. Wait until that is done, or stop that process; its lock "
+            "goes with it",
             folder,
-            _in_words(owner),
         ) from error
     try:
-        since = dt.datetime.now().astimezone().isoformat(timespec="seconds")
-        owner.write_text(f"{os.getpid()} {socket.gethostname()} {since}", encoding="utf-8")
         _held.add(folder)
         _remove_leftovers(folder)
         yield
     finally:
         _held.discard(folder)
-        owner.unlink(missing_ok=True)
         lock.release()
-
-
-def _in_words(owner: Path) -> str:
-    """Who holds the lock; it may have just begun and not have signed yet."""
-    try:
-        return say("process {} on {} since {}", *owner.read_text(encoding="utf-8").split())
-    except (OSError, LookupError):
-        return say("a process that has just begun")
 
 
 def _remove_leftovers(root: Path) -> None:

@@ -3,8 +3,7 @@
 It is set aside, and the rest goes on.
 
 Each failure is a text file in the data folder, with its traceback, for whoever maintains Herijk.
-Tows are remembered besides, as long as neither their row of the list, their samples nor our code
-change: then they are tried again.
+Tows are remembered besides, until a list, samples or our code change: then they are tried again.
 """
 
 import traceback
@@ -129,8 +128,8 @@ def failures(root: Path) -> list[str]:
 
 
 def failed_tows(store: Store) -> pl.DataFrame:
-    """The tows that make this code fail: rows of `FailedTows`."""
-    if store.made_from(FAILED_TOWS) == code_hash(*COMPUTING):
+    """The tows that make this code fail on the lists of today: rows of `FailedTows`."""
+    if store.made_from(FAILED_TOWS) == _failed_with(store):
         return store.read(FAILED_TOWS)
     return pl.DataFrame(FailedTows.create_empty())
 
@@ -142,20 +141,19 @@ def set_aside(store: Store, failed: FailedTowsError) -> None:
         FailedTowsError: they were set aside already.
     """
     known = failed_tows(store)
-    listed = store.read_all("season_tows").filter(pl.col("tow_id").is_in(failed.tows))
-    new = with_keys(listed).join(known, on="tow_key", how="anti", maintain_order="left")
-    if new.is_empty():
+    new = sorted({*failed.tows} - {*known["tow_id"]})
+    if not new:
         raise failed
-    for tow_id in new["tow_id"]:
+    for tow_id in new:
         note(store.root, tow_id, failed.trace)
-    rows = new.select("tow_id", "tow_key", told=pl.lit(failed.told))
-    store.write(FAILED_TOWS, pl.concat([known, rows]).sort("tow_id"), code_hash(*COMPUTING))
+    rows = known.vstack(pl.DataFrame({"tow_id": new}).with_columns(told=pl.lit(failed.told)))
+    store.write(FAILED_TOWS, rows.sort("tow_id"), _failed_with(store))
 
 
-def with_keys(listed: pl.DataFrame) -> pl.DataFrame:
-    """Listed tows with what a failure belongs to: the row, with the hashes of its samples."""
-    keys = [fingerprint(row) for row in listed.iter_rows(named=True)]
-    return listed.with_columns(tow_key=pl.Series(keys, dtype=pl.String))
+def _failed_with(store: Store) -> str:
+    """What makes tows fail: the code, and all that the lists say, with the hashes of samples."""
+    listed = [store.contents("season_tows", season) for season in store.partitions("season_tows")]
+    return fingerprint(code_hash(*COMPUTING), listed)
 
 
 def _file(root: Path, what: str) -> Path:
