@@ -4,6 +4,7 @@ Everything that comes from the archive is escaped: by Jinja in HTML, by `as_json
 """
 
 import json
+import re
 from pathlib import Path
 
 import jinja2
@@ -20,7 +21,13 @@ def environment(templates: Path, **names: object) -> jinja2.Environment:
         undefined=jinja2.StrictUndefined,
     )
     made.globals.update(names)
+    made.filters["unbroken"] = unbroken
     return made
+
+
+def unbroken(text: str) -> str:
+    """A sentence in which a number and its unit stay on one line."""
+    return re.sub(r"(?<=\d) (?=(%|kg/m|m/s|kg|W|N|s)(\W|$))", "\u00a0", text)
 
 
 def in_both(pair: tuple[str, str]) -> Markup:

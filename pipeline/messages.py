@@ -98,7 +98,8 @@ def _filled(
         return text
     shown = tuple(spoken(value, language) for value in in_order)
     named = {name: spoken(value, language) for name, value in values.items()}
-    return _InWords(language).vformat(text, shown, named)
+    form = text.format if language == "en" else partial(_InWords(language).format, text)
+    return form(*shown, **named)
 
 
 def _sentence(
@@ -122,9 +123,8 @@ def say(template: str, *in_order: object, **named: object) -> Sentence:
     What comes from files and libraries is made printable: it goes to terminals and tables.
     """
     shown = tuple(_printable(value) for value in in_order)
-    context = template.context if isinstance(template, Sentence) else ""
     by_name = {name: _printable(value) for name, value in named.items()}
-    return _sentence(template, shown, by_name, context)
+    return _sentence(template, shown, by_name, getattr(template, "context", ""))
 
 
 def headings(*texts: str) -> tuple[Sentence, ...]:
@@ -150,8 +150,8 @@ def speaker(language: str) -> Say:
 def _said_in(language: str, text: str, *in_order: object, **named: object) -> str:
     if isinstance(text, Sentence) and not in_order and not named:
         return text.spoken(language)
-    context = text.context if isinstance(text, Sentence) else ""
-    return _filled(_looked_up(language, text, context), language, in_order, named)
+    known = _looked_up(language, text, getattr(text, "context", ""))
+    return _filled(known, language, in_order, named)
 
 
 def tell(template: str, *in_order: object, **named: object) -> str:
@@ -178,7 +178,7 @@ def _printable(value: object) -> object:
     if isinstance(value, Sentence) or not isinstance(value, str | Exception):
         return value
     line = " ".join(str(value).split())
-    return "".join(letter if letter.isprintable() else "?" for letter in line)
+    return line if line.isprintable() else "".join(c if c.isprintable() else "?" for c in line)
 
 
 def spoken(text: Any, language: str) -> Any:

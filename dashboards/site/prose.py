@@ -38,10 +38,15 @@ def guide_pages() -> Iterator[Page]:
     """The documents of the project, as they are shipped with the program."""
     links = {f"{name}.md": f"{name}.html" for name in GUIDES}
     for name in GUIDES:
-        nl, en = (guide_file(name, language).read_text(encoding="utf-8") for language in LANGUAGES)
+        nl, en = (_below_title(guide_file(name, language)) for language in LANGUAGES)
         title = TITLES[name][0]
         section = Section("guide", title, prose=_in_language((nl, en), links))
         yield Page(f"{name}.html", title, [section])
+
+
+def _below_title(file: Path) -> str:
+    """A document without its title: the page has one."""
+    return file.read_text(encoding="utf-8").split("\n", 1)[1]
 
 
 def guide_links() -> list[tuple[str, Sentence, Sentence]]:

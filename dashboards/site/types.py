@@ -4,11 +4,13 @@ All of them are about the newest tow of each boat and crew; other choices of tow
 the presentation and on the workbench.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import polars as pl
+from markupsafe import Markup
 
 from dashboards import labels
+from dashboards.html import unbroken
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -23,8 +25,9 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.slide_book import Book
-from dashboards.speech import Headline
-from dashboards.statements.boat_type import homogeneity
+from dashboards.speech import Headline, Speech
+from dashboards.statements import Statement, together
+from dashboards.statements.boat_type import homogeneity, level
 from pipeline.messages import Sentence, say
 from warehouse.queries.chosen_tows import NEWEST
 from warehouse.queries.views import Views
@@ -54,6 +57,8 @@ TEST_COLUMNS = (
     *("boat_type", "n", "n_boats", "p_value", "power_at_10pct", "noise_share", "shared_b_m_s"),
 )
 OF_TYPE = ("after", "boat_type")
+WEIGHT_LINE = {"quantity": "cw_standard_kg_m", "explaining": "weight_kg", "within": "all"}
+"""The line about which the level of a type is judged."""
 
 
 def types_page(views: Views, methods: Sequence[str]) -> Page:
@@ -75,6 +80,12 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
         "types.html",
         say("Types"),
         [
+            Section(
+                "types_verdicts",
+                say("Are equal boats equal?"),
+                say("By the newest tow of each boat and crew; every type has a page."),
+                prose=_verdicts(_judged(views, default_method(methods)), views.type_names()),
+            ),
             *listed(
                 Section(
                     "types_homogeneity",
@@ -131,6 +142,38 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     )  # fmt: skip
 
 
+Judge = Callable[[str], tuple[Statement, Statement]]
+
+
+def _judged(views: Views, method: str) -> Judge:
+    """Gives whether the boats of a type are equal in level and in bend, under a method."""
+    tows = views.table("compared_tows").filter("newest", method=method)
+    lines = views.table("type_lines").filter(method=method, tows=NEWEST, **WEIGHT_LINE)
+    tests = views.table("type_homogeneity").filter(method=method)
+
+    def judge(name: str) -> tuple[Statement, Statement]:
+        of_level = level(tows.filter(boat_type=name), lines.filter(boat_type=name))
+        return of_level, homogeneity(tests.filter(boat_type=name))
+
+    return judge
+
+
+def _verdicts(judge: Judge, types: Sequence[str]) -> Callable[[Speech], Markup]:
+    """A line per type: its verdicts, and its page."""
+    line = Markup('<li><a href="{}">{}</a> {}</li>')
+
+    def prose(speech: Speech) -> Markup:
+        lines = [
+            line.format(
+                type_path(name), name, unbroken(" ".join(one(speech) for one in judge(name)))
+            )
+            for name in types
+        ]
+        return Markup("<ul>{}</ul>").format(Markup("").join(lines))
+
+    return prose
+
+
 def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """A page for every type: the verdict, its tows, the fitted lines."""
     if not views.has("compared_tows"):
@@ -139,7 +182,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     tows = views.ask("type_tows").filter("newest", shown)
     tows = once_for_methods(tows.select("method", "boat_type", *TOW_COLUMNS))
     lines = views.table("type_lines").filter(shown, LINES_OF, tows=NEWEST)
-    tests = views.table("type_homogeneity")
+    judge = _judged(views, default_method(methods))
     book = Book(views)
     for boat_type in views.type_names():
         own = pl.col("boat_type") == boat_type
@@ -175,7 +218,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                     ),
                     charts,
                     [listed_tows],
-                    headline=homogeneity(tests.filter(own, method=default_method(methods))),
+                    headline=together(judge(boat_type), " "),
                 ),
                 Section(
                     "types_lines",

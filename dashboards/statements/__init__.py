@@ -94,6 +94,6 @@ def _spoken(value: Value, speech: Speech) -> object:
     return value(speech) if callable(value) else value
 
 
-def together(statements: Sequence[Statement]) -> Headline:
+def together(statements: Sequence[Statement], between: str = "") -> Headline:
     """Statements as one paragraph; those that go on a sentence begin with their own mark."""
-    return lambda speech: "".join(statement(speech) for statement in statements)
+    return lambda speech: between.join(statement(speech) for statement in statements)

@@ -1,11 +1,15 @@
-"""Whether the boats of a type are equal."""
+"""Whether the boats of a type are equal: in the bend of their curves, and in level."""
 
 from typing import Final
 
+import numpy as np
 import polars as pl
+from scipy.special import chdtrc
 
-from dashboards.statements import Number, Statement
+from dashboards import labels
+from dashboards.statements import Number, Statement, Value
 from pipeline.messages import say
+from pipeline.tables.row import Row
 
 CLEAR_P: Final = 0.05
 STRONG_POWER: Final = 0.8
@@ -38,3 +42,72 @@ def homogeneity(test: pl.DataFrame) -> Statement:
         )
     values = {"n": test["n"][0], "p": Number(p_value, unit="")}
     return Statement("bends", wording, values, verdict, ("homogeneity",))
+
+
+NORMAL_95: Final = 1.96
+"""Half a 95 % interval in standard deviations."""
+
+
+def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
+    """Whether their Cw at one speed differs by more than weight and the uncertainty explain.
+
+    The squared scatter about the weight line over that of the tows' own uncertainty is compared
+    with chi-squared; tows of a season share part of it, so that the test is on the careful side.
+
+    Args:
+        tows: rows of `compared_tows` of a type under one method, the newest of each crew.
+        line: their row of `type_lines` of Cw against weight, men and women together.
+    """
+    spread = None if line.is_empty() else line["residual_sd_ratio"][0]
+    if spread is None:
+        return Statement("level", say("Too few boats to compare their level."), verdict="few")
+    known = tows.drop_nulls("cw_standard_kg_m")
+    half = pl.col("cw_standard_hi_kg_m") - pl.col("cw_standard_lo_kg_m")
+    ratio = known.select(half / (2 * NORMAL_95 * pl.col("cw_standard_kg_m"))).to_series()
+    noise = float(np.sqrt(np.mean(ratio.to_numpy() ** 2))) if ratio.null_count() == 0 else None
+    dof = line["n"][0] - 2
+    differ = noise is not None and chdtrc(dof, dof * (spread / noise) ** 2) < CLEAR_P
+    wording = (
+        say(
+            "Not equal in level: at {speed} m/s Cw runs from {lowest} to {highest} kg/m; the {n} "
+            "newest tows scatter {spread} % about their weight line, and their uncertainty "
+            "explains {noise} %.{outside}"
+        )
+        if differ
+        else say(
+            "At {speed} m/s Cw runs from {lowest} to {highest} kg/m; the {n} newest tows scatter "
+            "{spread} % about their weight line, no more than their uncertainty explains "
+            "({noise} %).{outside}"
+        )
+        if noise is not None
+        else say(
+            "At {speed} m/s Cw runs from {lowest} to {highest} kg/m; the {n} newest tows scatter "
+            "{spread} % about their weight line. Their uncertainty is not known.{outside}"
+        )
+    )
+    values: dict[str, Value] = {
+        "speed": Number(known["standard_speed_m_s"][0], unit="m/s"),
+        "lowest": Number(float(known["cw_standard_kg_m"].to_numpy().min()), 1),
+        "highest": Number(float(known["cw_standard_kg_m"].to_numpy().max()), 1),
+        "n": line["n"][0],
+        "spread": Number(100 * spread, 1, "%"),
+        "noise": "" if noise is None else Number(100 * noise, 1, "%"),
+        "outside": _outside([tow for tow in known.to_dicts() if tow["outside"]]),
+    }
+    verdict = "not known" if noise is None else "differ" if differ else "equal"
+    return Statement("level", wording, values, verdict, ("compared_tows", "type_lines"))
+
+
+def _outside(tows: list[Row]) -> Value:
+    """Which boats stand out, with what may have caused it; nothing where none does."""
+    if not tows:
+        return ""
+    named: list[Value] = [
+        Statement(
+            "boat_outside",
+            say("{fsn_no} ({candidates})") if tow["candidates"] else say("{fsn_no}"),
+            {"fsn_no": tow["fsn_no"], "candidates": list(map(labels.candidate, tow["candidates"]))},
+        )
+        for tow in tows
+    ]
+    return Statement("outside", say(" These stand out: {boats}."), {"boats": named})

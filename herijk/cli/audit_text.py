@@ -8,7 +8,7 @@ import polars as pl
 
 from dashboards.labels import candidate, code_in_words
 from dashboards.statements.boat import Answer, answers_by_boat
-from dashboards.statements.boat_type import homogeneity
+from dashboards.statements.boat_type import homogeneity, level
 from dashboards.statements.tow import statements as tow_statements
 from herijk.cli.render import (
     cell,
@@ -284,6 +284,7 @@ def _verdict(of_type: OneType, method: str) -> str:
     return "\n".join(
         [
             homogeneity(pl.DataFrame([tested]))(speech()),
+            level(pl.DataFrame(under.newest), pl.DataFrame(under.weight_line))(speech()),
             tell("Outside the type: {}.", outside or tell("no tow")),
         ]
     )

@@ -13,7 +13,7 @@ from assets.settings import applied
 from herijk.cli.render import place
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, say, spoken, tell
-from warehouse.archive.check import CauseReport, CheckReport, check_archive, check_report
+from warehouse.archive.check import CauseReport, CheckReport, check_archive
 from warehouse.queries.reports import rebuild_report
 from warehouse.store.lock import only_writer
 from warehouse.store.methods import KnownMethods
@@ -61,7 +61,7 @@ def checked(archive: Path | None, data: Path) -> Checked:
     """Looks at everything, the archive only where one is named."""
     found = None
     if archive is not None:
-        found = check_report(archive, check_archive(archive), LANGUAGE.get())
+        found = check_archive(archive, LANGUAGE.get())
     return Checked(list(_findings(data)), found)
 
 

@@ -66,8 +66,11 @@ def _components(tows: Observed, scope: str) -> list[Row]:
     if few or n_boats < x.shape[1] + 2:
         return _nothing(counts, "too_few_repeats")
     problem = mixed.Problem(y, variance, x, boat, season)
+    fit = mixed.fit_all([problem], mixed.COMPONENTS)[0]
+    if fit is None:
+        return _nothing(counts, "not_settled")
     try:
-        shares = _shares(mixed.fit(problem, mixed.COMPONENTS), float(np.sqrt(variance.mean())))
+        shares = _shares(fit, float(np.sqrt(variance.mean())))
     except mixed.NotSettledError:
         return _nothing(counts, "not_settled")
     return [counts | row for row in shares]

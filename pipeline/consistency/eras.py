@@ -5,9 +5,8 @@ age. How boats age is seen in the last era, where instruments are alike.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from math import exp, hypot
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -21,8 +20,7 @@ from pipeline.tables.frames import frame_of
 from pipeline.tables.row import Row
 
 
-@dataclass(frozen=True)
-class Era:
+class Era(NamedTuple):
     """Seasons with like instruments.
 
     Attributes:
@@ -100,9 +98,9 @@ def _shift(pairs: pl.DataFrame, era: Era, yearly: FloatArray) -> Row:
     )
     ageing = median_interval(yearly)
     per_year, slowest, fastest = ageing or (0.0, 0.0, 0.0)
-    facts: Row = {"n": across.height, "n_ageing": len(yearly)}
+    facts: Row = {"n": across.height}
     if ageing is not None:
-        facts |= {"ageing_per_year": per_year, "ageing_lo": slowest, "ageing_hi": fastest}
+        facts["ageing_per_year"] = per_year
     years = across.select(_years()).to_series().to_numpy()
     interval = median_interval(across["ln_ratio"].to_numpy() - per_year * years)
     if interval is None:

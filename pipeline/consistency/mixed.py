@@ -45,6 +45,9 @@ MAX_STEPS: Final = 60
 LEAST_MISFIT: Final = 0.05
 """Least misfit of the other boats' rows, also where they agree by chance."""
 
+FEW_UNKNOWNS: Final = 6
+"""Up to here products of many problems are taken at once, beyond it of one after the other."""
+
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
 
@@ -200,7 +203,18 @@ class _SideBySide:
             return np.asarray(np.add.reduceat(values, begins, axis=0))
 
         def outer(left: FloatArray, right: FloatArray) -> FloatArray:
-            return over(left[:, :, None] * right[:, None], row_of_problem)
+            """Products of all columns, summed over the rows of each problem."""
+            if design.shape[1] <= FEW_UNKNOWNS:
+                return over(left[:, :, None] * right[:, None], row_of_problem)
+            parts = (np.split(rows, row_of_problem[1:]) for rows in (left, right))
+            return np.stack([one.T @ other for one, other in zip(*parts, strict=True)])
+
+        def squares(rows: FloatArray, begins: IntArray, whose: IntArray) -> FloatArray:
+            """Variance that the unknowns give each row, of as many unknowns."""
+            if design.shape[1] <= FEW_UNKNOWNS:
+                return np.asarray(np.einsum("ij,ijk,ik->i", rows, covariance[whose], rows))
+            parts = zip(np.split(rows, begins[1:]), covariance, strict=True)
+            return np.concatenate([((one @ own) * one).sum(axis=1) for one, own in parts])
 
         between, _, cell = variances.T
         weight = 1.0 / (self.variance + cell[problem])
@@ -225,33 +239,30 @@ class _SideBySide:
         pull = solve(left[:, None])[:, 0]
         of_boats = over(weight * left, row_of_boat) / stretch
         of_others = over(design[:, :q] * pull[:, None], row_of_problem)
-        squares = [
+        pulls = [
             over(of_boats**2, boat_of_problem),
             (of_others**2).sum(axis=1),
             over(pull**2, row_of_problem),
         ]
         misfit = over(pull**2 / weight, row_of_problem)
-        misfit += variances[:, 0] * squares[0] + variances[:, 1] * squares[1]
+        misfit += variances[:, 0] * pulls[0] + variances[:, 1] * pulls[1]
         determinant = over(np.log(stretch), boat_of_problem) - over(np.log(weight), row_of_problem)
         deviance = determinant + np.linalg.slogdet(known)[1] + misfit
 
-        along = over(weighed, row_of_boat), weighed
-        taken = [
-            np.einsum("ij,ijk,ik->i", rows, covariance[whose], rows, optimize=True)
-            for rows, whose in zip(along, (problem_of_boat, problem), strict=True)
-        ]
+        taken_of_boats = squares(over(weighed, row_of_boat), boat_of_problem, problem_of_boat)
+        taken = squares(weighed, row_of_problem, problem)
         of_known = products[:, :q] @ covariance @ np.swapaxes(products[:, :q], 1, 2)
         traces = [
-            over(boat_weight / stretch - taken[0], boat_of_problem),
+            over(boat_weight / stretch - taken_of_boats, boat_of_problem),
             np.trace(products[:, :q, :q] - of_known, axis1=1, axis2=2),
-            over(weight - weight**2 * shrink[boat_of_row] - taken[1], row_of_problem),
+            over(weight - weight**2 * shrink[boat_of_row] - taken, row_of_problem),
         ]
         # K P y of each variance: what boats, others and cells have of the pull in common.
         common = (design[:, :q] * of_others[problem]).sum(axis=1)
         felt = np.stack([of_boats[boat_of_row], common, pull], axis=1)
         across = outer(weighed, felt)
         information = outer(felt, solve(felt)) - np.swapaxes(across, 1, 2) @ covariance @ across
-        gradient = np.stack(traces, axis=1) - np.stack(squares, axis=1)
+        gradient = np.stack(traces, axis=1) - np.stack(pulls, axis=1)
         return _At(Likelihood(deviance, gradient, information), unknowns, covariance, misfit)
 
 
@@ -341,18 +352,16 @@ class Fit:
         Raises:
             NotSettledError: the search for an end did not come to rest.
         """
-        profile, inside, upper = _Profile(self), np.tile(self.sd, 2), np.arange(6) >= 3
-        outside = np.where(upper, np.maximum(2.0 * inside, 0.1 * self.problem.spread), 0.0)
-        beyond = profile.excess(outside, np.arange(6))[0] > 0.0
-        for _ in range(MAX_DOUBLINGS):
-            short = np.flatnonzero(upper & ~beyond)
-            if not len(short):
-                break
+        profile, sd, upper = _Profile(self), np.tile(self.sd, 2), np.arange(6) >= 3
+        outside = np.where(upper, np.maximum(2.0 * sd, 0.1 * self.problem.spread), 0.0)
+        bounded = profile.excess(outside, np.arange(6))[0] > 0.0
+        for _ in range(MAX_DOUBLINGS):  # far out the deviance loses its digits
+            short = np.flatnonzero(upper & ~bounded)
             outside[short] *= 2.0
-            beyond[short] = profile.excess(outside[short], short)[0] > 0.0
-        found = profile.ends(inside, outside, np.flatnonzero(beyond))
-        ends = np.where(beyond, found, np.where(upper, np.nan, 0.0))
-        low, high = ends.reshape(2, 3).tolist()
+            if len(short):
+                bounded[short] = profile.excess(outside[short], short)[0] > 0.0
+        found = profile.ends(outside.copy(), sd, outside, np.flatnonzero(bounded))
+        low, high = np.where(bounded, found, np.where(upper, np.nan, 0.0)).reshape(2, 3).tolist()
         return {
             name: (lo, None if np.isnan(hi) else hi)
             for name, lo, hi in zip(COMPONENTS, low, high, strict=True)
@@ -393,12 +402,13 @@ class _Profile:
         root = np.sqrt(np.maximum(there.deviance - self._least[ends], 0.0))
         return root - NORMAL, there.gradient[at] * sd / np.maximum(root, 1e-9)
 
-    def ends(self, inside: FloatArray, outside: FloatArray, busy: IntArray) -> FloatArray:
+    def ends(
+        self, found: FloatArray, inside: FloatArray, outside: FloatArray, busy: IntArray
+    ) -> FloatArray:
         """Where the excess of some ends is 0, between sds inside and outside of the intervals.
 
         By Newton's method; where that leads out of the bracket, the bracket is halved.
         """
-        found = outside.copy()
         for _ in range(MAX_STEPS):
             if not len(busy):
                 return found
@@ -416,20 +426,12 @@ class _Profile:
         raise NotSettledError
 
 
-def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
-    """Restricted maximum likelihood of the components named in `free`.
-
-    Raises:
-        NotSettledError: the search did not come to rest.
-    """
-    fitted = fit_all([problem], free)[0]
-    if fitted is None:
-        raise NotSettledError
-    return fitted
-
-
 def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit | None]:
-    """The same of each of many problems, None where the search did not come to rest."""
+    """Restricted maximum likelihood of the components named in `free`, of each problem.
+
+    Returns:
+        None where the search did not come to rest.
+    """
     if not problems:
         return []
     together = _SideBySide.of(problems)

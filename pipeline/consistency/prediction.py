@@ -67,7 +67,10 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     x = _columns(fleet)
     if fleet.table["fsn_no"].n_unique() < FEWEST_BOATS_PER_COLUMN * (x.shape[1] + 1):
         return rows.with_columns(reason=pl.lit("few_boats"))
-    problem = mixed.Problem(np.log(cw), variance, x, fleet.table["hull"].to_numpy(), _types(fleet))
+    # A boat of no type is one by itself.
+    alone = pl.when(boat_type=UNKNOWN_TYPE).then("fsn_no").otherwise("boat_type").alias("type")
+    hull, types = fleet.table.select("hull", alone).to_numpy().T
+    problem = mixed.Problem(np.log(cw), variance, x, hull, types)
     fit = mixed.fit_all([problem], (mixed.BOAT, mixed.OTHER))[0]
     if fit is None:
         return rows.with_columns(reason=pl.lit("not_settled"))
@@ -98,12 +101,6 @@ def _columns(fleet: Observed) -> FloatArray:
         if len(values) and np.sqrt((rest**2).mean()) > 1e-6:
             kept = np.column_stack([kept, values - values.mean()])
     return kept
-
-
-def _types(fleet: Observed) -> list[str]:
-    """The type of each boat; a boat of no type is one by itself."""
-    named = zip(fleet.table["boat_type"], fleet.table["fsn_no"], strict=True)
-    return [f"{UNKNOWN_TYPE}/{fsn}" if t == UNKNOWN_TYPE else t for t, fsn in named]
 
 
 def prediction_error(predicted: pl.DataFrame) -> dy.DataFrame[PredictionError]:

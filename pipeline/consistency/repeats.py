@@ -50,6 +50,7 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     pairs = dated.with_columns(before).filter(
         pl.col("tow_id_before").is_not_null() & ~pl.col("altered")
     )
+    width = (pl.col("half") ** 2 + pl.col("half_before") ** 2).sqrt()
     return (
         pairs.with_columns(pl.Series("at_old_speed", _cw_at_old_speed(pairs)))
         .filter(pl.col("at_old_speed") > 0)
@@ -58,7 +59,10 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
             + pl.col("by_others")
             - pl.col("by_others_before")
         )
-        .with_columns(_e_n(), cw_ratio=pl.col("ln_ratio").exp())
+        .with_columns(
+            e_n=pl.when(width.is_finite() & (width > 0)).then(pl.col("ln_ratio") / width),
+            cw_ratio=pl.col("ln_ratio").exp(),
+        )
         .select(RepeatPairs.column_names())
     )
 
@@ -71,12 +75,6 @@ def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
     )
     left = 1.0 - s_of_height(a, cw, v) * old**2
     return np.where(left > 0, a / np.where(left > 0, left, 1.0), 0.0)
-
-
-def _e_n() -> pl.Expr:
-    width = (pl.col("half") ** 2 + pl.col("half_before") ** 2).sqrt()
-    known = width.is_finite() & (width > 0)
-    return pl.when(known).then(pl.col("ln_ratio") / width).alias("e_n")
 
 
 def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:

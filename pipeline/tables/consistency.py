@@ -232,12 +232,9 @@ class EraShifts(PerMethod):
     lo = column.number("1", "lower end of its 95 % interval", nullable=True, min=0)
     hi = column.number("1", "upper end", nullable=True, min=0)
     apart = dy.Bool(description="the interval leaves out 1", nullable=True)
-    n_ageing = dy.Int32(description="pairs of all types within the last era", min=0)
     ageing_per_year = column.number(
         "1", "change of ln Cw a year taken out; empty: none", nullable=True
     )
-    ageing_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
-    ageing_hi = column.number("1", "upper end", nullable=True)
     reason = column.text("why there is no shift: few_pairs; else empty")
 
 

@@ -30,7 +30,7 @@ def type_plots(built, tmp_path_factory):
         db.execute(
             "INSERT INTO era_shifts BY NAME SELECT 'as-published' AS method, 'Kuikensloep' AS "
             "boat_type, '2009-2011' AS era, 9 AS n, 0.87 AS shift_ratio, 0.85 AS lo, 0.9 AS hi, "
-            "true AS apart, 0 AS n_ageing, '' AS reason"
+            "true AS apart, '' AS reason"
         )
     return drawn(store, root / "plots", "Kuikensloep", "Kromhoutwhaler")
 

@@ -9,6 +9,7 @@ from dashboards.documents import certificate, proposal
 from dashboards.site.boats import boat_pages
 from dashboards.site.pages import shared_pages
 from dashboards.site.render import Edition
+from dashboards.site.types import type_pages
 from dashboards.statements import Change, Number, Statement
 from tests.conftest import METHODS
 from warehouse.queries.views import Views
@@ -25,8 +26,19 @@ SHOWN_ON = {
     "cause": {"boat", "audit"},
     "two_hours": {"boat", "audit"},
     "next_tow": {"boat", "audit"},
+    "level": {"types", "type", "audit of a type"},
+    "bends": {"types", "type", "audit of a type"},
 }
 """Pages, commands and documents that show a kind of statement."""
+
+
+def level_known(views):
+    """The type of which most tows are on a line against weight."""
+    lines = views.table("type_lines").filter(
+        method=METHODS[-1], quantity="cw_standard_kg_m", explaining="weight_kg", within="all",
+        tows="newest",
+    )  # fmt: skip
+    return lines.drop_nulls("slope").sort("n")["boat_type"][-1]
 
 
 def surfaces(store, herijk, kept):
@@ -41,6 +53,11 @@ def surfaces(store, herijk, kept):
         shown |= {page.path: site.html(page) for page in pages}
         own = dict(boat_pages(views, METHODS))[line["fsn_no"]]
         shown["boat"] = site.html(own())
+        of_type = level_known(views)
+        shown["types"] = site.html(made["types"]()[0])
+        shown["type"] = next(
+            site.html(page) for page in type_pages(views, METHODS) if page.name == of_type
+        )
         certificate.certificates(views, DRAFT, line["fsn_no"], "en")
         against = f"concept-{METHODS[0]}"
         proposal.proposal(views, [METHODS[-1]], against, "en", KnownMethods.of(store))
@@ -49,6 +66,7 @@ def surfaces(store, herijk, kept):
     commands = {
         "audit": ("audit", line["fsn_no"], "--edition", DRAFT),
         "register": ("register", DRAFT),
+        "audit of a type": ("audit", of_type),
     }
     for name, command in commands.items():
         shown[name] = herijk(*command, "--data", store.root)[1]
@@ -63,9 +81,10 @@ def planted(kind, made):
         real(self, *parts, **named)
         if self.kind != kind:
             return
-        name, value = next(
-            (n, v) for n, v in self.values.items() if isinstance(v, Number | Change | int)
-        )
+        numbers = [(n, v) for n, v in self.values.items() if isinstance(v, Number | Change | int)]
+        if not numbers:
+            return
+        name, value = numbers[0]
         if isinstance(value, Change):
             other = Change(SENTINEL)
         else:

@@ -39,11 +39,6 @@ def test_the_interval_of_a_median_is_that_of_order_statistics(n):
     assert found == pytest.approx((np.median(values), independent.low, independent.high))
 
 
-@pytest.mark.parametrize("n", [0, 1, 5])
-def test_a_median_of_fewer_than_six_values_has_no_interval(n):
-    assert median_interval([0.1] * n) is None
-
-
 def test_boats_that_only_age_do_not_stand_apart():
     # 0.5 % per year over six years is more than the scatter of the pairs.
     within = (2014, 2018, 4 * 0.005 + 0.1 * SCATTER)

@@ -21,12 +21,12 @@ def grouped_data(seed=1, n=60, boats=20, others=5, known=None):
     return Problem(y, error if known is None else np.full(n, known), x, boat, other)
 
 
+def fit(problem, free):
+    return mixed.fit_all([problem], free)[0]
+
+
 def likelihood(problem, sd):
     return mixed._SideBySide.of([problem]).likelihood(ONE, np.square([sd]))
-
-
-def deviance(problem, sd):
-    return likelihood(problem, sd).deviance[0]
 
 
 def fit_at(problem, sd):
@@ -74,7 +74,7 @@ def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd
     y += np.sqrt(error) * rng.normal(size=n)
     x = np.column_stack([np.ones(n), rng.normal(size=n)])
     fits = [
-        mixed.fit(Problem(y * noise, np.full(n, error**2), x, boat, other), mixed.COMPONENTS)
+        fit(Problem(y * noise, np.full(n, error**2), x, boat, other), mixed.COMPONENTS)
         for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
     ]
     sds, intervals = (
@@ -104,7 +104,7 @@ def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
         (equal, (mixed.BOAT,), OLS(equal.y, equal.x).fit()),
         (known, (), WLS(known.y, known.x, weights=1 / known.variance).fit()),
     ):
-        found = mixed.fit(problem, free).coefficients()
+        found = fit(problem, free).coefficients()
         assert found.value == pytest.approx(other.params, rel=1e-9)
         assert np.column_stack([found.lo, found.hi]) == pytest.approx(other.conf_int(), rel=1e-9)
 
@@ -121,13 +121,13 @@ def test_variance_components_are_those_of_another_program():
     )
     whole = np.zeros(len(problem.y))
     other = MixedLM(problem.y, problem.x, whole, exog_vc=crossed).fit(reml=True)
-    found = mixed.fit(problem, mixed.COMPONENTS)
+    found = fit(problem, mixed.COMPONENTS)
     assert found.beta == pytest.approx(other.fe_params, rel=1e-3)
     assert found.sd == pytest.approx(np.sqrt([*other.vcomp, other.scale]), rel=1e-3)
     # The likelihood is flat at its top, so its height agrees more closely than the components.
-    assert deviance(problem, found.sd) == pytest.approx(
-        deviance(problem, np.sqrt([*other.vcomp, other.scale])), abs=1e-4
-    )
+    other_sd = np.sqrt([*other.vcomp, other.scale])
+    height, of_other = (likelihood(problem, sd).deviance[0] for sd in (found.sd, other_sd))
+    assert height == pytest.approx(of_other, abs=1e-4)
 
 
 def test_problems_side_by_side_are_fitted_as_each_alone():
@@ -143,8 +143,8 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
         grouped_data(2, 30),
     ]
     together = mixed.fit_all(problems, (mixed.BOAT, mixed.CELL))
-    for problem, fit in zip(problems, together, strict=True):
-        assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)
+    for problem, found in zip(problems, together, strict=True):
+        assert found.sd == pytest.approx(fit(problem, found.free).sd, rel=1e-9)
 
 
 def test_leaving_a_boat_out_equals_fitting_without_it():

@@ -4,11 +4,16 @@ A reason code is stable: it is in the quarantine table, and `docs/archive.md` sa
 Detecting a fault belongs to the module that reads the thing.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 from typing import Final, Literal
 
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import Sentence, cause_of, say, spoken
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
+from pipeline.tables.lake import Faults
+from pipeline.tables.row import Row
 from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, traced
 
 Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
@@ -33,8 +38,6 @@ class Fault:
         lost: what it costs; None for a tow, a row or a file, as it has a tow, a line or neither.
         run: the run that it costs, or seconds of which.
         lost_s: how many seconds.
-        cause: what faults of one cause share.
-        message_nl: the message in Dutch.
     """
 
     path: str
@@ -45,13 +48,24 @@ class Fault:
     lost: Lost | None = None
     run: int | None = None
     lost_s: float | None = None
-    cause: str = field(init=False)
-    message_nl: str = field(init=False)
 
-    def __post_init__(self) -> None:
-        """Says the message in Dutch too, and what it shares with others."""
-        object.__setattr__(self, "cause", cause_of(self.message))
-        object.__setattr__(self, "message_nl", spoken(self.message, "nl"))
+    @property
+    def cause(self) -> str:
+        """What faults of one cause share."""
+        return cause_of(self.message)
+
+    def as_row(self) -> Row:
+        """The fault as a row of `Faults`: only here it is worded in Dutch too."""
+        words = {"cause": self.cause, "message_nl": spoken(self.message, "nl")}
+        return {name: getattr(self, name) for name in _FACTS} | words
+
+
+def fault_frame(faults: Iterable[Fault]) -> dy.DataFrame[Faults]:
+    """Faults as they are stored."""
+    return frame_of(Faults, [fault.as_row() for fault in faults])
+
+
+_FACTS: Final = tuple(fact.name for fact in fields(Fault))
 
 
 class DefectiveFileError(DefectiveInputError):

@@ -1,6 +1,5 @@
 """The tables about the archive: boats, tows with their runs, and everything that is set aside."""
 
-import dataclasses
 import datetime as dt
 
 import polars as pl
@@ -9,9 +8,8 @@ from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.recompute.facts import with_boat_types
-from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
-from warehouse.archive.faults import OF_A_HEADER, Fault
+from warehouse.archive.faults import OF_A_HEADER, Fault, fault_frame
 from warehouse.archive.lists.windows import outside_run
 from warehouse.derive.inputs import Blocks
 from warehouse.derive.plausible import gross_faults, judge, with_doubts
@@ -50,7 +48,7 @@ def archive_tables(
     )
     sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
     windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
-    beyond = frame_of(Faults, map(dataclasses.asdict, outside_run(windows, present)))
+    beyond = fault_frame(outside_run(windows, present))
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
     known = [name for name in Faults.column_names() if name in index.columns]
     unsound = index.drop_nulls("reason_code").select(known)
@@ -75,7 +73,7 @@ def _with_failed(index: pl.DataFrame, listed: pl.DataFrame, failed: pl.DataFrame
     mine = failed.join(listed, on="tow_id", maintain_order="left")
     told = mine.select("samples_path", "tow_id", "told").iter_rows()
     faults = [Fault(path, tow, None, UNFORESEEN, sentence(tow, why)) for path, tow, why in told]
-    of_today = frame_of(Faults, map(dataclasses.asdict, faults))
+    of_today = fault_frame(faults)
     others = index.join(of_today, on="tow_id", how="anti", maintain_order="left")
     return pl.concat([others, of_today], how="diagonal")
 

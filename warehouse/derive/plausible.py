@@ -7,7 +7,6 @@ season or archive has in common is left to the joint model (`pipeline.season_log
 faults and needs these tows for it.
 """
 
-import dataclasses
 import math
 from collections.abc import Sequence
 from functools import reduce
@@ -20,9 +19,8 @@ from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.messages import say
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
-from warehouse.archive.faults import Fault
+from warehouse.archive.faults import Fault, fault_frame
 
 _SINGLED_OUT: Final = ("tow", "day")
 """Kinds of shifts that exclude their tows from what tows share."""
@@ -62,7 +60,7 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Fa
         for path, tow in tows.select("samples_path", "tow_id").iter_rows()
         if tow in sentences
     ]
-    return frame_of(Faults, map(dataclasses.asdict, faults))
+    return fault_frame(faults)
 
 
 def with_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:

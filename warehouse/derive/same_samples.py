@@ -8,7 +8,6 @@ are, so tows of different boats or crews all lose them; of one boat and crew the
 them. Files equal byte by byte are told earlier, in `warehouse.archive.index`.
 """
 
-import dataclasses
 from collections.abc import Iterator
 from typing import Final
 
@@ -19,10 +18,9 @@ from scipy.spatial import cKDTree
 
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.messages import say
-from pipeline.tables.frames import frame_of
 from pipeline.tables.keys import LINE
 from pipeline.tables.lake import Faults
-from warehouse.archive.faults import Fault
+from warehouse.archive.faults import Fault, fault_frame
 
 CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")
 """Sums of a run that tell it from others."""
@@ -58,7 +56,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         for _, same in runs.group_by("content", maintain_order=True)
         for fault in _faults(same)
     ]
-    rows = frame_of(Faults, map(dataclasses.asdict, faults))
+    rows = fault_frame(faults)
     return rows.unique("tow_id", keep="first", maintain_order=True)
 
 

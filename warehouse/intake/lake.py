@@ -144,7 +144,7 @@ def _bring_in(
             judged = judge_in_files(whole, tow, runs, root, profile)
             samples = judged.samples
             facts = {
-                "losses": [dataclasses.asdict(fault) for fault in judged.faults],
+                "losses": [fault.as_row() for fault in judged.faults],
                 "wind_read": samples["wind_speed_m_s"].null_count() == 0,
                 **steps_of(samples),
             }
@@ -173,7 +173,7 @@ def _bring_in(
 
 
 def _as_fault(row: Row, fault: Fault) -> Row:
-    facts = dataclasses.asdict(fault)
+    facts = fault.as_row()
     return {name: facts[name] for name in row.keys() & facts.keys()}
 
 

@@ -19,7 +19,7 @@ from pipeline.blocks.run_blocks import BLOCK_SCHEMA, RunBlocks, stack_blocks
 from pipeline.errors import MissingKnowledgeError
 from pipeline.recompute.facts import with_boat_types, with_hand_windows
 from pipeline.tables.frames import frame_of
-from pipeline.tables.lake import AboutArchive, Faults, SeasonIndex
+from pipeline.tables.lake import AboutArchive, SeasonIndex
 from warehouse.archive import (
     Failure,
     FileHashes,
@@ -27,6 +27,7 @@ from warehouse.archive import (
     read_published_registers,
     read_races,
 )
+from warehouse.archive.faults import fault_frame
 from warehouse.archive.files.hashes import RACY_SECONDS
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.intake import lake
@@ -67,7 +68,6 @@ def index(store: Store, root: Path) -> None:
     for fault in all_faults:
         if isinstance(fault, Failure):
             note(store.root, fault.path.replace(" ", "-"), fault.trace)
-    faults = [{key: getattr(f, key) for key in Faults.column_names()} for f in all_faults]
     about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
     about |= listed.profiles.publication.model_dump()
     tables = {
@@ -75,10 +75,10 @@ def index(store: Store, root: Path) -> None:
         "listed_files": listed.files,
         "listed_races": races,
         "printed_registers": printed,
-        "list_faults": frame_of(Faults, faults),
+        "list_faults": fault_frame(all_faults),
         "about_archive": frame_of(AboutArchive, [about]),
     }
-    may_heal = any(fault["reason_code"] == UNREADABLE for fault in faults)
+    may_heal = any(fault.reason_code == UNREADABLE for fault in all_faults)
     for name in INDEXED:
         store.write(name, tables[name], made_from="" if may_heal else seen)
 

@@ -51,10 +51,14 @@ class TypeStatistics:
         repeats: how repeat pairs spread, how many have an E_n, and of how many it is above 1.
         eras: a row of `era_shifts` each, or `era`, `n`, `apart` and `reason`.
         prediction: how far `predicted_cw` is off.
+        newest: rows of `compared_tows`, the newest of each crew.
+        weight_line: the row of `type_lines` of their Cw against weight.
         hull_speed, tows_outside, outside, slow_tows: rows of their tables.
     """
 
     lines: list[Row]
+    newest: list[Row]
+    weight_line: list[Row]
     hull_speed: list[Row]
     tows_outside: list[Row]
     bends: Row
@@ -224,6 +228,11 @@ FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
 WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
 """
 
+_WEIGHT_LINE = """
+SELECT * FROM type_lines WHERE method = ? AND boat_type = ? AND tows = 'newest'
+AND quantity = 'cw_standard_kg_m' AND explaining = 'weight_kg' AND within = 'all'
+"""
+
 _REPEATS = f"""
 SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
        count(p.e_n) AS n_e_n, count(*) FILTER (WHERE abs(p.e_n) > 1) AS n_disagree
@@ -247,6 +256,8 @@ WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
 _STATISTICS: Final = {
     "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'",
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
+    "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
+    "weight_line": _WEIGHT_LINE,
     "bends": _BENDS,
     "speed_trend": _TREND,
     "shared": _SHARED,

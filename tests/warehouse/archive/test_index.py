@@ -151,7 +151,6 @@ def test_a_replaced_log_begins_a_new_part_of_its_season(archive: Archive) -> Non
         ('[[profile]]\nseasons = "2014"\nunits = { force = "stoon" }', "stoon"),
         ('[[profile]]\nseasons = "2014:2012"', "2014:2012"),
         ('[[profile]]\nseasons = "2012:2014"\n[[profile]]\nseasons = "2014"', "2014"),
-        ('[[profile]]\nseasons = "2014"\ncolumns = { force = "trek [N]" }', "trek [N]"),
         ("[[set_aside]]\ndate = 2014-03-01", "reason"),
         ("simulated = ", "TOML"),
     ],

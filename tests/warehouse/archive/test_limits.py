@@ -13,15 +13,13 @@ from pipeline.tables.lake import ListedRaces
 from warehouse.archive.files import list_kinds
 from warehouse.archive.lists import (
     boats,
-    force_checks,
-    lamps,
+    instruments,
     races,
     registers,
     tows,
     windows,
 )
-from warehouse.archive.sheets.outside_limits import misfits
-from warehouse.archive.sheets.reading import read_list
+from warehouse.archive.sheets.reading import misfits, read_list
 from warehouse.archive.spelling.wording import Wording
 
 TOW = {
@@ -93,12 +91,12 @@ def of_2014(read):
 
 
 window = of_2014(partial(windows._window, {(2014, "2014-001"): {1}}))
-lamp = of_2014(partial(lamps._lamp, {"2014-001"}))
+lamp = of_2014(partial(instruments._lamp, {"2014-001"}))
 LISTS = {
     "boats": (list_kinds.BOATS, BOAT, boats._boat),
     "tows": (list_kinds.TOWS, TOW, tow_or_first_fault),
     "windows": (list_kinds.WINDOWS, WINDOW, window),
-    "checks": (list_kinds.FORCE_CHECKS, CHECK, of_2014(force_checks._force_check)),
+    "checks": (list_kinds.FORCE_CHECKS, CHECK, of_2014(instruments._force_check)),
     "lamps": (list_kinds.LAMPS, LAMP, lamp),
     "races": (list_kinds.RACES, RACE, of_2014(races._race_result)),
     "registers": (list_kinds.REGISTERS, PRINTED, of_2014(registers._register_line)),

@@ -7,14 +7,14 @@ import pytest
 from pipeline.errors import DefectiveInputError
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.index.comparisons import unique_ids, unique_samples
-from warehouse.archive.index.entry import Entry
+from warehouse.archive.index.tow_rows import Entry
 from warehouse.archive.lists.boats import Boats
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.row import ListRow, Reading
 
-MANY = 30_000
-MOST_S = 20
-"""Processor time; the square of so many rows takes some minutes."""
+MANY = 10_000
+MOST_S = 7
+"""Processor time; the square of so many rows takes longer by far."""
 READING = Reading({}, "bad_list_row", {}, "", "", ListedTows)
 PROFILES = Profiles()
 

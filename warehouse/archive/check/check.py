@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from pipeline.messages import innermost
+from pipeline.messages import innermost, spoken
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.check.headers_and_samples import faults_in_headers, faults_in_samples
@@ -25,42 +25,62 @@ from warehouse.archive.lists.registers import read_published_registers
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
 
+SHOWN: Final = 3
+"""Places of one cause."""
 MOST_SETTINGS: Final = 20
 """Lines to fill in for one cause."""
 _PIECE: Final = 1 << 16
 
 
 @dataclass(frozen=True)
-class Cause:
+class Place:
+    """Where a fault is."""
+
+    path: str
+    line: int | None
+    tow_id: str | None
+
+
+@dataclass(frozen=True)
+class CauseReport:
     """One thing that is wrong, wherever it is.
 
     Attributes:
         reason_code: short stable code.
-        faults: where, in order.
-        settings: the lines of `archief.toml` that answer it; empty where only a person can mend it.
+        number: of places.
+        sentence: of the first of them.
+        cells: what the cells say that have it.
+        places: the first of them.
+        settings: lines of `archief.toml` to fill in, with the choices behind a `#`; empty where
+            only a person can mend it.
     """
 
     reason_code: str
-    faults: tuple[Fault, ...]
-    settings: tuple[str, ...]
+    number: int
+    sentence: str
+    cells: list[str]
+    places: list[Place]
+    settings: list[str]
 
 
 @dataclass(frozen=True)
-class Checked:
-    """What a check found.
+class CheckReport:
+    """What a check found, in a language.
 
     Attributes:
+        archive: its folder.
         tows: tows in which nothing was found that costs them; most samples are judged by the
             rebuild only.
         causes: what is wrong, the most frequent first.
     """
 
+    archive: str
     tows: int
-    causes: tuple[Cause, ...]
+    causes: list[CauseReport]
 
 
-def check_archive(root: Path) -> Checked:
-    """Looks through an archive.
+def check_archive(root: Path, language: str = "en") -> CheckReport:
+    """Looks through an archive, and says what is wrong in `en` or `nl`.
 
     A list with a column that nobody knows is looked at again without that column, so that what is
     wrong in its rows comes out in the same round.
@@ -78,7 +98,11 @@ def check_archive(root: Path) -> Checked:
         faults += (f for f in again if f.reason_code not in OF_A_HEADER or f.path not in told)
     seasons = _seasons(root, profiles, index)
     boats = index.boats["name"].to_list() if index else []
-    return Checked(tows, _by_cause(dict.fromkeys(faults), seasons, boats))
+    causes = [
+        _report(same, _settings(same, seasons, boats), language)
+        for same in _by_cause(dict.fromkeys(faults))
+    ]
+    return CheckReport(str(root), tows, causes)
 
 
 def _unknown_columns(faults: Iterable[Fault]) -> list[str]:
@@ -132,23 +156,30 @@ def quick_hash(path: Path) -> str:
         return hashlib.sha256(start + file.read(_PIECE) + str(size).encode()).hexdigest()
 
 
-def _by_cause(
-    faults: Iterable[Fault], seasons: Mapping[str, int], boats: Sequence[str]
-) -> tuple[Cause, ...]:
+def _by_cause(faults: Iterable[Fault]) -> list[list[Fault]]:
     """The faults by cause, those with most first."""
     by_cause: dict[tuple[str, str], list[Fault]] = {}
     for fault in faults:
         by_cause.setdefault((fault.reason_code, fault.cause), []).append(fault)
-    causes = [
-        Cause(code, tuple(same), _settings(same, seasons, boats))
-        for (code, _), same in by_cause.items()
-    ]
-    return tuple(sorted(causes, key=lambda cause: -len(cause.faults)))
+    return sorted(by_cause.values(), key=len, reverse=True)
+
+
+def _report(faults: Sequence[Fault], settings: list[str], language: str) -> CauseReport:
+    said = [innermost(fault.message) for fault in faults]
+    cells = [getattr(sentence, "values", {}).get("cell") for sentence in said]
+    return CauseReport(
+        reason_code=faults[0].reason_code,
+        number=len(faults),
+        sentence=spoken(said[0], language),
+        cells=[str(cell) for cell in dict.fromkeys(cells) if cell is not None],
+        places=[Place(f.path, f.line, f.tow_id) for f in faults[:SHOWN]],
+        settings=settings,
+    )
 
 
 def _settings(
     faults: Iterable[Fault], seasons: Mapping[str, int], boats: Sequence[str]
-) -> tuple[str, ...]:
+) -> list[str]:
     """The first lines that settle faults of one cause, each once."""
     said = {(fault.path, innermost(fault.message)): fault for fault in faults}
     settings: dict[str, None] = {}
@@ -157,4 +188,4 @@ def _settings(
         settings |= dict.fromkeys(settings_for(fault, season, boats))
         if len(settings) >= MOST_SETTINGS:
             break
-    return tuple(settings)
+    return list(settings)

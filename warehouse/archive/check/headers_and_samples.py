@@ -20,7 +20,6 @@ from warehouse.archive.samples.file import (
     rate_in_times,
     read_samples,
 )
-from warehouse.archive.samples.frame import TIME_TOLERANCE
 from warehouse.archive.samples.tow import read_tow_samples
 
 
@@ -45,21 +44,13 @@ def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Itera
     Where no tow of a season can be read, a file of it is read without judging its content.
     """
     done = set()
-    rates: dict[int, float] = {}
     for tow in index.tows.iter_rows(named=True):
         paths = tow["samples_path"].split(PARTS)
         key = (tow["season"], kind_of(Path(paths[0])))
-        if wrong.intersection(paths):
-            continue
-        profile = index.profiles.for_season(tow["season"])
-        rate = rate_in_times(path_inside(root, paths[0]), profile)
-        usual = rates.setdefault(tow["season"], rate) if rate else None
-        if rate and usual and _differ(rate, usual) and _differ(rate, tow["sample_rate_hz"]):
-            yield _rate_of_its_own(tow, rate)
-            continue
-        if key in done:
+        if key in done or wrong.intersection(paths):
             continue
         done.add(key)
+        profile = index.profiles.for_season(tow["season"])
         try:
             samples = read_tow_samples(root, tow, profile)
             others = (_other_rate(samples, tow, index), _other_plan(samples, tow, index))
@@ -96,20 +87,6 @@ def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> 
     planned = list(profiles.plan_of("", season).runs)
     if season and named is None and samples["run"].unique().sort().to_list() != planned:
         yield _not_planned(file.path, samples, planned)
-
-
-def _differ(one: float, other: float) -> bool:
-    return abs(one / other - 1) > TIME_TOLERANCE
-
-
-def _rate_of_its_own(tow: Row, rate: float) -> Fault:
-    """That a tow was sampled at another rate than the first of its season."""
-    said = say(
-        "By its times it has {own:g} samples per second, other than the first tow of its "
-        "season: write that into the tow list, in a column 'meetfrequentie [Hz]'.",
-        own=rate,
-    )
-    return Fault(tow["samples_path"], tow["tow_id"], None, "bad_time", said)
 
 
 def _other_rate(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault | None:

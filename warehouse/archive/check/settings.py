@@ -133,8 +133,10 @@ def _of_times(_: str, values: Values, in_profile: str) -> Iterator[str]:
 
 
 def _of_unit(path: str, values: Values, in_profile: str) -> Iterator[str]:
-    for name in values.get("absent", ()) if in_profile else ():
-        yield f'{in_profile}absent = ["{name}"]'
+    keys = set(values.get("keys", ()))
+    for name, channels in MAY_BE_ABSENT.items():
+        if in_profile and keys.intersection(channels):
+            yield f'{in_profile}absent = ["{name}"]'
     if "can_be" in values:
         yield _in_lines(path, in_profile)
 

@@ -82,7 +82,6 @@ TOWS: Final = ListKind(
         Column("crew_weight_kg", "bemanning", "mass", "kg", required=False),
         Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
         Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
-        Column("run", "run", required=False),
         Column("use_runs", "gebruik runs", required=False),
         Column("altered", "verbouwd", required=False),
         Column("sample_rate_hz", "meetfrequentie", "rate", "Hz", required=False),

@@ -1,6 +1,7 @@
 """What the name of a file says: its kind, its tow, its run."""
 
 import re
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -41,6 +42,7 @@ def split_sheet(path: str) -> tuple[str, str]:
     return (file, sheet) if mark and file.casefold().endswith(SPREADSHEETS) else (path, "")
 
 
+@lru_cache(10_000)
 def sample_suffix(name: str) -> str:
     """The suffix of a samples file, in lower case; empty for any other file."""
     folded = name.casefold()
@@ -55,6 +57,7 @@ def kind_of(path: Path) -> str:
     return name[name.rfind(".") :]
 
 
+@lru_cache(10_000)
 def match_key(name: str) -> str:
     """The name of a samples file for comparing: folded, without suffix."""
     folded = fold_word(name)

@@ -12,11 +12,11 @@ from pipeline.messages import say
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.faults import Fault, fault_from
-from warehouse.archive.index.entry import Entry
+from warehouse.archive.index.tow_rows import Entry
 from warehouse.archive.lists import tows as tow_list
 from warehouse.archive.lists.boats import Boats
 from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.sheets.outside_limits import misfits
+from warehouse.archive.sheets.reading import misfits
 from warehouse.archive.sheets.row import (
     ROWS_ARE_EQUAL,
     ROWS_DIFFER,

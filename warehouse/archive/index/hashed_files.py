@@ -13,7 +13,7 @@ from warehouse.archive.files.finding import ArchiveFile, list_files
 from warehouse.archive.files.hashes import hash_of_parts
 from warehouse.archive.files.list_kinds import LIST_KINDS
 from warehouse.archive.files.names import PROFILE_FILE
-from warehouse.archive.index.entry import SamplesFile
+from warehouse.archive.index.tow_rows import SamplesFile
 
 
 class Hashes:

@@ -28,7 +28,6 @@ from warehouse.archive.index.comparisons import (
     unique_ids,
     unique_samples,
 )
-from warehouse.archive.index.entry import Entry
 from warehouse.archive.index.hashed_files import Hashes, hash_files, hash_lists
 from warehouse.archive.index.tow_files import (
     files_by_name,
@@ -37,11 +36,15 @@ from warehouse.archive.index.tow_files import (
     names_of_files,
     not_listed,
 )
-from warehouse.archive.index.tow_rows import idle_settings, read_tow_lists
+from warehouse.archive.index.tow_rows import Entry, idle_settings, read_tow_lists
 from warehouse.archive.index.unread_files import missing_lists, strangers
 from warehouse.archive.lists.boats import read_boats
-from warehouse.archive.lists.force_checks import load_cell_of, read_force_checks
-from warehouse.archive.lists.lamps import lamp_seconds, read_lamps
+from warehouse.archive.lists.instruments import (
+    lamp_seconds,
+    load_cell_of,
+    read_force_checks,
+    read_lamps,
+)
 from warehouse.archive.lists.windows import read_windows
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
@@ -109,8 +112,10 @@ def index_archive(
     more = list(boats.more)
     read_values = partial(read_cells, profiles=profiles)
     good = keep(unique_ids(entries), entries, faults)
-    unique = set(map(id, good))
-    keep(read_values, [entry for entry in entries if id(entry) not in unique], more, more)
+    twice = {(entry.list_path, entry.row.line) for entry in entries}
+    twice -= {(entry.list_path, entry.row.line) for entry in good}
+    again = [entry for entry in entries if (entry.list_path, entry.row.line) in twice]
+    keep(read_values, again, more, more)
     good = keep(read_values, good, faults, more)
     good = keep(lambda entry: find_files(entry, by_name, hashes), good, faults)
     good = keep(unique_samples(good), good, faults)

@@ -1,22 +1,22 @@
 """Which samples files a row of a tow list means."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from pipeline.messages import say
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, outside_archive
-from warehouse.archive.files.names import PARTS, SAMPLES, as_one_run, match_key
-from warehouse.archive.index.entry import Entry, SamplesFile
+from warehouse.archive.files.names import SAMPLES, as_one_run, match_key
 from warehouse.archive.index.hashed_files import Hashes
+from warehouse.archive.index.tow_rows import Entry, SamplesFile
 from warehouse.archive.spelling.text import fold, fold_word, shorten
 
 FilesByName = dict[tuple[int, str], list["SamplesFile"]]
 """Samples files by season and the name they answer to."""
 
 
-def _names(entry: Entry) -> list[str]:
-    """The names of the files in a row; of a file per run with `PARTS` between them."""
+def names_of_files(entry: Entry) -> list[str]:
+    """The names of the files in a row."""
     cells = (entry.row.optional_text(key) for key in ("file", "second_file"))
     return [_without_own_folder(cell, entry.season) for cell in cells if cell is not None]
 
@@ -28,12 +28,6 @@ def _without_own_folder(name: str, season: int) -> str:
     """
     folder, _, own = name.replace("\\", "/").rpartition("/")
     return own if fold(folder.rpartition("/")[2]) == fold(f"{SAMPLES}_{season}") else name
-
-
-def names_of_files(entry: Entry) -> Iterator[str]:
-    """Gives the name of each single file in a row."""
-    for name in _names(entry):
-        yield from name.split(PARTS)
 
 
 def files_by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[Entry]) -> FilesByName:
@@ -98,7 +92,7 @@ def not_listed(
 
 def find_files(entry: Entry, by_name: FilesByName, hashes: Hashes) -> None:
     """Finds the samples of a row and notes them in its tow."""
-    entry.files = [_find_files_of(entry, names, by_name) for names in _names(entry)]
+    entry.files = [_find_file(entry, name, by_name) for name in names_of_files(entry)]
     first, second = entry.files[0], entry.files[1] if len(entry.files) > 1 else None
     entry.tow |= {
         "samples_path": first.path,
@@ -108,12 +102,6 @@ def find_files(entry: Entry, by_name: FilesByName, hashes: Hashes) -> None:
         "list_path": entry.list_path,
         "list_line": entry.row.line,
     }
-
-
-def _find_files_of(entry: Entry, names: str, by_name: FilesByName) -> SamplesFile:
-    """The samples of a cell: of one name, or of one for each run."""
-    files = [_find_file(entry, name, by_name) for name in names.split(PARTS)]
-    return SamplesFile(tuple(part for file in files for part in file.parts))
 
 
 def _find_file(entry: Entry, name: str, by_name: FilesByName) -> SamplesFile:

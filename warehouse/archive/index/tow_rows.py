@@ -1,19 +1,66 @@
-"""The rows of all tow lists, and what `archief.toml` says that none of them has."""
+"""The rows of all tow lists on their way to becoming tows."""
 
 import datetime as dt
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
-from warehouse.archive.faults import Fault, fault_from
-from warehouse.archive.files.finding import list_files
+from pipeline.tables.row import Row
+from warehouse.archive.faults import Fault, fault_from, place
+from warehouse.archive.files.finding import ArchiveFile, list_files
 from warehouse.archive.files.list_kinds import TOWS
-from warehouse.archive.files.names import PROFILE_FILE
-from warehouse.archive.index.entry import Entry
+from warehouse.archive.files.names import PARTS, PROFILE_FILE
 from warehouse.archive.lists import tows as tow_list
 from warehouse.archive.profile.definition import Profiles
+from warehouse.archive.profile.plan import Plan
 from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.sheets.row import ListRow
+
+
+@dataclass(frozen=True)
+class SamplesFile:
+    """The samples that a name in a list stands for: a file, or one for every run.
+
+    Attributes:
+        parts: the files, in the order of their runs.
+    """
+
+    parts: tuple[ArchiveFile, ...]
+
+    @property
+    def path(self) -> str:
+        """Path relative to the archive; of several files with `PARTS` between them."""
+        return PARTS.join(part.path for part in self.parts)
+
+
+@dataclass
+class Entry:
+    """A row of a tow list on its way to becoming a tow."""
+
+    row: ListRow
+    list_path: str
+    season: int
+    profiles: Profiles
+    files: list[SamplesFile] = field(default_factory=list)
+    tow: Row = field(default_factory=dict)
+    selection: frozenset[int] = frozenset()
+    lost_cells: list[DefectiveInputError] = field(default_factory=list)
+
+    @property
+    def tow_id(self) -> str | None:
+        """Its `sleep_id`, None where the cell is empty."""
+        return self.row.optional_text("tow_id")
+
+    @property
+    def plan(self) -> Plan:
+        """The runs that it is meant to have."""
+        return self.profiles.plan_of(self.tow_id or "", self.season)
+
+    @property
+    def where(self) -> str:
+        """Where it is listed, for a sentence."""
+        return place(self.row.line, self.list_path)
 
 
 def read_tow_lists(
@@ -31,7 +78,7 @@ def read_tow_lists(
             continue
         entries += [
             Entry(row, file.path, file.season or _year_of(row), profiles)
-            for row in tow_list.per_tow(rows)
+            for row in tow_list.with_ids(rows)
         ]
     return entries, unread_seasons
 

@@ -14,7 +14,6 @@ from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from pipeline.tables.row import Row
 from warehouse.archive.files.list_kinds import TOWS
-from warehouse.archive.files.names import PARTS
 from warehouse.archive.profile.plan import Plan
 from warehouse.archive.sheets.row import DefectiveRowError, ListRow, run_number
 from warehouse.archive.spelling.synonyms import ALL_RUNS
@@ -40,27 +39,13 @@ _DISPENSABLE: Final = frozenset(
     column.key for column in _VALUES if not column.required and column.key not in _DECISIVE
 )
 """Values whose absence makes a tow less sure, and not wrong."""
-_OF_A_RUN: Final = frozenset({"run", "file", "use_runs", "remark"})
-"""What may differ between the rows of one tow, in a list with a row for each run."""
 _RANGE: Final = re.compile(r"(b?[0-9]+)\s*(?:-|\.\.|:|t/m|tm|tot en met|to|bis|à)\s*(b?[0-9]+)")
 _TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
 
 
-def per_tow(rows: Sequence[ListRow]) -> list[ListRow]:
-    """One row for each tow, with its id, also of a list with a row for each run.
-
-    Where there is no column of ids, day, boat and crew are the id.
-    """
-    runs_of: dict[str, list[ListRow]] = {}
-    tows: list[ListRow] = []
-    for row in rows:
-        own = row if "tow_id" in row.columns else _with_id(row)
-        if "run" not in row.columns:
-            tows.append(own)
-            continue
-        runs = runs_of.setdefault(own.cells.get("tow_id", ""), [])
-        runs.append(own)
-    return tows + [_joined(runs) for runs in runs_of.values()]
+def with_ids(rows: Sequence[ListRow]) -> list[ListRow]:
+    """The rows with the id of their tow; without a column of ids: day, boat and crew."""
+    return [row if "tow_id" in row.columns else _with_id(row) for row in rows]
 
 
 def _with_id(row: ListRow) -> ListRow:
@@ -72,45 +57,6 @@ def _with_id(row: ListRow) -> ListRow:
     crew = f"{cells.get('rowers', '')}{cells.get('crew_class', '')}"
     tow_id = f"{day} {cells.get('fsn_no', '')} {crew}".replace("/", "-")
     return replace(row, cells=cells | {"tow_id": tow_id})
-
-
-def _joined(runs: Sequence[ListRow]) -> ListRow:
-    """The rows of a tow's runs as one; its files are in the order of the runs."""
-    runs = sorted(runs, key=lambda row: row.cells.get("run", "").zfill(2))
-    numbers = [row.cells.get("run", "") for row in runs]
-    files = list(dict.fromkeys(row.cells.get("file", "") for row in runs))
-    first = runs[0]
-    cells = first.cells | {"file": PARTS.join(files)}
-    if not cells.get("use_runs"):
-        cells["use_runs"] = ",".join(numbers)
-    return replace(first, cells=cells, row_problem=_why_not_one(runs, numbers, files))
-
-
-def _why_not_one(
-    runs: Sequence[ListRow], numbers: Sequence[str], files: Sequence[str]
-) -> str | None:
-    """What is wrong with the rows of one tow's runs together, None where nothing is."""
-    first = runs[0]
-    for row in runs:
-        if row.row_problem is not None:
-            return row.row_problem
-        for key in set(first.cells) - _OF_A_RUN:
-            if row.cells.get(key) != first.cells[key]:
-                return say(
-                    "the rows of the runs of one tow differ in column '{column}': '{one}' and "
-                    "'{other}'.",
-                    column=first.named(key),
-                    one=shorten(first.cells[key]),
-                    other=shorten(row.cells.get(key, "")),
-                )
-    in_order = [str(number) for number in range(1, len(runs) + 1)]
-    if len(set(numbers)) < len(runs) or (len(files) > 1 and list(numbers) != in_order):
-        return say(
-            "the rows of one tow are for runs {numbers}; each run has one row, and where each has "
-            "a file of its own they are 1, 2, 3 and on.",
-            numbers=", ".join(numbers),
-        )
-    return None
 
 
 def read_tow(

@@ -22,12 +22,11 @@ from pipeline.channels import (
     RUN_SECONDS,
     TARGET_SPEED_RATIOS,
 )
-from warehouse.archive.files.list_kinds import LIST_KINDS
 from warehouse.archive.files.names import STANDS_FOR
 from warehouse.archive.profile.plan import STANDARD, Plan
 from warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS, SeasonProfile
 from warehouse.archive.spelling.columns import Column
-from warehouse.archive.spelling.headers import split_header, unread_unit
+from warehouse.archive.spelling.headers import split_header
 from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.units import UNITS, find_scale
 from warehouse.archive.spelling.wording import Wording
@@ -35,9 +34,6 @@ from warehouse.archive.spelling.wording import Wording
 Channel = Literal["run", "log1", "log2", "gps", "force", "wind_speed", "wind_angle", "time"]
 Absent = Literal["log2", "gps", "wind"]
 _DIMENSIONS: Final = {column.key: column.dimension for column in SAMPLE_COLUMNS}
-_WITH_UNIT: Final = {
-    fold(c.header): c.dimension for kind in LIST_KINDS for c in kind.columns if c.unit
-}
 
 
 def _lines(value: object) -> object:
@@ -114,13 +110,13 @@ class _ProfileTable(_Strict):
     @model_validator(mode="after")
     def _names_and_units_are_known(self) -> Self:
         for channel, name in self.columns.items():
-            if "[" in name or (channel not in self.units and unread_unit(name)):
-                raise ValueError(f"columns.{channel}: '{name}' has a unit; put it under units")
+            unit = self.units.get(channel) or split_header(name)[1]
+            if unit is not None:
+                self.units[channel] = unit
         for channel, unit in self.units.items():
-            dimension = _DIMENSIONS[channel]
-            if find_scale(dimension, unit) is None:
-                known = sorted(UNITS[dimension])
-                raise ValueError(f"units.{channel}: [{unit}] is not one of {known}")
+            known = UNITS[_DIMENSIONS[channel]]
+            if find_scale(_DIMENSIONS[channel], unit) is None:
+                raise ValueError(f"units.{channel}: [{unit}] is not one of {sorted(known)}")
         return self
 
 
@@ -192,14 +188,6 @@ class Profiles(_Strict):
         for (_, last), (first, _) in pairwise(ranges):
             if first <= last:
                 raise ValueError(f"season {first} has two profiles")
-        return self
-
-    @model_validator(mode="after")
-    def _headers_hide_no_unit(self) -> Self:
-        for name, meant in self.headers.items():
-            dimension = _WITH_UNIT.get(fold(meant), "none")
-            if unread_unit(name) and find_scale(dimension, re.split(r"[\s_,]+", name)[-1]):
-                raise ValueError(f"headers: '{name}' has a unit; put it in brackets in the list")
         return self
 
     @cached_property

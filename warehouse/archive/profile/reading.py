@@ -19,18 +19,9 @@ def read_profiles(root: Path) -> Profiles:
     Raises:
         MissingKnowledgeError: the file cannot be understood; it names the file and the key.
     """
-    return parse_profiles(profile_text(root))
-
-
-def profile_text(root: Path) -> str:
-    """The text of `archief.toml`; empty when there is none.
-
-    Raises:
-        MissingKnowledgeError: it cannot be read, or there are two.
-    """
     try:
         path = _profile_path(root)
-        return "" if path is None else decoded(path.read_bytes())
+        return parse_profiles("" if path is None else decoded(path.read_bytes()))
     except DefectiveInputError as error:
         raise MissingKnowledgeError(error.message) from error
     except ValueError as error:

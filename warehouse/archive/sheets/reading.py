@@ -2,7 +2,7 @@
 
 import re
 import unicodedata
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -10,8 +10,9 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import DefectiveInputError
+from pipeline.messages import Sentence, say
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import frame_of, limits
 from pipeline.tables.row import Row
 from warehouse.archive.faults import Fault, at_line, fault_from
 from warehouse.archive.files.contents import read_bytes
@@ -19,47 +20,24 @@ from warehouse.archive.files.finding import list_files, path_inside
 from warehouse.archive.files.list_kinds import ListKind
 from warehouse.archive.files.names import split_sheet
 from warehouse.archive.limits import LIST_MAX_BYTES
-from warehouse.archive.sheets.outside_limits import misfits
 from warehouse.archive.sheets.row import ListRow, Reading
 from warehouse.archive.sheets.sheet import Sheet, read_sheets
-from warehouse.archive.sheets.unknown_columns import about_unknown, check_named
 from warehouse.archive.spelling.columns import (
     Column,
     FoundColumn,
     find_columns,
+    nearest_columns,
     unknown_headers,
 )
 from warehouse.archive.spelling.dates import date_order
 from warehouse.archive.spelling.numbers import decimal_mark
 from warehouse.archive.spelling.synonyms import CLASSES, NOTHING
-from warehouse.archive.spelling.text import fold, fold_word
+from warehouse.archive.spelling.text import fold, fold_word, shorten
 from warehouse.archive.spelling.wording import Wording
 
 CREW: Final = ("rowers", "crew_class")
 _CREW: Final = re.compile(r"([0-9]{1,2})\s*([^\W\d_]+)")
 """Rowers and class in one cell: `8H`."""
-
-
-def read_rows(
-    data: bytes,
-    columns: Sequence[Column],
-    reason_code: str,
-    table: type[dy.Schema],
-) -> list[ListRow]:
-    """The rows of a table of text that anybody made; other columns are ignored.
-
-    Args:
-        data: content of the file.
-        columns: the columns to look for.
-        reason_code: what a bad value in this table is called.
-        table: declares the type and the limits of each value.
-
-    Raises:
-        DefectiveInputError: the table as a whole cannot be read.
-    """
-    sheet = read_sheets(data, columns)[0]
-    places = find_columns(sheet.header, columns, sheet.line)
-    return _rows(sheet, Reading(places, reason_code, {}, "", "", table))
 
 
 def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[ListRow]:
@@ -144,10 +122,10 @@ def _columns_of(sheet: Sheet, wanted: Sequence[Column], wording: Wording) -> dic
     optional = [replace(column, required=False) for column in wanted]
     places = find_columns(sheet.header, optional, sheet.line)
     strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
-    check_named(sheet, {column.index for column in places.values()})
+    _check_named(sheet, {column.index for column in places.values()})
     if strange:
         free = [column for column in wanted if column.key not in places]
-        raise DefectiveInputError("unknown_column", about_unknown(strange, free), sheet.line)
+        raise DefectiveInputError("unknown_column", _about_unknown(strange, free), sheet.line)
     serving = {c.key: places[c.or_else] for c in wanted if c.or_else in places}
     of_both = [places[k] for k in CREW if k in places and _has_crews(sheet, places[k].index)]
     serving |= dict.fromkeys(CREW, of_both[0]) if of_both else {}
@@ -200,3 +178,58 @@ def _meant(cell: str, words: Mapping[str, str]) -> str:
     if folded in words:
         return words[folded]
     return "" if folded in NOTHING else unicodedata.normalize("NFC", cell)
+
+
+def _check_named(sheet: Sheet, known: Collection[int]) -> None:
+    """Raises where a column without a name holds something: its header may have been lost."""
+    for place, header in enumerate(sheet.header):
+        if place in known or fold(header):
+            continue
+        cells = (row.fields[place].strip() for row in sheet.rows if place < len(row.fields))
+        content = next((cell for cell in cells if cell and fold_word(cell) not in NOTHING), None)
+        if content is not None:
+            said = say(
+                "Column {number} has no name and holds '{cell}'. Give it its name; one that is not "
+                "needed can be put under ignore in archief.toml.",
+                number=place + 1,
+                cell=shorten(content),
+            )
+            raise DefectiveInputError("unknown_column", said, sheet.line)
+
+
+def _about_unknown(unknown: Iterable[str], free: Sequence[Column]) -> str:
+    """The sentence about columns that nobody knows.
+
+    Args:
+        unknown: their headers.
+        free: the columns that no header has; of each, those with the nearest names are offered.
+    """
+    near = {header: [c.header for c in nearest_columns(header, free, 0.7)] for header in unknown}
+    return say(
+        "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or put "
+        "it there under ignore.",
+        names=", ".join(
+            f"'{shorten(header)}'" + (f" ({', '.join(names)}?)" if names else "")
+            for header, names in near.items()
+        ),
+        near=tuple((header, tuple(names)) for header, names in near.items()),
+    )
+
+
+def misfits(table: type[dy.Schema], frame: pl.DataFrame) -> Iterator[tuple[Row, Sentence]]:
+    """Each row outside the declared limits, with the first limit that it breaks."""
+    _, failure = table.filter(frame)
+    for row in failure.details().iter_rows(named=True):
+        broken = next(name for name, state in row.items() if state == "invalid")
+        yield row, _why(table, row, *broken.split("|"))
+
+
+def _why(table: type[dy.Schema], row: Row, column: str, rule: str) -> Sentence:
+    named = {"column": column, "cell": row[column]}
+    if rule not in {"min", "max"}:
+        return say("column '{column}' is '{cell}', which cannot be right.", **named)
+    low, high = limits(table, column)
+    message = say("column '{column}' is {cell}; {low:g} to {high:g} can be right.")
+    if column == "season":  # of the file's name, or of a date: no list has such a column
+        message = say("the year is {cell}; {low:g} to {high:g} can be right.")
+    return say(message, **named, low=low, high=high)

@@ -3,7 +3,7 @@
 import datetime as dt
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final, TypeVar
 
@@ -47,6 +47,7 @@ class Reading:
         is_told: `archief.toml` says which mark that is.
         table: declares the type and the limits of each value.
         sheet: the sheet, where a workbook has several.
+        known: the values of cells that were read, by column and spelling.
     """
 
     columns: Mapping[str, FoundColumn]
@@ -57,6 +58,7 @@ class Reading:
     table: type[dy.Schema]
     sheet: str = ""
     is_told: bool = False
+    known: dict[tuple[str, str | None], Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -250,6 +252,12 @@ class ListRow:
         It is None where the cell is empty, which it may be if the table or the header can do
         without the column.
         """
+        spelling = column.key, self.cells.get(column.key)
+        if spelling not in self.reading.known:
+            self.reading.known[spelling] = self._read(column)
+        return self.reading.known[spelling]
+
+    def _read(self, column: Column) -> Any:
         declared = column_of(self.reading.table, column.key)
         read = _READERS_BY_KEY.get(column.key) or _READERS[declared.dtype.base_type()]
         value = read(self, column.key)

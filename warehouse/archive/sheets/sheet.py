@@ -1,13 +1,13 @@
 """The rows of a table of text or of a spreadsheet, as fields of text with their line.
 
-Titles, blank lines and Excel's `sep=;` above the header are passed over, and so are totals and
-notes below the rows. A header may take two rows, the second for units or the rest of the names.
-What the columns mean is in `lists`; samples are read faster, in `samples`.
+Titles, blank lines and Excel's `sep=;` above the header are passed over, and so are rows that begin
+with `#`. Below the header may be a row of units. What the columns mean is in `lists`; samples are
+read faster, in `samples`.
 """
 
 import datetime as dt
 import io
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 from zipfile import BadZipFile
@@ -26,9 +26,6 @@ from warehouse.archive.spelling.columns import (
 )
 from warehouse.archive.spelling.headers import (
     header_of_rows,
-    is_rest_of_header,
-    joined_rows,
-    split_header,
     with_units,
 )
 from warehouse.archive.spelling.text import (
@@ -42,11 +39,6 @@ from warehouse.archive.spelling.text import (
 
 FEWEST_OF_A_LIST: Final = 4
 """Columns: in a list of that many, a row of one cell is not one of its rows."""
-_TOTALS: Final = frozenset(
-    {"totaal", "totalen", "subtotaal", "total", "som", "sum", "summe", "gesamt", "aantal",
-     "gemiddelde", "gemiddeld", "average", "mean", "mittelwert"}
-)  # fmt: skip
-"""What the first cell of a row below a table begins with where it is not one of its rows."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +91,7 @@ def read_sheets(
     place = header_lines[1] - 1 if header_lines else find_header(lines, columns)
     delimiter = find_delimiter(lines[min(place, len(lines) - 1)])
     above = [split_or_nothing(line, delimiter) for line in lines[: place + 3]]
-    header, place = _whole_header(above, place, columns, header_lines)
+    header, place = _whole_header(above, place, header_lines)
     rows = [
         _text_row(number, line, delimiter, len(header))
         for number, line in enumerate(lines[place + 1 :], start=place + 2)
@@ -110,7 +102,7 @@ def read_sheets(
 def _named(sheets: Sequence[Sheet], name: str) -> list[Sheet]:
     named = [replace(sheet, name="") for sheet in sheets if fold(sheet.name) == fold(name)]
     if not named:
-        names = joined(sheet.name for sheet in sheets)
+        names = ", ".join(f"'{sheet.name}'" for sheet in sheets)
         said = say("The workbook has no sheet '{name}'; it has {names}.", name=name, names=names)
         raise DefectiveInputError("unreadable_file", said)
     return named
@@ -124,57 +116,28 @@ def _alike(sheets: Sequence[Sheet], columns: Sequence[Column]) -> list[Sheet]:
 
 
 def _whole_header(
-    rows: Sequence[list[str]],
-    place: int,
-    columns: Sequence[Column],
-    lines: tuple[int, int] | None,
+    rows: Sequence[list[str]], place: int, lines: tuple[int, int] | None
 ) -> tuple[list[str], int]:
-    """The header, with what belongs to it in the rows next to it, and its last row.
+    """The header, with the row of units below it, and its last row.
 
     Args:
         rows: the first rows of the table.
         place: the row that names most columns.
-        columns: the columns that are looked for.
         lines: the lines of the header where these are given, from 1.
     """
     if lines is not None:
         return header_of_rows(rows[lines[0] - 1 : lines[1]]), place
-    header = rows[place]
-    if place > 0 and (upper := joined_rows(rows[place - 1], header)):
-        header = max((header, upper), key=lambda cells: score_of(cells, columns))
-    if place + 1 < len(rows):
-        below = rows[place + 1]
-        if units := with_units(header, below):
-            return units, place + 1
-        lower = joined_rows(header, below)
-        if lower and (is_rest_of_header(header, below) or _names_more(lower, header, columns)):
-            return lower, place + 1
-    return header, place
-
-
-def _names_more(one: Sequence[str], other: Sequence[str], columns: Sequence[Column]) -> bool:
-    return score_of(one, columns) > score_of(other, columns)
+    units = with_units(rows[place], rows[place + 1]) if place + 1 < len(rows) else None
+    return (units, place + 1) if units else (rows[place], place)
 
 
 def _only_rows(rows: Iterable[Row], header: Sequence[str]) -> list[Row]:
-    """The rows that hold something, without totals, remarks, and the header once more.
-
-    Notes below the last row are left out. A heading between the rows is told as such.
-    """
-    names = {name for cell in header for name in (fold(cell), split_header(cell)[0]) if name}
+    """The rows that hold something, without remarks behind a `#`."""
     filled = [(row, [cell.strip() for cell in row.fields if cell.strip()]) for row in rows]
-    kept = [(row, cells) for row, cells in filled if cells and not _is_beside(cells, names)]
-    while len(kept) > 1 and len(kept[-1][1]) == 1 and " " in kept[-1][1][0]:
-        kept.pop()
+    kept = [(row, cells) for row, cells in filled if cells and not cells[0].startswith("#")]
     if len(header) < FEWEST_OF_A_LIST:
         return [row for row, _ in kept]
     return [_as_heading(row, cells[0]) if len(cells) == 1 else row for row, cells in kept]
-
-
-def _is_beside(cells: Sequence[str], names: Collection[str]) -> bool:
-    """Whether a row is a total, a remark behind a `#`, or the header once more."""
-    is_header = len(cells) > 1 and all(fold(cell) in names for cell in cells)
-    return is_header or cells[0].startswith("#") or _is_total(cells[0])
 
 
 def _as_heading(row: Row, cell: str) -> Row:
@@ -183,10 +146,6 @@ def _as_heading(row: Row, cell: str) -> Row:
         text=shorten(cell),
     )
     return replace(row, problem=row.problem or said)
-
-
-def _is_total(cell: str) -> bool:
-    return fold(cell.partition(" ")[0]) in _TOTALS
 
 
 def _text_row(number: int, line: str, delimiter: str, width: int) -> Row:
@@ -250,7 +209,7 @@ def _sheet(
         return Sheet([], above + 1, [])
     lines = (max(1, header_lines[0] - above), header_lines[1] - above) if header_lines else None
     place = lines[1] - 1 if lines else header_among(rows[:HEADER_WITHIN], columns)
-    header, place = _whole_header(rows, place, columns, lines)
+    header, place = _whole_header(rows, place, lines)
     below = (Row(above + i + 1, row) for i, row in enumerate(rows) if i > place)
     return Sheet(header, above + place + 1, _only_rows(below, header))
 
@@ -267,8 +226,3 @@ def _as_text(cell: object) -> str:
     if isinstance(cell, dt.timedelta):
         return str(cell)
     return str(cell)
-
-
-def joined(names: Iterable[str]) -> str:
-    """Names in quotes with commas between them."""
-    return ", ".join(f"'{name}'" for name in names)

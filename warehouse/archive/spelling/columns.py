@@ -19,7 +19,7 @@ from warehouse.archive.spelling.text import (
     shorten,
     split_or_nothing,
 )
-from warehouse.archive.spelling.units import BEAUFORT, UNITS, Scale, find_scale, fold_unit
+from warehouse.archive.spelling.units import UNITS, Scale, find_scale
 
 HEADER_WITHIN: Final = 60
 """Lines among which the header is looked for: there may be titles above it."""
@@ -57,7 +57,7 @@ class Column:
 
     def answers_to(self, name: str) -> bool:
         """Whether a folded name is this column's."""
-        return name == fold(self.header) or name in _folded(self.also)
+        return name in _folded((self.header, *self.also))
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class FoundColumn:
 
 @cache
 def _folded(names: tuple[str, ...]) -> frozenset[str]:
-    return frozenset(fold(name) for name in names)
+    return frozenset(split_header(name)[0] for name in names)
 
 
 def find_columns(
@@ -140,14 +140,6 @@ def _choose(
 ) -> Column:
     """The one column a header cell stands for."""
     fitting = [c for c in namesakes if unit is None or find_scale(c.dimension, unit) is not None]
-    if unit is not None and fold_unit(unit) in BEAUFORT:
-        said = say(
-            "Column '{header}' is in Beaufort, which is a range of winds and no speed. Without a "
-            "wind in m/s put wind under absent in the season's profile in archief.toml.",
-            header=cell.strip(),
-            absent=("wind",),
-        )
-        raise DefectiveInputError("unknown_unit", said, line)
     if not fitting:
         known = sorted({name for column in namesakes for name in UNITS[column.dimension]})
         said = say(
@@ -155,6 +147,7 @@ def _choose(
             header=cell.strip(),
             unit=unit,
             known=_in_brackets(known) or "-",
+            keys=tuple(column.key for column in namesakes),
         )
         raise DefectiveInputError("unknown_unit", said, line)
     free = [column for column in fitting if column.key not in places]
@@ -194,13 +187,8 @@ def _in_brackets(units: Iterable[str]) -> str:
 
 def score_of(header: Sequence[str], columns: Iterable[Column]) -> int:
     """How many cells of a line are names of columns: the header has most."""
-    names = _names_of(tuple(columns))
+    names = frozenset[str]().union(*(_folded((c.header, *c.also)) for c in columns))
     return sum(split_header(cell)[0] in names for cell in header)
-
-
-@cache
-def _names_of(columns: tuple[Column, ...]) -> frozenset[str]:
-    return frozenset(fold(name) for c in columns for name in (c.header, *c.also))
 
 
 def find_header(lines: Sequence[str], columns: Sequence[Column]) -> int:

@@ -22,8 +22,6 @@ _MONTHS: Final = {
     for name in names.split()
 }  # fmt: skip
 
-LIKE_A_DATE: Final = re.compile(r"[0-9]{1,4}[-/. ]+([0-9]{1,2}|[^\W\d]{3,9})[-/. ]+[0-9]{2,4}")
-
 
 class AmbiguousDateError(ValueError):
     """Day and month can be exchanged."""
@@ -71,8 +69,3 @@ def date_order(cells: Iterable[str]) -> str:
     orders = {"dmy" for first, _ in pairs if first > 12}
     orders |= {"mdy" for _, second in pairs if second > 12}
     return orders.pop() if len(orders) == 1 else ""
-
-
-def is_like_a_date(cell: str) -> bool:
-    """Whether there is a date in a cell, in whatever order."""
-    return LIKE_A_DATE.search(cell) is not None or _SERIAL_DATE.fullmatch(cell) is not None

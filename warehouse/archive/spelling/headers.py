@@ -4,10 +4,8 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from pipeline.errors import DefectiveInputError
-from pipeline.messages import say
 from warehouse.archive.spelling.text import fold
-from warehouse.archive.spelling.units import find_scale, is_any_unit, is_unit
+from warehouse.archive.spelling.units import is_unit
 
 _BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
 _UNIT_BEHIND: Final = re.compile(r"^(.*?[^\s_,])(?:\s*,\s+|\s+in\s+|[\s_]+)(m_s|[^\s_]+)$")
@@ -23,7 +21,7 @@ def split_header(cell: str) -> tuple[str, str | None]:
     """
     cell = cell.strip()
     groups = list(_BRACKETS.finditer(cell))
-    units = [group for group in groups if is_any_unit(_last_part(group)[1])]
+    units = [group for group in groups if is_unit(_last_part(group)[1])]
     square = [group for group in groups if group[1] is not None]
     for group in units or square[-1:]:
         more, unit = _last_part(group)
@@ -33,31 +31,6 @@ def split_header(cell: str) -> tuple[str, str | None]:
     if behind and is_unit(unit) and unit.casefold() not in _NO_UNIT_BEHIND:
         return fold(behind[1]), unit
     return fold(cell), None
-
-
-def unit_behind(name: str, dimension: str) -> str | None:
-    """The unit that ends a name somebody gave: `pull_lbf`, `speed_m_per_s`; None without one.
-
-    Raises:
-        DefectiveInputError: `unknown_unit`: a unit of something else, or what follows a `_`.
-    """
-    unit = split_header(name)[1]
-    ends = [unit] if unit else [name[mark.end() :] for mark in re.finditer(r"[\s_,]+", name)]
-    for end in ends:
-        if find_scale(dimension, end.replace("_", " ")) is not None:
-            return end.replace("_", " ")
-    if not (unit or unread_unit(name) or (ends and name[-len(ends[-1]) - 1] == "_")):
-        return None
-    message = say(
-        "'{end}' at the end of '{name}' is no known unit of it; put the unit in brackets."
-    )
-    raise DefectiveInputError("unknown_unit", say(message, end=ends[-1], name=name))
-
-
-def unread_unit(name: str) -> bool:
-    """Whether a name ends in a unit that `split_header` takes for a part of it: `pull_lbf`."""
-    last = re.split(r"[\s_,]+", name)[-1]
-    return last != name and split_header(name)[1] is None and is_any_unit(last)
 
 
 def _last_part(group: re.Match[str]) -> tuple[str, str]:
@@ -74,24 +47,14 @@ def with_units(header: Sequence[str], below: Sequence[str]) -> list[str] | None:
         below: the cells of the next row: `m/s`, `[N]`, or nothing.
     """
     units = [cell.strip().strip("[]()").strip() for cell in below]
-    if len(units) > len(header) or not any(units):
+    if len(units) > len(header):
         return None
-    if not any(map(is_unit, units)):
-        return None
-    if not all(is_any_unit(unit) for unit in units if fold(unit) or unit in {"%", "°"}):
+    written = [unit for unit in units if fold(unit) or unit in {"%", "°"}]
+    if not written or not all(map(is_unit, written)):
         return None
     units += [""] * (len(header) - len(units))
     pairs = zip(header, units, strict=True)
-    return [f"{name} [{unit}]" if is_any_unit(unit) else name for name, unit in pairs]
-
-
-def is_rest_of_header(header: Sequence[str], below: Sequence[str]) -> bool:
-    """Whether a row goes on with the header above it: not a digit, and units or names it lacks."""
-    if any(map(str.isdigit, "".join(below))) or not any(map(str.strip, below)):
-        return False
-    names = [cell.strip() for cell in header if cell.strip()]
-    has_units = any(is_unit(cell.strip("[]() ")) or split_header(cell)[1] for cell in below)
-    return has_units or len(set(names)) < len(names)
+    return [f"{name} [{unit}]" if is_unit(unit) else name for name, unit in pairs]
 
 
 def joined_rows(upper: Sequence[str], lower: Sequence[str]) -> list[str] | None:

@@ -23,7 +23,6 @@ _GROUPED: Final = re.compile(
     r"(?P<decimals>(?!(?P=mark))[.,][0-9]+)?"
 )
 _DECIMAL: Final = re.compile(r"[+-]?[0-9]*([.,])([0-9]{1,2}|[0-9]{4,})")
-LIKE_A_NUMBER: Final = re.compile(r"([+-]?[0-9]+(?:[.,][0-9]+)?)\s*([^0-9\s_].*)?")
 
 
 def parse_number(text: str) -> float:

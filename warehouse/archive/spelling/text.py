@@ -97,6 +97,7 @@ def fold(text: str) -> str:
     return "".join(letter for letter in plain if letter.isalnum())
 
 
+@lru_cache(10_000)
 def fold_word(text: str) -> str:
     """A value or a file name for comparing: without case; blanks inside count once."""
     return " ".join(unicodedata.normalize("NFC", text).casefold().split())

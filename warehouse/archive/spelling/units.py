@@ -1,14 +1,12 @@
 """Units as people write them, and the scale that brings a number to its SI unit.
 
-The usual units are exact fractions with their usual spellings; any other of the right dimension is
-looked up in Pint, here at the border only. A unit is never guessed from how large a number is.
+They are exact fractions with their usual spellings. A unit is never guessed from how large a
+number is.
 """
 
 import math
-import tokenize
 import unicodedata
-from functools import cache
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 
 class Scale(NamedTuple):
@@ -41,17 +39,23 @@ class Scale(NamedTuple):
 
 _USUAL: Final[dict[str, dict[str, tuple[float, ...]]]] = {
     "none": {},
-    "speed": {"m/s": (1, 1), "km/h": (1, 3.6), "kn": (1852, 3600)},
-    "force": {"n": (1, 1), "kn": (1000, 1), "kgf": (9.80665, 1)},
+    "speed": {
+        "m/s": (1, 1), "cm/s": (1, 100), "km/h": (1, 3.6), "kn": (1852, 3600), "mph": (0.44704, 1),
+        "ft/s": (0.3048, 1),
+    },
+    "force": {"n": (1, 1), "kn": (1000, 1), "kgf": (9.80665, 1), "lbf": (4.4482216152605, 1)},
     "angle": {"gra": (1, 1), "deg": (1, 1), "rad": (180, math.pi)},
-    "length": {"m": (1, 1), "cm": (1, 100), "mm": (1, 1000), "km": (1000, 1), "nmi": (1852, 1)},
-    "mass": {"kg": (1, 1), "g": (1, 1000)},
+    "length": {
+        "m": (1, 1), "cm": (1, 100), "mm": (1, 1000), "km": (1000, 1), "nmi": (1852, 1),
+        "ft": (0.3048, 1),
+    },
+    "mass": {"kg": (1, 1), "g": (1, 1000), "lb": (0.45359237, 1)},
     "temperature": {"c": (1, 1), "f": (5, 9, -32), "k": (1, 1, -273.15)},
     "ratio": {"%": (1, 100)},
     "rate": {"hz": (1, 1), "khz": (1000, 1)},
-    "power": {"w": (1, 1)},
+    "power": {"w": (1, 1), "kw": (1000, 1)},
     "time": {"s": (1, 1), "ms": (1, 1000), "min": (60, 1)},
-}
+}  # fmt: skip
 UNITS: Final = {
     dimension: {unit: Scale(*numbers) for unit, numbers in units.items()}
     for dimension, units in _USUAL.items()
@@ -74,7 +78,7 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
     "length": {"meter": "m", "mtr": "m", "centimeter": "cm", "millimeter": "mm", "kilometer": "km",
                "nm": "nmi", "zm": "nmi", "sm": "nmi", "zeemijl": "nmi", "zeemijlen": "nmi",
                "seemeile": "nmi", "seemeilen": "nmi"},
-    "mass": {"kilo": "kg", "kilogram": "kg", "kgs": "kg", "gram": "g"},
+    "mass": {"kilo": "kg", "kilogram": "kg", "kgs": "kg", "gram": "g", "lbs": "lb"},
     "temperature": {"°c": "c", "ºc": "c", "gradenc": "c", "celsius": "c", "degc": "c",
                     "gr": "c", "graden": "c", "°": "c", "º": "c", "grad": "c", "°f": "f",
                     "ºf": "f", "degf": "f", "fahrenheit": "f", "kelvin": "k"},
@@ -88,22 +92,6 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
 BEAUFORT: Final = frozenset({"bft", "bf", "beaufort"})
 """A class of winds and no speed: it cannot be converted."""
 
-_NO_UNIT: Final = (
-    *(ArithmeticError, AssertionError, AttributeError, RecursionError, SyntaxError, TypeError),
-    *(ValueError, tokenize.TokenError),
-)
-"""What Pint raises for text that is not a unit: it reads it with Python's tokenizer."""
-
-_PINT: Final = {
-    "speed": "m/s",
-    "force": "N",
-    "length": "m",
-    "mass": "kg",
-    "power": "W",
-    "time": "s",
-}
-"""Dimensions of which other units are looked up, with their SI unit."""
-
 
 def fold_unit(text: str) -> str:
     """A unit for comparing: without case, blanks and ways to write an accent."""
@@ -113,43 +101,9 @@ def fold_unit(text: str) -> str:
 def find_scale(dimension: str, unit: str) -> Scale | None:
     """The scale of a unit as written; None where it is not one of this dimension."""
     folded = fold_unit(unit)
-    usual = UNITS[dimension]
-    known = usual.get(SPELLINGS.get(dimension, {}).get(folded, folded))
-    return known or _looked_up(dimension, unit.strip())
+    return UNITS[dimension].get(SPELLINGS.get(dimension, {}).get(folded, folded))
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a usual unit of any dimension."""
-    return any(
-        fold_unit(text) in UNITS[dimension] or fold_unit(text) in SPELLINGS.get(dimension, {})
-        for dimension in UNITS
-    )
-
-
-def is_any_unit(text: str) -> bool:
-    """Whether a text is a unit of any dimension, also one that only Pint knows, or Beaufort."""
-    return (
-        fold_unit(text) in BEAUFORT
-        or is_unit(text)
-        or any(_looked_up(name, text.strip()) for name in _PINT)
-    )
-
-
-@cache
-def _looked_up(dimension: str, unit: str) -> Scale | None:
-    if dimension not in _PINT or not 1 < len(unit) <= 20:
-        return None
-    import pint  # noqa: PLC0415 - takes a second, and is seldom needed
-
-    try:
-        quantity: Any = _registry().Quantity(1.0, unit).to(_PINT[dimension])
-    except (pint.PintError, *_NO_UNIT):
-        return None
-    return Scale(float(quantity.magnitude))
-
-
-@cache
-def _registry() -> Any:
-    import pint  # noqa: PLC0415
-
-    return pint.UnitRegistry()
+    """Whether a text is a unit of any dimension, or Beaufort."""
+    return fold_unit(text) in BEAUFORT or any(find_scale(name, text) for name in UNITS)
