@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-from scipy.special import chdtrc
+import scipy
 
 from dashboards import labels
 from dashboards.statements import Number, Statement, Value
@@ -66,7 +66,7 @@ def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
     ratio = known.select(half / (2 * NORMAL_95 * pl.col("cw_standard_kg_m"))).to_series()
     noise = float(np.sqrt(np.mean(ratio.to_numpy() ** 2))) if ratio.null_count() == 0 else None
     dof = line["n"][0] - 2
-    differ = noise is not None and chdtrc(dof, dof * (spread / noise) ** 2) < CLEAR_P
+    differ = noise is not None and scipy.special.chdtrc(dof, dof * (spread / noise) ** 2) < CLEAR_P
     wording = (
         say(
             "Not equal in level: at {speed} m/s Cw runs from {lowest} to {highest} kg/m; the {n} "

@@ -1,20 +1,22 @@
 """A tow on the quay: its number, whether it was to be expected, and what to do now."""
 
 from collections.abc import Iterator
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from dashboards import labels
 from dashboards.statements import Number, Statement, Value
 from dashboards.statements.boat import interval
 from pipeline.messages import say
 from pipeline.tables.row import Row
-from warehouse.queries.assess import Assessment
+
+if TYPE_CHECKING:
+    from warehouse.queries.assess import Assessment
 
 RUN_OFF: Final = 0.03
 """A run further than this from the curve is better towed again (inferred)."""
 
 
-def statements(tow: Assessment, log_known: bool) -> list[Statement]:
+def statements(tow: "Assessment", log_known: bool) -> list[Statement]:
     """The number first, then what was expected, then what to do.
 
     Args:
@@ -25,7 +27,7 @@ def statements(tow: Assessment, log_known: bool) -> list[Statement]:
     return said if advice else [*said, Statement("let_go", say("Good: let go."), verdict="good")]
 
 
-def _number(tow: Assessment, log_known: bool) -> Iterator[Statement]:
+def _number(tow: "Assessment", log_known: bool) -> Iterator[Statement]:
     curve = tow.curve
     if curve["cw_kg_m"] is None:
         yield Statement("provisional", say("These runs give no curve."), verdict="none")
@@ -44,7 +46,7 @@ def _number(tow: Assessment, log_known: bool) -> Iterator[Statement]:
         yield interval(curve, log_known)
 
 
-def _expected(tow: Assessment) -> Iterator[Statement]:
+def _expected(tow: "Assessment") -> Iterator[Statement]:
     """What this boat's last tow and the other boats of its type have at that speed."""
     last, like = tow.own_before, tow.of_type
     if last is not None:
@@ -72,7 +74,7 @@ def _expected(tow: Assessment) -> Iterator[Statement]:
         )
 
 
-def _advice(tow: Assessment) -> Iterator[Statement]:
+def _advice(tow: "Assessment") -> Iterator[Statement]:
     """What to do before the boat is let go; nothing where all is well."""
     for run in tow.runs:
         yield from _run(run)

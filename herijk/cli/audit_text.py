@@ -26,7 +26,6 @@ from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import current_edition
-from warehouse.queries.assess import Assessment
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import OneType, TypesAudit
 from warehouse.queries.views import Views
@@ -35,6 +34,7 @@ from warehouse.store.store import Store
 
 if TYPE_CHECKING:
     from warehouse.editions.lineage import Lineage, LineLineage
+    from warehouse.queries.assess import Assessment
 
 # A boat
 
@@ -78,7 +78,7 @@ TOW: Final = (
 )
 
 
-def assessment_text(report: Assessment, log_known: bool) -> str:
+def assessment_text(report: "Assessment", log_known: bool) -> str:
     """What a tow on the quay shows, its runs, and what to look at."""
     tow = with_crew(report.tow)
     said = [statement(speech()) for statement in tow_statements(report, log_known)]

@@ -17,6 +17,7 @@ from warehouse.editions.compare import DiffReport
 from warehouse.editions.lineage import Lineage
 from warehouse.editions.publish import Published
 from warehouse.editions.verify import Verification
+from warehouse.queries.assess import Assessment
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import TypesAudit
 from warehouse.queries.registers import DueReport, RegisterReport
@@ -46,6 +47,7 @@ class Methods:
 
 
 FORMS: Final[dict[str, Any]] = {
+    "assess TOW": Assessment,
     "audit BOAT": BoatAudit,
     "audit BOAT --edition EDITION": Lineage,
     "audit TYPE": TypesAudit,

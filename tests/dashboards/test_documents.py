@@ -7,6 +7,7 @@ import pytest
 from pypdf import PdfReader
 
 from dashboards.documents import certificate, proposal
+from dashboards.speech import Speech
 from pipeline.errors import MissingKnowledgeError
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import draft_name
@@ -46,7 +47,7 @@ def test_a_certificate_says_what_the_register_says(views, contents):
     assert len(mine) == 1
     shown = dict(mine[0]["left"]) | dict(mine[0]["right"])
     assert shown["A [kg/m]"] == f"{line['a_kg_m']:.3f}"
-    assert shown["Valid until"] == str(line["valid_until"])
+    assert shown["Valid until"] == Speech("en").day(line["valid_until"])
     assert shown["Decision"] == "SKC <8 mei>"
     assert "<svg" in mine[0]["qr"]
     speed, cw, power = (float(text) for text in mine[0]["powers"][3])

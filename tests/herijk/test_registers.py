@@ -12,7 +12,7 @@ EDITION = f"concept-{METHODS[1]}"
 
 def test_a_register_has_every_line_judged_on_a_day(herijk, built):
     call = ("register", EDITION, "--data", built.data, "--as-of", "2012-06-01")
-    assert "2012-06-01" in herijk(*call)[1]
+    assert "1\N{NO-BREAK SPACE}June\N{NO-BREAK SPACE}2012" in herijk(*call)[1]
     lines = json.loads(herijk(*call, "--json")[1])["lines"]
     report = json.loads(herijk(*call, "--due", "--json")[1])
     assert {line["tow_id"] for line in lines} == {line["tow_id"] for line in report["lines"]}

@@ -14,7 +14,6 @@ from typing import Final
 import numpy as np
 import polars as pl
 import scipy
-from scipy.spatial import cKDTree
 
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.messages import say
@@ -64,7 +63,7 @@ def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
     """The runs with `content`, a number that runs of one measurement have in common."""
     sums = runs.select(CONTENT).to_numpy()
     means = np.nan_to_num(sums[:, 1:] / np.maximum(sums[:, :1], 1.0))
-    near = cKDTree(np.log(np.maximum(np.abs(means), SMALLEST)))
+    near = scipy.spatial.cKDTree(np.log(np.maximum(np.abs(means), SMALLEST)))
     one, other = near.query_pairs(ROUNDING, p=np.inf, output_type="ndarray").T
     tow = runs["tow_id"].rank("dense").to_numpy().astype(np.int64)
     between = np.sort(np.column_stack([tow[one], tow[other]]), axis=1)
