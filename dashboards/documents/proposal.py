@@ -1,17 +1,20 @@
 """The document of a meeting: what a method would change, for whom, and how uncertain that is."""
 
+import datetime as dt
 from collections.abc import Iterator, Sequence
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import polars as pl
 
-from dashboards import labels
+from dashboards import drawn, labels
 from dashboards.documents import pdf
+from dashboards.figures import FIGURES
+from dashboards.guides import guide_file
+from dashboards.markdown import to_blocks
 from dashboards.speech import Speech
 from dashboards.statements.edition import Effect, cause_name, changes, effects, undecided
 from dashboards.statements.race import stretched_fatigue
 from pipeline.messages import in_per_cent, pgettext, say
-from pipeline.register.changes import largest_first
 from pipeline.register.register import draft_name
 from warehouse.editions.compare import causes_of
 from warehouse.queries.answers import compared, replayed
@@ -20,12 +23,28 @@ from warehouse.store.methods import KnownMethods
 
 Part = dict[str, object]
 
-LARGEST: Final = 20
-"""Boats named on each side."""
+LARGEST: Final = 10
+"""Crews named on each side."""
+
+
+class Letter(NamedTuple):
+    """What makes a proposal a letter; what is not known is left out."""
+
+    sender: str = ""
+    date: dt.date | None = None
+    valid_from: dt.date | None = None
+
+
+PLAIN: Final = Letter()
 
 
 def proposal(
-    views: Views, methods: Sequence[str], against: str, language: str, known: KnownMethods
+    views: Views,
+    methods: Sequence[str],
+    against: str,
+    language: str,
+    known: KnownMethods,
+    letter: Letter = PLAIN,
 ) -> bytes:
     """A proposal of one method, or a ballot of several, as PDF.
 
@@ -46,7 +65,13 @@ def proposal(
         ),
         "kind": say("Proposal to the members"),
         "simulated": say(labels.SIMULATED) if about.get("simulated") == "true" else "",
+        "letter": [letter.sender, "" if letter.date is None else str(letter.date)],
+        "motion": [_motion(titles[method], letter, speech) for method in methods],
         "opening": [
+            say(
+                "Cw is the tow force divided by the square of the speed, in kg/m: the lower it is, "
+                "the easier the boat runs."
+            ),
             say(
                 "This document shows what happens to the register if all tow tests are "
                 "computed by the proposed method, compared with: {old}.",
@@ -70,23 +95,33 @@ def proposal(
                 ),
             ),
         ],
-        "annexes": [
-            {
-                "title": f"{say('Annex: the file of the method')}: {title}",
-                "text": known.text(method),
-            }
-            for method, title in titles.items()
-        ],
+        "annex_title": say("Annex: how Cw is made"),
+        "annex": to_blocks(guide_file("method", language).read_text(encoding="utf-8")),
         "footing": f"{say('Made by code')} {about.get('code_version', '')}",
     }
     return pdf("proposal.typ", content)
 
 
+def _motion(title: str, letter: Letter, speech: Speech) -> str:
+    """What the members are asked to decide."""
+    if letter.valid_from is None:
+        return speech.say("Motion: the register is computed by \u201c{method}\u201d.", method=title)
+    return speech.say(
+        "Motion: from {day} on the register is computed by \u201c{method}\u201d.",
+        method=title,
+        day=letter.valid_from,
+    )
+
+
 def _part(
-    title: str, *sentences: str, head: Sequence[str] = (), rows: Sequence[Sequence[str]] = ()
+    title: str,
+    *sentences: str,
+    head: Sequence[str] = (),
+    rows: Sequence[Sequence[str]] = (),
+    chart: str = "",
 ) -> Part:
-    """A part of the document: sentences, and a table where it has rows."""
-    return {"title": title, "sentences": sentences, "head": head, "rows": rows}
+    """A part of the document: sentences, a chart, and a table where it has rows."""
+    return {"title": title, "sentences": sentences, "head": head, "rows": rows, "chart": chart}
 
 
 def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
@@ -123,7 +158,7 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
         rows=_steps(lines, speech),
     )
     yield _types(lines, speech)
-    yield _boats(lines, speech)
+    yield from _crews(lines, speech)
     yield _races(views, lines, speech)
     flagged = views.ask("flagged_boats").filter(method=method)["tow_id"]
     left = (statement(speech) for statement in undecided(lines, flagged))
@@ -174,10 +209,21 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
     )
 
 
-def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
-    """The boats that change most, up or down."""
-    moved = lines.drop_nulls("cw_ratio").filter(change="changed")
-    shown = largest_first(moved).head(LARGEST)
+def _crews(lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
+    """The seconds of every crew as a chart, then those that gain and lose most."""
+    gain = pl.col("gain_in_two_hours_s")
+    moved = lines.drop_nulls("gain_in_two_hours_s").filter(change="changed").sort(gain, "fsn_no")
+    if moved.is_empty():
+        return
+    crew = pl.format("{} {}{}", "fsn_no", "rowers", "crew_class")
+    spec = FIGURES["gains"](moved.select(gain, crew=crew), speech.say).to_dict()
+    yield _part(
+        speech.say("For whom: every crew"),
+        speech.say(
+            "A bar for each crew: above zero it may take longer, below it has to be faster."
+        ),
+        chart=drawn.svg(spec, speech.language),
+    )
     heads = (
         say("Boat"),
         labels.column("old_cw_kg_m"),
@@ -185,11 +231,14 @@ def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
         pgettext("proposal", "Change"),
         *map(labels.column, ("gain_in_two_hours_s", "exceeds_interval")),
     )
-    return _part(
-        speech.say("The largest changes"),
-        head=[*map(speech.unbroken, heads)],
-        rows=[_boat(line, speech) for line in shown.to_dicts()],
-    )
+    head = [*map(speech.unbroken, heads)]
+    for title, shown in (
+        (say("Who gains most"), moved.filter(gain > 0).reverse()),
+        (say("Who loses most"), moved.filter(gain < 0)),
+    ):
+        rows = [_boat(line, speech) for line in shown.head(LARGEST).to_dicts()]
+        if rows:
+            yield _part(speech.say(title), head=head, rows=rows)
 
 
 def _boat(line: dict[str, Any], speech: Speech) -> list[str]:

@@ -142,6 +142,21 @@ def _gains(frame: pl.DataFrame, say: Say) -> Drawing:
     )
 
 
+def _gains_by_crew(frame: pl.DataFrame, say: Say) -> Drawing:
+    """A bar for every crew: what a race of two hours at equal power gains or loses."""
+    title = say("Seconds in a race of two hours [s]")
+    inks = alt.condition(
+        "datum.gain_in_two_hours_s < 0", alt.value(OKABE_ITO[1]), alt.value(OKABE_ITO[0])
+    )
+    return (
+        alt.Chart(frame)
+        .mark_bar()
+        .encode(alt.X("crew:N", sort="-y", axis=None), alt.Y("gain_in_two_hours_s:Q", title=title))
+        .encode(color=inks, tooltip=tips(say, "crew:N", "gain_in_two_hours_s:Q"))
+        .properties(width=WIDTH, height=220)
+    )
+
+
 JUDGED: Final = tuple(CHOICES)
 RUN_TIPS: Final = ("run:O", "speed_m_s:Q", "cw_kg_m:Q")
 STAGES: Final = ("gross", "net")
@@ -205,6 +220,7 @@ FIGURES: Final[dict[str, Figure]] = {
     ),
     "ladder": _ladder,
     "changes": _gains,
+    "gains": _gains_by_crew,
     "statuses": _statuses,
     "slide_boat_years": slides.boat_years,
     "slide_options": bars(

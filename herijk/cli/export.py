@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from herijk.cli.options import PATH, as_of_option, data_option, json_option, show_files
+from herijk.cli.options import PATH, Day, as_of_option, data_option, json_option, show_files
 from herijk.cli.speaking import Group, argument, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGE, tell
@@ -67,12 +67,23 @@ def pages(out: Path, data: Path, as_of: dt.date | None) -> None:
 @argument("methods", nargs=-1, required=True, help="Method proposed; several make a ballot.")
 @data_option
 @option("--against", default="concept-as-published", help="Edition that counts now, or a draft.")
+@option("--sender", default="", help="Who sends it.")
+@option("--date", type=Day(), help="Day of the letter.")
+@option("--valid-from", type=Day(), help="First day on which the register would count.")
 @option("--out", type=PATH, help="File to write, a PDF.")
 @json_option
 def proposal(
-    methods: tuple[str, ...], data: Path, against: str, out: Path | None, as_json: bool
+    methods: tuple[str, ...],
+    data: Path,
+    against: str,
+    sender: str,
+    date: dt.date | None,
+    valid_from: dt.date | None,
+    out: Path | None,
+    as_json: bool,
 ) -> None:
     """What a board sends its members before they vote: what changes, for whom, how uncertain."""
+    from dashboards.documents.proposal import Letter
     from dashboards.documents.proposal import proposal as make_proposal
     from warehouse.queries.views import Views
     from warehouse.store.methods import KnownMethods
@@ -82,7 +93,8 @@ def proposal(
     store, name = Store(data), "-".join(("proposal", *methods))
     with documents(store.root, name), Views(store) as views:
         known = KnownMethods.of(store)
-        made = make_proposal(views, list(methods), against, LANGUAGE.get(), known)
+        letter = Letter(sender, date, valid_from)
+        made = make_proposal(views, methods, against, LANGUAGE.get(), known, letter)
         _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
 
 

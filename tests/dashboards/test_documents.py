@@ -1,5 +1,6 @@
 """Certificates and proposals: what goes into them, and that they are made alike each time."""
 
+import datetime as dt
 import io
 
 import polars as pl
@@ -129,7 +130,10 @@ def test_a_proposal_counts_every_line_that_changes(views, contents):
     )
     by_type = parts["For whom: by type"]["rows"]
     assert sum(int(row[1]) for row in by_type) == lines.drop_nulls("cw_ratio").height
-    assert contents[0]["annexes"][0]["text"].count("[") > 1
+    assert {block["kind"] for block in contents[0]["annex"]} >= {"heading", "paragraph"}
+    moved = lines.drop_nulls("gain_in_two_hours_s").filter(change="changed")
+    named = len(parts.get("Who gains most", {"rows": ()})["rows"])
+    assert named == min(10, moved.filter(pl.col("gain_in_two_hours_s") > 0).height)
 
 
 def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, contents, monkeypatch):
@@ -168,10 +172,16 @@ def test_the_same_tables_give_the_same_document(views):
     assert len(PdfReader(io.BytesIO(made[0])).pages) == crews
 
 
-def test_a_proposal_takes_six_pages_at_most_before_its_annex(views):
-    made = proposed(views, [METHODS[1]], EDITIONS[0], "nl")
+def test_a_proposal_is_a_letter_of_six_pages_at_most_with_the_method_as_its_annex(views):
+    letter = proposal.Letter("Bestuur <FSN>", dt.date(2026, 4, 1), dt.date(2026, 5, 1))
+    known = KnownMethods.of(views.store)
+    made = proposal.proposal(views, [METHODS[1]], EDITIONS[0], "nl", known, letter)
     texts = [page.extract_text() for page in PdfReader(io.BytesIO(made)).pages]
-    assert len([text for text in texts if "Bijlage" not in text]) <= 6
+    annex = next(place for place, text in enumerate(texts) if "Bijlage" in text)
+    assert annex <= 6
+    assert "Bestuur <FSN>" in texts[0]
+    assert "2026-05-01" in " ".join(texts[0].split())
+    assert "[steps" not in "".join(texts)
 
 
 def test_a_proposal_counts_places_as_the_pages_of_races_do(views):
