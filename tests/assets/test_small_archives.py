@@ -5,10 +5,9 @@ import sys
 
 import pytest
 
-from herijk.cli.main import app, main
+from herijk.cli.main import main
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from pipeline.errors import HerijkError, MissingKnowledgeError
 from tests.conftest import Workbench
 
 TOW_LIST = "sleeplijsten/sleeplijst_2014.csv"
@@ -55,18 +54,3 @@ def test_one_tow_without_runs_that_are_not_asked_for_is_computed(one_tow, monkey
         said = capsys.readouterr()
         assert "Traceback" not in said.err
         assert stopped.value.code in {0, None} or said.err.startswith("herijk: "), command
-
-
-def test_where_nothing_is_sound_the_first_rebuild_says_why(one_tow, tmp_path):
-    bench = Workbench(one_tow.archive, tmp_path / "data")
-    (file,) = (one_tow.archive / "meetdata_2014").iterdir()
-    kept = file.read_bytes()
-    file.with_name(file.name.removesuffix(".gz")).write_bytes(b"run;log1\n1;2\n")
-    file.unlink()
-    try:
-        with pytest.raises(MissingKnowledgeError, match="1 x missing_column"):
-            bench.rebuild(METHODS)
-        with pytest.raises(HerijkError, match="make it with: herijk rebuild"):
-            app(["register", "--data", str(bench.data)], standalone_mode=False)
-    finally:
-        file.write_bytes(kept)
