@@ -65,7 +65,7 @@ def proposal(
         ),
         "kind": say("Proposal to the members"),
         "simulated": say(labels.SIMULATED) if about.get("simulated") == "true" else "",
-        "letter": [letter.sender, "" if letter.date is None else str(letter.date)],
+        "letter": [letter.sender, "" if letter.date is None else speech.day(letter.date)],
         "motion": [_motion(titles[method], letter, speech) for method in methods],
         "opening": [
             say(
@@ -109,7 +109,7 @@ def _motion(title: str, letter: Letter, speech: Speech) -> str:
     return speech.say(
         "Motion: from {day} on the register is computed by \u201c{method}\u201d.",
         method=title,
-        day=letter.valid_from,
+        day=speech.day(letter.valid_from),
     )
 
 
@@ -279,7 +279,8 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
         ],
         rows=[
             [
-                f"{race['race']} {race['race_date']}, {say(labels.crew(race['crew_class']))}",
+                f"{race['race']} {speech.day(race['race_date'])}, "
+                f"{say(labels.crew(race['crew_class']))}",
                 names.get(race["old_winner"]) or "\u2013",
                 names.get(race["new_winner"]) or "\u2013",
                 _chance(race["change_probability"], speech),

@@ -180,7 +180,7 @@ def test_a_proposal_is_a_letter_of_six_pages_at_most_with_the_method_as_its_anne
     annex = next(place for place, text in enumerate(texts) if "Bijlage" in text)
     assert annex <= 6
     assert "Bestuur <FSN>" in texts[0]
-    assert "2026-05-01" in " ".join(texts[0].split())
+    assert "1 mei 2026" in " ".join(texts[0].split())
     assert "[steps" not in "".join(texts)
 
 
