@@ -428,8 +428,8 @@ TWO_FRAMES = "new Promise((done) => requestAnimationFrame(() => requestAnimation
 def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(visitor):
     page = visitor.open("types.html")
     chart = page.locator("figure[data-figure=b_weight]").first
+    chart.scroll_into_view_if_needed()  # drawn when it comes into view
     chart.locator(".drawn svg.marks").wait_for()
-    chart.scroll_into_view_if_needed()
     boats = shown(page, "type_boats").count()
     area = chart.locator(".role-scope .background").first.bounding_box()
     page.mouse.move(area["x"] + 15, area["y"] + 15)
