@@ -21,11 +21,11 @@ def environment(templates: Path, **names: object) -> jinja2.Environment:
         undefined=jinja2.StrictUndefined,
     )
     made.globals.update(names)
-    made.filters["unbroken"] = unbroken
+    made.filters["keep_units"] = keep_units
     return made
 
 
-def unbroken(text: str) -> str:
+def keep_units(text: str) -> str:
     """A sentence in which a number and its unit stay on one line."""
     return re.sub(r"(?<=\d) (?=(%|kg/m|m/s|kg|W|N|s)(\W|$))", "\u00a0", text)
 

@@ -7,6 +7,7 @@ from typing import Any, Final
 from dashboards import drawn, labels
 from dashboards.documents import pdf
 from dashboards.figures import FIGURES
+from dashboards.html import keep_units
 from dashboards.slide_book import Slide, slides
 from pipeline.messages import Say, say, speaker
 from warehouse.queries.views import Views
@@ -47,11 +48,6 @@ def slide_book(
     return pdf("slides.typ", content)
 
 
-def unbroken(text: str) -> str:
-    """A text whose per cent signs stay with their numbers."""
-    return text.replace(" %", "\u00a0%")
-
-
 def _page(slide: Slide, language: str, say: Say) -> dict[str, Any]:
     spec: dict[str, Any] = FIGURES[slide.figure](slide.rows, say).to_dict(validate=False)
     if "facet" in spec:
@@ -59,8 +55,8 @@ def _page(slide: Slide, language: str, say: Say) -> dict[str, Any]:
     else:
         spec |= WIDE if isinstance(spec.get("height"), int) else {"width": WIDE["width"]}
     return {
-        "finding": unbroken(say(slide.finding)),
+        "finding": keep_units(say(slide.finding)),
         "chart": drawn.svg(spec, language),
-        "notes": [unbroken(say(note)) for note in slide.notes],
+        "notes": [keep_units(say(note)) for note in slide.notes],
         "source": say(SOURCE, table=slide.source),
     }

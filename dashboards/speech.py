@@ -4,7 +4,6 @@ import datetime as dt
 from collections.abc import Callable, Sequence
 from typing import Final, TypeAlias
 
-from babel.dates import format_date
 from markupsafe import Markup, escape
 
 from dashboards import labels
@@ -45,6 +44,8 @@ class Speech:
 
     def day(self, day: dt.date) -> str:
         """A day as prose has it: 4 June 2018."""
+        from babel.dates import format_date  # noqa: PLC0415 - many commands say no day
+
         return format_date(day, "d\u00a0MMMM\u00a0y", locale=self.language)
 
     def edition(self, edition: str) -> str:

@@ -10,7 +10,7 @@ import polars as pl
 from markupsafe import Markup
 
 from dashboards import labels
-from dashboards.html import unbroken
+from dashboards.html import keep_units
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -29,6 +29,7 @@ from dashboards.speech import Headline, Speech
 from dashboards.statements import Statement, together
 from dashboards.statements.boat_type import homogeneity, level
 from pipeline.messages import Sentence, say
+from warehouse.queries.audit_types import WEIGHT_LINE
 from warehouse.queries.chosen_tows import NEWEST
 from warehouse.queries.views import Views
 
@@ -57,8 +58,6 @@ TEST_COLUMNS = (
     *("boat_type", "n", "n_boats", "p_value", "power_at_10pct", "noise_share", "shared_b_m_s"),
 )
 OF_TYPE = ("after", "boat_type")
-WEIGHT_LINE = {"quantity": "cw_standard_kg_m", "explaining": "weight_kg", "within": "all"}
-"""The line about which the level of a type is judged."""
 
 
 def types_page(views: Views, methods: Sequence[str]) -> Page:
@@ -161,13 +160,12 @@ def _judged(views: Views, method: str) -> Judge:
 def _verdicts(judge: Judge, types: Sequence[str]) -> Callable[[Speech], Markup]:
     """A line per type: its verdicts, and its page."""
     line = Markup('<li><a href="{}">{}</a> {}</li>')
+    verdicts = {name: together(judge(name), " ") for name in types}
 
     def prose(speech: Speech) -> Markup:
         lines = [
-            line.format(
-                type_path(name), name, unbroken(" ".join(one(speech) for one in judge(name)))
-            )
-            for name in types
+            line.format(type_path(name), name, keep_units(verdict(speech)))
+            for name, verdict in verdicts.items()
         ]
         return Markup("<ul>{}</ul>").format(Markup("").join(lines))
 

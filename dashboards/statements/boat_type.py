@@ -1,18 +1,16 @@
 """Whether the boats of a type are equal: in the bend of their curves, and in level."""
 
-from typing import Final
-
 import numpy as np
 import polars as pl
 import scipy
 
 from dashboards import labels
 from dashboards.statements import Number, Statement, Value
+from pipeline.consistency.homogeneity import LEVEL
 from pipeline.messages import say
+from pipeline.quantiles import NORMAL
 from pipeline.tables.row import Row
-
-CLEAR_P: Final = 0.05
-STRONG_POWER: Final = 0.8
+from warehouse.queries.audit_types import ENOUGH_POWER
 
 
 def homogeneity(test: pl.DataFrame) -> Statement:
@@ -27,7 +25,7 @@ def homogeneity(test: pl.DataFrame) -> Statement:
         ),
         "cannot be told",
     )
-    if p_value < CLEAR_P:
+    if p_value < LEVEL:
         wording, verdict = (
             say(
                 "The bends of the curves of these {n} tows differ by more than noise explains "
@@ -35,17 +33,13 @@ def homogeneity(test: pl.DataFrame) -> Statement:
             ),
             "differ",
         )
-    elif power >= STRONG_POWER:
+    elif power >= ENOUGH_POWER:
         wording, verdict = (
             say("No sign that the bends of the curves of these {n} tows differ (p = {p})."),
             "equal",
         )
     values = {"n": test["n"][0], "p": Number(p_value, unit="")}
     return Statement("bends", wording, values, verdict, ("homogeneity",))
-
-
-NORMAL_95: Final = 1.96
-"""Half a 95 % interval in standard deviations."""
 
 
 def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
@@ -63,10 +57,10 @@ def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
         return Statement("level", say("Too few boats to compare their level."), verdict="few")
     known = tows.drop_nulls("cw_standard_kg_m")
     half = pl.col("cw_standard_hi_kg_m") - pl.col("cw_standard_lo_kg_m")
-    ratio = known.select(half / (2 * NORMAL_95 * pl.col("cw_standard_kg_m"))).to_series()
+    ratio = known.select(half / (2 * NORMAL * pl.col("cw_standard_kg_m"))).to_series()
     noise = float(np.sqrt(np.mean(ratio.to_numpy() ** 2))) if ratio.null_count() == 0 else None
     dof = line["n"][0] - 2
-    differ = noise is not None and scipy.special.chdtrc(dof, dof * (spread / noise) ** 2) < CLEAR_P
+    differ = noise is not None and scipy.special.chdtrc(dof, dof * (spread / noise) ** 2) < LEVEL
     wording = (
         say(
             "Not equal in level: at {speed} m/s Cw runs from {lowest} to {highest} kg/m; the {n} "

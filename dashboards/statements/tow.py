@@ -8,6 +8,7 @@ from dashboards.statements import Number, Statement, Value
 from dashboards.statements.boat import interval
 from pipeline.messages import say
 from pipeline.tables.row import Row
+from warehouse.queries.audit_types import apart
 
 if TYPE_CHECKING:
     from warehouse.queries.assess import Assessment
@@ -108,10 +109,6 @@ def _run(run: Row) -> Iterator[Statement]:
 
 
 def _apart(new: Row, old: Row) -> bool:
-    """Whether two numbers differ by more than their 95 % intervals together (root sum square)."""
-    ends = [row[f"cw_{end}_kg_m"] for row in (new, old) for end in ("lo", "hi")]
-    if None in ends or new["cw_kg_m"] is None:
-        return False
-    half_widths = ((ends[1] - ends[0]) / 2, (ends[3] - ends[2]) / 2)
-    apart = abs(new["cw_kg_m"] - old["cw_kg_m"])
-    return bool(apart > (half_widths[0] ** 2 + half_widths[1] ** 2) ** 0.5)
+    """Whether two numbers differ by more than their 95 % intervals together."""
+    one, other = (tuple(row[f"cw_{end}kg_m"] for end in ("", "lo_", "hi_")) for row in (new, old))
+    return None not in (*one, *other) and apart(one, other)

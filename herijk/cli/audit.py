@@ -1,5 +1,6 @@
 """`herijk audit`: the answer about a boat or a type, and with --steps all that is behind it."""
 
+import datetime as dt
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -104,19 +105,17 @@ def assess(tow_id: str, archive: Path, data: Path, method: str | None, as_json: 
     """What a tow shows while the boat waits: provisional, and nothing is stored."""
     from herijk.cli.audit_text import assessment_text
     from pipeline.method.definition import COMPLETE
+    from warehouse.editions.publish import latest_before
     from warehouse.queries import assess as tows
-    from warehouse.store.editions import edition_names, method_of_edition
+    from warehouse.store.editions import read_edition
     from warehouse.store.methods import KnownMethods
     from warehouse.store.store import Store
 
     store = Store(data)
-    editions = edition_names(store)
-    known = KnownMethods.of(store)
-    chosen = (
-        method_of_edition(store, editions[-1])
-        if editions and method is None
-        else known.get(method or BEST)
-    )
+    today = dt.date.today()
+    edition = None if method else latest_before(store, today, today)
+    in_force = None if edition is None else read_edition(store, edition).method
+    chosen = in_force or KnownMethods.of(store).get(method or BEST)
     found = tows.assess(store, archive, tow_id, chosen)
     show(found, lambda report: assessment_text(report, chosen.interval == COMPLETE), as_json)
 

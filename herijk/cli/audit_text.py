@@ -81,14 +81,14 @@ TOW: Final = (
 def assessment_text(report: "Assessment", log_known: bool) -> str:
     """What a tow on the quay shows, its runs, and what to look at."""
     tow = with_crew(report.tow)
-    said = [statement(speech()) for statement in tow_statements(report, log_known)]
-    checks = [cells | {"check": code_in_words(cells["check"])} for cells in report.checks]
-    lost = [f"  {place(row)}: {why_set_aside(row)}" for row in report.lost]
     parts = [
-        "\n".join([f"{tow['tow_id']} {tow['name'] or tow['fsn_no']}, {tow['crew']}", *said]),
+        f"{tow['tow_id']} {tow['name'] or tow['fsn_no']}, {tow['crew']}\n"
+        + "\n".join(statement(speech()) for statement in tow_statements(report, log_known)),
         section(tell("Its runs"), table(report.runs, TOW)),
-        *([section(tell("To look at"), table(checks, "check observed limit unit"))] * bool(checks)),
-        *([section(tell("Set aside"), *lost)] * bool(lost)),
+        section(tell("To look at"), table(report.checks, "check observed limit unit")),
+        section(
+            tell("Set aside"), *(f"  {place(row)}: {why_set_aside(row)}" for row in report.lost)
+        ),
         tell("Nothing was stored; the next rebuild makes the number anew."),
     ]
     return page(parts, report.simulated)

@@ -39,7 +39,7 @@ SHARES: Final = re.compile("share|_sd_ratio|^sd_|u_ratio|rmse|most_|r2|at_10pct|
 CODES: Final = {
     *("status", "reason", "change", "source", "step", "component", "kind", "scope", "cause"),
     *("quantity", "explaining", "within", "speed_reason", "instrument", "verdict", "log"),
-    *("reason_code", "lost", "pooling", "shared", "flags", "cut_reason"),
+    *("reason_code", "lost", "pooling", "shared", "flags", "cut_reason", "check"),
 }
 """Columns that hold codes, shown in words."""
 

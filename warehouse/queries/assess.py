@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import polars as pl
 
+from pipeline import curve
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import Method
 from pipeline.tables.keys import LINE
@@ -94,54 +96,53 @@ def _not_usable(tow_id: str, faults: pl.DataFrame) -> MissingKnowledgeError:
 
 
 def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
-    boats, tows, curves = store.read("boats"), store.read("tows"), store.read("curves", method)
+    tows, curves = intake.typed_tows(store), store.read("curves", method)
     set_aside = store.read("quarantine").filter(tow_id=tow_id)
-    named = tows.join(
-        boats.select("fsn_no", "name", "boat_type"), on="fsn_no", how="left", maintain_order="left"
+    own = tows.filter(tow_id=tow_id).join(
+        store.read("boats").select("fsn_no", "name"), on="fsn_no", how="left", maintain_order="left"
     )
-    own = named.filter(tow_id=tow_id)
     if own.is_empty():
         raise _not_usable(tow_id, set_aside)
     tow = own.row(0, named=True)
-    others = curves.join(
-        named.select("tow_id", "tow_date", "boat_type"), on="tow_id", maintain_order="left"
-    )
-    others = _at_speed(others, tow["declared_speed_m_s"]).filter(
+    dated = tows.select("tow_id", "tow_date", "boat_type").filter(
         pl.col("tow_id") != tow_id, pl.col("tow_date") <= tow["tow_date"]
     )
-    before = others.filter(**{name: tow[name] for name in LINE}).sort("tow_date").tail(1)
+    others = _at_speed(
+        curves.join(dated, on="tow_id", maintain_order="left"), tow["declared_speed_m_s"]
+    ).sort("tow_date", "tow_id")
     like = others.filter(
         pl.col("fsn_no") != tow["fsn_no"], crew_class=tow["crew_class"], boat_type=tow["boat_type"]
-    )
-    newest = like.sort("tow_date", maintain_order=True).unique(LINE, keep="last")
-    runs, checks = (
-        store.read(name, method).filter(tow_id=tow_id) for name in ("run_points", "assessments")
     )
     return Assessment(
         method=method,
         simulated=bool(store.read("about_archive")["simulated"][0]),
         tow=tow,
         curve=curves.filter(tow_id=tow_id).row(0, named=True),
-        runs=runs.sort("run").to_dicts(),
-        checks=checks.filter("flagged").to_dicts(),
+        runs=store.read("run_points", method).filter(tow_id=tow_id).sort("run").to_dicts(),
+        checks=store.read("assessments", method).filter("flagged", tow_id=tow_id).to_dicts(),
         lost=set_aside.to_dicts(),
-        own_before=next(iter(before.to_dicts()), None),
-        of_type=newest.select(
+        own_before=next(
+            others.filter(**{name: tow[name] for name in LINE}).reverse().iter_rows(named=True),
+            None,
+        ),
+        of_type=like.unique(LINE, keep="last")
+        .select(
             n=pl.len(),
             median=pl.col("cw_kg_m").median(),
             lowest=pl.col("cw_kg_m").min(),
             highest=pl.col("cw_kg_m").max(),
-        ).row(0, named=True),
+        )
+        .row(0, named=True),
     )
 
 
 def _at_speed(curves: pl.DataFrame, speed_m_s: float) -> pl.DataFrame:
-    """Curves with Cw = A / (1 - (v/B)^2) and its interval at a speed; those that end below it go.
+    """Curves with Cw and its interval at a speed; those that end below it go.
 
     The interval keeps its width in per cent.
     """
-    bend = 1.0 - (speed_m_s / pl.col("b_m_s").fill_null(float("inf"))) ** 2
-    cw, own = pl.col("a_kg_m") / bend, pl.col("cw_kg_m")
-    ends = {name: cw * pl.col(name) / own for name in ("cw_lo_kg_m", "cw_hi_kg_m")}
-    sound = curves.filter(pl.col("status") != "rejected", bend > 0).drop_nulls("a_kg_m")
-    return sound.with_columns(**ends, cw_kg_m=cw)
+    sound = curves.filter(pl.col("status") != "rejected").drop_nulls("a_kg_m")
+    b = sound["b_m_s"].fill_null(np.inf)
+    cw = pl.lit(pl.Series(curve.cw(sound["a_kg_m"], curve.s_of_b(b), speed_m_s)))
+    ends = {name: cw * pl.col(name) / pl.col("cw_kg_m") for name in ("cw_lo_kg_m", "cw_hi_kg_m")}
+    return sound.with_columns(**ends, cw_kg_m=cw).filter(pl.col("cw_kg_m").is_finite())

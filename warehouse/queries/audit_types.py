@@ -20,6 +20,9 @@ from warehouse.store.database import is_simulated, rows
 ENOUGH_POWER: Final = 0.8
 """Chance of seeing a spread of B of 10 % from which on "equal bends are possible" is said."""
 
+WEIGHT_LINE: Final = {"quantity": "cw_standard_kg_m", "explaining": "weight_kg", "within": "all"}
+"""The line about which the level of a type is judged."""
+
 TYPE: Final = f"coalesce(b.boat_type, '{UNKNOWN_TYPE}')"
 """A boat's type in a query that calls the table of boats b."""
 
@@ -138,8 +141,10 @@ def _type_under(
         (found.pop(name) or [absent])[0]
         for name in ("bends", "speed_trend", "repeats", "prediction")
     )
+    newest = rows(db, _LINES, method, boat_type, NEWEST)
     return TypeStatistics(
-        lines=rows(db, _LINES, method, boat_type, ALL if tows == ALL else NEWEST),
+        lines=rows(db, _LINES, method, boat_type, ALL) if tows == ALL else newest,
+        weight_line=[row for row in newest if row.items() >= WEIGHT_LINE.items()],
         bends=bends,
         speed_trend=trend,
         repeats=repeats,
@@ -161,7 +166,7 @@ def differences(first: TypeStatistics, *others: TypeStatistics) -> list[str]:
     found = []
     for second in others:
         own, other = _intervals(first), _intervals(second)
-        found += [name for name in own if name in other and _apart(own[name], other[name])]
+        found += [name for name in own if name in other and apart(own[name], other[name])]
         if {first.bends["equal_possible"], second.bends["equal_possible"]} == {True, False}:
             found.append("bends")
     return found
@@ -184,9 +189,9 @@ def _intervals(under: TypeStatistics) -> dict[str, tuple[float, float, float]]:
     }
 
 
-def _apart(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
-    half = hypot(*(0.5 * (hi - lo) for _, lo, hi in (one, other)))
-    return abs(one[0] - other[0]) > half
+def apart(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
+    """Whether two numbers, each with its interval, differ by more than both (root sum square)."""
+    return abs(one[0] - other[0]) > hypot(*(0.5 * (hi - lo) for _, lo, hi in (one, other)))
 
 
 _FACTS = f"""
@@ -228,11 +233,6 @@ FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
 WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
 """
 
-_WEIGHT_LINE = """
-SELECT * FROM type_lines WHERE method = ? AND boat_type = ? AND tows = 'newest'
-AND quantity = 'cw_standard_kg_m' AND explaining = 'weight_kg' AND within = 'all'
-"""
-
 _REPEATS = f"""
 SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
        count(p.e_n) AS n_e_n, count(*) FILTER (WHERE abs(p.e_n) > 1) AS n_disagree
@@ -257,7 +257,6 @@ _STATISTICS: Final = {
     "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'",
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
-    "weight_line": _WEIGHT_LINE,
     "bends": _BENDS,
     "speed_trend": _TREND,
     "shared": _SHARED,
