@@ -114,7 +114,7 @@ def no_room_for_records(_, tmp_path):
 
 MACHINE_FAULTS = {
     few_file_handles: "may not open more files",
-    little_memory: "memory",  # where Polars or DuckDB is short of it, they end the process themselves
+    little_memory: "memory",  # Polars and DuckDB end the process themselves where they lack it
     damaged_records: "Remove that folder",
     no_room_for_records: "no room left",
 }
