@@ -7,6 +7,7 @@ or one type is in `warehouse.queries.audit`.
 from dataclasses import dataclass
 
 from pipeline.tables.row import Row
+from warehouse.queries.views import SIZED_FAULTS
 from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
 
@@ -59,7 +60,7 @@ class LogErrorReport:
         method: whose factors.
         factors: rows of `log_factors` with what each rests on.
         parts: the same per part of a season and log.
-        diagnosis: rows of `season_diagnosis` that are not sound.
+        diagnosis: faults of the season, with their size, that are not sound.
     """
 
     simulated: bool
@@ -122,10 +123,10 @@ WHERE method = ? AND season IN (SELECT season FROM season_links WHERE part > 0)
 ORDER BY season, part
 """
 
-_DIAGNOSIS = """
-SELECT season, part, instrument, unit, estimate, lo, hi, p_fault, distance_sd, verdict, first_tow,
-       rests_on, confused_with
-FROM season_diagnosis
+_DIAGNOSIS = f"""
+SELECT season, part, instrument, unit, size, size_lo, size_hi, p_fault, distance_sd, verdict,
+       first_tow, rests_on, confused_with
+FROM ({SIZED_FAULTS})
 WHERE method = ? AND verdict NOT IN ('sound', 'estimated')
 ORDER BY season, part, instrument
-"""
+"""  # noqa: S608

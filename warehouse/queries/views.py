@@ -17,6 +17,16 @@ from warehouse.store.store import Store
 
 DRAFT: Final = "concept-"
 
+SIZED_FAULTS: Final = """
+SELECT * EXCLUDE (estimate, lo, hi)
+         REPLACE (CASE unit WHEN '1' THEN '%' ELSE unit END AS unit),
+       CASE unit WHEN '1' THEN 100 * (exp(estimate) - 1) ELSE estimate END AS size,
+       CASE unit WHEN '1' THEN 100 * (exp(lo) - 1) ELSE lo END AS size_lo,
+       CASE unit WHEN '1' THEN 100 * (exp(hi) - 1) ELSE hi END AS size_hi
+FROM season_diagnosis
+"""
+"""What may be wrong with instruments, with its size in per cent or N instead of a logarithm."""
+
 
 class Views:
     """The open database, with the questions pages ask; as of a day, if one is given."""
@@ -185,14 +195,7 @@ SELECT p.* REPLACE ((wind_angle_deg + 180) % 360 - 180 AS wind_angle_deg),
        t.fsn_no, t.season, t.declared_speed_m_s
 FROM run_points AS p JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run
 """,
-    # What may be wrong with instruments, sizes in per cent, or in N.
-    "season_diagnosis": """
-SELECT * REPLACE (CASE unit WHEN '1' THEN '%' ELSE unit END AS unit),
-       CASE unit WHEN '1' THEN 100 * (exp(estimate) - 1) ELSE estimate END AS size,
-       CASE unit WHEN '1' THEN 100 * (exp(lo) - 1) ELSE lo END AS size_lo,
-       CASE unit WHEN '1' THEN 100 * (exp(hi) - 1) ELSE hi END AS size_hi
-FROM season_diagnosis
-""",
+    "season_diagnosis": SIZED_FAULTS,
     # Steps of seasons in per cent instead of logarithms.
     "season_steps": """
 SELECT *, 100 * (exp(level_step) - 1) AS level_step_percent, 100 * level_step_sd
