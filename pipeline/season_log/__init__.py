@@ -29,7 +29,7 @@ of the load cell, z its zero. Faults are rare and large: each is there or not. h
 about the factor at which ln Cw and q hold (`reference_ln`).
 """
 
-from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
+from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors, first_estimate
 from pipeline.season_log.retow_design import retow_choice
 
-__all__ = ["SeasonFactors", "estimate_season_factors", "retow_choice"]
+__all__ = ["SeasonFactors", "estimate_season_factors", "first_estimate", "retow_choice"]

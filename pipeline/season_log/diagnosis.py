@@ -139,9 +139,7 @@ def _of_log(posterior: Posterior, columns: IntArray) -> str:
 def _confused_with(posterior: Posterior, columns: IntArray, faults: IntArray) -> str | None:
     """Other faults that would explain as much, likeliest first; then what would pass for them."""
     effects, active = posterior.fit.problem.effects, posterior.fit.active
-    named = effects.frame.select(
-        pl.concat_str("name", pl.col("season").cast(pl.String), separator=" ", ignore_nulls=True)
-    ).to_series()
+    named = effects.named
     likely = (
         pl.DataFrame({"name": named.gather(effects.faults)})
         .with_columns(chance=posterior.instead[faults].sum(axis=0))

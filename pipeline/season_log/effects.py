@@ -104,6 +104,13 @@ class Effects:
         return cls(frame, np.stack([effect.share for effect in listed], axis=1))
 
     @cached_property
+    def named(self) -> pl.Series:
+        """What each is called among those of all seasons."""
+        season = pl.col("season").cast(pl.String)
+        name = pl.concat_str("name", season, separator=" ", ignore_nulls=True)
+        return self.frame.select(name).to_series()
+
+    @cached_property
     def name(self) -> StrArray:
         """What each is, (e,)."""
         return self.frame["name"].to_numpy().astype(str)

@@ -19,7 +19,7 @@ from pipeline.season_log.factors import (
     guarded,
     without_each_boat,
 )
-from pipeline.season_log.faults import solve
+from pipeline.season_log.faults import Posterior, roughly, solve
 from pipeline.season_log.fit import OF_TOWS, Problem
 from pipeline.season_log.tow_estimates import best_estimates, instrument_errors
 
@@ -92,7 +92,16 @@ class SeasonFactors:
         return NOT_SETTLED in own["source"]
 
 
-def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
+def first_estimate(tows: pl.DataFrame) -> Posterior:
+    """What the logs read, well enough to say where tows are to be compared.
+
+    Args:
+        tows: as `estimate_season_factors` is given them.
+    """
+    return guarded(roughly(_problem(tows)))
+
+
+def estimate_season_factors(tows: pl.DataFrame, first: Posterior | None = None) -> SeasonFactors:
     """Log factors of all seasons at once, from repeat tows and plain GPS.
 
     Args:
@@ -111,6 +120,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
             `others_calibration_ln`, ln factor of the log by dGPS in other tows, null without, with
             its `_sd`; `force_sd`, of the load cell by its record, null without one;
             `temperature_known`, of the water.
+        first: an estimate from nearly the same numbers, to begin at.
 
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
@@ -126,8 +136,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
-    _refuse_unknown(tows)
-    posterior = guarded(solve(Problem.of(ArchiveTows.of(tows), USUAL)))
+    posterior = guarded(solve(_problem(tows), None if first is None else first.fit))
     fitted, change = posterior.fit, without_each_boat(posterior.fit)
     factors, covariance = factors_of(posterior, change)
     instruments = instrument_errors(posterior, change)
@@ -152,6 +161,11 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
         diagnosis=diagnosis,
         steps=season_steps(posterior, diagnosis),
     )
+
+
+def _problem(tows: pl.DataFrame) -> Problem:
+    _refuse_unknown(tows)
+    return Problem.of(ArchiveTows.of(tows), USUAL)
 
 
 def _refuse_unknown(tows: pl.DataFrame) -> None:

@@ -78,14 +78,32 @@ class Posterior:
         return np.asarray(tied & ~self.refused)
 
     @property
+    def ln_factor(self) -> FloatArray:
+        """Of the log of each tow, (tows,); NaN where it is not known, 0 for an anchored tow."""
+        of_log = self.fit.share @ np.where(self.fit.of_log, self.fit.value, 0.0)
+        return np.where(self.log_known, of_log, np.nan)
+
+    @property
     def log_known(self) -> BoolArray:
         """Tows whose log is determined, and anchored ones, (tows,)."""
         return np.append(self.determined, [True])[self.fit.problem.tows.log]
 
 
-def solve(problem: Problem) -> Posterior:
-    """The posterior of everything, with the faults that the archive shows."""
-    rough = _with_needed_faults(problem, _with_needed_faults(problem, None, changes=False))
+def roughly(problem: Problem) -> Posterior:
+    """The posterior of everything, good enough to say which faults the archive shows."""
+    unchanged = _with_needed_faults(problem, None, changes=False)
+    return _posterior(_with_needed_faults(problem, unchanged))
+
+
+def solve(problem: Problem, start: Fit | None = None) -> Posterior:
+    """The posterior of everything, with the faults that the archive shows.
+
+    Args:
+        start: a fit of nearly the same numbers; it counts where the effects are the same.
+    """
+    if start is None or not start.problem.effects.frame.equals(problem.effects.frame):
+        start = roughly(problem).fit
+    rough = _with_needed_faults(problem, start)
     sharp = fit(problem, rough.active, rough)
     return _posterior(replace(sharp, settled=rough.settled and sharp.settled))
 

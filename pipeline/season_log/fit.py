@@ -21,6 +21,10 @@ from pipeline.season_log.effects import OF_BOATS, Effects, Slopes, slopes
 
 MAX_ITERATIONS: Final = 500
 TOLERANCE: Final = 1e-10
+STEADY: Final = 0.1
+"""A step that differs from the last by less than this, but for its length, goes on as that did."""
+SLOWEST: Final = 0.95
+"""Ratio of steps above which they seem not to shrink at all."""
 UNTROUBLED: Final = 4
 """First iterations, in which no boat is taken for changed: logs may be far off yet.
 
@@ -245,13 +249,26 @@ def fit(
     if start is not None:
         value[start.active], ln_variance, shares = start.value, start.ln_variance, start.shares
     place = np.concatenate([value[active], ln_variance, scipy.special.logit(shares)])
+    last = np.zeros(len(place))
     for iteration in range(MAX_ITERATIONS):
         begins = start is None and iteration < UNTROUBLED
         fitted, step = _step(problem, active, place, changes and not begins)
         if np.abs(step).max() < tolerance and not begins:
             return fitted
-        place = place + step
+        place = place + _to_the_end(step, last)
+        last = step
     return replace(fitted, settled=False)
+
+
+def _to_the_end(step: FloatArray, last: FloatArray) -> FloatArray:
+    """The sum of all steps to come where each is the one before, shortened alike (Aitken).
+
+    So end the steps of a mixture's shares: each halves what is left.
+    """
+    ratio = float(step @ last) / max(float(last @ last), 1e-300)
+    rest = step - ratio * last
+    goes_on = 0.0 < ratio < SLOWEST and bool(rest @ rest < STEADY**2 * (step @ step))
+    return step / (1.0 - ratio) if goes_on else step
 
 
 def _step(

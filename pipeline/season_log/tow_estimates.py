@@ -57,7 +57,7 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     share, value, determined = fitted.share, fitted.value, posterior.log_known
     return problem.tows.frame.select(
         "tow_id",
-        _where(determined, "factor", np.exp(share[:, speed] @ value[speed])),
+        pl.Series("factor", np.exp(posterior.ln_factor)).fill_nan(None),
         pl.Series("force_factor", np.exp(share[:, force] @ value[force])),
         pl.Series("force_zero_n", share[:, zero] @ value[zero]),
         pl.Series("bend", problem.q),
