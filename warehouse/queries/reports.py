@@ -5,9 +5,9 @@ or one type is in `warehouse.queries.audit`.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 from pipeline.tables.row import Row
-from warehouse.queries.views import SIZED_FAULTS
 from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
 
@@ -122,6 +122,16 @@ SELECT season, part, source, n_tows, n_links, factor, lo, hi FROM season_links
 WHERE method = ? AND season IN (SELECT season FROM season_links WHERE part > 0)
 ORDER BY season, part
 """
+
+SIZED_FAULTS: Final = """
+SELECT * EXCLUDE (estimate, lo, hi)
+         REPLACE (CASE unit WHEN '1' THEN '%' ELSE unit END AS unit),
+       CASE unit WHEN '1' THEN 100 * (exp(estimate) - 1) ELSE estimate END AS size,
+       CASE unit WHEN '1' THEN 100 * (exp(lo) - 1) ELSE lo END AS size_lo,
+       CASE unit WHEN '1' THEN 100 * (exp(hi) - 1) ELSE hi END AS size_hi
+FROM season_diagnosis
+"""
+"""What may be wrong with instruments, with its size in per cent or N instead of a logarithm."""
 
 _DIAGNOSIS = f"""
 SELECT season, part, instrument, unit, size, size_lo, size_hi, p_fault, distance_sd, verdict,

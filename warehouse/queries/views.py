@@ -11,21 +11,12 @@ import polars as pl
 
 from pipeline.register.register import LINE, with_empty_thwart
 from warehouse.queries.as_of import lay_over, lay_published
+from warehouse.queries.reports import SIZED_FAULTS
 from warehouse.store.database import open_database
 from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
 from warehouse.store.store import Store
 
 DRAFT: Final = "concept-"
-
-SIZED_FAULTS: Final = """
-SELECT * EXCLUDE (estimate, lo, hi)
-         REPLACE (CASE unit WHEN '1' THEN '%' ELSE unit END AS unit),
-       CASE unit WHEN '1' THEN 100 * (exp(estimate) - 1) ELSE estimate END AS size,
-       CASE unit WHEN '1' THEN 100 * (exp(lo) - 1) ELSE lo END AS size_lo,
-       CASE unit WHEN '1' THEN 100 * (exp(hi) - 1) ELSE hi END AS size_hi
-FROM season_diagnosis
-"""
-"""What may be wrong with instruments, with its size in per cent or N instead of a logarithm."""
 
 
 class Views:
