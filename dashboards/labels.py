@@ -409,7 +409,6 @@ CODES: Final[dict[str, Sentence]] = {
     "cw_standard_kg_m": say("Cw at standard speed"),
     "q": say("bend q"),
     "bend": say("bend (v/B)²"),
-    "own": say("own"),
     "shared": say("shared"),
     "a_kg_m": say("A"),
     "b_m_s": say("B"),

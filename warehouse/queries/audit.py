@@ -181,7 +181,7 @@ ORDER BY tow_date, tow_id
 
 _OPTIONS: Final = """
 SELECT o.* FROM option_effects AS o JOIN tows AS t USING (tow_id)
-WHERE t.fsn_no = ? AND list_contains(?, method) AND cw_effect_ratio IS NOT NULL
+WHERE t.fsn_no = ? AND list_contains(?, method)
 ORDER BY tow_id, method, study, abs(ln(cw_effect_ratio)) DESC, option
 """
 
