@@ -276,7 +276,7 @@ RANGES: Final = (
 def _verdict(of_type: OneType, method: str) -> str:
     """Whether they are equal, as the site says it, and which tows lie outside the type."""
     under = of_type.under[method]
-    tested = {"p_value": None, "power_at_10pct": None} | under.bends
+    tested = {"p_value": None} | under.bends
     names = [with_crew(row) for row in under.tows_outside]
     outside = ", ".join(
         f"{row['fsn_no']} {row['name']} {row['crew']} {row['season']}" for row in names

@@ -27,6 +27,9 @@ from pipeline.tables.row import Row
 
 LEVEL: Final = 0.05
 FEWEST_BOATS: Final = 3
+ENOUGH_POWER: Final = 0.8
+"""Power at `POWER_AT` from which on no difference seen means that bends can be equal."""
+
 POWER_AT: Final = 0.10
 """True coefficient of variation of B at which the power of the test is stated."""
 
@@ -217,8 +220,10 @@ def _tested(boats: Observed, boat_type: str) -> Row:
     if within <= 1e-20 * boats.table.height:
         return counts | {"reason": "no_scatter"}
     f = between / dof[0] / (within / dof[1])
+    p_value = float(scipy.special.fdtrc(*dof, f))
     found = counts | {
-        "p_value": float(scipy.special.fdtrc(*dof, f)),
+        "p_value": p_value,
+        "equal_possible": equal_possible(p_value, power=0.0),
         "noise_share": min(1.0, 1.0 / f) if f > 0 else 1.0,
         "reason": "",
     }
@@ -226,10 +231,24 @@ def _tested(boats: Observed, boat_type: str) -> Row:
     if not 0.0 < shared * _middle_speed(boats) ** 2 < 1.0:
         return found
     seen = shapes.weights(_slopes_by_b(boats, shared)) * dof[1] / within
+    at_10pct = power(POWER_AT**2 * seen, dof)
     return found | {
         "shared_b_m_s": float(1.0 / np.sqrt(shared)),
-        "power_at_10pct": power(POWER_AT**2 * seen, dof),
+        "power_at_10pct": at_10pct,
+        "equal_possible": equal_possible(p_value, at_10pct),
     }
+
+
+def equal_possible(p_value: float, power: float) -> bool | None:
+    """Whether all boats of a type can have one bend; None where the test could not have seen it.
+
+    Args:
+        p_value: of the test.
+        power: of the test at `POWER_AT`.
+    """
+    if p_value < LEVEL:
+        return False
+    return True if power >= ENOUGH_POWER else None
 
 
 def _slopes_by_b(boats: Observed, shared_s2_m2: float) -> FloatArray:

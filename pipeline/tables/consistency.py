@@ -149,6 +149,9 @@ class TypeHomogeneity(PerMethod):
     p_value = column.number("1", "chance of such an F with one bend", nullable=True, min=0, max=1)
     power_at_10pct = column.number("1", "chance to see a true spread of B of 10 %", nullable=True)
     noise_share = column.number("1", "share of the bends' spread that noise gives", nullable=True)
+    equal_possible = dy.Bool(
+        nullable=True, description="all may have one bend; empty where the test is too weak to say"
+    )
     shared_b_m_s = column.number("m/s", "B of the one bend; empty without", nullable=True)
     reason = column.text("why there is no test: no_type, few_boats, no_scatter; else empty")
 

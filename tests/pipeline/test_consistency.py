@@ -9,7 +9,7 @@ import pytest
 from pipeline import model
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.components import variance_components
-from pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
+from pipeline.consistency.homogeneity import equal_possible, pooled_curves, type_homogeneity
 from pipeline.consistency.lines import (
     LN_CW,
     quantities,
@@ -63,6 +63,14 @@ def humped():
 def test_like_boats_raise_few_false_alarms(tables):
     p = type_homogeneity(observe(*tables()))["p_value"].to_numpy()
     assert within((p < 0.05).mean(), 0.05, TRIALS)
+
+
+@pytest.mark.parametrize(
+    ("p_value", "power", "verdict"),
+    [(0.3, 0.9, True), (0.3, 0.5, None), (0.01, 0.9, False), (0.01, 0.5, False)],
+)
+def test_equal_bends_are_possible_only_by_a_test_that_could_have_failed(p_value, power, verdict):
+    assert equal_possible(p_value, power) is verdict
 
 
 def test_power_is_what_is_stated_and_enough():

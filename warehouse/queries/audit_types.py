@@ -11,14 +11,10 @@ from typing import Final
 import duckdb
 
 from pipeline.consistency.eras import ERAS
-from pipeline.consistency.homogeneity import LEVEL
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.tables.row import Row
 from warehouse.queries.chosen_tows import ALL, NEWEST
 from warehouse.store.database import is_simulated, rows
-
-ENOUGH_POWER: Final = 0.8
-"""Chance of seeing a spread of B of 10 % from which on "equal bends are possible" is said."""
 
 WEIGHT_LINE: Final = {"quantity": "cw_standard_kg_m", "explaining": "weight_kg", "within": "all"}
 """The line about which the level of a type is judged."""
@@ -48,7 +44,7 @@ class TypeStatistics:
 
     Attributes:
         lines: rows of `type_lines` with `follows`.
-        bends: the row of `type_homogeneity` with `equal_possible`, or `n` and `reason`.
+        bends: the row of `type_homogeneity`, or `n`, `reason` and `equal_possible`.
         speed_trend: the row of that table with `follows`, or `n` and `reason`.
         shared: per pooling, what sharing a bend does to B and Cw.
         repeats: how repeat pairs spread, how many have an E_n, and of how many it is above 1.
@@ -214,13 +210,6 @@ ORDER BY quantity, explaining, within
 
 _TREND = f"SELECT *, {_FOLLOWS} FROM speed_trend WHERE method = ? AND boat_type = ?"  # noqa: S608
 
-_BENDS = f"""
-SELECT *, CASE WHEN reason != '' THEN NULL WHEN p_value < {LEVEL} THEN false
-          WHEN power_at_10pct >= {ENOUGH_POWER} THEN true END AS equal_possible
-FROM type_homogeneity WHERE method = ? AND boat_type = ?
-"""  # noqa: S608
-"""With a verdict: None where the test could not have seen a difference."""
-
 _SHARED = """
 SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
        count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
@@ -257,7 +246,7 @@ _STATISTICS: Final = {
     "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'",
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
-    "bends": _BENDS,
+    "bends": "SELECT * FROM type_homogeneity WHERE method = ? AND boat_type = ?",
     "speed_trend": _TREND,
     "shared": _SHARED,
     "outside": _NAMED.format("type_outliers", "outside", "abs(deviation_sd) DESC"),
