@@ -81,15 +81,13 @@ def find_season_factors(computed: Sequence[Computed]) -> SeasonFactors:
         pl.col("declared_speed_m_s").median().alias("speed")
     )
 
-    def tows(ln_factor: Mapping[str, float]) -> pl.DataFrame:
-        rows = pl.concat([_rows(c, reference, ln_factor) for c in computed]).drop_nulls("ln_cw")
-        return _with_calibrations(_with_kappa(rows))
+    def rows(ln_factor: Mapping[str, float]) -> pl.DataFrame:
+        found = pl.concat([_rows(c, reference, ln_factor) for c in computed]).drop_nulls("ln_cw")
+        return _with_calibrations(_with_kappa(found))
 
-    first = first_estimate(tows({}))
+    first = first_estimate(rows({}))
     known = zip(first.fit.problem.tows.frame["tow_id"], first.ln_factor.tolist(), strict=True)
-    return estimate_season_factors(
-        tows({tow: value for tow, value in known if math.isfinite(value)}), first
-    )
+    return estimate_season_factors(rows({t: ln for t, ln in known if math.isfinite(ln)}), first)
 
 
 def instruments_of(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> pl.DataFrame:

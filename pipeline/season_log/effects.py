@@ -104,16 +104,21 @@ class Effects:
         return cls(frame, np.stack([effect.share for effect in listed], axis=1))
 
     @cached_property
-    def named(self) -> pl.Series:
-        """What each is called among those of all seasons."""
-        season = pl.col("season").cast(pl.String)
-        name = pl.concat_str("name", season, separator=" ", ignore_nulls=True)
-        return self.frame.select(name).to_series()
-
-    @cached_property
     def name(self) -> StrArray:
         """What each is, (e,)."""
         return self.frame["name"].to_numpy().astype(str)
+
+    @cached_property
+    def label(self) -> StrArray:
+        """The name of each with its season, (e,)."""
+        season = pl.col("season").cast(pl.String)
+        label = pl.concat_str("name", season, separator=" ", ignore_nulls=True)
+        return self.frame.select(label).to_series().to_numpy().astype(str)
+
+    @cached_property
+    def kind(self) -> IntArray:
+        """A number that all places where one log may have changed have in common, (e,)."""
+        return self.frame["kind"].to_numpy()
 
     @cached_property
     def way(self) -> StrArray:

@@ -16,7 +16,6 @@ from pipeline.season_log.factors import (
     GPS,
     NOT_SETTLED,
     factors_of,
-    guarded,
     without_each_boat,
 )
 from pipeline.season_log.faults import Posterior, roughly, solve
@@ -93,15 +92,16 @@ class SeasonFactors:
 
 
 def first_estimate(tows: pl.DataFrame) -> Posterior:
-    """What the logs read, well enough to say where tows are to be compared.
+    """A rough one of all that `estimate_season_factors` estimates, from the same rows.
 
-    Args:
-        tows: as `estimate_season_factors` is given them.
+    Raises:
+        BrokenPromiseError: as there.
     """
-    return guarded(roughly(_problem(tows)))
+    _refuse_unknown(tows)
+    return roughly(Problem.of(ArchiveTows.of(tows), USUAL))
 
 
-def estimate_season_factors(tows: pl.DataFrame, first: Posterior | None = None) -> SeasonFactors:
+def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -> SeasonFactors:
     """Log factors of all seasons at once, from repeat tows and plain GPS.
 
     Args:
@@ -120,13 +120,13 @@ def estimate_season_factors(tows: pl.DataFrame, first: Posterior | None = None) 
             `others_calibration_ln`, ln factor of the log by dGPS in other tows, null without, with
             its `_sd`; `force_sd`, of the load cell by its record, null without one;
             `temperature_known`, of the water.
-        first: an estimate from nearly the same numbers, to begin at.
+        near: a first estimate to begin at.
 
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
         GPS alone, `not determined` (numbers null) where neither ties it to an anchored season, and
         `not settled` where the search did not come to rest, and (numbers null) where the factor
-        contradicts what needs no model (`factors.guarded`). `ln_sd`, the standard deviation of
+        contradicts what needs no model (`guard`). `ln_sd`, the standard deviation of
         ln factor, is made up of three parts: `repeat_tows_sd`, by the scatter of repeat tows;
         `gps_sd`, by plain GPS; `assumed_sd`, by what is assumed of log, load cell and boats.
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
@@ -136,7 +136,8 @@ def estimate_season_factors(tows: pl.DataFrame, first: Posterior | None = None) 
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
-    posterior = guarded(solve(_problem(tows), None if first is None else first.fit))
+    _refuse_unknown(tows)
+    posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
     fitted, change = posterior.fit, without_each_boat(posterior.fit)
     factors, covariance = factors_of(posterior, change)
     instruments = instrument_errors(posterior, change)
@@ -161,11 +162,6 @@ def estimate_season_factors(tows: pl.DataFrame, first: Posterior | None = None) 
         diagnosis=diagnosis,
         steps=season_steps(posterior, diagnosis),
     )
-
-
-def _problem(tows: pl.DataFrame) -> Problem:
-    _refuse_unknown(tows)
-    return Problem.of(ArchiveTows.of(tows), USUAL)
 
 
 def _refuse_unknown(tows: pl.DataFrame) -> None:
