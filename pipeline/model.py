@@ -45,18 +45,18 @@ class Boats:
     Attributes:
         rows: (b, n) places of their numbers.
         design: (b, n, k) slope of the numbers by the unknowns.
-        residual: (b, patterns, n) of the numbers under each pattern.
         pull: (b, patterns, n) precision of the numbers times their residual.
         weight: (b, patterns) posterior of each pattern.
-        precision: (b, n, n) of the numbers, averaged over patterns.
+        widest: (b, n, n) precision of the numbers of a boat to which no pattern adds anything.
+        less: (b, patterns, n, d) what a pattern takes off: its precision is `widest` - less less'.
     """
 
     rows: IntArray
     design: FloatArray
-    residual: FloatArray
     pull: FloatArray
     weight: FloatArray
-    precision: FloatArray
+    widest: FloatArray
+    less: FloatArray
 
     @classmethod
     def of(
@@ -65,22 +65,46 @@ class Boats:
         design: FloatArray,
         residual: FloatArray,
         covariance: FloatArray,
+        added: FloatArray,
         ln_prior: FloatArray,
     ) -> Self:
         """What boats say, each of which follows one of a few patterns.
 
         Args:
-            rows, design, residual: as the attributes.
-            covariance: (b, patterns, n, n) of the numbers, without what the unknowns add.
-            ln_prior: (patterns,) of each pattern.
+            rows, design: as the attributes.
+            residual: (b, patterns, n) of the numbers under each pattern.
+            covariance: (b, n, n) of the numbers, without what patterns and unknowns add.
+            added: (b, patterns, n, d) what a pattern adds to that: added added'.
+            ln_prior: (b, patterns) of each pattern.
         """
-        inverse: FloatArray = np.linalg.inv(covariance).astype(np.float64)
-        determinant = np.linalg.slogdet(covariance)[1]
-        pull = np.einsum("bpij,bpj->bpi", inverse, residual)
-        ln_density = -0.5 * ((pull * residual).sum(axis=2) + determinant)
-        weight = shares(ln_density + ln_prior)
-        precision = np.einsum("bp,bpij->bij", weight, inverse)
-        return cls(rows, design, residual, pull, weight, precision)
+        widest: FloatArray = np.linalg.inv(covariance).astype(np.float64)
+        ln_determinant = np.linalg.slogdet(covariance)[1][:, None]
+        less = widest[:, None] @ added
+        for place in range(added.shape[3]):  # one rank after the other (Sherman & Morrison)
+            direction, product = added[..., place], less[..., place]
+            for before in range(place):
+                earlier = less[..., before]
+                product = product - earlier * (earlier * direction).sum(axis=2, keepdims=True)
+            gain = 1.0 + (direction * product).sum(axis=2)
+            less[..., place] = product / np.sqrt(gain)[..., None]
+            ln_determinant = ln_determinant + np.log(gain)
+        pull = residual @ widest
+        pull -= (less @ (np.swapaxes(less, 2, 3) @ residual[..., None]))[..., 0]
+        ln_density = -0.5 * ((pull * residual).sum(axis=2) + ln_determinant)
+        return cls(rows, design, pull, shares(ln_density + ln_prior), widest, less)
+
+    @cached_property
+    def precision(self) -> FloatArray:
+        """Precision of the numbers, averaged over patterns, (b, n, n)."""
+        count, size = self.rows.shape
+        less = np.swapaxes(self.less, 1, 2).reshape(count, size, -1)
+        weight = np.repeat(self.weight, self.less.shape[3], axis=1)
+        return np.asarray(self.widest - (weight[:, None] * less) @ np.swapaxes(less, 1, 2))
+
+    @property
+    def precision_of_patterns(self) -> FloatArray:
+        """Precision of the numbers under each pattern, (b, patterns, n, n)."""
+        return np.asarray(self.widest[:, None] - self.less @ np.swapaxes(self.less, 2, 3))
 
     @cached_property
     def mean_pull(self) -> FloatArray:
@@ -100,15 +124,19 @@ class Boats:
         off = self.pull - self.mean_pull[:, None]
         return self.precision - np.swapaxes(self.weight[..., None] * off, 1, 2) @ off
 
+    @cached_property
+    def observed(self) -> FloatArray:
+        """Observed precision of the numbers times the design, (b, n, k)."""
+        return np.asarray(self.observed_precision @ self.design)
+
     @property
     def information(self) -> FloatArray:
         """Observed information on the unknowns, per boat, (b, k, k)."""
-        return np.asarray(np.swapaxes(self.design, 1, 2) @ self.observed_precision @ self.design)
+        return np.asarray(np.swapaxes(self.design, 1, 2) @ self.observed)
 
-    @property
-    def complete_information(self) -> FloatArray:
-        """The same as if the pattern of each boat were known."""
-        return np.asarray(np.swapaxes(self.design, 1, 2) @ self.weighed)
+    def total(self, weighed: FloatArray) -> FloatArray:
+        """Information on the unknowns of all boats by a precision times the design, (k, k)."""
+        return np.tensordot(self.design, weighed, axes=([0, 1], [0, 1]))
 
     @property
     def score(self) -> FloatArray:

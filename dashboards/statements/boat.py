@@ -3,7 +3,6 @@
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import exp
 from typing import Final, NamedTuple
 
 from dashboards import labels
@@ -361,16 +360,17 @@ def _fault(fault: Row) -> Statement:
         "instrument": labels.code(fault["instrument"]),
         "season": fault["season"],
         "chance": "" if chance is None else Number(100 * chance, 0, "%"),
-        "size": Statement("force", say("{force}\u00a0N"), {"force": _force(fault)})
-        if fault["unit"] == "N"
-        else Change(exp(fault["estimate"])),
+        "size": Statement(
+            "size",
+            say("{size}\u00a0{unit}"),
+            {
+                "size": Number(fault["size"], 1, fault["unit"], sign="+"),
+                "unit": fault["unit"],
+            },
+        ),
     }
     verdict = fault["verdict"]
     return Statement("fault", FAULTS[verdict], values, verdict, ("season_diagnosis",))
-
-
-def _force(fault: Row) -> Number:
-    return Number(fault["estimate"], 1, "N", sign="+")
 
 
 def _place(line: Row) -> Iterator[Statement]:

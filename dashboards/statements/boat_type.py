@@ -14,35 +14,36 @@ from pipeline.consistency.homogeneity import LEVEL
 from pipeline.messages import say
 from pipeline.quantiles import NORMAL
 from pipeline.tables.row import Row
-from warehouse.queries.audit_types import ENOUGH_POWER
 
-
-def homogeneity(test: pl.DataFrame) -> Statement:
-    """Whether the boats of a type have equal curves: yes, no, or not to be told."""
-    if test.is_empty() or test["p_value"][0] is None:
-        return Statement("bends", say("Too few boats to tell whether they are equal."))
-    p_value, power = test["p_value"][0], test["power_at_10pct"][0] or 0.0
-    wording, verdict = (
+BENDS: Final = {
+    True: (
+        "equal",
+        say("No sign that the bends of the curves of these {n} tows differ (p = {p})."),
+    ),
+    False: (
+        "differ",
+        say(
+            "The bends of the curves of these {n} tows differ by more than noise explains "
+            "(p = {p})."
+        ),
+    ),
+    None: (
+        "cannot be told",
         say(
             "Whether the bends of the curves of these {n} tows differ cannot be told: the "
             "test is too weak."
         ),
-        "cannot be told",
-    )
-    if p_value < LEVEL:
-        wording, verdict = (
-            say(
-                "The bends of the curves of these {n} tows differ by more than noise explains "
-                "(p = {p})."
-            ),
-            "differ",
-        )
-    elif power >= ENOUGH_POWER:
-        wording, verdict = (
-            say("No sign that the bends of the curves of these {n} tows differ (p = {p})."),
-            "equal",
-        )
-    values = {"n": test["n"][0], "p": Number(p_value, unit="")}
+    ),
+}
+"""The verdict on the bends of a type and what is said of it, by `equal_possible`."""
+
+
+def homogeneity(test: pl.DataFrame) -> Statement:
+    """Whether the boats of a type have equal curves, as their row of `type_homogeneity` says."""
+    if test.is_empty() or test["p_value"][0] is None:
+        return Statement("bends", say("Too few boats to tell whether they are equal."))
+    verdict, wording = BENDS[test["equal_possible"][0]]
+    values = {"n": test["n"][0], "p": Number(test["p_value"][0], unit="")}
     return Statement("bends", wording, values, verdict, ("homogeneity",))
 
 

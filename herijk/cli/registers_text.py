@@ -136,10 +136,10 @@ def _diagnosis(faults: list[Row]) -> str:
     """Faults that were found, or of which nothing can be said."""
     if not faults:
         return tell("  nothing was found, and nothing is in doubt")
-    sizes = {"size": "estimate", "size_lo": "lo", "size_hi": "hi"}
+    sizes = ("size", "size_lo", "size_hi")
     rows = [
         fault
-        | {name: _size(fault[of], fault["unit"]) for name, of in sizes.items()}
+        | {name: _size(fault[name], fault["unit"]) for name in sizes}
         | {"confused_with": _or_else(fault["confused_with"])}
         for fault in faults
     ]
@@ -152,9 +152,7 @@ def _diagnosis(faults: list[Row]) -> str:
 
 
 def _size(value: float, unit: str) -> str:
-    if unit == "N":
-        return f"{speech().number(value, 1, '+')}\u00a0N"
-    return f"{speech().number(100 * value, 1, '+')}\u00a0%"
+    return f"{speech().number(value, 1, '+')}\u00a0{unit}"
 
 
 def _or_else(confused_with: str | None) -> str:

@@ -18,7 +18,7 @@ from pipeline.blocks.batch import Batch
 from pipeline.method.definition import Calibration, Steps
 from pipeline.recompute.budget import files_log_sd, force_uncertainty, scatter_of
 from pipeline.recompute.computed import Computed
-from pipeline.season_log import SeasonFactors, estimate_season_factors
+from pipeline.season_log import SeasonFactors, estimate_season_factors, first_estimate
 from pipeline.season_log.archive_tows import LOG
 from pipeline.steps.calibration import gps_factor
 from pipeline.tables.keys import LINE
@@ -81,12 +81,13 @@ def find_season_factors(computed: Sequence[Computed]) -> SeasonFactors:
         pl.col("declared_speed_m_s").median().alias("speed")
     )
 
-    def estimate(ln_factor: Mapping[str, float]) -> SeasonFactors:
-        rows = pl.concat([_rows(c, reference, ln_factor) for c in computed]).drop_nulls("ln_cw")
-        return estimate_season_factors(_with_calibrations(_with_kappa(rows)))
+    def rows(ln_factor: Mapping[str, float]) -> pl.DataFrame:
+        found = pl.concat([_rows(c, reference, ln_factor) for c in computed]).drop_nulls("ln_cw")
+        return _with_calibrations(_with_kappa(found))
 
-    known = estimate({}).instruments.drop_nulls("factor")
-    return estimate(dict(known.select("tow_id", pl.col("factor").log()).iter_rows()))
+    first = first_estimate(rows({}))
+    known = zip(first.fit.problem.tows.frame["tow_id"], first.ln_factor.tolist(), strict=True)
+    return estimate_season_factors(rows({t: ln for t, ln in known if math.isfinite(ln)}), first)
 
 
 def instruments_of(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> pl.DataFrame:

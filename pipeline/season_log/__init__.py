@@ -9,7 +9,8 @@ Belongs here:
 
 - what is assumed (`assumed`), and the unknowns with their effects (`effects`);
 - the tows and what ties them together (`archive_tows`), and the density of a boat's (`boats`);
-- the posterior of everything (`fit`), and which faults there are (`faults`);
+- the posterior of everything (`fit`), which faults there are (`faults`), which factors are refused
+  (`guard`);
 - what it says of logs (`factors`), tows (`tow_estimates`) and seasons (`diagnosis`);
 - which boats to tow again (`retow_design`).
 
@@ -29,7 +30,7 @@ of the load cell, z its zero. Faults are rare and large: each is there or not. h
 about the factor at which ln Cw and q hold (`reference_ln`).
 """
 
-from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
+from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors, first_estimate
 from pipeline.season_log.retow_design import retow_choice
 
-__all__ = ["SeasonFactors", "estimate_season_factors", "retow_choice"]
+__all__ = ["SeasonFactors", "estimate_season_factors", "first_estimate", "retow_choice"]

@@ -12,7 +12,7 @@ Does not: what moves the numbers of a tow (`effects`), the search for the unknow
 """
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 import scipy
@@ -20,6 +20,7 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.model import Boats
 from pipeline.season_log.assumed import Settings
+from pipeline.season_log.effects import Slopes
 
 LEVEL, BEND, GPS = range(3)
 """The numbers of a tow."""
@@ -30,31 +31,55 @@ LEVEL_SD: Final = 1.0
 
 @dataclass(frozen=True)
 class Patterns:
-    """Patterns of changes of b boats with the same number of tows, as many of them early.
+    """Patterns of changes of b boats with the same number of tows.
 
     Attributes:
         tow: (b, tows) place of each tow.
-        altered: (patterns,) whether the boat was altered between two tows.
+        after: (patterns, tows) whether a tow is from after an alteration.
         askew: (patterns, tows) whether a tow was pulled askew.
-        level, bend: (patterns, tows, tows) prior covariance of the boat's level and bend.
+        possible: (b, patterns) whether there may be such a pattern; askew are early tows only.
         years: (b, tows, tows) years that the drift of two tows has in common.
-        excess: (patterns, tows) mean of what being pulled askew adds to ln Cw.
-        excess_variance: of that.
+        settings: the priors.
     """
 
     tow: IntArray
-    altered: BoolArray
+    after: BoolArray
     askew: BoolArray
-    level: FloatArray
-    bend: FloatArray
+    possible: BoolArray
     years: FloatArray
-    excess: FloatArray
-    excess_variance: float
+    settings: Settings
+
+    @classmethod
+    def of(cls, tow: IntArray, season: FloatArray, early: BoolArray, settings: Settings) -> Self:
+        """Every pattern of at most one change: none, an alteration in each gap, each tow askew."""
+        tows = tow.shape[1]
+        which = np.eye(2 * tows, dtype=bool)[:, 1:]
+        since_first = season[tow] - season[tow[:, :1]]
+        return cls(
+            tow,
+            which[:, : tows - 1] @ np.tri(tows, tows - 1, -1, dtype=bool).T,
+            which[:, tows - 1 :],
+            np.concatenate([np.ones(tow.shape, dtype=bool), early[tow]], axis=1),
+            np.minimum(since_first[:, :, None], since_first[:, None, :]),
+            settings,
+        )
 
     @property
     def changes(self) -> FloatArray:
         """Which patterns are an alteration, and which a tow pulled askew, (patterns, 2)."""
-        return np.stack([self.altered, self.askew.any(axis=1)], axis=1).astype(np.float64)
+        changes = np.stack([self.after.any(axis=1), self.askew.any(axis=1)], axis=1)
+        return changes.astype(np.float64)
+
+    @property
+    def excess(self) -> FloatArray:
+        """Mean of what being pulled askew adds to ln Cw, (patterns, tows)."""
+        return np.asarray(self.settings.askew_excess.mean * self.askew)
+
+    @property
+    def level(self) -> FloatArray:
+        """Prior covariance of the boat's level at its tows, (patterns, tows, tows)."""
+        step = self.after[:, :, None] & self.after[:, None]
+        return np.asarray(LEVEL_SD**2 + self.settings.changed_sd**2 * step)
 
     def drift(self, state: FloatArray, variance: float) -> FloatArray:
         """Part of the covariance of the numbers that is the boats' drift, (b, n, n).
@@ -64,10 +89,11 @@ class Patterns:
             variance: of the drift of a boat's level, per year.
         """
         by_level = state[self.tow][..., 0].reshape(len(self.tow), -1)
-        return by_level[:, :, None] * by_level[:, None] * _per_number(variance * self.years)
+        years = np.repeat(np.repeat(variance * self.years, 3, axis=1), 3, axis=2)
+        return np.asarray(by_level[:, :, None] * by_level[:, None] * years)
 
     def covariance(self, own: FloatArray, state: FloatArray, drift: FloatArray) -> FloatArray:
-        """Covariance of the numbers of each boat under each pattern, (b, patterns, n, n).
+        """Covariance of the numbers of each boat that nothing changed, (b, n, n).
 
         Args:
             own: (all tows, 3, 3) of what is a tow's own.
@@ -75,21 +101,26 @@ class Patterns:
         """
         boats, tows = self.tow.shape
         z = state[self.tow].reshape(boats, 3 * tows, 2)
-        by_level, by_bend = (z[:, :, None, i] * z[:, None, :, i] for i in range(2))
-        full = by_level[:, None] * _per_number(self.level)
-        full += by_bend[:, None] * _per_number(self.bend)
-        full += drift[:, None]
-        of_pairs = full.reshape(boats, -1, tows, 3, tows, 3)
+        whole = drift + (z * [LEVEL_SD**2, self.settings.bend_sd**2]) @ np.swapaxes(z, 1, 2)
         each = np.arange(tows)
         # Indexing twice with one array puts that axis first.
-        of_pairs[:, :, each, :, each, :] += own[self.tow].swapaxes(0, 1)[:, :, None]
-        of_pairs[:, :, each, LEVEL, each, LEVEL] += self.excess_variance * self.askew
-        return full
+        of_pairs = whole.reshape(boats, tows, 3, tows, 3)
+        of_pairs[:, each, :, each, :] += own[self.tow].swapaxes(0, 1)
+        return np.asarray(whole)
+
+    def added(self, state: FloatArray) -> FloatArray:
+        """What each pattern adds to the covariance, as its root, (b, patterns, n, 2)."""
+        s, (boats, tows) = self.settings, self.tow.shape
+        z = state[self.tow][:, None] * [s.changed_sd, s.changed_bend_sd]
+        by = z * self.after[..., None, None]
+        by[..., LEVEL, 0] += s.askew_excess.sd * self.askew
+        return np.asarray(by.reshape(boats, -1, 3 * tows, 2))
 
     def boats(
         self,
         residual: FloatArray,
         covariance: FloatArray,
+        slopes: Slopes,
         design: FloatArray,
         shares: FloatArray | None,
     ) -> Boats:
@@ -98,6 +129,7 @@ class Patterns:
         Args:
             residual: (all tows, 3) observed less predicted, level centred per boat.
             covariance: as `covariance` gives it.
+            slopes: of the numbers.
             design: (all tows, 3, unknowns).
             shares: of gaps between tows in which a boat was altered without a report, and of early
                 tows that were pulled askew; None where nothing changed.
@@ -106,19 +138,21 @@ class Patterns:
         own = np.repeat(residual[self.tow][:, None], len(self.askew), axis=1)
         own[..., LEVEL] -= self.excess
         odds = np.full(2, -np.inf) if shares is None else scipy.special.logit(shares)
+        ln_prior = np.where(self.changes > 0, odds, 0.0).sum(axis=1)
         return Boats.of(
             (3 * self.tow[..., None] + np.arange(3)).reshape(boats, 3 * tows),
             design[self.tow].reshape(boats, 3 * tows, -1),
             own.reshape(boats, -1, 3 * tows),
             covariance,
-            np.where(self.changes > 0, odds, 0.0).sum(axis=1),
+            self.added(slopes.state),
+            np.where(self.possible, ln_prior, -np.inf),
         )
 
 
 def patterns_of(
     boat: IntArray, season: FloatArray, early: BoolArray, settings: Settings
 ) -> list[Patterns]:
-    """Boats by their number of tows and of early ones, with every pattern of at most one change.
+    """Boats by their number of tows, with every pattern of at most one change.
 
     Args:
         boat: place of the boat as it was until a reported alteration, (tows,), sorted by time.
@@ -127,34 +161,7 @@ def patterns_of(
     """
     order = np.argsort(boat, kind="stable")
     first, count = np.unique(boat[order], return_index=True, return_counts=True)[1:]
-    kinds = np.stack([count, np.bincount(boat, early).astype(np.int64)], axis=1)
     return [
-        _patterns(order[first[mine][:, None] + np.arange(kind[0])], season, int(kind[1]), settings)
-        for kind in np.unique(kinds, axis=0)
-        for mine in [(kinds == kind).all(axis=1)]
+        Patterns.of(order[first[count == n][:, None] + np.arange(n)], season, early, settings)
+        for n in np.unique(count)
     ]
-
-
-def _patterns(tow: IntArray, season: FloatArray, early: int, settings: Settings) -> Patterns:
-    tows = tow.shape[1]
-    since_first = season[tow] - season[tow[:, :1]]
-    gaps = tows - 1
-    there = np.eye(1 + gaps + early, 1 + gaps + tows, dtype=bool)[:, 1:]
-    altered, askew = there[:, :gaps], there[:, gaps:]
-    after = np.tri(tows, gaps, -1)
-    step = np.einsum("pg,kg,lg->pkl", altered, after, after)
-    return Patterns(
-        tow,
-        np.asarray(altered.any(axis=1)),
-        askew,
-        LEVEL_SD**2 + settings.changed_sd**2 * step,
-        settings.bend_sd**2 + settings.changed_bend_sd**2 * step,
-        np.minimum(since_first[:, :, None], since_first[:, None, :]),
-        settings.askew_excess.mean * askew,
-        settings.askew_excess.sd**2,
-    )
-
-
-def _per_number(of_tows: FloatArray) -> FloatArray:
-    """What each pair of tows has, (..., tows, tows), for each pair of their numbers."""
-    return np.repeat(np.repeat(of_tows, 3, axis=-1), 3, axis=-2)

@@ -139,22 +139,17 @@ def _of_log(posterior: Posterior, columns: IntArray) -> str:
 def _confused_with(posterior: Posterior, columns: IntArray, faults: IntArray) -> str | None:
     """Other faults that would explain as much, likeliest first; then what would pass for them."""
     effects, active = posterior.fit.problem.effects, posterior.fit.active
-    named = effects.frame.select(
-        pl.concat_str("name", pl.col("season").cast(pl.String), separator=" ", ignore_nulls=True)
-    ).to_series()
-    likely = (
-        pl.DataFrame({"name": named.gather(effects.faults)})
-        .with_columns(chance=posterior.instead[faults].sum(axis=0))
-        .group_by("name", maintain_order=True)
-        .sum()
-        .filter(pl.col("chance") >= POSSIBLE)
-        .sort("chance", "name", descending=[True, False])["name"]
-    )
+    chance: dict[str, float] = {}
+    for name, more in zip(
+        effects.label[effects.faults], posterior.instead[faults].sum(axis=0).tolist(), strict=True
+    ):
+        chance[name] = chance.get(name, 0.0) + more
+    likely = sorted((n for n in chance if chance[n] >= POSSIBLE), key=lambda n: (-chance[n], n))
     hidden = ~posterior.shows
     passes = [active[posterior.hidden_by[faults[hidden[faults]]]]]
     passes.append(effects.faults[hidden & np.isin(posterior.hidden_by, columns)])
-    names = [*likely, *named.gather(np.concatenate(passes))]
-    own = {*named.gather(effects.faults[faults]), *named.gather(active[columns])}
+    names = [*likely, *effects.label[np.concatenate(passes)]]
+    own = {*effects.label[effects.faults[faults]], *effects.label[active[columns]]}
     return ", ".join(name for name in dict.fromkeys(names) if name not in own) or None
 
 

@@ -109,6 +109,18 @@ class Effects:
         return self.frame["name"].to_numpy().astype(str)
 
     @cached_property
+    def label(self) -> StrArray:
+        """The name of each with its season, (e,)."""
+        season = pl.col("season").cast(pl.String)
+        label = pl.concat_str("name", season, separator=" ", ignore_nulls=True)
+        return self.frame.select(label).to_series().to_numpy().astype(str)
+
+    @cached_property
+    def kind(self) -> IntArray:
+        """A number that all places where one log may have changed have in common, (e,)."""
+        return self.frame["kind"].to_numpy()
+
+    @cached_property
     def way(self) -> StrArray:
         """By which way each reaches the numbers of a tow, (e,)."""
         return np.array([WAYS[name] for name in self.name.tolist()])

@@ -16,10 +16,9 @@ from pipeline.season_log.factors import (
     GPS,
     NOT_SETTLED,
     factors_of,
-    guarded,
     without_each_boat,
 )
-from pipeline.season_log.faults import solve
+from pipeline.season_log.faults import Posterior, roughly, solve
 from pipeline.season_log.fit import OF_TOWS, Problem
 from pipeline.season_log.tow_estimates import best_estimates, instrument_errors
 
@@ -92,7 +91,17 @@ class SeasonFactors:
         return NOT_SETTLED in own["source"]
 
 
-def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
+def first_estimate(tows: pl.DataFrame) -> Posterior:
+    """A rough one of all that `estimate_season_factors` estimates, from the same rows.
+
+    Raises:
+        BrokenPromiseError: as there.
+    """
+    _refuse_unknown(tows)
+    return roughly(Problem.of(ArchiveTows.of(tows), USUAL))
+
+
+def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -> SeasonFactors:
     """Log factors of all seasons at once, from repeat tows and plain GPS.
 
     Args:
@@ -111,12 +120,13 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
             `others_calibration_ln`, ln factor of the log by dGPS in other tows, null without, with
             its `_sd`; `force_sd`, of the load cell by its record, null without one;
             `temperature_known`, of the water.
+        near: a first estimate to begin at.
 
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
         GPS alone, `not determined` (numbers null) where neither ties it to an anchored season, and
         `not settled` where the search did not come to rest, and (numbers null) where the factor
-        contradicts what needs no model (`factors.guarded`). `ln_sd`, the standard deviation of
+        contradicts what needs no model (`guard`). `ln_sd`, the standard deviation of
         ln factor, is made up of three parts: `repeat_tows_sd`, by the scatter of repeat tows;
         `gps_sd`, by plain GPS; `assumed_sd`, by what is assumed of log, load cell and boats.
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
@@ -127,7 +137,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
     _refuse_unknown(tows)
-    posterior = guarded(solve(Problem.of(ArchiveTows.of(tows), USUAL)))
+    posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
     fitted, change = posterior.fit, without_each_boat(posterior.fit)
     factors, covariance = factors_of(posterior, change)
     instruments = instrument_errors(posterior, change)

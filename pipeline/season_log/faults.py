@@ -13,6 +13,7 @@ from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.choice import first_largest
 from pipeline.model import Scores
 from pipeline.season_log.fit import Fit, Problem, fit
+from pipeline.season_log.guard import refused
 
 MOST_FAULTS: Final = 12
 ROUGH: Final = 1e-4
@@ -82,12 +83,30 @@ class Posterior:
         """Tows whose log is determined, and anchored ones, (tows,)."""
         return np.append(self.determined, [True])[self.fit.problem.tows.log]
 
+    @property
+    def ln_factor(self) -> FloatArray:
+        """Of the log of each tow, NaN where it is not known; 0 with dGPS, (tows,)."""
+        of_log = np.where(self.fit.of_log, self.fit.value, 0.0)
+        return np.where(self.log_known, self.fit.share @ of_log, np.nan)
 
-def solve(problem: Problem) -> Posterior:
-    """The posterior of everything, with the faults that the archive shows."""
-    rough = _with_needed_faults(problem, _with_needed_faults(problem, None, changes=False))
+
+def solve(problem: Problem, near: Posterior | None = None) -> Posterior:
+    """The posterior of everything, with the faults that the archive shows.
+
+    Args:
+        near: what `roughly` found where the same tows were compared at other speeds.
+    """
+    rough = roughly(problem, near).fit
     sharp = fit(problem, rough.active, rough)
     return _posterior(replace(sharp, settled=rough.settled and sharp.settled))
+
+
+def roughly(problem: Problem, near: Posterior | None = None) -> Posterior:
+    """The same, to `ROUGH`."""
+    start = None if near is None else near.fit
+    if start is None or not start.problem.effects.frame.equals(problem.effects.frame):
+        start = _with_needed_faults(problem, None, changes=False)
+    return _posterior(_with_needed_faults(problem, start))
 
 
 def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = True) -> Fit:
@@ -116,7 +135,7 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
 def _kinds(fitted: Fit, also: int | None = None) -> tuple[int, ...]:
     """Kinds of the faults of a model, and of one more, sorted."""
     places = fitted.active[fitted.is_fault].tolist() + ([] if also is None else [also])
-    return tuple(sorted(fitted.problem.effects.frame["kind"].gather(places).to_list()))
+    return tuple(sorted(fitted.problem.effects.kind[places].tolist()))
 
 
 def _better(fitted: Fit, fitted_before: set[tuple[int, ...]]) -> IntArray | None:
@@ -174,5 +193,5 @@ def _posterior(fitted: Fit) -> Posterior:
         instead,
         more.shows,
         first_largest(np.abs(more.shift) / np.sqrt(np.diag(fitted.covariance))[:, None]),
-        np.zeros(problem.tows.logs.height, dtype=bool),
+        refused(fitted),
     )

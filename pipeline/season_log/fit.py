@@ -27,6 +27,8 @@ UNTROUBLED: Final = 4
 They step by the information as if that were certain. What is seen may tell next to nothing there,
 and a step by it can leap to where the search finds no way back.
 """
+MOST_MOVED: Final = 0.9
+"""By how much what is found of changes may seem to move with their share."""
 LEAST_SD: Final = 0.001
 """No number of a tow is ever better known: keeps the search finite where all tows agree."""
 NOT_OBSERVED: Final = 1e4
@@ -99,6 +101,18 @@ class Problem:
         """The numbers of the tows and their slopes at ln factors of their logs, (n,)."""
         return slopes(self.q, self.force_n, ln_factor, self.reference_ln)
 
+    @cached_property
+    def scaled_by(self) -> FloatArray:
+        """Which variance, but that of drift, each direction of `directions` has, (n, 4, variances).
+
+        A number between tows has one everywhere, the log one per era.
+        """
+        eras = np.eye(len(self.settings.era_starts) + 1)[self.era]
+        of_numbers = np.broadcast_to(np.eye(OF_TOWS), (len(eras), OF_TOWS, OF_TOWS))
+        whole = np.zeros((len(eras), OF_TOWS + 1, OF_TOWS + eras.shape[1]))
+        whole[:, :OF_TOWS, :OF_TOWS], whole[:, OF_TOWS, OF_TOWS:] = of_numbers, eras
+        return whole
+
     @property
     def variance_prior(self) -> FloatArray:
         """Mean of every ln variance."""
@@ -123,8 +137,6 @@ class Fit:
         ln_variance_covariance: of these.
         boats: what each group of the problem says there.
         slopes: of the numbers of each tow.
-        own: (n, 3, 3) covariance of what is a tow's own.
-        parts: (variances but that of drift, n, 3, 3) slope of `own` by each ln variance.
         settled: whether the search, and those that led to it, came to rest within their limits.
     """
 
@@ -137,8 +149,6 @@ class Fit:
     ln_variance_covariance: FloatArray
     boats: list[Boats]
     slopes: Slopes
-    own: FloatArray
-    parts: FloatArray
     settled: bool = True
 
     @cached_property
@@ -189,11 +199,6 @@ class Fit:
         of_mean = np.bincount(log, scatter)[1:] / np.bincount(log)[1:] ** 2
         return np.where(tows.logs["calibrated"].to_numpy(), 0.0, of_mean)
 
-    def precision(self, group: Patterns) -> FloatArray:
-        """Of the numbers of boats, (boats, patterns, n, n): too large to keep of every fit."""
-        drift = group.drift(self.slopes.state, self.drift_variance)
-        return np.asarray(np.linalg.inv(group.covariance(self.own, self.slopes.state, drift)))
-
     def dof(self, direction: FloatArray) -> FloatArray:
         """Satterthwaite's degrees of freedom of combinations of the effects.
 
@@ -209,7 +214,7 @@ class Fit:
     @cached_property
     def weighed(self) -> FloatArray:
         """Precision of all numbers times the design, (n, 3, k)."""
-        by_number = np.zeros((3 * len(self.own), len(self.active)))
+        by_number = np.zeros((3 * len(self.problem.q), len(self.active)))
         for boats in self.boats:
             by_number[boats.rows] = boats.weighed
         return by_number.reshape(-1, 3, len(self.active))
@@ -217,7 +222,12 @@ class Fit:
     @cached_property
     def _moved(self) -> FloatArray:
         """Slope of the covariance of the scores by each ln variance, (variances, k, k)."""
-        by_parts = [np.einsum("nik,nij,njl->kl", self.weighed, p, self.weighed) for p in self.parts]
+        along = directions(self.slopes) @ self.weighed
+        of_tows = np.exp(self.ln_variance[:-1]) * self.problem.scaled_by
+        by_parts = [
+            np.tensordot(along, part[..., None] * along, axes=([0, 1], [0, 1]))
+            for part in np.moveaxis(of_tows, 2, 0)
+        ]
         by_drift = np.zeros_like(self.covariance)
         for group, boats in zip(self.problem.groups, self.boats, strict=True):
             drift = group.drift(self.slopes.state, self.drift_variance)
@@ -266,32 +276,36 @@ def _step(
     tangent = problem.slopes(effects.share[:, active] @ np.where(by_speed, value, 0.0))
     design = effects.design(tangent, active)
     residual = problem.observed - tangent.predicted - design @ np.where(by_speed, 0.0, value)
-    own, parts = _own(problem, tangent, ln_variance)
+    own = _own(problem, tangent, ln_variance)
     drifts = [g.drift(tangent.state, float(np.exp(ln_variance[-1]))) for g in problem.groups]
     boats = [
         group.boats(
             residual,
             group.covariance(own, tangent.state, drift),
+            tangent,
             design,
             shares if changes else None,
         )
         for group, drift in zip(problem.groups, drifts, strict=True)
     ]
-    full = np.sum([b.complete_information.sum(axis=0) for b in boats], axis=0)
-    seen = np.sum([b.information.sum(axis=0) for b in boats], axis=0) if changes else full
+    full = np.sum([b.total(b.weighed) for b in boats], axis=0)
+    seen = np.sum([b.total(b.observed) for b in boats], axis=0) if changes else full
     prior = np.diag(1.0 / variance)
     covariance: FloatArray = np.linalg.inv(_positive(seen + prior, full + prior)).astype(np.float64)
     score = np.sum([b.score.sum(axis=0) for b in boats], axis=0)
     step = covariance @ (score - (value - mean) / variance)
-    slope, fisher = _variance_slopes(boats, covariance, parts, drifts)
+    of_tows = np.exp(ln_variance[:-1]) * problem.scaled_by
+    slope, fisher = _variance_slopes(
+        problem, boats, covariance, directions(tangent), of_tows, drifts
+    )
     known = problem.settings.spread**-2.0
     # A variance that shrinks takes its own slope with it: that bends the density of its logarithm.
     fisher += np.diag(known + np.maximum(-slope, 0.0))
     of_variances: FloatArray = np.linalg.inv(fisher).astype(np.float64)
     move = of_variances @ (slope - known * (ln_variance - problem.variance_prior))
-    gain = scipy.special.logit(_shares(problem, boats)) - logit
+    gain = _share_step(problem, boats, logit)
     known_here = (value, covariance, ln_variance, shares, of_variances)
-    fitted = Fit(problem, active, *known_here, boats, tangent, own, parts)
+    fitted = Fit(problem, active, *known_here, boats, tangent)
     return fitted, np.concatenate([step, np.clip(move, -1.0, 1.0), gain])
 
 
@@ -304,52 +318,101 @@ def _positive(seen: FloatArray, full: FloatArray) -> FloatArray:
     return seen
 
 
-def _own(
-    problem: Problem, tangent: Slopes, ln_variance: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Covariance of what is a tow's own, (n, 3, 3), and its slopes by each of its ln variances."""
-    variance = np.exp(ln_variance[:-1])
-    parts = np.zeros((len(variance), len(problem.q), 3, 3))
-    for place in range(OF_TOWS):
-        parts[place, :, place, place] = variance[place]
-    by_speed = tangent.ways["speed"]
-    for era in range(len(variance) - OF_TOWS):
-        of_log = (problem.era == era)[:, None] * by_speed
-        parts[OF_TOWS + era] = variance[OF_TOWS + era] * of_log[:, :, None] * of_log[:, None, :]
-    return problem.given + parts.sum(axis=0), parts
+def directions(tangent: Slopes) -> FloatArray:
+    """In which directions the numbers of a tow scatter: each by itself, and by its log, (n, 4, 3).
+
+    What is a tow's own has a variance along each.
+    """
+    numbers = np.broadcast_to(np.eye(OF_TOWS), (len(tangent.predicted), OF_TOWS, OF_TOWS))
+    return np.concatenate([numbers, tangent.ways["speed"][:, None]], axis=1)
+
+
+def _own(problem: Problem, tangent: Slopes, ln_variance: FloatArray) -> FloatArray:
+    """Covariance of what is a tow's own, (n, 3, 3)."""
+    along = directions(tangent)
+    variance = problem.scaled_by @ np.exp(ln_variance[:-1])
+    return np.asarray(problem.given + np.swapaxes(along, 1, 2) @ (variance[..., None] * along))
 
 
 def _variance_slopes(
-    boats: list[Boats], covariance: FloatArray, parts: FloatArray, drifts: list[FloatArray]
+    problem: Problem,
+    boats: list[Boats],
+    covariance: FloatArray,
+    along: FloatArray,
+    of_tows: FloatArray,
+    drifts: list[FloatArray],
 ) -> tuple[FloatArray, FloatArray]:
-    """Slope of the restricted ln likelihood by the ln variances, and their information."""
-    variances = len(parts) + 1
+    """Slope of the restricted ln likelihood by the ln variances, and their information.
+
+    A variance adds to the covariance of a boat's numbers a sum of squares of directions, one or
+    none per tow: traces are sums over squares of what lies between directions.
+
+    Args:
+        along: as `directions` gives it.
+        of_tows: (n, 4, variances but that of drift) of each direction.
+        drifts: per group, what the drift adds to the covariance.
+    """
+    variances = of_tows.shape[2] + 1
     slope, fisher = np.zeros(variances), np.zeros((variances, variances))
-    for some, drift in zip(boats, drifts, strict=True):
-        b, n = some.rows.shape
-        tow, each = some.rows[:, ::3] // 3, np.arange(n // 3)
-        excess = some.excess(covariance[None])
-        blocks = excess.reshape(b, n // 3, 3, n // 3, 3)[:, each, :, each, :]
-        part = parts[:, tow]
-        slope[:-1] += 0.5 * np.einsum("tbij,abtji->a", blocks, part, optimize=True)
+    for group, some, drift in zip(problem.groups, boats, drifts, strict=True):
+        count, tows = group.tow.shape
+        by, size = along[group.tow], of_tows[group.tow].reshape(count, 4 * tows, -1)
+        excess, pd = some.excess(covariance[None]), some.precision @ drift
+        slope[:-1] += 0.5 * (_within(excess, by)[:, None] @ size)[:, 0].sum(axis=0)
         slope[-1] += 0.5 * (excess * drift).sum()
-        precision = some.precision.reshape(b, n // 3, 3, n // 3, 3)
-        across = np.einsum("bkilj,abljm->abkilm", precision, part, optimize=True)
-        across = np.concatenate([across.reshape(-1, b, n, n), (some.precision @ drift)[None]])
-        turned = np.ascontiguousarray(across.swapaxes(2, 3)).reshape(variances, -1)
-        fisher += 0.5 * across.reshape(variances, -1) @ turned.T
+        squares = _between(some.precision, by) ** 2
+        fisher[:-1, :-1] += 0.5 * (np.swapaxes(size, 1, 2) @ squares @ size).sum(axis=0)
+        across = 0.5 * (_within(pd @ some.precision, by)[:, None] @ size)[:, 0].sum(axis=0)
+        fisher[:-1, -1] += across
+        fisher[-1, :-1] += across
+        fisher[-1, -1] += 0.5 * (pd * np.swapaxes(pd, 1, 2)).sum()
     return slope, fisher
 
 
-def _shares(problem: Problem, boats: list[Boats]) -> FloatArray:
-    """Shares of gaps with an alteration and of tows askew: their priors and what was found."""
+def _between(matrix: FloatArray, along: FloatArray) -> FloatArray:
+    """Products of directions of the tows of a boat over a matrix of its numbers.
+
+    Args:
+        matrix: (b, n, n).
+        along: (b, tows, 4, 3).
+
+    Returns:
+        (b, 4 tows, 4 tows).
+    """
+    count, tows = along.shape[:2]
+    half = along @ matrix.reshape(count, tows, 3, 3 * tows)
+    turned = np.swapaxes(half.reshape(count, 4 * tows, 3 * tows), 1, 2)
+    whole = along @ turned.reshape(count, tows, 3, 4 * tows)
+    return np.asarray(whole.reshape(count, 4 * tows, 4 * tows))
+
+
+def _within(matrix: FloatArray, along: FloatArray) -> FloatArray:
+    """The same of each direction with itself, (b, 4 tows)."""
+    count, tows = along.shape[:2]
+    each = np.arange(tows)
+    blocks = matrix.reshape(count, tows, 3, tows, 3)[:, each, :, each].swapaxes(0, 1)
+    return np.asarray(((along @ blocks) * along).sum(axis=3).reshape(count, 4 * tows))
+
+
+def _share_step(problem: Problem, boats: list[Boats], logit: FloatArray) -> FloatArray:
+    """Step of the logits of the shares of gaps with an alteration and of tows askew.
+
+    The shares are those of their priors and of what was found together. What is found moves with
+    the shares (Louis 1982), which the step takes into account as far as it is no leap.
+    """
     s = problem.settings
     possible = np.array([s.changed_gaps, s.askew_tows])
-    found = possible * (s.changed_share, s.askew_share)
+    found, moves = possible * (s.changed_share, s.askew_share), np.zeros((2, 2))
     for group, some in zip(problem.groups, boats, strict=True):
-        found += (some.weight @ group.changes).sum(axis=0)
-        possible += len(group.tow) * group.changes.sum(axis=0)
-    return np.asarray(found / possible)
+        of_boats = some.weight @ group.changes
+        found += of_boats.sum(axis=0)
+        moves += np.diag(of_boats.sum(axis=0)) - of_boats.T @ of_boats
+        possible += (group.possible @ group.changes).sum(axis=0)
+    share = found / possible
+    moves /= (found * (1.0 - share))[:, None]
+    moves /= max(1.0, np.abs(moves).sum(axis=1).max() / MOST_MOVED)
+    gain: FloatArray = np.linalg.solve(np.eye(2) - moves, scipy.special.logit(share) - logit)
+    return gain
 
 
 def level_of_boats(fitted: Fit) -> FloatArray:

@@ -57,7 +57,7 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     share, value, determined = fitted.share, fitted.value, posterior.log_known
     return problem.tows.frame.select(
         "tow_id",
-        _where(determined, "factor", np.exp(share[:, speed] @ value[speed])),
+        pl.Series("factor", np.exp(posterior.ln_factor)).fill_nan(None),
         pl.Series("force_factor", np.exp(share[:, force] @ value[force])),
         pl.Series("force_zero_n", share[:, zero] @ value[zero]),
         pl.Series("bend", problem.q),
@@ -70,11 +70,12 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
 
 def _askew(fitted: Fit) -> FloatArray:
     """Root mean square of what being pulled askew added to ln Cw of each tow."""
-    square = np.zeros(len(fitted.problem.q))
-    for group, boats in zip(fitted.problem.groups, fitted.boats, strict=True):
+    problem = fitted.problem
+    square = np.zeros(len(problem.q))
+    for group, boats in zip(problem.groups, fitted.boats, strict=True):
         pull = boats.pull[..., LEVEL::3]
-        own = np.einsum("bpkk->bpk", fitted.precision(group))[..., LEVEL::3]
-        variance = group.excess_variance
+        own = np.einsum("bpkk->bpk", boats.precision_of_patterns)[..., LEVEL::3]
+        variance = problem.settings.askew_excess.sd**2
         mean = group.excess + variance * pull
         weight = boats.weight[:, :, None] * group.askew
         weight *= weight.sum(axis=1, keepdims=True) > LIKELY
@@ -157,7 +158,7 @@ def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, F
     # Covariance of the level at each tow with every number of the boat, per pattern.
     level = group.level + (fitted.drift_variance * group.years)[:, None]
     with_level = np.einsum("bpkl,bli->bpkli", level, state).reshape(count, -1, tows, 3 * tows)
-    gain = with_level @ fitted.precision(group)
+    gain = with_level @ boats.precision_of_patterns
     variance = np.einsum("bpkk->bpk", level) - (gain * with_level).sum(axis=3)
     of_all = np.where(fitted.of_boats, fitted.design[:, LEVEL], 0.0)
     by = of_all[group.tow][:, None] - gain @ boats.design[:, None]

@@ -181,7 +181,7 @@ def test_how_far_the_log_of_its_season_was_off():
 )
 def test_what_may_be_wrong_with_the_instruments(verdict, words):
     fault = {"instrument": "force_zero", "season": 2017, "verdict": verdict, "p_fault": 0.3,
-             "estimate": 4.2, "unit": "N"}  # fmt: skip
+             "size": 4.2, "unit": "N"}  # fmt: skip
     text = said(faults=[fault])
     assert words in text
     assert "nulpunt van de krachtmeter" in text
@@ -224,11 +224,11 @@ def test_tows_that_are_not_worth_it_are_told(after, words):
 
 
 @pytest.mark.parametrize(
-    ("p_value", "power", "words"),
-    [(0.6, 0.9, "Geen teken"), (0.6, 0.3, "niet te zeggen"), (0.01, 0.9, "verschillen in bocht")],
+    ("equal_possible", "words"),
+    [(True, "Geen teken"), (None, "niet te zeggen"), (False, "verschillen in bocht")],
 )
-def test_a_type_s_verdict(p_value, power, words):
-    test = pl.DataFrame({"p_value": [p_value], "power_at_10pct": [power], "n": [11]})
+def test_a_type_s_verdict(equal_possible, words):
+    test = pl.DataFrame({"p_value": [0.3], "equal_possible": [equal_possible], "n": [11]})
     assert words in boat_type.homogeneity(test)(NL)
 
 

@@ -16,7 +16,7 @@ from pipeline.season_log import estimate_season_factors, faults, fit, retow_choi
 from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.assumed import USUAL
 from pipeline.season_log.effects import slopes
-from pipeline.season_log.factors import guarded
+from pipeline.season_log.guard import refused
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 
@@ -124,11 +124,11 @@ def test_no_fault_is_seen_in_an_ordinary_archive():
 def test_a_factor_that_repeat_tows_contradict_is_refused():
     world, _ = estimated(CLEAN, 1000)
     solved = faults.solve(fit.Problem.of(ArchiveTows.of(world.tows), USUAL))
-    assert not guarded(solved).refused.any()
+    assert not solved.refused.any()
     value = solved.fit.value + 0.03 * (np.arange(len(solved.fit.value)) == 0)  # the log of 2009
     ln_factor = solved.fit.share @ np.where(solved.fit.of_log, value, 0.0)
     astray = replace(solved.fit, value=value, slopes=solved.fit.problem.slopes(ln_factor))
-    assert guarded(replace(solved, fit=astray)).refused.tolist() == [True] + 4 * [False]
+    assert refused(astray).tolist() == [True] + 4 * [False]
 
 
 def test_a_factor_over_ten_per_cent_is_not_used():

@@ -50,21 +50,6 @@ def _where(key):
     return pl.all_horizontal(*(pl.col(name) == value for name, value in key.items()))
 
 
-@pytest.mark.parametrize(
-    ("p_value", "power", "verdict"),
-    [(0.3, 0.9, True), (0.3, 0.5, None), (0.01, 0.9, False), (0.01, 0.5, False), (0.3, None, None)],
-)
-def test_equal_bends_are_possible_only_by_a_test_that_could_have_failed(
-    bench, p_value, power, verdict
-):
-    change(
-        bench,
-        f"UPDATE type_homogeneity SET p_value = {p_value}, "  # noqa: S608
-        f"power_at_10pct = {'NULL' if power is None else power}, reason = ''",
-    )
-    assert under(bench, "Kuikensloep").bends["equal_possible"] is verdict
-
-
 @pytest.fixture
 def of(built):
     """Statistics of two types with the given slopes and verdicts, and nothing else to compare."""
@@ -128,7 +113,6 @@ def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
     tables = {
         "tows": "tows",
         "in_type": "type_outliers",
-        "pooled": "pooled_curves",
         "repeat_pairs": "repeat_pairs",
         "predicted": "predicted_cw",
         "register": "register",

@@ -206,9 +206,9 @@ def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     """What is wrong, or may be, with the instruments of a season, by method and season.
 
     Returns:
-        Rows of `season_diagnosis` that a person should look at.
+        Rows of `season_diagnosis` with their `size`, that a person should look at.
     """
-    alarms = views.table("season_diagnosis").filter("alarm")
+    alarms = views.ask("season_diagnosis").filter("alarm")
     by_season = alarms.partition_by("method", "season", as_dict=True)
     return {(str(method), int(season)): f.to_dicts() for (method, season), f in by_season.items()}
 

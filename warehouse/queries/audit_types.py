@@ -11,14 +11,10 @@ from typing import Final
 import duckdb
 
 from pipeline.consistency.eras import ERAS
-from pipeline.consistency.homogeneity import LEVEL
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.tables.row import Row
 from warehouse.queries.chosen_tows import ALL, NEWEST
 from warehouse.store.database import is_simulated, rows
-
-ENOUGH_POWER: Final = 0.8
-"""Chance of seeing a spread of B of 10 % from which on "equal bends are possible" is said."""
 
 WEIGHT_LINE: Final = {"quantity": "cw_standard_kg_m", "explaining": "weight_kg", "within": "all"}
 """The line about which the level of a type is judged."""
@@ -48,9 +44,8 @@ class TypeStatistics:
 
     Attributes:
         lines: rows of `type_lines` with `follows`.
-        bends: the row of `type_homogeneity` with `equal_possible`, or `n` and `reason`.
+        bends: the row of `type_homogeneity`, or `n`, `reason` and `equal_possible`.
         speed_trend: the row of that table with `follows`, or `n` and `reason`.
-        shared: per pooling, what sharing a bend does to B and Cw.
         repeats: how repeat pairs spread, how many have an E_n, and of how many it is above 1.
         eras: a row of `era_shifts` each, or `era`, `n`, `apart` and `reason`.
         prediction: how far `predicted_cw` is off.
@@ -66,7 +61,6 @@ class TypeStatistics:
     tows_outside: list[Row]
     bends: Row
     speed_trend: Row
-    shared: list[Row]
     outside: list[Row]
     slow_tows: list[Row]
     repeats: Row
@@ -214,25 +208,6 @@ ORDER BY quantity, explaining, within
 
 _TREND = f"SELECT *, {_FOLLOWS} FROM speed_trend WHERE method = ? AND boat_type = ?"  # noqa: S608
 
-_BENDS = f"""
-SELECT *, CASE WHEN reason != '' THEN NULL WHEN p_value < {LEVEL} THEN false
-          WHEN power_at_10pct >= {ENOUGH_POWER} THEN true END AS equal_possible
-FROM type_homogeneity WHERE method = ? AND boat_type = ?
-"""  # noqa: S608
-"""With a verdict: None where the test could not have seen a difference."""
-
-_SHARED = """
-SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
-       count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
-       stddev_samp(p.b_m_s) / avg(p.b_m_s) AS b_sd_ratio,
-       max(abs(ln(p.cw_085_kg_m / o.cw_085_kg_m))) AS most_085,
-       max(abs(ln(p.cw_kg_m / o.cw_kg_m))) AS most_100,
-       max(abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_115,
-       arg_max(p.fsn_no, abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_fsn_no
-FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
-WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
-"""
-
 _REPEATS = f"""
 SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
        count(p.e_n) AS n_e_n, count(*) FILTER (WHERE abs(p.e_n) > 1) AS n_disagree
@@ -254,12 +229,11 @@ WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
 """Rows of tows for which a column says yes, with the boat's name."""
 
 _STATISTICS: Final = {
-    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'",
+    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ?",
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
-    "bends": _BENDS,
+    "bends": "SELECT * FROM type_homogeneity WHERE method = ? AND boat_type = ?",
     "speed_trend": _TREND,
-    "shared": _SHARED,
     "outside": _NAMED.format("type_outliers", "outside", "abs(deviation_sd) DESC"),
     "slow_tows": _NAMED.format("slow_tows", "slow", "power_w"),
     "repeats": _REPEATS,

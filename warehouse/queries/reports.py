@@ -5,6 +5,7 @@ or one type is in `warehouse.queries.audit`.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 from pipeline.tables.row import Row
 from warehouse.store.database import is_simulated, open_database, rows
@@ -59,7 +60,7 @@ class LogErrorReport:
         method: whose factors.
         factors: rows of `log_factors` with what each rests on.
         parts: the same per part of a season and log.
-        diagnosis: rows of `season_diagnosis` that are not sound.
+        diagnosis: faults of the season, with their size, that are not sound.
     """
 
     simulated: bool
@@ -122,10 +123,20 @@ WHERE method = ? AND season IN (SELECT season FROM season_links WHERE part > 0)
 ORDER BY season, part
 """
 
-_DIAGNOSIS = """
-SELECT season, part, instrument, unit, estimate, lo, hi, p_fault, distance_sd, verdict, first_tow,
-       rests_on, confused_with
+SIZED_FAULTS: Final = """
+SELECT * EXCLUDE (estimate, lo, hi)
+         REPLACE (CASE unit WHEN '1' THEN '%' ELSE unit END AS unit),
+       CASE unit WHEN '1' THEN 100 * (exp(estimate) - 1) ELSE estimate END AS size,
+       CASE unit WHEN '1' THEN 100 * (exp(lo) - 1) ELSE lo END AS size_lo,
+       CASE unit WHEN '1' THEN 100 * (exp(hi) - 1) ELSE hi END AS size_hi
 FROM season_diagnosis
+"""
+"""What may be wrong with instruments, with its size in per cent or N instead of a logarithm."""
+
+_DIAGNOSIS = f"""
+SELECT season, part, instrument, unit, size, size_lo, size_hi, p_fault, distance_sd, verdict,
+       first_tow, rests_on, confused_with
+FROM ({SIZED_FAULTS})
 WHERE method = ? AND verdict NOT IN ('sound', 'estimated')
 ORDER BY season, part, instrument
-"""
+"""  # noqa: S608

@@ -11,6 +11,7 @@ import polars as pl
 
 from pipeline.register.register import LINE, with_empty_thwart
 from warehouse.queries.as_of import lay_over, lay_published
+from warehouse.queries.reports import SIZED_FAULTS
 from warehouse.store.database import open_database
 from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
 from warehouse.store.store import Store
@@ -185,14 +186,7 @@ SELECT p.* REPLACE ((wind_angle_deg + 180) % 360 - 180 AS wind_angle_deg),
        t.fsn_no, t.season, t.declared_speed_m_s
 FROM run_points AS p JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run
 """,
-    # What may be wrong with instruments, sizes in per cent, or in N.
-    "season_diagnosis": """
-SELECT * REPLACE (CASE unit WHEN '1' THEN '%' ELSE unit END AS unit),
-       CASE unit WHEN '1' THEN 100 * (exp(estimate) - 1) ELSE estimate END AS size,
-       CASE unit WHEN '1' THEN 100 * (exp(lo) - 1) ELSE lo END AS size_lo,
-       CASE unit WHEN '1' THEN 100 * (exp(hi) - 1) ELSE hi END AS size_hi
-FROM season_diagnosis
-""",
+    "season_diagnosis": SIZED_FAULTS,
     # Steps of seasons in per cent instead of logarithms.
     "season_steps": """
 SELECT *, 100 * (exp(level_step) - 1) AS level_step_percent, 100 * level_step_sd
