@@ -1,6 +1,6 @@
 """The boats of the archive: `sloependata.csv`, or several lists of boats."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -56,25 +56,25 @@ class Boats:
         """A boat by its number or a name; leading zeros do not matter where one boat is left."""
         if fsn_no in self.good:
             return self.good[fsn_no]
-        numbers = self._by_bare_number.get(_bare(fsn_no))
-        alike = numbers or sorted(self._by_name.get(fold(fsn_no), ()))
-        return self.good[alike[0]] if len(alike) == 1 else None
+        alike = self._by_bare_number.get(_bare(fsn_no)) or self._by_name.get(fold(fsn_no), set())
+        return self.good[next(iter(alike))] if len(alike) == 1 else None
 
     @cached_property
     def _by_name(self) -> Mapping[str, set[str]]:
         """The numbers of the boats that have or had a name, by that name folded."""
-        boats: dict[str, set[str]] = {}
-        for boat in self.crews:
-            boats.setdefault(fold(boat["name"]), set()).add(boat["fsn_no"])
-        return boats
+        return _grouped((fold(boat["name"]), boat["fsn_no"]) for boat in self.crews)
 
     @cached_property
-    def _by_bare_number(self) -> Mapping[str, Sequence[str]]:
+    def _by_bare_number(self) -> Mapping[str, set[str]]:
         """The numbers of the good boats, by the number without leading zeros."""
-        numbers: dict[str, list[str]] = {}
-        for number in self.good:
-            numbers.setdefault(_bare(number), []).append(number)
-        return numbers
+        return _grouped((_bare(number), number) for number in self.good)
+
+
+def _grouped(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
+    numbers: dict[str, set[str]] = {}
+    for key, number in pairs:
+        numbers.setdefault(key, set()).add(number)
+    return numbers
 
 
 def _bare(fsn_no: str) -> str:

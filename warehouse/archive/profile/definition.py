@@ -120,6 +120,9 @@ class _ProfileTable(_Strict):
         return self
 
 
+_NO_PROFILE: Final = _ProfileTable.model_validate({"seasons": "0"})
+
+
 class _PlanTable(_Strict):
     """One `[[plan]]`: the runs of a season's tows, or of some tows."""
 
@@ -252,7 +255,7 @@ class Profiles(_Strict):
 
     def _table(self, season: int) -> _ProfileTable:
         given = (t for t in self.profile if t.seasons[0] <= season <= t.seasons[1])
-        return next(given, None) or _ProfileTable.model_validate({"seasons": str(season)})
+        return next(given, _NO_PROFILE)
 
     def _columns(self, table: _ProfileTable) -> tuple[Column, ...]:
         absent = {channel for name in table.absent for channel in MAY_BE_ABSENT[name]}
