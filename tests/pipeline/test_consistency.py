@@ -7,16 +7,14 @@ import polars as pl
 import pytest
 
 from pipeline import model
-from pipeline.consistency import mixed
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.components import variance_components
 from pipeline.consistency.homogeneity import equal_possible, type_homogeneity
 from pipeline.consistency.lines import (
-    LN_CW,
     quantities,
     type_lines,
 )
-from pipeline.consistency.observed import newest, observe
+from pipeline.consistency.observed import observe
 from pipeline.consistency.outliers import type_outliers
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
 from pipeline.consistency.tables import line_tables
@@ -80,20 +78,6 @@ def test_power_is_what_is_stated_and_enough():
 
 
 # Lines, outliers, tow speed
-
-
-def test_a_line_of_a_type_is_that_of_weighted_least_squares():
-    observed = newest(observe(*fleet(27, boats=12, b_cv=0.05, height_sd=0.03)))
-    row = newest_lines(observed).row(by_predicate=(pl.col("quantity") == LN_CW), named=True)
-    y, unit = quantities(observed)[LN_CW]
-    measured = unit * observed.column("run_sd_ratio") ** 2
-    from statsmodels.regression.linear_model import WLS  # noqa: PLC0415 - takes seconds to import
-
-    x = np.column_stack([np.ones(len(y)), np.log(observed.column("displacement_kg"))])
-    between = mixed.fit_all([mixed.Problem(y, measured, x, range(12))], (mixed.BOAT,))[0].sd[0]
-    other = WLS(y, x, weights=1 / (measured + between**2)).fit()
-    assert row["slope"] == pytest.approx(other.params[1], rel=1e-6)
-    assert [row["slope_lo"], row["slope_hi"]] == pytest.approx(other.conf_int()[1], rel=1e-6)
 
 
 def of_two_classes(tables):
