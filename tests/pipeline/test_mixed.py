@@ -148,15 +148,15 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
 
 
 def test_intervals_of_components_cover_the_truth():
-    rng, trials, true = np.random.default_rng(5), 100, (0.05, 0.03, 0.015)
-    boat, other = np.repeat(np.arange(40), 4), np.arange(160) % 8
+    rng, trials, true = np.random.default_rng(5), 60, (0.05, 0.03, 0.015)
+    boat, other = np.repeat(np.arange(20), 4), np.arange(80) % 8
     problems = []
     for _ in range(trials):
         of_boat, of_other, cell = (
-            sd * rng.normal(size=n) for sd, n in zip(true, (40, 8, 160), strict=True)
+            sd * rng.normal(size=n) for sd, n in zip(true, (20, 8, 80), strict=True)
         )
-        y = 3.5 + of_boat[boat] + of_other[other] + cell + 0.01 * rng.normal(size=160)
-        problems.append(Problem(y, np.full(160, 1e-4), np.ones((160, 1)), boat, other))
+        y = 3.5 + of_boat[boat] + of_other[other] + cell + 0.01 * rng.normal(size=80)
+        problems.append(Problem(y, np.full(80, 1e-4), np.ones((80, 1)), boat, other))
     found = [one.intervals() for one in mixed.fit_all(problems, mixed.COMPONENTS)]
     for name, sd in zip(mixed.COMPONENTS, true, strict=True):
         inside = [lo <= sd <= (np.inf if hi is None else hi) for lo, hi in (f[name] for f in found)]
