@@ -15,7 +15,7 @@ from pipeline.tables.row import Row
 from warehouse.archive.faults import Fault, fault_from, place
 from warehouse.archive.files.finding import list_files
 from warehouse.archive.files.list_kinds import BOATS
-from warehouse.archive.sheets.reading import read_list
+from warehouse.archive.sheets.reading import CREW, read_list
 from warehouse.archive.sheets.row import ListRow, others_of
 from warehouse.archive.spelling.synonyms import NO_TYPE
 from warehouse.archive.spelling.text import fold, fold_word
@@ -49,7 +49,7 @@ class Boats:
 
     def frame(self) -> pl.DataFrame:
         """The good boats, a row for each crew that rows them, in the order of the list."""
-        rows = [{**boat, **self.good[boat["fsn_no"]], **_crew_of(boat)} for boat in self.crews]
+        rows = [self.good[boat["fsn_no"]] | {key: boat[key] for key in CREW} for boat in self.crews]
         return frame_of(ListedBoats, rows).unique(maintain_order=True)
 
     def find(self, fsn_no: str) -> Row | None:
@@ -79,10 +79,6 @@ def _grouped(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
 
 def _bare(fsn_no: str) -> str:
     return fsn_no.removeprefix("FSN").lstrip("0")
-
-
-def _crew_of(boat: Row) -> Row:
-    return {"rowers": boat["rowers"], "crew_class": boat["crew_class"]}
 
 
 def read_boats(root: Path, wording: Wording) -> Boats:

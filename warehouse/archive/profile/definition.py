@@ -23,8 +23,13 @@ from pipeline.channels import (
     TARGET_SPEED_RATIOS,
 )
 from warehouse.archive.files.names import STANDS_FOR
-from warehouse.archive.profile.plan import STANDARD, Plan
-from warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS, SeasonProfile
+from warehouse.archive.profile.season import (
+    MAY_BE_ABSENT,
+    SAMPLE_COLUMNS,
+    STANDARD,
+    Plan,
+    SeasonProfile,
+)
 from warehouse.archive.spelling.columns import Column
 from warehouse.archive.spelling.headers import split_header
 from warehouse.archive.spelling.text import fold, fold_word
