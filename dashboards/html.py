@@ -8,11 +8,10 @@ import re
 from pathlib import Path
 
 import jinja2
-from markupsafe import Markup
 
 
-def environment(templates: Path, **names: object) -> jinja2.Environment:
-    """Templates of a folder, which know these names; a name that they do not know is an error."""
+def environment(*templates: Path, **names: object) -> jinja2.Environment:
+    """Templates of folders, which know these names; a name that they do not know is an error."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates),
         autoescape=True,
@@ -28,14 +27,6 @@ def environment(templates: Path, **names: object) -> jinja2.Environment:
 def keep_units(text: str) -> str:
     """A sentence in which a number and its unit stay on one line."""
     return re.sub(r"(?<=\d) (?=(%|kg/m|m/s|kg|W|N|s)(\W|$))", "\u00a0", text)
-
-
-def in_both(pair: tuple[str, str]) -> Markup:
-    """A text in both languages; the style sheet hides the one that is not chosen."""
-    nl, en = pair
-    if nl == en:
-        return Markup("{}").format(nl)
-    return Markup("<span lang=nl>{}</span><span lang=en>{}</span>").format(nl, en)
 
 
 def as_json(value: object) -> str:

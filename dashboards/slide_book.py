@@ -302,7 +302,7 @@ class Book:
     def _hull_speed(self) -> Row:
         """The statistics of all types together, after correction."""
         found = self.views.table("hull_speed")
-        return found.filter(method=self.ends[1], boat_type=ALL, tows=ALL).row(0, named=True)
+        return found.filter(method=self.ends[1], boat_type=ALL).row(0, named=True)
 
     def _tows_with(self, column: str) -> pl.DataFrame:
         return self.tows.select(TOW_COLUMNS).filter(pl.col(column).is_not_null())

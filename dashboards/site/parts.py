@@ -83,6 +83,7 @@ class Select:
 
     Attributes:
         named: what an option is called in a language.
+        asks: whether another choice is another question to the workbench; else it filters here.
     """
 
     name: str
@@ -91,6 +92,7 @@ class Select:
     chosen: str
     with_all: bool = False
     named: Callable[[str, Speech], str] = _as_it_is
+    asks: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ its charts, and the rows of its tables that are not shown at first, once, as a s
 
 import base64
 import datetime as dt
-import shutil
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, partial
@@ -98,16 +97,19 @@ def build_pages(
     return {"files": len(written), "bytes": size}
 
 
+def shared_files() -> dict[str, str]:
+    """Styles and scripts that all pages share, by name."""
+    return {
+        **{name: (HERE / "static" / name).read_text(encoding="utf-8") for name in OWN_FILES},
+        "font.css": fonts.style_sheet(),
+        "vega.js": vega_bundle(),
+        **{f"charts-{language}.js": charts_script(language) for language in LANGUAGES},
+    }
+
+
 def _write_shared(views: Views, folder: Path) -> None:
-    static = folder / "static"
-    static.mkdir()
-    for name in OWN_FILES:
-        shutil.copyfile(HERE / "static" / name, static / name)
-    (static / "font.css").write_text(fonts.style_sheet(), encoding="utf-8")
-    (static / "vega.js").write_text(vega_bundle(), encoding="utf-8")
-    for language in LANGUAGES:
-        (static / f"charts-{language}.js").write_text(charts_script(language), encoding="utf-8")
-    (static / "find.js").write_text(_search_script(views), encoding="utf-8")
+    for name, text in (shared_files() | {"find.js": _search_script(views)}).items():
+        _put(folder / "static" / name, text)
 
 
 def _write_pages(border: Border, views: Views, folder: Path) -> None:
@@ -147,11 +149,11 @@ def _template() -> jinja2.Template:
 class Edition:
     """The pages in one language."""
 
-    def __init__(self, views: Views, language: str) -> None:
+    def __init__(self, views: Views, language: str, cells: type[Cells] = Cells) -> None:
         self.speech = Speech(language)
         self.about = views.about()
         self._comments = _by_column(views.comments()) if language == "en" else {}
-        self._cells = Cells(self.speech)
+        self._cells = cells(self.speech)
         self._names = {
             "_": self.speech.text,
             "column_text": labels.column,
@@ -182,17 +184,22 @@ class Edition:
         site = page.site or "../" * self.address(page).count("/")
         other = next(name for name in LANGUAGES if name != language)
         return _template().render(
-            **self._names,
-            page=page,
+            **self.names(page),
             stills=self._still(page) if page.data and "/" not in page.path else {},
-            rows_of=partial(self._cells.rows, page),
-            language=language,
             site=site,
             root=(site + FOLDERS[language]) if page.site else page.root,
             other=other,
             other_page=page.others.get(other) or f"{site}{FOLDERS[other]}{page.path}",
             data_path=_data_path(page) if page.data or page.json else "",
         )
+
+    def names(self, page: Page) -> dict[str, object]:
+        """What a template has to know to show the sections of a page."""
+        return self._names | {
+            "page": page,
+            "rows_of": partial(self._cells.rows, page),
+            "language": self.speech.language,
+        }
 
     def _still(self, page: Page) -> dict[str, Markup]:
         """The picture of the page's first chart, by the name of its figure."""

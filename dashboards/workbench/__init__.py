@@ -1,6 +1,6 @@
 """The workbench: change a method's options and see at once what happens to all boats.
 
-`form` makes controls of the model of a method, `bench` answers questions as plain data, `server`
-listens on loopback; the page itself is `templates/` and `static/`. Numbers come from `pipeline` by
-way of `warehouse.queries.scenario`, charts from `dashboards.figures`.
+What is asked is in the address, so a link shows the same to others. `form` makes controls of the
+model of a method, `bench` makes of an address a method and its drafts, `results` the page about
+them, `server` listens on loopback. The page is made of the site's parts and started by its script.
 """

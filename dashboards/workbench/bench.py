@@ -1,107 +1,71 @@
-"""The bench itself: questions about a method in, answers as plain data out.
+"""What an address asks: a method made from another by changing options, and what is compared.
 
-Knows nothing of HTTP. The history is read once, when the bench is made; drafts of the methods asked
-for last are kept, so that going back to one costs nothing.
+Knows nothing of HTTP or pages. The history is read once; drafts of the methods asked for last are
+kept, so that going back to one costs nothing.
 """
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Final
+from urllib.parse import urlencode
 
-import polars as pl
-import polars.selectors as cs
-from pydantic import BaseModel, ConfigDict, StringConstraints
+from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
 
 from dashboards.figures.style import SCENARIO
-from dashboards.site.cells import DIGITS, LONG
-from dashboards.workbench.form import controls
+from dashboards.workbench.form import CONTROLS, Control
+from dashboards.workbench.texts import text
 from pipeline.errors import HerijkError
-from pipeline.method.definition import (
-    Method,
-    SeasonSteps,
-    Steps,
-    parse_method,
-    shipped_methods,
-)
-from pipeline.method.variant import cut_at, differences, variant, variant_text
-from warehouse.queries.chosen_tows import ALL, choices_of
-from warehouse.queries.history import History
-from warehouse.queries.scenario import CURVE_COLUMNS, Scenario
+from pipeline.method.definition import Method, SeasonSteps, Steps, shipped_methods
+from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
+from warehouse.queries.chosen_tows import ALL
+from warehouse.queries.history import Draft, History
+from warehouse.queries.scenario import Scenario
 from warehouse.store.editions import edition_names, method_of_edition, read_edition
 from warehouse.store.files import write_new
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
-Answer = dict[str, object]
-
 DEFAULT_BASE: Final = "rebased"
-DEFAULT_AGAINST: Final = "as-published"
 DRAFTS_KEPT: Final = 8
-KEPT: Final = 7
-"""Significant digits in an answer; the database holds all."""
-
-REGISTER_COLUMNS: Final = (
-    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "change", "old_cw_kg_m"),
-    *("new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s", "old_rank", "new_rank"),
-    *("exceeds_interval", "time_ratio", "to_edition"),
-)
-HOMOGENEITY_COLUMNS: Final = (
-    *("method", "boat_type", "n_boats", "p_value", "power_at_10pct", "noise_share"),
-    "shared_b_m_s",
-)
 
 
-REPEATS_COLUMNS: Final = (
-    *("method", "scope", "n_pairs", "sd_ratio", "lo", "hi", "share_within_1pct"),
-    "share_within_2pct",
-)
-
-
-class _Question(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Base(_Question):
-    """Where a method starts from.
+@dataclass(frozen=True)
+class Asked:
+    """What an address asks.
 
     Attributes:
-        name: of a method that ships or was saved here.
-        text: of a method file that was opened; its own name then counts.
-    """
-
-    name: str
-    text: str | None = None
-
-
-class Wish(_Question):
-    """A base with other steps.
-
-    Attributes:
-        base: where it starts.
-        steps: one for each range of seasons that `Bench.base` gave, in that order.
-    """
-
-    base: Base
-    steps: tuple[Steps, ...]
-
-
-class Question(Wish):
-    """What a wish does to all boats, compared with a method or edition, and to one boat.
-
-    Attributes:
-        against: the method or edition.
+        base: the method to start from.
+        against: the method or edition to compare with: the base, unless said otherwise.
         boat: its number.
         tows: which tows types are judged by; see `chosen_tows`.
+        at: the first season of the range whose options are shown; "" for all seasons.
+        changes: options as they are written in an address, by `step.option`, and of one range of
+            seasons alone by `step.option.first`.
     """
 
+    base: str
     against: str
     boat: str
-    tows: str = ALL
+    tows: str
+    at: str
+    changes: Mapping[str, str]
+
+    def address(self, **instead: object) -> str:
+        """The address that asks this, with something else in its place; the boat comes last."""
+        asked = vars(self) | instead
+        names = ("base", "against", "tows", "at")
+        own = {name: asked[name] for name in names if asked[name]}
+        return f"?{urlencode({**own, **asked['changes'], 'boat': asked['boat']})}"
 
 
-class Named(Wish):
-    """A wish with what a method file says about it."""
+class Saving(BaseModel):
+    """A method to be saved: the address that made it, and what a method file says about it."""
 
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    address: Mapping[str, str]
     name: Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9-]{0,59}$")]
     title: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=120)]
     reason: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=2000)]
@@ -116,137 +80,109 @@ class Bench:
     """
 
     def __init__(self, store: Store, history: History) -> None:
-        self.history = history
-        self._store = store
+        self.store, self.history = store, history
         self.known = KnownMethods.of(store)
-        self._seasons = history.tows["season"].unique().sort().to_list()
+        self.seasons: Sequence[int] = history.tows["season"].unique().sort().to_list()
+        self.boats = history.boats.join(history.tows, on="fsn_no", how="semi").sort(
+            "name", "fsn_no"
+        )
         self._draft = lru_cache(DRAFTS_KEPT)(history.under)
 
-    def start(self) -> Answer:
-        """What the page needs before the first question."""
-        boats = self.history.boats.join(self.history.tows, on="fsn_no", how="semi")
-        return {
-            "simulated": self.history.simulated,
-            "tows": self.history.tows.height,
-            "controls": controls(),
-            "methods": list(shipped_methods()),
-            "saved": list(self.known.own),
-            "editions": self._editions(),
-            "boats": _rows(boats.select("fsn_no", "name").sort("name", "fsn_no")),
-            "types": boats["boat_type"].drop_nulls().unique().sort().to_list(),
-            "choices": choices_of(self._seasons),
-            "seasons": self._seasons,
-            "digits": DIGITS,
-            "long": sorted(LONG),
-            "base": DEFAULT_BASE,
-            "against": DEFAULT_AGAINST,
-            "scenario": SCENARIO,
-            "columns": {
-                "register": REGISTER_COLUMNS[:-2],
-                "homogeneity": HOMOGENEITY_COLUMNS,
-                "reproducibility": REPEATS_COLUMNS,
-                "boat_curves": CURVE_COLUMNS,
-            },
-        }
+    def asked(self, query: Mapping[str, str]) -> Asked:
+        """What an address asks; what it leaves out or has of a boat that is not there, as usual."""
+        base, boats = query.get("base") or DEFAULT_BASE, self.boats["fsn_no"].to_list()
+        boat = query.get("boat", "")
+        return Asked(
+            base=base,
+            against=query.get("against") or base,
+            boat=boat if boat in boats else boats[0],
+            tows=query.get("tows") or ALL,
+            at=query.get("at", ""),
+            changes={name: value for name, value in query.items() if "." in name},
+        )
 
-    def base(self, wanted: Base) -> Answer:
-        """A method's steps per range of seasons, cut where a season of the archive begins."""
-        method = self._method(wanted)
-        return {
-            "name": method.name,
-            "title": method.title,
-            "ranges": [
-                block.model_dump(mode="json")
-                | {"seasons": [s for s in self._seasons if block.first <= s <= block.last]}
-                for block in cut_at(method, self._seasons)
-            ],
-        }
+    def ranges(self, asked: Asked) -> tuple[SeasonSteps, ...]:
+        """The steps of the base, cut where a season of the archive begins."""
+        return cut_at(self.known.get(asked.base), self.seasons)
 
-    def answer(self, question: Question) -> Answer:
-        """Everything that follows from a question.
+    def method(
+        self, asked: Asked, name: str = SCENARIO, title: str = SCENARIO, reason: str = ""
+    ) -> Method:
+        """The method that is asked for.
 
         Raises:
-            HerijkError: the method does not cover a season, or cannot be.
+            HerijkError: an option cannot have such a value, or there is no such method.
         """
-        base = self._method(question.base)
-        method = self._wished(question, SCENARIO, base.title, "")
-        scenario = Scenario(self._draft(self._against(question.against)), self._draft(method))
-        lines = scenario.register_lines
-        return {
-            "before": scenario.before.method.name,
-            "summary": scenario.summary(),
-            "changed_options": [vars(d) for d in differences(method, base)],
-            "register": _rows(lines.select(REGISTER_COLUMNS)),
-            "season_change": _rows(scenario.season_change()),
-            "log_factors": _rows(scenario.log_factors()),
-            "types": _rows(scenario.type_tows(question.tows)),
-            "homogeneity": _rows(
-                scenario.type_homogeneity(question.tows).select(HOMOGENEITY_COLUMNS)
-            ),
-            "reproducibility": _rows(scenario.reproducibility()),
-            "boat_curves": _rows(scenario.boat_curves(question.boat)),
-            "boat_figure": _rows(scenario.boat_figure(question.boat)),
-        }
+        steps = tuple(
+            SeasonSteps(first=r.first, last=r.last, steps=_with_changes(r, asked.changes))
+            for r in self.ranges(asked)
+        )
+        return variant(self.known.get(asked.base), name, title, reason, steps)
 
-    def register(self, question: Question) -> pl.DataFrame:
-        """The register that a question's answer shows."""
-        return self._draft(self._wished(question, SCENARIO, "", "")).register
+    def changed(self, asked: Asked) -> list[Difference]:
+        """The options that are not those of the base."""
+        return differences(self.method(asked), self.known.get(asked.base))
 
-    def method_file(self, wish: Named) -> str:
-        """The text of the method file of a wish.
+    def scenario(self, asked: Asked) -> Scenario:
+        """What follows from the method that is asked for, beside what it is compared with."""
+        return Scenario(self._draft(self._against(asked.against)), self.draft(asked))
+
+    def draft(self, asked: Asked) -> Draft:
+        """What follows from the method that is asked for."""
+        return self._draft(self.method(asked))
+
+    def editions(self) -> list[str]:
+        """Published editions that were made with a method."""
+        names = edition_names(self.store)
+        return [name for name in names if read_edition(self.store, name).method is not None]
+
+    def save(self, wanted: Saving) -> Path:
+        """Writes the file of a method into the data folder; never over another.
 
         Raises:
-            HerijkError: another method has that name.
+            HerijkError: the name is taken, or the method cannot be.
         """
-        if wish.name in (*shipped_methods(), SCENARIO):
-            raise HerijkError("{} is the name of another method; choose another", wish.name)
-        return variant_text(self._wished(wish, wish.name, wish.title, wish.reason))
-
-    def save(self, wish: Named) -> Path:
-        """Writes the method file of a wish into the data folder; never over another.
-
-        Raises:
-            HerijkError: the name is taken.
-        """
-        text = self.method_file(wish)
-        path = self.known.folder / f"{wish.name}.toml"
+        if wanted.name in (*shipped_methods(), SCENARIO):
+            raise HerijkError("{} is the name of another method; choose another", wanted.name)
+        asked = self.asked(wanted.address)
+        method = self.method(asked, wanted.name, wanted.title, wanted.reason)
+        path = self.known.folder / f"{wanted.name}.toml"
         try:
-            write_new(path, text)
+            write_new(path, variant_text(method))
         except FileExistsError as error:
             raise HerijkError("{} is there already; choose another name", path) from error
         return path
 
-    def _wished(self, wish: Wish, name: str, title: str, reason: str) -> Method:
-        base = self._method(wish.base)
-        ranges = cut_at(base, self._seasons)
-        if len(ranges) != len(wish.steps):
-            raise HerijkError("{} has {} ranges, not {}", base.name, len(ranges), len(wish.steps))
-        steps = (
-            SeasonSteps(first=block.first, last=block.last, steps=steps)
-            for block, steps in zip(ranges, wish.steps, strict=True)
-        )
-        return variant(base, name, title, reason, tuple(steps))
-
-    def _method(self, wanted: Base) -> Method:
-        if wanted.text is not None:
-            return parse_method(wanted.text, wanted.name, self.known.text)
-        return self.known.get(wanted.name)
-
-    def _editions(self) -> list[str]:
-        """Published editions that were made with a method."""
-        names = edition_names(self._store)
-        return [name for name in names if read_edition(self._store, name).method is not None]
-
     def _against(self, name: str) -> Method:
-        if name in edition_names(self._store):
-            return method_of_edition(self._store, name)
+        if name in edition_names(self.store):
+            return method_of_edition(self.store, name)
         return self.known.get(name)
 
 
-def _rows(frame: pl.DataFrame) -> list[Answer]:
-    """Rows for JSON: a number that is not finite is no number."""
-    finite = [
-        pl.when(pl.col(c).is_finite()).then(pl.col(c).round_sig_figs(KEPT)).alias(c)
-        for c in cs.expand_selector(frame, cs.float())
-    ]
-    return frame.with_columns(finite).to_dicts()
+def _with_changes(block: SeasonSteps, changes: Mapping[str, str]) -> Steps:
+    """The steps of a range of seasons, with what is changed for all seasons and then for these."""
+    for_all = [name for name in changes if name.count(".") == 1]
+    here = [name for name in changes if name.endswith(f".{block.first}")]
+    steps = block.steps
+    for key in (*for_all, *here):
+        step, option = key.split(".")[:2]
+        control = CONTROLS.get((step, option))
+        if control is None:
+            raise HerijkError("there is no option {}", key)
+        held = steps.model_dump()
+        try:
+            held[step][option] = control.read(changes[key])
+            steps = Steps.model_validate(held)
+        except (ValueError, ValidationError) as error:
+            raise _refusal(control, changes[key]) from error
+    return steps
+
+
+def _refusal(control: Control, value: str) -> HerijkError:
+    """Why an option cannot have a value."""
+    called = text(f"{control.step}.{control.option}")
+    if control.kind == "number":
+        return HerijkError(
+            "{} has to lie between {} and {}, and is {}", called, control.least, control.most, value
+        )
+    return HerijkError("{} cannot be {}", called, value)

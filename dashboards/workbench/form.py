@@ -5,71 +5,97 @@ new option appears by itself: as a choice, a number between bounds, or a list of
 another kind is shown and cannot be changed here. Texts are in `dashboards.workbench.texts`.
 """
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from math import floor, log10
 from typing import Any, Final
 
-from pipeline.method.definition import Steps
-
-Schema = dict[str, Any]
-Control = dict[str, Any]
+from pipeline.method.definition import SeasonSteps, Steps
 
 POSITIONS: Final = 100
-"""A slider has at least so many positions."""
+"""A number goes from its least to its most in at least so many steps."""
 
 UNITS: Final = {"_m_s": "m/s", "_s": "s", "_c": "°C", "_sd": "sd", "_ratio": "", "": ""}
 """Unit of an option by the ending of its name, as in columns."""
 
 
-def controls() -> list[Control]:
-    """The steps in order, each with the controls of its options.
+@dataclass(frozen=True)
+class Control:
+    """How one option is changed.
 
-    Returns:
-        Per step `step`, `meaning` (its docstring) and `options`: each with its name in `option`,
-        its `unit` and `kind`: `choice` and `several` with `values`; `number` with `least`, `most`,
-        `by` (a step of the slider) and `whole`; `fixed` with nothing more.
+    Attributes:
+        kind: `choice` and `several` of `values`; `number` from `least` to `most` in steps of `by`,
+            `whole` or not; `fixed`, which cannot be changed here.
     """
+
+    step: str
+    option: str
+    kind: str
+    values: Sequence[Any] = ()
+    least: float = 0.0
+    most: float = 0.0
+    by: float = 0.0
+    whole: bool = False
+
+    @property
+    def unit(self) -> str:
+        """Its unit, by the ending of its name."""
+        return next(unit for ending, unit in UNITS.items() if self.option.endswith(ending))
+
+    def read(self, written: str) -> object:
+        """The value of an option as an address has it.
+
+        Raises:
+            ValueError: it is none of the choices, or no number.
+        """
+        if self.kind == "choice":
+            return self.values[[write(value) for value in self.values].index(written)]
+        if self.kind == "several":
+            return [code for code in written.split(",") if code]
+        if self.kind == "number":
+            return int(written) if self.whole else float(written)
+        raise ValueError(written)
+
+    def held(self, ranges: Sequence[SeasonSteps]) -> str | None:
+        """The value as an address has it; None where ranges of seasons differ."""
+        found = {write(getattr(getattr(r.steps, self.step), self.option)) for r in ranges}
+        return found.pop() if len(found) == 1 else None
+
+
+def write(value: object) -> str:
+    """A value as an address has it."""
+    if isinstance(value, (list, tuple)):
+        return ",".join(map(str, value))
+    return str(value)
+
+
+def _controls() -> Iterator[Control]:
     schema = Steps.model_json_schema()
-    steps = []
     for step, place in schema["properties"].items():
         rules = schema["$defs"][place["$ref"].rsplit("/", 1)[1]]
-        options = [
-            {"option": name, "unit": unit_of(name)} | _kind(rule)
-            for name, rule in rules["properties"].items()
-        ]
-        steps.append({"step": step, "meaning": rules["description"], "options": options})
-    return steps
+        for option, rule in rules["properties"].items():
+            yield control(step, option, rule)
 
 
-def _kind(rule: Schema) -> Control:
+def control(step: str, option: str, rule: dict[str, Any]) -> Control:
+    """The control of an option by its rule in the schema."""
     if "enum" in rule:
-        return {"kind": "choice", "values": rule["enum"]}
+        return Control(step, option, "choice", rule["enum"])
     if rule.get("type") == "boolean":
-        return {"kind": "choice", "values": [False, True]}
+        return Control(step, option, "choice", (False, True))
     if rule.get("type") == "array" and "enum" in rule["items"]:
-        return {"kind": "several", "values": rule["items"]["enum"]}
-    if rule.get("type") in ("number", "integer"):
-        return _number(rule)
-    return {"kind": "fixed"}
-
-
-def _number(rule: Schema) -> Control:
-    """A slider where both bounds are known; a bound that is itself excluded is one step away."""
+        return Control(step, option, "several", rule["items"]["enum"])
+    # A bound that is itself excluded is one step away.
     low, above = rule.get("minimum"), rule.get("exclusiveMinimum")
     high, below = rule.get("maximum"), rule.get("exclusiveMaximum")
     least, most = (low if above is None else above), (high if below is None else below)
-    if least is None or most is None:
-        return {"kind": "fixed"}
+    if rule.get("type") not in ("number", "integer") or least is None or most is None:
+        return Control(step, option, "fixed")
     whole = rule["type"] == "integer"
     by = 1 if whole else 10.0 ** floor(log10((most - least) / POSITIONS))
-    return {
-        "kind": "number",
-        "least": least if above is None else least + by,
-        "most": most if below is None else most - by,
-        "by": by,
-        "whole": whole,
-    }
+    least, most = least + by * (above is not None), most - by * (below is not None)
+    return Control(step, option, "number", (), least, most, by, whole)
 
 
-def unit_of(option: str) -> str:
-    """The unit of an option, by the ending of its name."""
-    return next(unit for ending, unit in UNITS.items() if option.endswith(ending))
+CONTROLS: Final = {(one.step, one.option): one for one in _controls()}
+"""Every option's control, in the order of the steps."""

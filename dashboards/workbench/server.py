@@ -4,14 +4,14 @@ It listens on 127.0.0.1 only. Nothing is fetched from elsewhere, and the page ma
 """
 
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from threading import Lock
-from typing import Final, TypeVar
+from typing import Final
 
 import uvicorn
 from markupsafe import Markup
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
@@ -19,24 +19,30 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
-from dashboards import fonts, labels
+from dashboards import labels
 from dashboards.guard import guarded
-from dashboards.html import as_json, environment, in_both
-from dashboards.site.render import vega_bundle
-from dashboards.site.specifications import chart_specifications
-from dashboards.workbench.bench import Base, Bench, Named, Question
-from dashboards.workbench.texts import in_each, words
+from dashboards.html import as_json, environment
+from dashboards.site.columns import json_of
+from dashboards.site.parts import Page
+from dashboards.site.render import Edition, shared_files
+from dashboards.workbench.bench import Asked, Bench, Saving
+from dashboards.workbench.form import CONTROLS, Control
+from dashboards.workbench.results import BenchCells, results
+from dashboards.workbench.texts import range_in_words, text, value_in_words
 from pipeline.errors import HerijkError
-from pipeline.messages import LANGUAGES, pgettext, say
+from pipeline.messages import LANGUAGES, Sentence, pgettext
+from pipeline.method.definition import SeasonSteps, shipped_methods
+from pipeline.method.variant import Difference
+from warehouse.queries.views import Views
 
 LOOPBACK: Final = "127.0.0.1"
 HERE: Final = Path(__file__).parent
-SITE: Final = HERE.parent / "site" / "static"
+SITE: Final = HERE.parent / "site" / "templates"
+ADDRESSES: Final = {"nl": "/", "en": "/en/"}
 
 HEADERS: Final = {
-    # Vega compiles its expressions, and its tooltips bring a style of their own.
     "Content-Security-Policy": (
-        "default-src 'none'; script-src 'self' 'unsafe-eval'; style-src 'self' 'unsafe-inline'; "
+        "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
         "img-src data:; font-src data:; connect-src 'self'; form-action 'none'; "
         "frame-ancestors 'none'; base-uri 'none'"
     ),
@@ -44,109 +50,142 @@ HEADERS: Final = {
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-store",
 }
-
-Wanted = TypeVar("Wanted", bound=BaseModel)
+ONE_AT_A_TIME: Final = Lock()
+ELSEWHERE: Final = "cross-site"
+"""What a browser says of a request that a page of another site makes."""
 
 
 def application(bench: Bench) -> Starlette:
     """The workbench as a web application."""
-    page = _page(bench)
-    figures = {language: chart_specifications(language) for language in LANGUAGES}
-    files = {
-        "vega.js": vega_bundle(),
-        "figures.js": f"window.HERIJK_FIGURES = {as_json(figures)};\n",
-        "font.css": fonts.style_sheet(),
-        "site.css": (SITE / "site.css").read_text(encoding="utf-8"),
-    } | {f.name: f.read_text(encoding="utf-8") for f in (HERE / "static").iterdir()}
+    own = {f.name: f.read_text(encoding="utf-8") for f in (HERE / "static").iterdir()}
+    with Views(bench.store) as views:
+        pages = [BenchPage(bench, views, language) for language in LANGUAGES]
+    return Starlette(
+        routes=[
+            *[Route(ADDRESSES[page.language], page.shown) for page in pages],
+            *[Route(f"/save/{page.language}", page.save, methods=["POST"]) for page in pages],
+            Route("/static/{name}", _static(shared_files() | own)),
+        ]
+    )
 
-    async def index(_: Request) -> Response:
-        return HTMLResponse(page, headers=HEADERS)
 
-    async def static(request: Request) -> Response:
+def _static(files: Mapping[str, str]) -> Callable[[Request], Response]:
+    def static(request: Request) -> Response:
         name = request.path_params["name"]
         if name not in files:
             raise HTTPException(404)
         kind = "text/css" if name.endswith(".css") else "text/javascript"
         return Response(files[name], media_type=kind, headers=HEADERS)
 
-    def saved(wish: Named) -> dict[str, object]:
-        path = bench.save(wish)
-        data = path.parents[1]
-        return {
-            "path": str(path),
-            "command": f"herijk compare as-published {path} --data {data}",
-        }
-
-    return Starlette(
-        routes=[
-            Route("/", index),
-            Route("/static/{name}", static),
-            _asked("/base", Base, bench.base),
-            _asked("/answer", Question, bench.answer),
-            _asked("/file", Named, lambda wish: {"text": bench.method_file(wish)}),
-            _asked("/save", Named, saved),
-        ]
-    )
+    return static
 
 
-def _asked(path: str, model: type[Wanted], answer: Callable[[Wanted], dict[str, object]]) -> Route:
-    """A route that takes a model as JSON.
+class BenchPage:
+    """The page of the workbench in one language."""
 
-    What cannot be is answered with a sentence in `refused`, and with status 200: it is an answer,
-    and a browser reports other statuses as errors of the page.
-    """
-    one_at_a_time = Lock()
+    def __init__(self, bench: Bench, views: Views, language: str) -> None:
+        self._bench, self.language = bench, language
+        self._edition = Edition(views, language, BenchCells)
+        self._template = environment(
+            *(HERE / "templates", SITE),
+            pgettext=pgettext,
+            text=text,
+            value_in_words=value_in_words,
+            SIMULATED=labels.SIMULATED,
+            method_name=labels.method,
+        ).get_template("workbench.html.j2")
 
-    def work(body: bytes) -> Response:
+    async def shown(self, request: Request) -> Response:
+        """The answer to an address; a page of another site cannot have one made."""
+        if request.headers.get("sec-fetch-site") == ELSEWHERE and request.query_params:
+            raise HTTPException(403)
+        page = await run_in_threadpool(self.html, dict(request.query_params))
+        return HTMLResponse(page, headers=HEADERS)
+
+    async def save(self, request: Request) -> Response:
+        """The command that shows all that a saved method changes; or why it is not saved."""
+        answer = await run_in_threadpool(self._saved, await request.body())
+        return JSONResponse(answer, headers=HEADERS)
+
+    def _saved(self, body: bytes) -> dict[str, str]:
         try:
-            wanted = model.model_validate_json(body)
-            with one_at_a_time:
-                return JSONResponse(answer(wanted), headers=HEADERS)
+            wanted = Saving.model_validate_json(body)
+            path = self._bench.save(wanted)
         except ValidationError as error:
-            return JSONResponse(_refusal(error), headers=HEADERS)
+            return {"refused": str(error.errors(include_url=False)[0]["msg"])}
         except HerijkError as error:
-            return JSONResponse({"refused": str(error)}, headers=HEADERS)
+            return {"refused": spoken(error, self.language)}
+        base, data = self._bench.asked(wanted.address).base, self._bench.store.root
+        return {"command": f"herijk compare {base} {path} --data {data}"}
 
-    async def endpoint(request: Request) -> Response:
-        return await run_in_threadpool(work, await request.body())
+    def html(self, query: Mapping[str, str]) -> str:
+        """The page that answers an address; where it cannot be answered, the page that says so."""
+        asked = self._bench.asked(query)
+        try:
+            with ONE_AT_A_TIME:
+                page = results(self._bench, asked)
+            return self._html(asked, page, self._bench.changed(asked))
+        except HerijkError as error:
+            usual = self._bench.asked({"base": asked.base} if self._known(asked.base) else {})
+            return self._html(usual, refused=spoken(error, self.language))
 
-    return Route(path, endpoint, methods=["POST"])
+    def _known(self, method: str) -> bool:
+        return method in (*shipped_methods(), *self._bench.known.own)
+
+    def _html(
+        self,
+        asked: Asked,
+        page: Page | None = None,
+        changed: Sequence[Difference] = (),
+        refused: str = "",
+    ) -> str:
+        ranges = self._bench.ranges(asked)
+        other = next(name for name in LANGUAGES if name != self.language)
+        shown = page or Page("index.html", text("workbench"), [])
+        data = ",".join(
+            f"{as_json(name)}:[{','.join(map(json_of, frames))}]"
+            for name, frames in shown.data.items()
+        ).replace("<", "\\u003c")
+        return self._template.render(
+            **self._edition.names(shown),
+            stills={},
+            site="" if self.language == "nl" else "../",
+            root="",
+            asked=asked,
+            changed=changed,
+            refused=refused,
+            data=Markup(f'{{"charts":{{{data}}}}}'),  # noqa: S704 - no text in it closes the element
+            methods=list(shipped_methods()),
+            saved=list(self._bench.known.own),
+            editions=self._bench.editions(),
+            steps={} if refused else self._steps(asked, ranges),
+            ranges=[(str(r.first), range_in_words(r.first, r.last)) for r in ranges],
+            range_in_words=range_in_words,
+            is_whole=lambda d: (d.first, d.last) == (ranges[0].first, ranges[-1].last),
+            other=other,
+            other_page=ADDRESSES[other] + asked.address(),
+        )
+
+    def _steps(
+        self, asked: Asked, ranges: tuple[SeasonSteps, ...]
+    ) -> dict[str, list[tuple[Control, str | None]]]:
+        """The controls of each step, with what they hold in the seasons that are shown."""
+        method = self._bench.method(asked)
+        shown = [
+            SeasonSteps(first=r.first, last=r.last, steps=method.for_season(r.first))
+            for r in ranges
+            if asked.at in ("", str(r.first))
+        ]
+        steps: dict[str, list[tuple[Control, str | None]]] = {}
+        for control in CONTROLS.values():
+            steps.setdefault(control.step, []).append((control, control.held(shown)))
+        return steps
 
 
-def _refusal(error: ValidationError) -> dict[str, object]:
-    """The first thing that is wrong, with the option it is about.
-
-    `kind` and `limit` are for the page, which says it in its language; `refused` is for others.
-    """
-    first = error.errors(include_url=False)[0]
-    known = first.get("ctx", {})
-    where = [part for part in first["loc"] if isinstance(part, str) and part != "steps"]
-    message = first["msg"]
-    shown = "" if first["type"] == "json_invalid" else f", not {first['input']!r}"
-    return {
-        "refused": f"{'.'.join(where)}: {message[0].lower()}{message[1:]}{shown}",
-        "where": ".".join(where),
-        "kind": first["type"],
-        "limit": next((known[name] for name in ("gt", "ge", "lt", "le") if name in known), None),
-    }
-
-
-def _page(bench: Bench) -> str:
-    start = bench.start()
-    data = Markup(as_json(start | {"words": words()}))  # noqa: S704 - as_json escapes
-    made = environment(
-        HERE / "templates",
-        _=_text,
-        both=in_each,
-        say=say,
-        pgettext=pgettext,
-        SIMULATED=labels.SIMULATED,
-    )
-    return made.get_template("workbench.html.j2").render(start=start, data=data)
-
-
-def _text(text: str) -> Markup:
-    return in_both(in_each(text))
+def spoken(error: HerijkError, language: str) -> str:
+    """What an error says, in a language."""
+    said = error.args[0]
+    return said.spoken(language) if isinstance(said, Sentence) else str(said)
 
 
 def address(listening: socket.socket) -> str:

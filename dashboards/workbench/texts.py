@@ -1,4 +1,4 @@
-"""What the workbench says of a method, and what its script says.
+"""What the workbench and `herijk methods` call the options of a method and their values.
 
 An option or value without a text here is shown by its name in the method file.
 """
@@ -6,69 +6,11 @@ An option or value without a text here is shown by its name in the method file.
 from typing import Final
 
 from dashboards import labels
-from pipeline.messages import LANGUAGES, Sentence, pgettext, say, speaker
+from dashboards.speech import Speech
+from pipeline.messages import Sentence, pgettext, say
 
 TEXTS: Final[dict[str, Sentence]] = {
     "workbench": say("Workbench"),
-    "group_methods": say("Methods"),
-    "group_editions": say("Published editions"),
-    "group_saved": say("Saved here"),
-    "all_seasons": say("All seasons"),
-    "per_season": say("Per season"),
-    "and_later": say("and later"),
-    "no_tows": say("no tows"),
-    "differs": say("differs"),
-    "fixed": say("only in the method file"),
-    "nothing": say("nothing"),
-    "nothing_changed": say("Nothing yet: this is the method itself."),
-    "busy": say("Recomputing ..."),
-    "done_in": say("Recomputed and drawn in"),
-    "tows_in_all": say("tows"),
-    "refused": say("Not possible:"),
-    "refusal.greater_than": say("has to be greater than"),
-    "refusal.greater_than_equal": say("has to be at least"),
-    "refusal.less_than": say("has to be less than"),
-    "refusal.less_than_equal": say("has to be at most"),
-    "refusal.int_from_float": say("has to be a whole number"),
-    "refusal.int_parsing": say("has to be a whole number"),
-    "shared": say("The link is on the clipboard."),
-    "not_shared": say("The link is in the address bar; copy it there."),
-    "means.count_changed": say("Lines whose Cw changes, of all lines."),
-    "means.count_gains": say("Crews that may take longer over a race for the same power."),
-    "means.count_loses": say("Crews that have to be faster for the same power."),
-    "means.count_added": say("Lines that gain a valid curve."),
-    "means.count_removed": say("Lines that lose their valid curve."),
-    "means.median_cw": say("The middle ratio of new to old Cw over all lines."),
-    "means.within_1": say(
-        "How often an unaltered boat that was towed again has a Cw within 1 % of the "
-        "earlier one. Higher is better."
-    ),
-    "means.within_2": say("The same for 2 %."),
-    "means.sd_tow": say(
-        "How far one tow is off by chance, as a standard deviation of Cw. Lower is better."
-    ),
-    "failed": say("The workbench failed; the terminal it was started in says more."),
-    "gone": say("The workbench no longer answers. Start it again with herijk workbench."),
-    # Results
-    "count_changed": say("lines changed"),
-    "count_gains": say("gain time"),
-    "count_loses": say("lose time"),
-    "count_added": say("lines added"),
-    "count_removed": say("lines removed"),
-    "median_cw": say("median Cw after / before"),
-    "within_1": say("repeats within 1 %"),
-    "within_2": say("repeats within 2 %"),
-    "sd_tow": say("sd of one tow"),
-    "was": say("was"),
-    "boats_inside": say("Boats inside:"),
-    "saved_as": say("Saved. To see all its effects:"),
-    # Columns
-    "column.old_cw_kg_m": say("Cw before [kg/m]"),
-    "column.new_cw_kg_m": say("Cw after [kg/m]"),
-    "column.gain_in_two_hours_s": say("Time in 2 h [s]"),
-    "column.old_rank": say("Rank before"),
-    "column.new_rank": say("Rank after"),
-    "column.exceeds_interval": say("Beyond un\u00adcer\u00adtainty"),
     # Steps
     "step.speed": say("Speed"),
     "step.calibration": say("Calibration on GPS"),
@@ -124,12 +66,8 @@ TEXTS: Final[dict[str, Sentence]] = {
     "choice.ittc57": say("ITTC-57"),
     "choice.free": say("free"),
     "choice.capped": say("capped"),
-    "all": say("all"),
-    "clear": say("Clear selection"),
-    "from": say("from"),
-    "to": say("to"),
-    "yes": say("yes"),
-    "no": say("no"),
+    "choice.True": say("yes"),
+    "choice.False": say("no"),
 }
 
 
@@ -138,12 +76,23 @@ def text(key: str) -> Sentence:
     return TEXTS.get(key) or say("{}", key.rpartition(".")[2])
 
 
-def in_each(sentence: str) -> tuple[str, str]:
-    """A text in Dutch and English."""
-    nl, en = (speaker(language)(sentence) for language in LANGUAGES)
-    return nl, en
+def value_in_words(value: object, speech: Speech) -> str:
+    """The value of an option as people read it."""
+    if isinstance(value, (list, tuple)):
+        codes = [speech.say(labels.code(code)) for code in value]
+        return "; ".join(codes) or speech.say("nothing")
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return f"{value:.10g}".replace(".", speech.decimal)
+    known = TEXTS.get(f"choice.{value}")
+    return speech.say(labels.code(str(value)) if known is None else known)
 
 
-def words() -> dict[str, tuple[str, str]]:
-    """The texts that the script of the page asks for, in Dutch and English."""
-    return {key: in_each(sentence) for key, sentence in (labels.named() | TEXTS).items()}
+def range_in_words(first: int, last: int) -> Sentence:
+    """Seasons from one to another; those of the last range go on."""
+    if last >= OPEN:
+        return say("{} and later", first)
+    return say("{}", str(first) if first == last else f"{first}\u2013{last}")
+
+
+OPEN: Final = 9999
+"""The last season of a method that holds until another."""

@@ -10,8 +10,7 @@ from typing import Final
 import numpy as np
 import polars as pl
 
-from pipeline.consistency.eras import median_interval, season_ranges
-from pipeline.consistency.lines import ALL_TOWS, NEWEST
+from pipeline.consistency.eras import median_interval
 from pipeline.consistency.observed import (
     ALL_TYPES,
     TOW,
@@ -102,33 +101,19 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
     """Is B hull speed, and at what part of hull speed are boats towed?
 
     Of a boat with several tows the median counts, so that it counts once. The interval of the
-    median rests on order statistics. Of seasons only all types together.
+    median rests on order statistics.
 
     Args:
         compared: rows of `compared_tows`.
 
     Returns:
-        Rows of the table `hull_speed`, per method, choice of tows, and boat type or all.
+        Rows of the table `hull_speed`, per method, and boat type or all.
     """
-    stated = {ALL_TOWS.tows: compared, NEWEST.tows: compared.filter("newest")}
-    seasons = {
-        str(season): tows for (season,), tows in compared.group_by("season", maintain_order=True)
-    }
-    for name, ends in season_ranges(compared["season"]).items():
-        seasons[name] = compared.filter(pl.col("season").is_between(*ends))
-    rows = []
-    for choice, tows in (stated | seasons).items():
-        groups = [
-            ((m, ALL_TYPES), group) for (m,), group in tows.group_by("method", maintain_order=True)
-        ]
-        if choice in stated:
-            typed = tows.filter(pl.col("boat_type") != UNKNOWN_TYPE)
-            groups += typed.group_by("method", "boat_type", maintain_order=True)
-        rows += [
-            {"method": m, "tows": choice, "boat_type": t} | _hull_row(group)
-            for (m, t), group in groups
-        ]
-    return frame_of(HullSpeed, rows).sort("method", "tows", "boat_type")
+    every = compared.with_columns(boat_type=pl.lit(ALL_TYPES))
+    typed = compared.filter(pl.col("boat_type") != UNKNOWN_TYPE)
+    groups = pl.concat([every, typed]).group_by("method", "boat_type", maintain_order=True)
+    rows = [{"method": m, "boat_type": t} | _hull_row(group) for (m, t), group in groups]
+    return frame_of(HullSpeed, rows).sort("method", "boat_type")
 
 
 def _hull_row(tows: pl.DataFrame) -> dict[str, object]:

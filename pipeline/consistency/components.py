@@ -69,11 +69,7 @@ def _components(tows: Observed, scope: str) -> list[Row]:
     fit = mixed.fit_all([problem], mixed.COMPONENTS)[0]
     if fit is None:
         return _nothing(counts, "not_settled")
-    try:
-        shares = _shares(fit, float(np.sqrt(variance.mean())))
-    except mixed.NotSettledError:
-        return _nothing(counts, "not_settled")
-    return [counts | row for row in shares]
+    return [counts | row for row in _shares(fit, float(np.sqrt(variance.mean())))]
 
 
 def _nothing(counts: Row, reason: str) -> list[Row]:

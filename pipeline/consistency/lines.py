@@ -1,15 +1,15 @@
 """Does a quantity follow weight, length or tow speed within a type?
 
-The tows are a choice: the newest of each boat and crew, all, or those of one season. Lines are
-weighted: each tow has its own measuring error, and boats differ truly by a standard deviation that
-is estimated (REML); tows of one boat, also of two crews, share that difference. Over all tows a
-season and a single tow have a deviation of their own as well, so that repeats count as repeats.
-Women's and men's crews differ in weight and speed, so lines against weight or length compare boats
-within a crew; displacement contains the crew. Lines against tow speed, which stands for crew mass,
-are drawn within men and within women too.
+The tows are the newest of each boat and crew, or all. Lines are weighted: each tow has its own
+measuring error, and boats differ truly by a standard deviation that is estimated (REML); tows of
+one boat, also of two crews, share that difference. Over all tows each has a deviation of its own as
+well, so that repeats count as repeats. Women's and men's crews differ in weight and speed, so lines
+against weight or length compare boats within a crew; displacement contains the crew. Lines against
+tow speed, which stands for crew mass, are drawn within men and within women too.
 """
 
 from collections.abc import Iterator
+from itertools import product
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,7 +17,6 @@ import polars as pl
 
 from pipeline.arrays import FloatArray, IntArray
 from pipeline.consistency import mixed
-from pipeline.consistency.eras import season_ranges
 from pipeline.consistency.mixed import Problem
 from pipeline.consistency.observed import (
     UNKNOWN_TYPE,
@@ -27,7 +26,6 @@ from pipeline.consistency.observed import (
     curve_anywhere,
     ln_cw_unit_variance,
     newest,
-    q_at,
 )
 from pipeline.tables.consistency import TypeLinePoints, TypeLines
 from pipeline.tables.declare import dy
@@ -36,21 +34,15 @@ from pipeline.tables.row import Row
 
 LN_CW, BEND = "ln_cw_standard", "bend"
 LN_DISPLACEMENT: Final = "ln_displacement"
-EXPLAINING: Final = ("weight_kg", "displacement_kg", "declared_speed_m_s", "waterline_length_m")
 OF_THE_BOAT: Final = ("weight_kg", "waterline_length_m")
 """Explaining variables that say nothing of the crew."""
 
-SLIDE_PAIRS: Final = tuple(
-    (quantity, explaining)
-    for quantity in ("b_m_s", "a_kg_m", "cw_standard_kg_m")
-    for explaining in ("weight_kg", "declared_speed_m_s", "waterline_length_m")
-)
-"""What the presentation of 2015 plots, here for every choice of tows."""
-
-NEWEST_PAIRS: Final = (
-    *((q, x) for q in ("b_m_s", "a_kg_m", "q", "cw_kg_m", "cw_standard_kg_m") for x in EXPLAINING),
+TOW_SPEED: Final = "declared_speed_m_s"
+PAIRS: Final = (
+    *product(("b_m_s", "a_kg_m", "cw_standard_kg_m"), (*OF_THE_BOAT, TOW_SPEED)),
     (LN_CW, LN_DISPLACEMENT),
 )
+"""Quantities with what may explain them: what the presentation of 2015 plots, and its power law."""
 
 ALL_CREWS: Final = "all"
 WITHIN: Final = {"men": "H", "women": "D"}
@@ -60,33 +52,10 @@ FEWEST_BOATS: Final = 3
 PLACES: Final = 7
 """Points at which a line is given for drawing."""
 
-
-class Choice(NamedTuple):
-    """Which tows: a name as in tables (`newest`, `all`, a season, a range), and what deviates.
-
-    Of one season, as of the newest tows, hardly any boat has two: boat and tow are one. Of all
-    tows and of a range each deviates by itself as well, by its season among other things: a chart
-    of all tows shows that too.
-    """
-
-    tows: str
-    components: tuple[str, ...] = (mixed.BOAT,)
-
-
-NEWEST: Final = Choice("newest")
-ALL_TOWS: Final = Choice("all", (mixed.BOAT, mixed.CELL))
-
-
-def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
-    """Every choice of tows, with them."""
-    yield NEWEST, newest(observed)
-    yield ALL_TOWS, observed
-    season = observed.table["season"]
-    by_ends = {Choice(str(one)): (one, one) for one in season.unique().sort()}
-    for name, ends in season_ranges(season).items():
-        by_ends[Choice(name, ALL_TOWS.components)] = ends
-    for choice, ends in by_ends.items():
-        yield choice, observed.take(np.flatnonzero(season.is_between(*ends).to_numpy()))
+COMPONENTS: Final = {"newest": (mixed.BOAT,), "all": (mixed.BOAT, mixed.CELL)}
+"""What deviates besides the measuring error, by the tows. Of the newest tows hardly any boat has
+two: boat and tow are one. Of all tows each deviates by itself as well, by its season among other
+things: a chart of all tows shows that too."""
 
 
 def quantities(observed: Observed) -> dict[str, tuple[FloatArray, FloatArray]]:
@@ -99,7 +68,7 @@ def quantities(observed: Observed) -> dict[str, tuple[FloatArray, FloatArray]]:
     small B, whose error looks small, would weigh most.
     """
     speed = observed.column("standard_speed_m_s")
-    a, cw = observed.column("a_kg_m"), observed.column("cw_kg_m")
+    a = observed.column("a_kg_m")
     b = observed.table["b_m_s"].to_numpy().astype(np.float64)
     b = np.where(observed.table["b_capped"].to_numpy(), np.nan, b)
     middle = pl.col("q").median().over("method", "boat_type")
@@ -111,9 +80,7 @@ def quantities(observed: Observed) -> dict[str, tuple[FloatArray, FloatArray]]:
     return {
         "b_m_s": (b, b * b * b_unit),
         "a_kg_m": (a, a * a * a_unit_variance(observed, q)),
-        "q": q_at(observed, speed),
         BEND: bend_at(observed, speed),
-        "cw_kg_m": (cw, cw * cw * observed.column("c0_unit_variance")),
         "cw_standard_kg_m": (standard, standard * standard * unit),
         LN_CW: (ln_standard, unit),
     }
@@ -135,7 +102,6 @@ class _Line(NamedTuple):
             to one so that no power of a unit gets lost in rounding.
         centre: (crews,) those means; width: what the variable is divided by.
         x: (n,) the variable as it is; whose: (n,) the class that a tow is drawn with.
-        noise: root mean square of measuring errors.
     """
 
     row: Row
@@ -144,13 +110,10 @@ class _Line(NamedTuple):
     width: float
     x: FloatArray
     whose: np.ndarray
-    noise: float
 
 
 def type_lines(observed: Observed) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
-    """Lines through the tows of every type, for every choice of tows.
-
-    Over the newest tows there are lines for more pairs than the presentation plots.
+    """Lines through the newest tows and through all tows of every type.
 
     Returns:
         Rows of the tables `type_lines` and `type_line_points`. Where no line is drawn, `reason`
@@ -158,38 +121,36 @@ def type_lines(observed: Observed) -> tuple[dy.DataFrame[TypeLines], dy.DataFram
         a crew, they are given per class; `crew_class` is `all` elsewhere.
     """
     rows: list[Row] = []
-    lines: dict[tuple[str, ...], list[_Line]] = {}
-    for choice, tows in chosen_tows(observed):
-        for row, line in _described(choice, tows):
-            rows.append(row)
-            if line is not None:
-                lines.setdefault(choice.components, []).append(line)
     points: list[Row] = []
-    for components, alike in lines.items():
-        fits = mixed.fit_all([line.problem for line in alike], components)
-        for line, fit in zip(alike, fits, strict=True):
+    for tows, components in COMPONENTS.items():
+        of = newest(observed) if tows == "newest" else observed
+        described = list(_described(tows, of))
+        rows += [row for row, _ in described]
+        lines = [line for _, line in described if line is not None]
+        fits = mixed.fit_all([line.problem for line in lines], components)
+        for line, fit in zip(lines, fits, strict=True):
             if fit is None:
                 line.row["reason"] = "not_settled"
                 continue
             line.row.update(_numbers(line, fit))
-            kind = line.row["quantity"], line.row["explaining"]
-            if line.row["within"] == ALL_CREWS and kind in SLIDE_PAIRS:
+            if line.row["within"] == ALL_CREWS:
                 points += _points(line, fit)
     return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 
 
-def _kinds(choice: Choice) -> Iterator[tuple[str, str, str]]:
-    """Each quantity with what may explain it, and within which crews, for a choice of tows."""
-    for quantity, explaining in NEWEST_PAIRS if choice == NEWEST else SLIDE_PAIRS:
+def _kinds() -> Iterator[tuple[str, str, str]]:
+    """Each quantity with what may explain it, and within which crews."""
+    for quantity, explaining in PAIRS:
         yield quantity, explaining, ALL_CREWS
-        if explaining == "declared_speed_m_s":
+        if explaining == TOW_SPEED:
             yield from ((quantity, explaining, name) for name in WITHIN)
 
 
-def _described(choice: Choice, tows: Observed) -> Iterator[tuple[Row, _Line | None]]:
+def _described(choice: str, tows: Observed) -> Iterator[tuple[Row, _Line | None]]:
     """The row of every line through some tows, and the line; none where the row says why."""
     measured = quantities(tows)
-    variables = {name: explaining_variable(tows, name) for name in (*EXPLAINING, LN_DISPLACEMENT)}
+    names = {explaining for _, explaining in PAIRS}
+    variables = {name: explaining_variable(tows, name) for name in names}
     crew_class = tows.table["crew_class"].to_numpy()
     boat, hull, crew = (
         tows.table.select(pl.struct(by).rank("dense")).to_series().to_numpy()
@@ -198,7 +159,7 @@ def _described(choice: Choice, tows: Observed) -> Iterator[tuple[Row, _Line | No
     run_variance = tows.column("run_sd_ratio") ** 2
     speeds = tows.column("standard_speed_m_s")
     for (method, boat_type), own in tows.rows_by("method", "boat_type"):
-        for quantity, explaining, within in _kinds(choice):
+        for quantity, explaining, within in _kinds():
             (y, unit), x = measured[quantity], variables[explaining]
             known = np.isfinite(y[own]) & np.isfinite(x[own])
             if within != ALL_CREWS:
@@ -206,7 +167,7 @@ def _described(choice: Choice, tows: Observed) -> Iterator[tuple[Row, _Line | No
             mine = own[known]
             row: Row = {
                 "method": method,
-                "tows": choice.tows,
+                "tows": choice,
                 "boat_type": boat_type,
                 "quantity": quantity,
                 "explaining": explaining,
@@ -227,8 +188,7 @@ def _described(choice: Choice, tows: Observed) -> Iterator[tuple[Row, _Line | No
             columns = np.column_stack([crews, centred / width])
             whose = crew_class[mine] if is_of_boat else np.full(len(mine), ALL_CREWS)
             problem = Problem(y[mine], variance, columns, hull[mine])
-            noise = float(np.sqrt(variance.mean()))
-            yield row, _Line(row, problem, centre, width, x[mine], whose, noise)
+            yield row, _Line(row, problem, centre, width, x[mine], whose)
 
 
 def _levels(group: FloatArray | IntArray) -> FloatArray:
@@ -264,8 +224,6 @@ def _numbers(line: _Line, fit: mixed.Fit) -> Row:
         "slope_hi": hi,
         "r2": max(1.0 - about_line / about_means, 0.0) if about_means > 0 else None,
         "residual_sd_ratio": float(np.sqrt(about_line / problem.rows_beyond)) / level,
-        "between_sd_ratio": fit.sd[0] / level,
-        "noise_sd_ratio": line.noise / level,
     }
 
 

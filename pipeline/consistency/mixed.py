@@ -9,16 +9,17 @@ estimated by restricted maximum likelihood (Patterson & Thompson 1971) with the 
 y and X are is decided elsewhere.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.model import Likelihood, most_likely
-from pipeline.quantiles import NORMAL, t_quantile
+from pipeline.quantiles import LEVEL, t_quantile
 
 BOAT, OTHER, CELL = "boat", "other", "cell"
 COMPONENTS: Final = (BOAT, OTHER, CELL)
@@ -30,30 +31,14 @@ Points that happen to lie exactly on a curve seem to have no error, and would ha
 Beside the spread of boats as many digits are lost as (boat's sd / error)^2 has: 1e-4 leaves eight.
 """
 
-PROFILE_PRECISION: Final = 1e-7
-"""The last step towards an end of a profile interval is less than this share of the spread."""
-
-PROFILE_TOLERANCE: Final = 1e-5
-"""When the search for the other variances is done: their error counts squared in the deviance."""
-
-MAX_DOUBLINGS: Final = 7
-"""The upper end of an interval is sought up to 2 to this power times its expected place."""
-
-MAX_STEPS: Final = 60
-"""Steps towards an end of an interval."""
-
 LEAST_MISFIT: Final = 0.05
 """Least misfit of the other boats' rows, also where they agree by chance."""
-
-FEW_UNKNOWNS: Final = 6
-"""Up to here products of many problems are taken at once, beyond it of one after the other."""
 
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
 
-
-class NotSettledError(ArithmeticError):
-    """A search reached its limit of steps before it came to rest: there is no answer."""
+MOST_NUMBERS: Final = 1_000_000
+"""In one array of problems that are fitted side by side."""
 
 
 class Coefficients(NamedTuple):
@@ -107,18 +92,21 @@ class Problem:
 
 
 class _At(NamedTuple):
-    """Problems at some variances.
+    """Problems at some variances; m problems of n rows with k unknowns.
 
     Attributes:
         likelihood: as `most_likely` takes it.
         unknowns: effects of the others and fixed effects where they are most likely, (m, k).
         covariance: of them, (m, k, k).
-        misfit: y' P y, (m,): the weighted sum of squares about the fixed effects.
+        precision: P, that of the rows less what the unknowns take up, (m, n, n).
+        pull: P y, (m, n); misfit: y' P y, (m,): the weighted sum of squares about the line.
     """
 
     likelihood: Likelihood
     unknowns: FloatArray
     covariance: FloatArray
+    precision: FloatArray
+    pull: FloatArray
     misfit: FloatArray
 
 
@@ -126,58 +114,47 @@ class _At(NamedTuple):
 class _SideBySide:
     """Problems side by side, as small arrays cost their calls and not their numbers.
 
-    All have as many unknowns as the largest needs, first the others, then the fixed effects.
-    Columns that a problem does not have are empty, with a prior of 1, which adds nothing.
+    All have as many rows and unknowns as the largest needs, first the others, then the fixed
+    effects. Rows that a problem does not have are without weight; columns are empty, with a prior
+    of 1, which adds nothing.
 
     Attributes:
-        residual, variance: (n,) of all rows; those of a problem, and in it of a boat, together.
-        design: (n, k) slope of the rows by the unknowns.
+        real: (m, n) rows that there are; residual, variance: (m, n) of them.
+        design: (m, n, k) slope of the rows by the unknowns.
         random: (m, k) which unknowns have a prior.
         n_others: how many of them are others.
-        problem, boat: (n,) which each row is of.
+        alike: (m, n, n) pairs of rows of one boat.
     """
 
+    real: BoolArray
     residual: FloatArray
     variance: FloatArray
     design: FloatArray
     random: BoolArray
     n_others: int
-    problem: IntArray
-    boat: IntArray
+    alike: FloatArray
 
     @classmethod
     def of(cls, problems: Sequence[Problem]) -> Self:
+        m, n = len(problems), max(len(one.y) for one in problems)
         n_others = max(one.others.shape[1] for one in problems)
-        size = n_others + max(one.x.shape[1] for one in problems)
-        random = np.ones((len(problems), size), bool)
-        parts, boats = [], 0
-        for number, one in enumerate(problems):
-            order = np.argsort(one.boat, kind="stable")
-            design = np.zeros((len(order), size))
-            design[:, : one.others.shape[1]] = one.others
-            fixed = slice(n_others, n_others + one.x.shape[1])
-            design[:, fixed], random[number, fixed] = one.x, False
-            rows = (one.residual, one.variance, design, np.full(len(order), number))
-            parts.append((*(part[order] for part in rows), boats + one.boat[order]))
-            boats += int(one.boat.max()) + 1
-        joined = [np.concatenate(part) for part in zip(*parts, strict=True)]
-        residual, variance, stacked, problem, boat = joined
-        return cls(residual, variance, stacked, random, n_others, problem, boat)
+        k = n_others + max(one.x.shape[1] for one in problems)
+        real, random = np.zeros((m, n), bool), np.ones((m, k), bool)
+        residual, variance = np.zeros((m, n)), np.ones((m, n))
+        design, alike = np.zeros((m, n, k)), np.zeros((m, n, n))
+        for i, one in enumerate(problems):
+            rows, fixed = slice(len(one.y)), slice(n_others, n_others + one.x.shape[1])
+            real[i, rows], random[i, fixed] = True, False
+            residual[i, rows], variance[i, rows] = one.residual, one.variance
+            design[i, rows, : one.others.shape[1]], design[i, rows, fixed] = one.others, one.x
+            alike[i, rows, rows] = one.boat[:, None] == one.boat
+        return cls(real, residual, variance, design, random, n_others, alike)
 
     def take(self, chosen: IntArray) -> "_SideBySide":
         """Some of the problems, in their order."""
-        place = np.full(len(self.random), -1)
-        place[chosen] = np.arange(len(chosen))
-        mine = place[self.problem] >= 0
-        return _SideBySide(
-            self.residual[mine],
-            self.variance[mine],
-            self.design[mine],
-            self.random[chosen],
-            self.n_others,
-            place[self.problem[mine]],
-            self.boat[mine],
-        )
+        rows = (self.real[chosen], self.residual[chosen], self.variance[chosen])
+        unknowns = self.design[chosen], self.random[chosen]
+        return _SideBySide(*rows, *unknowns, self.n_others, self.alike[chosen])
 
     def likelihood(self, chosen: IntArray, variances: FloatArray) -> Likelihood:
         """The restricted likelihood of some of the problems, as `most_likely` takes it."""
@@ -187,83 +164,45 @@ class _SideBySide:
     def at(self, variances: FloatArray) -> _At:
         """The problems at variances of boat, other and cell, (m, 3).
 
-        The covariance of a boat's rows is diagonal but for the effect of the boat, so that what it
-        takes to invert it are sums over the boat (Sherman & Morrison 1950). With P the precision
-        of all rows less what the unknowns take up, the slope of the deviance by a variance that
-        adds K to the covariance is tr(P K) - y' P K P y.
+        The covariance of the rows of a boat is diagonal but for the effect of the boat, so that its
+        inverse is known (Sherman & Morrison 1950). The slope of the deviance by a variance that
+        adds K to the covariance is tr(P K) - y' P K P y, its average information y' P K P K P y.
         """
-        problem, design, q = self.problem, self.design, self.n_others
-        row_of_boat = np.flatnonzero(np.diff(self.boat, prepend=-1))
-        boat_of_row = np.cumsum(np.diff(self.boat, prepend=self.boat[0]) != 0)
-        problem_of_boat = problem[row_of_boat]
-        boat_of_problem = np.flatnonzero(np.diff(problem_of_boat, prepend=-1))
-        row_of_problem = row_of_boat[boat_of_problem]
+        between, other, cell = variances.T[:, :, None]
+        weight = np.where(self.real, 1.0 / (self.variance + cell), 0.0)
+        stretch = 1.0 + between * (self.alike @ weight[:, :, None])[:, :, 0]
+        shared = self.alike * (between / stretch * weight)[:, :, None]
+        inverse = np.eye(weight.shape[1]) * weight[:, :, None] - shared * weight[:, None]
+        rows_of_boat = np.maximum(self.alike.sum(axis=2), 1.0)
+        determinant = np.log(stretch) / rows_of_boat - np.log(np.where(self.real, weight, 1.0))
 
-        def over(values: FloatArray, begins: IntArray) -> FloatArray:
-            return np.asarray(np.add.reduceat(values, begins, axis=0))
-
-        def outer(left: FloatArray, right: FloatArray) -> FloatArray:
-            """Products of all columns, summed over the rows of each problem."""
-            if design.shape[1] <= FEW_UNKNOWNS:
-                return over(left[:, :, None] * right[:, None], row_of_problem)
-            parts = (np.split(rows, row_of_problem[1:]) for rows in (left, right))
-            return np.stack([one.T @ other for one, other in zip(*parts, strict=True)])
-
-        def squares(rows: FloatArray, begins: IntArray, whose: IntArray) -> FloatArray:
-            """Variance that the unknowns give each row, of as many unknowns."""
-            if design.shape[1] <= FEW_UNKNOWNS:
-                return np.asarray(np.einsum("ij,ijk,ik->i", rows, covariance[whose], rows))
-            parts = zip(np.split(rows, begins[1:]), covariance, strict=True)
-            return np.concatenate([((one @ own) * one).sum(axis=1) for one, own in parts])
-
-        between, _, cell = variances.T
-        weight = 1.0 / (self.variance + cell[problem])
-        boat_weight = over(weight, row_of_boat)
-        stretch = 1.0 + between[problem_of_boat] * boat_weight
-        shrink = between[problem_of_boat] / stretch
-
-        def solve(values: FloatArray) -> FloatArray:
-            """The precision of the rows, were the unknowns known, times values (n, any)."""
-            of_boats = over(weight[:, None] * values, row_of_boat)
-            left = values - (shrink[:, None] * of_boats)[boat_of_row]
-            return np.asarray(weight[:, None] * left)
-
-        weighed = solve(design)
-        products = outer(design, weighed)
-        prior = np.where(np.arange(design.shape[1]) < q, variances[:, 1:2], 1.0)
-        known = self.random[:, None] * np.eye(design.shape[1]) + prior[:, :, None] * products
+        k = np.arange(self.design.shape[2])
+        prior = np.where(k < self.n_others, other, 1.0)
+        weighed = inverse @ self.design
+        products = np.swapaxes(self.design, 1, 2) @ weighed
+        known = self.random[:, None] * np.eye(len(k)) + prior[:, :, None] * products
         covariance = np.linalg.inv(known).astype(np.float64) * prior[:, None]
-        score = over(weighed * self.residual[:, None], row_of_problem)
-        unknowns = (covariance @ score[..., None])[..., 0]
-        left = self.residual - (design * unknowns[problem]).sum(axis=1)
-        pull = solve(left[:, None])[:, 0]
-        of_boats = over(weight * left, row_of_boat) / stretch
-        of_others = over(design[:, :q] * pull[:, None], row_of_problem)
-        pulls = [
-            over(of_boats**2, boat_of_problem),
-            (of_others**2).sum(axis=1),
-            over(pull**2, row_of_problem),
-        ]
-        misfit = over(pull**2 / weight, row_of_problem)
-        misfit += variances[:, 0] * pulls[0] + variances[:, 1] * pulls[1]
-        determinant = over(np.log(stretch), boat_of_problem) - over(np.log(weight), row_of_problem)
-        deviance = determinant + np.linalg.slogdet(known)[1] + misfit
+        precision = inverse - weighed @ covariance @ np.swapaxes(weighed, 1, 2)
+        pull = (precision @ self.residual[:, :, None])[:, :, 0]
+        score = np.swapaxes(weighed, 1, 2) @ self.residual[:, :, None]
+        misfit = (self.residual * pull).sum(axis=1)
+        deviance = determinant.sum(axis=1) + np.linalg.slogdet(known)[1] + misfit
 
-        taken_of_boats = squares(over(weighed, row_of_boat), boat_of_problem, problem_of_boat)
-        taken = squares(weighed, row_of_problem, problem)
-        of_known = products[:, :q] @ covariance @ np.swapaxes(products[:, :q], 1, 2)
+        others = self.design[:, :, : self.n_others]
+        of_other = np.swapaxes(others, 1, 2)
         traces = [
-            over(boat_weight / stretch - taken_of_boats, boat_of_problem),
-            np.trace(products[:, :q, :q] - of_known, axis1=1, axis2=2),
-            over(weight - weight**2 * shrink[boat_of_row] - taken, row_of_problem),
+            (precision * self.alike).sum(axis=(1, 2)),
+            ((precision @ others) * others).sum(axis=(1, 2)),
+            np.trace(precision, axis1=1, axis2=2),
         ]
-        # K P y of each variance: what boats, others and cells have of the pull in common.
-        common = (design[:, :q] * of_others[problem]).sum(axis=1)
-        felt = np.stack([of_boats[boat_of_row], common, pull], axis=1)
-        across = outer(weighed, felt)
-        information = outer(felt, solve(felt)) - np.swapaxes(across, 1, 2) @ covariance @ across
-        gradient = np.stack(traces, axis=1) - np.stack(pulls, axis=1)
-        return _At(Likelihood(deviance, gradient, information), unknowns, covariance, misfit)
+        # K P y of each variance.
+        felt = [self.alike @ pull[:, :, None], others @ (of_other @ pull[:, :, None])]
+        along = np.concatenate([*felt, pull[:, :, None]], axis=2)
+        gradient = np.stack(traces, axis=1) - (pull[:, None] @ along)[:, 0]
+        information = np.swapaxes(along, 1, 2) @ precision @ along
+        likelihood = Likelihood(deviance, gradient, information)
+        unknowns = (covariance @ score)[:, :, 0]
+        return _At(likelihood, unknowns, covariance, precision, pull, misfit)
 
 
 @dataclass(frozen=True)
@@ -272,18 +211,21 @@ class Fit:
 
     Attributes:
         problem: what was fitted.
-        free: components that were estimated; the others are 0.
-        sd: standard deviations of boat, other and cell.
+        sd: standard deviations of boat, other and cell; 0 where none was estimated.
         beta: fixed effects, (p,); covariance: of them, (p, p), at a scale of 1.
+        precision: P, of the rows less what the unknowns take up, (n, n); pull: P y, (n,).
         misfit: y' P y: the weighted sum of squares about the fixed effects.
+        information: (3, 3) second derivative of the deviance by the variances.
     """
 
     problem: Problem
-    free: tuple[str, ...]
     sd: tuple[float, float, float]
     beta: FloatArray
     covariance: FloatArray
+    precision: FloatArray
+    pull: FloatArray
     misfit: float
+    information: FloatArray
 
     @property
     def dof(self) -> int:
@@ -324,106 +266,41 @@ class Fit:
             scale: misfit per row of the other boats, as in externally studentised residuals.
         """
         problem, n = self.problem, len(self.problem.y)
-        boat, other, cell = np.square(self.sd)
-        covariance = boat * (problem.boat[:, None] == problem.boat)
-        covariance += other * problem.others @ problem.others.T
-        covariance[range(n), range(n)] += problem.variance + cell
-        precision: FloatArray = np.linalg.inv(covariance).astype(np.float64)
-        along = precision @ problem.x
-        block_of, pull = precision - along @ self.covariance @ along.T, precision @ problem.residual
-        pull -= along @ (self.beta - problem.plain)
+        smallest = 1.0 / (np.square(self.sd).sum() + problem.variance)
         error, variance, scale = np.zeros(n), np.full(n, np.inf), np.ones(n)
         for one in range(int(problem.boat.max()) + 1):
             rows = np.flatnonzero(problem.boat == one)
-            own = np.ix_(rows, rows)
-            block = block_of[own]
-            if np.linalg.eigvalsh(block)[0] <= 1e-9 / covariance[rows, rows].min():
+            block = self.precision[np.ix_(rows, rows)]
+            if np.linalg.eigvalsh(block)[0] <= 1e-9 * smallest[rows].max():
                 continue
             inverse = np.linalg.inv(block)
-            error[rows], variance[rows] = inverse @ pull[rows], np.diagonal(inverse)
-            others = self.scale * problem.rows_beyond - error[rows] @ pull[rows]
+            error[rows], variance[rows] = inverse @ self.pull[rows], np.diagonal(inverse)
+            others = self.scale * problem.rows_beyond - error[rows] @ self.pull[rows]
             beyond = max(problem.rows_beyond - len(rows), 1)
             scale[rows] = max(float(others), LEAST_MISFIT) / beyond
         return error, variance, scale
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:
-        """95 % profile-likelihood intervals of the components' sds; None without an upper bound.
+        """95 % intervals of the components' sds; None without an upper bound.
 
-        Raises:
-            NotSettledError: the search for an end did not come to rest.
+        A variance is taken as chi-squared with as many degrees of freedom as its information says
+        (Satterthwaite 1946). One that is 0, or has less than one degree of freedom, has no bound.
         """
-        profile, sd, upper = _Profile(self), np.tile(self.sd, 2), np.arange(6) >= 3
-        outside = np.where(upper, np.maximum(2.0 * sd, 0.1 * self.problem.spread), 0.0)
-        bounded = profile.excess(outside, np.arange(6))[0] > 0.0
-        for _ in range(MAX_DOUBLINGS):  # far out the deviance loses its digits
-            short = np.flatnonzero(upper & ~bounded)
-            outside[short] *= 2.0
-            if len(short):
-                bounded[short] = profile.excess(outside[short], short)[0] > 0.0
-        found = profile.ends(outside.copy(), sd, outside, np.flatnonzero(bounded))
-        low, high = np.where(bounded, found, np.where(upper, np.nan, 0.0)).reshape(2, 3).tolist()
+        variance = np.square(self.sd)
+        there = variance > 0.0
+        uncertain = np.full(len(variance), np.inf)
+        inverse = np.linalg.inv(self.information[np.ix_(there, there)])
+        uncertain[there] = np.diagonal(inverse)
+        dof = variance**2 / uncertain
         return {
-            name: (lo, None if np.isnan(hi) else hi)
-            for name, lo, hi in zip(COMPONENTS, low, high, strict=True)
+            name: _chi_interval(sd, float(own)) if own >= 1.0 else (0.0, None)
+            for name, sd, own in zip(COMPONENTS, self.sd, dof, strict=True)
         }
 
 
-class _Profile:
-    """How much worse a fit is where one of its sds is something else, the others at their best.
-
-    Six places side by side: at the lower ends of the three intervals, then at the upper ends.
-    """
-
-    def __init__(self, fit: Fit) -> None:
-        self._component = np.tile(np.arange(3), 2)
-        self._free = np.isin(COMPONENTS, fit.free) & (np.arange(3) != self._component[:, None])
-        self._together = _SideBySide.of([fit.problem] * 6)
-        self._unit, self._nearest = np.full(6, fit.problem.unit), np.square([fit.sd] * 6)
-        self._least = self._together.at(self._nearest).likelihood.deviance
-        self._precision = PROFILE_PRECISION * fit.problem.spread
-
-    def excess(self, sd: FloatArray, ends: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Root of what the deviance gains at sds of some ends, less its value there; its slope.
-
-        The root of a deviance is nearly straight, which a search for its zero likes. The other
-        variances at their best do not count in the slope (envelope theorem).
-        """
-        start, at = self._nearest[ends], (np.arange(len(ends)), self._component[ends])
-        start[at] = sd**2
-        self._nearest[ends], there, settled = most_likely(
-            self._together.take(ends).likelihood,
-            self._free[ends],
-            start,
-            self._unit[ends],
-            PROFILE_TOLERANCE,
-        )
-        if not settled.all():
-            raise NotSettledError
-        root = np.sqrt(np.maximum(there.deviance - self._least[ends], 0.0))
-        return root - NORMAL, there.gradient[at] * sd / np.maximum(root, 1e-9)
-
-    def ends(
-        self, found: FloatArray, inside: FloatArray, outside: FloatArray, busy: IntArray
-    ) -> FloatArray:
-        """Where the excess of some ends is 0, between sds inside and outside of the intervals.
-
-        By Newton's method; where that leads out of the bracket, the bracket is halved.
-        """
-        for _ in range(MAX_STEPS):
-            if not len(busy):
-                return found
-            excess, slope = self.excess(found[busy], busy)
-            is_outside = excess > 0.0
-            inside[busy[~is_outside]] = found[busy[~is_outside]]
-            outside[busy[is_outside]] = found[busy[is_outside]]
-            low, high = np.sort([inside[busy], outside[busy]], axis=0)
-            newton = found[busy] - excess / np.where(slope == 0.0, 1e-300, slope)
-            is_within = (newton >= low) & (newton <= high)
-            now = np.where(is_within, newton, 0.5 * (low + high))
-            moved = np.abs(now - found[busy])
-            found[busy] = now
-            busy = busy[moved > self._precision]
-        raise NotSettledError
+def _chi_interval(sd: float, dof: float) -> tuple[float, float | None]:
+    high, low = (scipy.special.chdtri(dof, 0.5 * (1.0 + end * LEVEL)) for end in (1, -1))
+    return sd * float(np.sqrt(dof / low)), sd * float(np.sqrt(dof / high))
 
 
 def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit | None]:
@@ -432,19 +309,45 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit | No
     Returns:
         None where the search did not come to rest.
     """
-    if not problems:
-        return []
-    together = _SideBySide.of(problems)
-    variances, settled = _most_likely(problems, together, np.isin(COMPONENTS, free))
-    at, first = together.at(variances), together.n_others
-    fits: list[Fit | None] = []
-    for i, problem in enumerate(problems):
-        mine = slice(first, first + problem.x.shape[1])
-        beta, covariance = problem.plain + at.unknowns[i, mine], at.covariance[i, mine, mine]
-        boat, other, cell = np.sqrt(variances[i]).tolist()
-        fitted = Fit(problem, free, (boat, other, cell), beta, covariance, float(at.misfit[i]))
-        fits.append(fitted if settled[i] else None)
+    fits: list[Fit | None] = [None] * len(problems)
+    for places in _batches([len(one.y) for one in problems]):
+        batch = [problems[place] for place in places]
+        for place, fit in zip(places, _fitted(batch, np.isin(COMPONENTS, free)), strict=True):
+            fits[place] = fit
     return fits
+
+
+def _batches(rows: Sequence[int]) -> Iterator[list[int]]:
+    """Problems that are fitted side by side, by their places: of about equal size."""
+    batch: list[int] = []
+    for place in sorted(range(len(rows)), key=lambda one: rows[one]):
+        if batch and (len(batch) + 1) * rows[place] ** 2 > MOST_NUMBERS:
+            yield batch
+            batch = []
+        batch.append(place)
+    if batch:
+        yield batch
+
+
+def _fitted(problems: Sequence[Problem], free: BoolArray) -> Iterator[Fit | None]:
+    together = _SideBySide.of(problems)
+    variances, settled = _most_likely(problems, together, free)
+    at = together.at(variances)
+    for i, problem in enumerate(problems):
+        mine = slice(together.n_others, together.n_others + problem.x.shape[1])
+        boat, other, cell = np.sqrt(variances[i]).tolist()
+        n = len(problem.y)
+        fit = Fit(
+            problem,
+            (boat, other, cell),
+            problem.plain + at.unknowns[i, mine],
+            at.covariance[i, mine, mine],
+            at.precision[i, :n, :n],
+            at.pull[i, :n],
+            float(at.misfit[i]),
+            at.likelihood.information[i],
+        )
+        yield fit if settled[i] else None
 
 
 def _most_likely(

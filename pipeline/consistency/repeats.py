@@ -133,6 +133,5 @@ def _scatter(tows: pl.DataFrame) -> dict[str, float | int | None]:
     unit = float(tows["c0_unit_variance"].to_numpy().mean())
     return {
         "n_tows": tows.height,
-        "run_sd_ratio": float(np.sqrt(run)),
         "within_sd_ratio": float(np.sqrt(run * unit)),
     }

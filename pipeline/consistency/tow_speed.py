@@ -23,10 +23,8 @@ from pipeline.consistency.observed import (
     newest,
     q_at,
 )
-from pipeline.curve import LEAST_MARGIN
 from pipeline.history import SLOW_POWER_W
 from pipeline.hull import hull_speed_m_s
-from pipeline.quantiles import NORMAL
 from pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from pipeline.tables.consistency import SlowTows, SpeedTrend
 from pipeline.tables.declare import dy
@@ -135,7 +133,7 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
 
     Towed with little power, or raced at speeds at which the curve does not count. The tow's own
     curve is compared with the curve of the same runs that has the bend of the type's other boats,
-    at the fastest speed that its crew raced. The interval is that of the tow's own bend alone.
+    at the fastest speed that its crew raced.
 
     Args:
         observed: all tows.
@@ -154,9 +152,10 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     raced_speed = chosen.column("raced_speed_m_s")
     raced_cw = curve_anywhere(chosen, raced_speed)
     bend = _bend_of_others(chosen, newest(tows.take(np.flatnonzero(~slow))))
-    numbers = {"raced_power_w": power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))}
-    names = (f"power_ratio_raced{end}" for end in ("", "_lo", "_hi"))
-    numbers |= dict(zip(names, _power_ratio(chosen, bend, raced_speed), strict=True))
+    numbers = {
+        "raced_power_w": power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers")),
+        "power_ratio_raced": _power_ratio(chosen, bend, raced_speed),
+    }
     hull = hull_speed_m_s(chosen.column("waterline_length_m"))
     ratio = chosen.column("declared_speed_m_s") / hull
     high = chosen.table["crew_class"].replace_strict(RACED_POWER_W, return_dtype=pl.Float64)
@@ -191,13 +190,9 @@ def speed_case(tow_hull_ratio: FloatArray) -> list[str]:
 
 
 def _power_ratio(tows: Observed, s_s2_m2: FloatArray, speed_m_s: FloatArray) -> FloatArray:
-    """Power by the own curve / by the shared bend with its interval, shape (3, rows)."""
+    """Power by the own curve / by the shared bend, shape (rows,); NaN where one has none."""
     shared = curve.cw(height_given_bend(tows.points, s_s2_m2), s_s2_m2, speed_m_s)
-    own_s, q = tows.column("s_s2_m2"), tows.column("q")
-    own = curve.cw(tows.column("c0_kg_m") / (1.0 + q), own_s, speed_m_s)
+    a = tows.column("c0_kg_m") / (1.0 + tows.column("q"))
+    own = curve.cw(a, tows.column("s_s2_m2"), speed_m_s)
     known = np.isfinite(shared) & np.isfinite(own)
-    ratio = np.where(known, own, np.nan) / np.where(known, shared, 1.0)
-    x = (speed_m_s / tows.column("declared_speed_m_s")) ** 2 - 1.0
-    slope = x / np.maximum(1.0 - q * x, LEAST_MARGIN)
-    sd = np.abs(slope) * np.sqrt(tows.column("q_unit_variance")) * tows.column("run_sd_ratio")
-    return np.stack([ratio, ratio * np.exp(-NORMAL * sd), ratio * np.exp(NORMAL * sd)])
+    return np.where(known, own, np.nan) / np.where(known, shared, 1.0)

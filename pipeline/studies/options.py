@@ -8,7 +8,7 @@ combinations; here are all.
 """
 
 import itertools
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -23,7 +23,6 @@ from pipeline.recompute.computed import Computed
 from pipeline.recompute.recompute import batches, evaluate
 from pipeline.recompute.run_cache import RunCache
 
-ALL_OPTIONS: Final = "all"
 FACTOR: Final = "speed.factor"
 B: Final = "curve.b"
 
@@ -70,7 +69,7 @@ SPEEDS: Final = {
 def option_effects(
     method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame, cache: RunCache
 ) -> pl.DataFrame:
-    """Spread of Cw over all combinations of `CHOICES`, and the effect of each choice.
+    """The effect of each of `CHOICES` over all combinations of the others.
 
     Args:
         method: the method whose other options hold.
@@ -79,10 +78,9 @@ def option_effects(
         cache: what was found before of the same tows; added to.
 
     Returns:
-        Sorted rows per tow and option that can matter to it: `tow_id`, `option`, `cw_effect_ratio`
-        (second value / first value, mean over all combinations of the others) and `cw_sd_ratio`
-        (standard deviation over all combinations, relative; only in the row `all`). A tow that one
-        of the combinations leaves without a curve has no rows.
+        Sorted rows per tow and option that can matter to it: `tow_id`, `option` and
+        `cw_effect_ratio` (second value / first value, mean over all combinations of the others). A
+        tow that one of the combinations leaves without a curve has no rows.
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     prescribed = [batch for batch, steps in plans if steps.speed.correction == "prescribed"]
@@ -100,7 +98,7 @@ def option_effects(
         _effect(whole.filter(pl.col("tow_id").is_in(can.implode()) | (name != FACTOR)), name)
         for name in names
     ]
-    return _together(whole, effects)
+    return pl.concat(effects).sort("tow_id", "option")
 
 
 def option_curves(
@@ -147,7 +145,7 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
         _effect(whole.filter(pl.col("speed").is_in(pair)), name, pl.col("speed") == pair[1])
         for name, pair in SPEEDS.items()
     ]
-    return _together(whole, [*ticks, *pairs])
+    return pl.concat([*ticks, *pairs]).sort("tow_id", "option")
 
 
 def speeds(steps: Steps) -> Iterator[tuple[str, Steps]]:
@@ -237,12 +235,3 @@ def _effect(whole: pl.DataFrame, name: str, on: pl.Expr | None = None) -> pl.Dat
         both=on.any() & (~on).any(),
     )
     return means.filter("both").drop("both")
-
-
-def _together(whole: pl.DataFrame, effects: Iterable[pl.DataFrame]) -> pl.DataFrame:
-    """Effects with the spread over all combinations."""
-    spread = whole.group_by("tow_id", maintain_order=True).agg(
-        pl.lit(ALL_OPTIONS).alias("option"), pl.col("ln_cw").std(ddof=0).alias("cw_sd_ratio")
-    )
-    both = pl.concat([*effects, spread], how="diagonal").sort("tow_id", "option")
-    return both.select("tow_id", "option", "cw_effect_ratio", "cw_sd_ratio")

@@ -71,15 +71,11 @@ def option_summary(option_effects: pl.DataFrame) -> pl.DataFrame:
     """
     ratio = pl.col("cw_effect_ratio")
     lo, hi = (ratio.quantile(q, "linear") for q in MIDDLE)
-    return (
-        option_effects.drop_nulls("cw_effect_ratio")
-        .group_by("method", "study", "option", maintain_order=True)
-        .agg(
-            pl.len().alias("tows"),
-            ratio.median().alias("median_ratio"),
-            lo.alias("lo_ratio"),
-            hi.alias("hi_ratio"),
-        )
+    return option_effects.group_by("method", "study", "option", maintain_order=True).agg(
+        pl.len().alias("tows"),
+        ratio.median().alias("median_ratio"),
+        lo.alias("lo_ratio"),
+        hi.alias("hi_ratio"),
     )
 
 

@@ -6,27 +6,19 @@ from pipeline.tables.declare import dy
 
 
 class TypeLines(PerMethod):
-    """How a quantity follows weight, length or tow speed within a type, by tows of a choice.
+    """How a quantity follows weight, length or tow speed within a type."""
 
-    Pairs that the presentation of 2015 does not plot are of the newest tows alone.
-    """
-
-    tows = column.text(
-        "all, newest (of each boat and crew), a season, or an era (2012:2013)", primary_key=True
-    )
+    tows = column.text("all, or newest (of each boat and crew)", primary_key=True)
     boat_type = column.text(
         "type of boat; unknown: boats without type, no claims", primary_key=True
     )
-    quantity = column.text(
-        "b_m_s, a_kg_m, q, cw_kg_m, cw_standard_kg_m or ln_cw_standard", primary_key=True
-    )
+    quantity = column.text("b_m_s, a_kg_m, cw_standard_kg_m or ln_cw_standard", primary_key=True)
     explaining = column.text(
-        "weight_kg, displacement_kg, declared_speed_m_s, waterline_length_m or ln_displacement",
-        primary_key=True,
+        "weight_kg, declared_speed_m_s, waterline_length_m or ln_displacement", primary_key=True
     )
     within = column.text("all, or against tow speed also men, women", primary_key=True)
     standard_speed_m_s = column.speed(
-        "common speed of q and cw_standard: median declared speed of the type's tows"
+        "common speed of cw_standard: median declared speed of the type's tows"
     )
     n = dy.Int32(description="tows", min=0)
     n_boats = dy.Int32(description="boats", min=0)
@@ -41,8 +33,6 @@ class TypeLines(PerMethod):
     residual_sd_ratio = column.number(
         "1", "spread about the line / mean; of ln Cw itself", nullable=True, min=0
     )
-    between_sd_ratio = column.number("1", "true spread about the line / mean", nullable=True, min=0)
-    noise_sd_ratio = column.number("1", "spread by run noise alone / mean", nullable=True, min=0)
     reason = column.text(
         "why there is no line: no_type, few_boats, equal_values, not_settled; else empty"
     )
@@ -51,12 +41,10 @@ class TypeLines(PerMethod):
 class TypeLinePoints(PerMethod):
     """A line of `type_lines` with its 95 % interval, for drawing."""
 
-    tows = column.text("all, newest, a season, or an era (2012:2013)", primary_key=True)
+    tows = column.text("all, or newest", primary_key=True)
     boat_type = column.text("type of boat", primary_key=True)
-    quantity = column.text("b_m_s, a_kg_m or cw_standard_kg_m", primary_key=True)
-    explaining = column.text(
-        "weight_kg, declared_speed_m_s or waterline_length_m", primary_key=True
-    )
+    quantity = column.text("as in `type_lines`", primary_key=True)
+    explaining = column.text("as in `type_lines`", primary_key=True)
     crew_class = column.text(
         "H or D where boats are compared within a crew, or all", primary_key=True
     )
@@ -109,9 +97,6 @@ class ComparedTows(PerCrewTow):
 class HullSpeed(PerMethod):
     """Is B hull speed, and at what part of hull speed are boats towed? Medians over boats."""
 
-    tows = column.text(
-        "all, newest (of each boat and crew), a season, or an era (2012:2013)", primary_key=True
-    )
     boat_type = column.text("type of boat, or all", primary_key=True)
     n = dy.Int32(description="tows", min=0)
     n_boats = dy.Int32(description="boats", min=0)
@@ -156,22 +141,6 @@ class TypeHomogeneity(PerMethod):
     reason = column.text("why there is no test: no_type, few_boats, no_scatter; else empty")
 
 
-class PooledCurves(PerCrewTow):
-    """The register if boats of a type kept their bend (own), shared it in part, or wholly."""
-
-    boat_type = column.text("type of boat, or unknown")
-    pooling = column.text(
-        "own, partial or shared", primary_key=True, regex="^(own|partial|shared)$"
-    )
-    standard_speed_m_s = column.speed("common speed of q")
-    q = column.number("1", "bend at the standard speed", nullable=True)
-    a_kg_m = column.number("kg/m", "A", nullable=True)
-    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True)
-    cw_085_kg_m = column.number("kg/m", "Cw at 85 % of the declared speed", nullable=True)
-    cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
-    cw_115_kg_m = column.number("kg/m", "Cw at 115 % of the declared speed", nullable=True)
-
-
 class SpeedTrend(PerMethod):
     """Does the bend follow the speed of the tow? If the hyperbola is true, it does not."""
 
@@ -206,8 +175,6 @@ class SlowTows(PerCrewTow):
     raced_power_w = column.number("W", "power per rower there by its own curve", nullable=True)
     raced_high = dy.Bool(description="over 100 W (women 57 W)", nullable=True)
     power_ratio_raced = column.number("1", "power ratio at the raced speed", nullable=True)
-    power_ratio_raced_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
-    power_ratio_raced_hi = column.number("1", "upper end", nullable=True)
 
 
 class RepeatPairs(PerMethod):
@@ -246,14 +213,15 @@ class Reproducibility(PerMethod):
 
     scope = column.text("all pairs, or an era", primary_key=True)
     n_pairs = dy.Int32(description="pairs of consecutive tows of one boat and crew", min=0)
-    n_tows = dy.Int32(description="tows behind run_sd_ratio", min=0)
+    n_tows = dy.Int32(description="tows behind within_sd_ratio", min=0)
     sd_ratio = column.number("1", "standard deviation of one tow, s_R", nullable=True, min=0)
     lo = column.number("1", "lower end of its 95 % interval", nullable=True, min=0)
     hi = column.number("1", "upper end", nullable=True, min=0)
     share_within_1pct = column.number("1", "share of pairs that differ under 1 %", nullable=True)
     share_within_2pct = column.number("1", "the same for 2 %", nullable=True)
-    run_sd_ratio = column.number("1", "scatter of a run about its curve", nullable=True, min=0)
-    within_sd_ratio = column.number("1", "s_r: what that does to a tow's Cw", nullable=True, min=0)
+    within_sd_ratio = column.number(
+        "1", "s_r: what the scatter of its runs does to a tow's Cw", nullable=True, min=0
+    )
 
 
 class VarianceComponents(PerMethod):
@@ -285,12 +253,3 @@ class PredictedCw(PerCrewTow):
     ln_ratio = column.number("1", "ln of the tow's Cw / the predicted", nullable=True)
     disagrees = dy.Bool(description="differs by more than both uncertainties", nullable=True)
     reason = column.text("why there is no prediction: few_boats, not_settled; else empty")
-
-
-class PredictionError(PerMethod):
-    """Cross-validated error of the prediction, boats left out one by one."""
-
-    n = dy.Int32(description="boats and crews predicted", min=0)
-    n_boats = dy.Int32(description="boats", min=0)
-    rmse_ratio = column.number("1", "root mean square of ln tow / predicted", min=0)
-    tow_sd_ratio = column.number("1", "of which uncertainty of the tow itself", min=0)

@@ -53,9 +53,8 @@ class OptionEffects(PerMethod):
 
     study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
     tow_id = column.tow_id(primary_key=True)
-    option = column.text("option of a step, or all", primary_key=True)
-    cw_effect_ratio = column.number("1", "Cw with the second value / with the first", nullable=True)
-    cw_sd_ratio = column.number("1", "spread of Cw over all combinations", nullable=True, min=0)
+    option = column.text("option of a step", primary_key=True)
+    cw_effect_ratio = column.number("1", "Cw with the second value / with the first")
 
 
 class OptionCurves(PerTow):

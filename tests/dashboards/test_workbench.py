@@ -6,18 +6,21 @@ import subprocess
 import sys
 import urllib.error
 import urllib.request
+from urllib.parse import urlencode
 
 import pytest
 from polars.testing import assert_frame_equal
 
+from dashboards.figures.style import SCENARIO
 from dashboards.guard import listen
 from dashboards.workbench import texts
-from dashboards.workbench.bench import KEPT, SCENARIO, Base, Bench, Named, Question
-from dashboards.workbench.form import _kind, controls
+from dashboards.workbench.bench import Bench, Saving
+from dashboards.workbench.form import CONTROLS, control, write
+from dashboards.workbench.results import results
 from dashboards.workbench.server import LOOPBACK
 from pipeline.assessment.checks import CODES
-from pipeline.errors import HerijkError, MissingKnowledgeError, UnavailableError
-from pipeline.method.definition import MethodFileError, Steps, parse_method
+from pipeline.errors import HerijkError, UnavailableError
+from pipeline.method.definition import Steps, parse_method
 from pipeline.recompute.run_cache import RunCache
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
@@ -25,8 +28,8 @@ from warehouse.queries.history import History
 from warehouse.queries.scenario import rebase
 from warehouse.store.store import Store
 
-CONTROLS = {(s["step"], c["option"]): c for s in controls() for c in s["options"]}
 PARENT = "rebased-2015"
+SIDE = {"wind.side": "0.77"}
 
 
 @pytest.fixture(scope="module")
@@ -35,29 +38,22 @@ def history(built):
 
 
 @pytest.fixture
-def bench(history, tmp_path):
+def bench(history, built, tmp_path):
     """A workbench that saves into a folder of its own."""
+    (tmp_path / "warehouse.duckdb").symlink_to(built.store.database)
     return Bench(Store(tmp_path), history)
 
 
-def steps(bench, base=PARENT, **changes):
-    """The steps of a base with options changed: `wind={"ahead": 0.4}`."""
-    held = bench.base(Base(name=base))["ranges"]
-    return tuple(
-        Steps.model_validate(r["steps"] | {k: r["steps"][k] | v for k, v in changes.items()})
-        for r in held
-    )
+def asked(bench, **query):
+    return bench.asked({"base": PARENT, "against": "as-published"} | query)
 
 
-def question(bench, base=PARENT, against="as-published", boat="", **changes):
-    made = steps(bench, base, **changes)
-    return Question(base=Base(name=base), steps=made, against=against, boat=boat)
+def saving(name="own", changes=SIDE):
+    return Saving(address={"base": PARENT, **changes}, name=name, title="T", reason="R")
 
 
-def named(bench, name="own", **changes):
-    return Named(
-        base=Base(name=PARENT), steps=steps(bench, **changes), name=name, title="T", reason="R"
-    )
+def side(method):
+    return {block.steps.wind.side for block in method.ranges}
 
 
 # Controls
@@ -70,29 +66,27 @@ def test_every_option_of_the_model_has_a_control():
         for option in field.annotation.model_fields
     }
     assert set(CONTROLS) == model
-    assert "fixed" not in {control["kind"] for control in CONTROLS.values()}
+    assert "fixed" not in {one.kind for one in CONTROLS.values()}
 
 
 @pytest.mark.parametrize(("step", "option"), CONTROLS)
-def test_the_ends_of_a_control_are_values_of_the_model(step, option):
-    control = CONTROLS[step, option]
+def test_what_a_control_offers_is_a_value_of_the_model(step, option):
+    one = CONTROLS[step, option]
     model = Steps.model_fields[step].annotation
-    ends = [control["least"], control["most"]] if control["kind"] == "number" else []
-    several = [control["values"]] if control["kind"] == "several" else []
-    values = control["values"] if control["kind"] == "choice" else []
-    needed = {name: CONTROLS[step, name]["values"][0] for name, f in model.model_fields.items()
+    several = [one.values] if one.kind == "several" else one.values
+    needed = {name: CONTROLS[step, name].values[0] for name, f in model.model_fields.items()
               if f.is_required()}  # fmt: skip
-    for value in (*ends, *several, *values):
-        model.model_validate(needed | {option: value})
+    for value in [one.least, one.most] if one.kind == "number" else several:
+        read = one.read(write(int(value) if one.whole else value))
+        model.model_validate(needed | {option: read})
 
 
 def test_kinds_of_options():
-    assert CONTROLS["wind", "model"]["values"] == ["head", "oblique"]
+    assert CONTROLS["wind", "model"].values == ["head", "oblique"]
     factor = CONTROLS["speed", "factor"]
-    assert (factor["least"], factor["most"], factor["whole"]) == (0.85, 1.2, False)
-    assert CONTROLS["wind", "averaging_s"]["by"] == 1
-    assert CONTROLS["wind", "averaging_s"]["unit"] == "s"
-    assert set(CONTROLS["assessment", "reject"]["values"]) == set(CODES)
+    assert (factor.least, factor.most, factor.whole) == (0.85, 1.2, False)
+    assert (CONTROLS["wind", "averaging_s"].by, CONTROLS["wind", "averaging_s"].unit) == (1, "s")
+    assert set(CONTROLS["assessment", "reject"].values) == set(CODES)
 
 
 @pytest.mark.parametrize(
@@ -106,69 +100,74 @@ def test_kinds_of_options():
     ],
 )
 def test_an_option_of_a_new_kind_appears_too(rule, kind):
-    assert _kind(rule)["kind"] == kind
+    assert control("step", "option", rule).kind == kind
 
 
 def test_every_option_and_value_has_a_text():
     keys = [f"{step}.{option}" for step, option in CONTROLS]
     keys += [f"step.{step}" for step, _ in CONTROLS]
-    keys += [f"choice.{v}" for c in CONTROLS.values() if c["kind"] == "choice" for v in c["values"]]
+    keys += [f"choice.{v}" for c in CONTROLS.values() if c.kind == "choice" for v in c.values]
     assert [key for key in keys if key not in texts.TEXTS] == []
-
-
-def test_a_name_without_a_text_stands_for_itself():
     assert texts.text("speed.something_new") == "something_new"
 
 
 # Answers
 
 
-def test_a_base_is_cut_at_the_seasons_of_the_archive(bench):
-    ranges = bench.base(Base(name=PARENT))["ranges"]
-    assert [(r["first"], r["last"], r["seasons"]) for r in ranges] == [
-        (2009, 2011, [2009]), (2012, 2013, []), (2014, 9999, [2014]),
-    ]  # fmt: skip
+def test_an_address_without_anything_asks_the_usual(bench):
+    usual = bench.asked({})
+    assert (usual.base, usual.against, usual.tows, usual.at) == ("rebased", "rebased", "all", "")
+    assert usual.boat == bench.boats["fsn_no"][0] == bench.asked({"boat": "none"}).boat
 
 
-def test_an_answer_is_plain_data_for_json(bench, history):
-    boat = history.tows["fsn_no"][0]
-    answer = bench.answer(question(bench, boat=boat, wind={"side": 1.2}))
-    text = json.dumps(answer, allow_nan=False)
-    assert answer["summary"]["lines"] == len(answer["register"])
-    assert {row["method"] for row in answer["boat_curves"]} == {"as-published", SCENARIO}
-    assert [d["option"] for d in answer["changed_options"]] == ["side"]
-    assert SCENARIO in text
+def test_an_address_asks_again_what_it_was_made_from(bench):
+    one = asked(bench, tows="2014", at="2009", boat=bench.boats["fsn_no"][1], **SIDE)
+    query = dict(pair.split("=") for pair in one.address()[1:].split("&"))
+    assert bench.asked(query) == one
+
+
+def test_a_change_holds_for_all_seasons_or_for_those_from_one_on(bench):
+    assert side(bench.method(asked(bench, **SIDE))) == {0.77}
+    method = bench.method(asked(bench, **SIDE, **{"wind.side.2014": "0.9"}))
+    assert (method.for_season(2009).wind.side, method.for_season(2014).wind.side) == (0.77, 0.9)
+    assert [d.option for d in bench.changed(asked(bench, **SIDE))] == ["side"]
+
+
+def test_a_page_shows_what_is_asked(bench):
+    boat = bench.boats["fsn_no"][0]
+    page = results(bench, asked(bench, boat=boat, **SIDE))
+    tables = {table.name: table.frame for part in page.sections for table in part.tables}
+    assert set(tables["boat_curves"]["method"]) == {"as-published", SCENARIO}
+    assert tables["register"].height == bench.draft(asked(bench)).register.height
+    assert page.data["types"][0]["page"][0].endswith("#boat")
 
 
 def test_types_are_judged_by_the_tows_that_are_chosen(bench):
-    asked = question(bench).model_copy(update={"tows": "2014"})
-    answer = bench.answer(asked)
-    assert {row["season"] for row in answer["types"]} == {2014}
-    every = bench.answer(question(bench))
-    assert len(every["types"]) > len(answer["types"])
-    assert sum(r["n_boats"] for r in every["homogeneity"]) > sum(
-        r["n_boats"] for r in answer["homogeneity"]
+    (some,), (every,) = (
+        results(bench, asked(bench, **query)).data["types"] for query in ({"tows": "2014"}, {})
     )
+    assert set(some["season"]) == {2014}
+    assert every.height > some.height
 
 
 def test_a_method_against_itself_shows_no_change(bench):
-    summary = bench.answer(question(bench, against=PARENT))["summary"]
+    summary = bench.scenario(asked(bench, against=PARENT)).summary()
     assert summary["same"] == summary["lines"]
 
 
-def test_a_file_that_was_opened_is_a_base(bench):
-    text = f'name = "x"\ntitle = "X"\nextends = "{PARENT}"\n[steps]\nwind = {{ side = 0.9 }}\n'
-    found = bench.base(Base(name="x.toml", text=text))
-    assert {r["steps"]["wind"]["side"] for r in found["ranges"]} == {0.9}
-    with pytest.raises(MethodFileError, match=r"x\.toml"):
-        bench.base(Base(name="x.toml", text="no toml ="))
-
-
-def test_what_is_not_known_is_refused(bench):
-    with pytest.raises(MissingKnowledgeError, match="no method 'best'"):
-        bench.base(Base(name="best"))
-    with pytest.raises(HerijkError, match="ranges"):
-        bench.answer(question(bench).model_copy(update={"steps": ()}))
+@pytest.mark.parametrize(
+    ("query", "words"),
+    [
+        ({"base": "best"}, "no method 'best'"),
+        ({"wind.side": "9"}, "between 0.0 and 2.0, and is 9"),
+        ({"wind.side": "x"}, "and is x"),
+        ({"wind.model": "sideways"}, "cannot be sideways"),
+        ({"wind.force": "1"}, "no option wind.force"),
+    ],
+)
+def test_what_cannot_be_is_refused(bench, query, words):
+    with pytest.raises(HerijkError, match=words):
+        bench.method(asked(bench, **query))
 
 
 # Files
@@ -178,49 +177,37 @@ def test_what_is_not_known_is_refused(bench):
     "changes",
     [
         {},
-        {"wind": {"ahead": 0.62, "model": "head"}, "run_point": {"estimator": "ratio_of_means"}},
-        {"window": {"rule": "all"}, "speed": {"correction": "estimated"}},
+        {"wind.ahead": "0.62", "wind.model": "head", "run_point.estimator": "ratio_of_means"},
+        {"window.rule": "all", "speed.correction.2014": "estimated"},
     ],
 )
 def test_the_register_of_a_saved_file_is_the_one_that_was_shown(bench, history, changes):
-    shown = bench.register(question(bench, **changes))
-    path = bench.save(named(bench, **changes))
+    shown = bench.draft(asked(bench, **changes)).register
+    path = bench.save(saving(changes=changes))
     read = parse_method(path.read_text(encoding="utf-8"), str(path))
     again = dataclasses.replace(history, cache=RunCache()).under(read).register
     assert_frame_equal(again.drop("edition"), shown.drop("edition"))
 
 
 def test_rebase_finds_what_the_workbench_showed(bench, built):
-    changes = {"wind": {"side": 0.5}}
-    answer = bench.answer(question(bench, **changes))
-    path = bench.save(named(bench, **changes))
+    lines = bench.scenario(asked(bench, **SIDE)).register_lines
+    path = bench.save(saving())
     method = parse_method(path.read_text(encoding="utf-8"), str(path))
-    against = bench.history.under(parse_method(_extending("as-published"), "x")).method
-    report = rebase(built.store, method, against)
+    report = rebase(built.store, method, bench.known.get("as-published"))
     counts = {row["change"]: row["count"] for row in report.changes}
-    assert counts.get("changed", 0) == answer["summary"]["changed"]
-    shown = {(r["fsn_no"], r["rowers"], r["crew_class"]): r["cw_ratio"] for r in answer["register"]}
+    assert counts.get("changed", 0) == lines.filter(change="changed").height > 0
+    key = ("fsn_no", "rowers", "crew_class")
+    shown = {tuple(row[k] for k in key): row["cw_ratio"] for row in lines.to_dicts()}
     for row in report.boats:
-        key = row["fsn_no"], row["rowers"], row["crew_class"]
-        assert shown[key] == pytest.approx(row["cw_ratio"], rel=10.0 ** (1 - KEPT))
+        assert shown[tuple(row[k] for k in key)] == pytest.approx(row["cw_ratio"], rel=1e-9)
 
 
-def _extending(name):
-    return f'name = "x"\ntitle = "X"\nextends = "{name}"\n'
-
-
-def test_a_saved_file_is_a_base_from_then_on(bench):
-    bench.save(named(bench, wind={"side": 0.77}))
-    assert bench.start()["saved"] == ["own"]
-    ranges = bench.base(Base(name="own"))["ranges"]
-    assert {r["steps"]["wind"]["side"] for r in ranges} == {0.77}
-
-
-def test_no_file_is_written_over(bench):
-    path = bench.save(named(bench))
+def test_a_saved_file_is_a_base_from_then_on_and_is_never_written_over(bench):
+    path = bench.save(saving())
     before = path.read_bytes()
+    assert side(bench.method(bench.asked({"base": "own"}))) == {0.77}
     with pytest.raises(HerijkError, match="choose another name"):
-        bench.save(named(bench, wind={"side": 1.0}))
+        bench.save(saving(changes={"wind.side": "1.0"}))
     assert path.read_bytes() == before
     assert [f.name for f in bench.known.folder.iterdir()] == ["own.toml"]
 
@@ -228,13 +215,13 @@ def test_no_file_is_written_over(bench):
 @pytest.mark.parametrize("name", ["rebased", SCENARIO])
 def test_names_that_mean_something_else_are_refused(bench, name):
     with pytest.raises(HerijkError, match="another"):
-        bench.save(named(bench, name))
+        bench.save(saving(name))
 
 
 @pytest.mark.parametrize("name", ["../own", "a/b", "Own", "", ".own", "a\n", "x" * 61])
-def test_a_name_cannot_lead_out_of_the_folder(bench, name):
+def test_a_name_cannot_lead_out_of_the_folder(name):
     with pytest.raises(ValueError, match="name"):
-        named(bench, name)
+        saving(name)
 
 
 # The server
@@ -249,7 +236,7 @@ def url(bench):
 def ask(url, path="", body=None, **headers):
     """Status and text of a request, as the workbench's own page makes it unless told otherwise."""
     own = {"Origin": url.rstrip("/"), "Content-Type": "application/json"}
-    kept = {name: value for name, value in (own | headers).items() if value is not None}
+    kept = {name.replace("_", "-"): value for name, value in (own | headers).items()}
     data = None if body is None else json.dumps(body).encode()
     request = urllib.request.Request(url + path, data, kept)  # noqa: S310 - loopback
     try:
@@ -280,38 +267,46 @@ def test_a_page_that_comes_under_another_name_is_refused(url, path, host):
         {"Origin": "http://evil.example"},
         {"Origin": "null"},
         {"Origin": "http://127.0.0.1:1"},
-        {"Content-Type": "text/plain"},
-        {"Content-Type": "application/x-www-form-urlencoded"},
+        {"Content_Type": "text/plain"},
+        {"Content_Type": "application/x-www-form-urlencoded"},
     ],
 )
-def test_only_its_own_page_may_ask_and_save(url, bench, headers):
-    body = named(bench).model_dump(mode="json")
-    assert ask(url, "save", body, **headers)[0] == 403
+def test_only_its_own_page_may_save(url, bench, headers):
+    body = saving().model_dump(mode="json")
+    headers = {name.replace("_", "-"): value for name, value in headers.items()}
+    assert ask(url, "save/nl", body, **headers)[0] == 403
     assert not bench.known.folder.exists()
-    assert ask(url, "save", body)[0] == 200
+    assert json.loads(ask(url, "save/nl", body)[1])["command"].startswith(
+        f"herijk compare {PARENT}"
+    )
     assert bench.known.folder.is_dir()
+    assert "bestaat al" in json.loads(ask(url, "save/nl", body)[1])["refused"]
+    assert "refused" in json.loads(ask(url, "save/nl", body | {"name": "../x"})[1])
 
 
-def test_questions_are_not_asked_by_address(url):
-    assert ask(url, "save")[0] == 405
+def test_a_page_of_another_site_cannot_have_a_question_answered(url):
+    query = f"?{urlencode(SIDE)}"
+    assert ask(url, query, **{"Sec-Fetch-Site": "cross-site"})[0] == 403
+    assert ask(url, query, **{"Sec-Fetch-Site": "none"})[0] == 200
+    assert ask(url, "save/nl")[0] == 405
     assert ask(url, "static/../bench.py")[0] == 404
 
 
-def test_what_cannot_be_is_answered_with_a_sentence(url, bench):
-    body = question(bench).model_dump(mode="json")
-    body["steps"][0]["wind"]["ahead"] = 9
-    status, text = ask(url, "answer", body)
-    refused = json.loads(text)
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [("", "moet tussen 0,0 en 2,0 liggen, en is 9"), ("en/", "has to lie between 0.0 and 2.0")],
+)
+def test_a_refusal_is_in_the_language_of_the_page(url, path, words):
+    status, page = ask(url, f"{path}?wind.side=9")
     assert status == 200
-    assert refused["where"] == "wind.ahead"
-    assert "less than or equal to 2" in refused["refused"]
-    body["steps"][0]["wind"] = {"model": "sideways"}
-    assert "'sideways'" in json.loads(ask(url, "answer", body)[1])["refused"]
-    assert "refused" in json.loads(ask(url, "answer", {"base": {}})[1])
+    assert words in page
+    assert ("GESIMULEERD" in page) is (path == "")
 
 
-def test_the_page_says_that_the_archive_is_simulated(url):
-    assert "GESIMULEERD" in ask(url)[1]
+def test_an_unknown_method_is_refused_on_a_page_of_the_usual_one(url):
+    page = ask(url, "?base=best")[1]
+    assert "best" in page
+    assert 'value="rebased" selected' in page
 
 
 def test_the_command_does_not_load_the_web_stack_before_it_is_asked():

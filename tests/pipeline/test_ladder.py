@@ -9,7 +9,7 @@ from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies.ladder import START, STEP_ORDER, ladder
-from pipeline.studies.options import ALL_OPTIONS, CHOICES, option_effects
+from pipeline.studies.options import CHOICES, option_effects
 from tests.worlds import measure
 
 OLD, NEW = shipped_method("as-published"), shipped_method("rebased-2015")
@@ -64,12 +64,5 @@ def test_the_effect_of_a_choice_is_that_of_choosing_it(world, effects):
     assert old["cw_effect_ratio"].log().is_between(-5 * step, -2 * step).all()
 
 
-def test_the_spread_covers_all_choices(effects):
-    assert set(effects["option"]) == {*CHOICES, ALL_OPTIONS}
-    spread = effects.filter(pl.col("option") == ALL_OPTIONS)
-    assert (spread["cw_sd_ratio"] > 0).all()
-    single = effects.filter(pl.col("option") != ALL_OPTIONS)
-    # A choice of effect e alone gives a spread of |ln e| / 2.
-    largest = single.group_by("tow_id").agg((pl.col("cw_effect_ratio").log().abs() / 2).max())
-    both = largest.join(spread, on="tow_id", suffix="_all")
-    assert (both["cw_sd_ratio"] >= both["cw_effect_ratio"] * (1 - 1e-9)).all()
+def test_every_choice_has_its_effect(effects):
+    assert set(effects["option"]) == set(CHOICES)

@@ -5,7 +5,7 @@ import tomllib
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dashboards.workbench.form import controls
+from dashboards.workbench.form import CONTROLS as OF_MODEL
 from pipeline.method.definition import (
     SeasonSteps,
     Steps,
@@ -16,22 +16,22 @@ from pipeline.method.definition import (
 from pipeline.method.variant import cut_at, differences, variant, variant_text
 
 SEASONS = range(2008, 2020)
-CONTROLS = [(step["step"], control) for step in controls() for control in step["options"]]
+CONTROLS = [(one.step, one) for one in OF_MODEL.values()]
 
 
 def values(control):
     """Values that a control can give."""
-    if control["kind"] == "choice":
-        return st.sampled_from(control["values"])
-    if control["kind"] == "several":
-        return st.lists(st.sampled_from(control["values"]), unique=True)
-    number = st.integers if control["whole"] else st.floats
-    return number(control["least"], control["most"])
+    if control.kind == "choice":
+        return st.sampled_from(control.values)
+    if control.kind == "several":
+        return st.lists(st.sampled_from(control.values), unique=True)
+    number = st.integers if control.whole else st.floats
+    return number(control.least, control.most)
 
 
 changes = st.sampled_from(CONTROLS).flatmap(
     lambda held: st.tuples(
-        st.just((held[0], held[1]["option"])),
+        st.just((held[0], held[1].option)),
         values(held[1]),
         st.sets(st.sampled_from(SEASONS), max_size=12),
     )

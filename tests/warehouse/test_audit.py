@@ -113,7 +113,6 @@ def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
     tables = {
         "tows": "tows",
         "in_type": "type_outliers",
-        "pooled": "pooled_curves",
         "repeat_pairs": "repeat_pairs",
         "predicted": "predicted_cw",
         "register": "register",

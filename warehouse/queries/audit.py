@@ -35,7 +35,6 @@ class BoatAudit(Audit):
         predicted: rows of `predicted_cw`.
         options: rows of `option_effects`.
         set_aside: rows of `quarantine`.
-        pooled: rows of `pooled_curves`.
         slow_tows, repeat_pairs, register: rows of those tables.
     """
 
@@ -43,7 +42,6 @@ class BoatAudit(Audit):
     boat: Row
     tows: list[Row]
     in_type: list[Row]
-    pooled: list[Row]
     slow_tows: list[Row]
     repeat_pairs: list[Row]
     predicted: list[Row]
@@ -141,7 +139,6 @@ def _boat_audit(
         boat=boat,
         tows=rows(db, _TOWS, fsn_no, methods),
         in_type=of_boat("type_outliers"),
-        pooled=of_boat("pooled_curves"),
         slow_tows=of_boat("slow_tows"),
         repeat_pairs=of_boat("repeat_pairs"),
         predicted=of_boat("predicted_cw"),
@@ -184,7 +181,7 @@ ORDER BY tow_date, tow_id
 
 _OPTIONS: Final = """
 SELECT o.* FROM option_effects AS o JOIN tows AS t USING (tow_id)
-WHERE t.fsn_no = ? AND list_contains(?, method) AND cw_effect_ratio IS NOT NULL
+WHERE t.fsn_no = ? AND list_contains(?, method)
 ORDER BY tow_id, method, study, abs(ln(cw_effect_ratio)) DESC, option
 """
 

@@ -46,7 +46,6 @@ class TypeStatistics:
         lines: rows of `type_lines` with `follows`.
         bends: the row of `type_homogeneity`, or `n`, `reason` and `equal_possible`.
         speed_trend: the row of that table with `follows`, or `n` and `reason`.
-        shared: per pooling, what sharing a bend does to B and Cw.
         repeats: how repeat pairs spread, how many have an E_n, and of how many it is above 1.
         eras: a row of `era_shifts` each, or `era`, `n`, `apart` and `reason`.
         prediction: how far `predicted_cw` is off.
@@ -62,7 +61,6 @@ class TypeStatistics:
     tows_outside: list[Row]
     bends: Row
     speed_trend: Row
-    shared: list[Row]
     outside: list[Row]
     slow_tows: list[Row]
     repeats: Row
@@ -210,18 +208,6 @@ ORDER BY quantity, explaining, within
 
 _TREND = f"SELECT *, {_FOLLOWS} FROM speed_trend WHERE method = ? AND boat_type = ?"  # noqa: S608
 
-_SHARED = """
-SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
-       count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
-       stddev_samp(p.b_m_s) / avg(p.b_m_s) AS b_sd_ratio,
-       max(abs(ln(p.cw_085_kg_m / o.cw_085_kg_m))) AS most_085,
-       max(abs(ln(p.cw_kg_m / o.cw_kg_m))) AS most_100,
-       max(abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_115,
-       arg_max(p.fsn_no, abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_fsn_no
-FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
-WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
-"""
-
 _REPEATS = f"""
 SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
        count(p.e_n) AS n_e_n, count(*) FILTER (WHERE abs(p.e_n) > 1) AS n_disagree
@@ -243,12 +229,11 @@ WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
 """Rows of tows for which a column says yes, with the boat's name."""
 
 _STATISTICS: Final = {
-    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'",
+    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ?",
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
     "bends": "SELECT * FROM type_homogeneity WHERE method = ? AND boat_type = ?",
     "speed_trend": _TREND,
-    "shared": _SHARED,
     "outside": _NAMED.format("type_outliers", "outside", "abs(deviation_sd) DESC"),
     "slow_tows": _NAMED.format("slow_tows", "slow", "power_w"),
     "repeats": _REPEATS,

@@ -4,7 +4,7 @@
   const { lang: language, dataset: { site, root } } = document.documentElement;
   const all = (selector, within = document) => [...within.querySelectorAll(selector)];
   const make = (tag, properties = {}) => Object.assign(document.createElement(tag), properties);
-  const form = document.querySelector(".selects");
+  let form = document.querySelector(".selects");
   const choice = (name) => form?.elements[name]?.value ?? "";
   const LOCALE = {
     nl: { decimal: ",", thousands: ".", grouping: [3], currency: ["€ ", ""], minus: "\u2212" },
@@ -76,9 +76,10 @@
   });
 
   // -- The address holds what is chosen -----------------------------------------------------------
-  const fields = () => all(".selects select, .tools .search");
-  const defaults = new Map(fields().map((field) => [field.name, field.value]));
-  const isOtherChosen = () => all(".selects select").some((one) => one.value !== defaults.get(one.name));
+  const SELECTS = ".selects select:not([data-asks])"; // the others ask the workbench something else
+  const fields = () => all(`${SELECTS}, .tools .search`);
+  const defaults = new Map();
+  const isOtherChosen = () => all(SELECTS).some((one) => one.value !== defaults.get(one.name));
 
   function readAddress() {
     const wanted = new URLSearchParams(location.search);
@@ -89,9 +90,12 @@
     }
   }
 
-  function writeAddress() {
-    const chosen = fields().filter(({ name, value }) => value !== defaults.get(name));
-    const text = new URLSearchParams(chosen.map(({ name, value }) => [name, value])).toString();
+  function writeAddress(asked = new URLSearchParams(location.search)) {
+    for (const { name, value } of fields()) {
+      if (value === defaults.get(name)) asked.delete(name);
+      else asked.set(name, value);
+    }
+    const text = asked.toString();
     try {
       history.replaceState(null, "", (text ? `?${text}` : location.pathname) + location.hash);
     } catch { /* a browser may keep a page from disk from changing its address */ }
@@ -304,24 +308,29 @@
     [...views.keys()].forEach(draw);
   }
 
-  // Starts the tables and charts of a part of the page; the workbench brings its data with it.
-  function start(part, itsData = null) {
-    data = itsData ?? data;
+  // Starts the tables and charts of a part of the page; the workbench has its data in the part.
+  function start(part) {
+    const own = part.querySelector("#data");
+    if (own) data = JSON.parse(own.textContent);
+    form = document.querySelector(".selects");
+    fields().forEach(({ name, value }) => defaults.set(name, value));
+    readAddress();
     views.forEach((made) => made.finalize());
     views.clear();
     all(".table", part).forEach(startTable);
     all("figure[data-figure]", part).forEach((figure) => watcher.observe(figure));
+    choose();
   }
 
-  form?.addEventListener("change", () => { choose(); writeAddress(); });
+  document.addEventListener("change", ({ target }) => {
+    if (target.matches(SELECTS)) { choose(); writeAddress(); }
+  });
   window.addEventListener("beforeprint", () => all("figure[data-figure]")
     .filter((figure) => !views.has(figure) && figure.offsetParent).forEach(draw));
   // What an address points at is opened, so that it can be seen.
   const open = () => document.getElementById(location.hash.slice(1))?.closest("details")?.setAttribute("open", "");
   window.addEventListener("hashchange", open);
-  window.herijk = { start, loadCharts };
-  readAddress();
+  window.herijk = { start, writeAddress };
   start(document);
-  choose();
   open();
 })();

@@ -1,0 +1,278 @@
+"""The page about a question: what a method changes for registers, a boat, types and repeats.
+
+Numbers come from `warehouse.queries.scenario`; sections, tables and charts are the site's.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import polars as pl
+from markupsafe import Markup
+
+from dashboards import labels
+from dashboards.figures.style import SCENARIO
+from dashboards.site.cells import Cells, Show
+from dashboards.site.parts import Chart, Page, Section, Select, Table
+from dashboards.speech import Headline, Speech
+from dashboards.workbench.bench import Asked, Bench
+from dashboards.workbench.texts import text
+from pipeline.messages import Sentence, say
+from warehouse.queries.chosen_tows import STATED, choices_of, spoken_range
+from warehouse.queries.scenario import CURVE_COLUMNS, Scenario
+
+REGISTER_COLUMNS = (
+    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "change", "old_cw_kg_m"),
+    *("new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s", "old_rank", "new_rank"),
+    "exceeds_interval",
+)
+HOMOGENEITY_COLUMNS = (
+    *("method", "boat_type", "n_boats", "p_value", "power_at_10pct", "noise_share"),
+    "shared_b_m_s",
+)
+REPEATS_COLUMNS = (
+    *("method", "scope", "n_pairs", "sd_ratio", "lo", "hi", "share_within_1pct"),
+    "share_within_2pct",
+)
+OF_TYPE = {"boat_type": "boat_type"}
+
+
+class BenchCells(Cells):
+    """Rows in which a boat leads to the same question about it, and a type to no page."""
+
+    def _shower(self, name: str, root: str) -> Show:
+        if name == "fsn_no":
+            return lambda boat: Markup('<a href="?boat={0}">{0}</a>').format(boat)
+        return self._code if name == "boat_type" else super()._shower(name, root)
+
+
+Part = tuple[list[Section], dict[str, pl.DataFrame]]
+"""Sections of the page, and what their charts draw."""
+
+
+def results(bench: Bench, asked: Asked) -> Page:
+    """The page about a question.
+
+    Raises:
+        HerijkError: the method does not cover a season, or cannot be.
+    """
+    scenario = bench.scenario(asked)
+    parts: list[Part] = [
+        _summary(scenario),
+        _register(scenario),
+        _boat(scenario, asked),
+        _types(scenario, asked),
+        _repeats(scenario),
+    ]
+    return Page(
+        "index.html",
+        text("workbench"),
+        [section for sections, _ in parts for section in sections],
+        selects=_selects(bench, scenario, asked),
+        data={
+            name: [_leading(frame, asked)] for _, drawn in parts for name, frame in drawn.items()
+        },
+    )
+
+
+def _leading(frame: pl.DataFrame, asked: Asked) -> pl.DataFrame:
+    """Rows of boats, each with the address of the same question about it."""
+    if "fsn_no" not in frame.columns:
+        return frame
+    address = pl.lit(asked.address(boat="")) + pl.col("fsn_no") + pl.lit("#boat")
+    return frame.with_columns(page=address)
+
+
+def _summary(scenario: Scenario) -> Part:
+    s = scenario.summary()
+    changed, lines, gains, loses, added, removed = (
+        str(s[name]) for name in ("changed", "lines", "gains", "loses", "added", "removed")
+    )
+    repeats = scenario.reproducibility().filter(scope="all")
+    within, sd = (
+        _now_and_was(repeats, scenario, name) for name in ("share_within_1pct", "sd_ratio")
+    )
+    said: list[tuple[Sentence, str | Headline, Sentence]] = [
+        (
+            say("lines changed"),
+            f"{changed} / {lines}",
+            say("Lines whose Cw changes, of all lines."),
+        ),
+        (
+            say("gain time"),
+            gains,
+            say("Crews that may take longer over a race for the same power."),
+        ),
+        (say("lose time"), loses, say("Crews that have to be faster for the same power.")),
+        (say("lines added"), added, say("Lines that gain a valid curve.")),
+        (say("lines removed"), removed, say("Lines that lose their valid curve.")),
+        (
+            say("median Cw after / before"),
+            _spoken(s["median_ratio"], 4),
+            say("The middle ratio of new to old Cw over all lines."),
+        ),
+        (
+            say("repeats within 1 %"),
+            within,
+            say(
+                "How often an unaltered boat that was towed again has a Cw within 1 % of the "
+                "earlier one. Higher is better."
+            ),
+        ),
+        (
+            say("sd of one tow"),
+            sd,
+            say(
+                "How far one tow is off by chance, as a standard deviation of Cw. Lower is better."
+            ),
+        ),
+    ]
+    figures = [(title, value) for title, value, _ in said]
+    meanings = [(title, meaning) for title, _, meaning in said]
+    return [
+        Section("overview", say("In short"), key_figures=figures),
+        Section("explained", say("What these figures say"), terms=meanings, folded=True),
+    ], {}
+
+
+def _spoken(value: Any, digits: int) -> Headline:
+    return lambda speech: "-" if value is None else speech.number(value, digits)
+
+
+def _now_and_was(repeats: pl.DataFrame, scenario: Scenario, column: str) -> Headline:
+    known = dict(repeats.select("method", column).iter_rows())
+    now, was = (known.get(name) for name in (SCENARIO, scenario.before.method.name))
+
+    def spoken(speech: Speech) -> str:
+        new, old = ("-" if v is None else f"{speech.number(100 * v, 1)} %" for v in (now, was))
+        return f"{new} ({speech.say(say('was'))} {old})"
+
+    return spoken
+
+
+def _register(scenario: Scenario) -> Part:
+    lines = scenario.register_lines.select(*REGISTER_COLUMNS, "time_ratio", "to_edition")
+    title = say("The register")
+    return [
+        Section(
+            "register",
+            title,
+            note=say(
+                "Every line against the chosen method, the largest change first. Time: what the "
+                "new line gives (+) or costs (-) in a two-hour race at equal power."
+            ),
+            charts=[
+                Chart("changes", "changed", say("Cw and time of every changed line")),
+                Chart(
+                    "season_change",
+                    "season_change",
+                    say("Cw after / before per season: median and range"),
+                ),
+                Chart(
+                    "log_factors",
+                    "log_factors",
+                    say("True speed / log speed per season, with its 95 % interval"),
+                ),
+            ],
+            tables=[
+                Table("register", lines, REGISTER_COLUMNS, title, search=True, linked=True),
+            ],
+        )
+    ], {
+        "changed": lines.filter(change="changed"),
+        "season_change": scenario.season_change(),
+        "log_factors": scenario.log_factors(),
+    }
+
+
+def _boat(scenario: Scenario, asked: Asked) -> Part:
+    title = say("A boat")
+    return [
+        Section(
+            "boat",
+            title,
+            note=say(
+                "The curve and the runs before and after. Open marks do not count. The bar at the "
+                "declared speed is the 95 % interval; a dashed bar is the spread of the runs "
+                "alone, without the error of the log."
+            ),
+            charts=[
+                Chart(
+                    "curves_compared",
+                    "boat_figure",
+                    say("Resistance curves of this tow"),
+                    {"tow_id": "tow"},
+                )
+            ],
+            tables=[Table("boat_curves", scenario.boat_curves(asked.boat), CURVE_COLUMNS, title)],
+        )
+    ], {"boat_figure": scenario.boat_figure(asked.boat)}
+
+
+def _types(scenario: Scenario, asked: Asked) -> Part:
+    title = say("Types: are equal boats equal?")
+    tests = scenario.type_homogeneity(asked.tows)
+    return [
+        Section(
+            "types",
+            title,
+            note=say(
+                "The chosen tows, Cw at the standard speed of the type. Drag over a chart to see "
+                "in the register which boats lie there. The table tests whether boats of a type "
+                "can share one B, with the newest of those tows of each crew: a small p says no."
+            ),
+            charts=[
+                Chart("b_weight", "types", say("B against weight"), OF_TYPE),
+                Chart(
+                    "cw_standard_weight",
+                    "types",
+                    say("Cw at the standard speed against weight"),
+                    OF_TYPE,
+                ),
+            ],
+            tables=[Table("homogeneity", tests, HOMOGENEITY_COLUMNS, title, ["boat_type"])],
+        )
+    ], {"types": scenario.type_tows(asked.tows)}
+
+
+def _repeats(scenario: Scenario) -> Part:
+    title, repeats = say("Reproducibility: the same boat again"), scenario.reproducibility()
+    return [
+        Section(
+            "repeats",
+            title,
+            note=say("Two consecutive tows of an unaltered boat with the same crew."),
+            charts=[
+                Chart("reproducibility", "reproducibility", say("Standard deviation of one tow"))
+            ],
+            tables=[Table("reproducibility", repeats, REPEATS_COLUMNS, title)],
+        )
+    ], {"reproducibility": repeats}
+
+
+def _selects(bench: Bench, scenario: Scenario, asked: Asked) -> Sequence[Select]:
+    names = dict(bench.boats.select("fsn_no", "name").iter_rows())
+    tows = scenario.boat_curves(asked.boat)["tow_id"].unique().sort(descending=True).to_list()
+    types = bench.boats["boat_type"].drop_nulls().unique().sort().to_list()
+    choices = list(dict.fromkeys([*choices_of(bench.seasons), asked.tows]))
+    return [
+        Select(
+            "boat",
+            say("Choose boat"),
+            list(names),
+            asked.boat,
+            named=lambda boat, _: f"{names[boat] or ''} ({boat})",
+            asks=True,
+        ),
+        Select("tow", say("Tow"), tows, tows[0] if tows else ""),
+        Select("boat_type", say("Type"), types, "", with_all=True),
+        Select(
+            "tows",
+            say("Types judged by tows"),
+            choices,
+            asked.tows,
+            named=lambda tows, speech: (
+                speech.say(labels.code(tows)) if tows in STATED else spoken_range(tows)
+            ),
+            asks=True,
+        ),
+    ]
