@@ -20,12 +20,14 @@ from pipeline.season_log.diagnosis import FAULT
 from pipeline.season_log.effects import FLEET
 from pipeline.tables.archive import Tows
 from pipeline.tables.frames import dtypes
-from pipeline.tables.keys import LINE
+from pipeline.tables.keys import LINE, SIZES
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
 FEWEST_LIKE_BOATS: Final = 4
 """Fewest boats of a type among which one can stand out (inferred)."""
 
+FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
+LISTED: Final = {"waterline_length_m": "listed_length_m", "beam_m": "listed_beam_m"}
 NOT_ALWAYS_KNOWN: Final = pl.DataFrame(
     schema={
         **dtypes(Tows),
@@ -54,13 +56,14 @@ def assess(
     tows = pl.concat([tows, NOT_ALWAYS_KNOWN], how="diagonal_relaxed")
     boats = _with_boats(curves, tows)
     facts = [
+        _beside_papers(tows),
         curves.drop(set(curves.columns) & set(tows.columns) - {"tow_id"}),
         _of_runs(curves, run_points),
         _of_season(curves, tows, diagnosis),
         _beside_previous(boats, curves, diagnosis),
         _beside_like_boats(boats),
     ]
-    return checked(reduce(_joined, facts, tows))
+    return checked(reduce(_joined, facts, tows).with_columns(by_half_a_step=BY_HALF_A_STEP))
 
 
 def _joined(tows: pl.DataFrame, facts: pl.DataFrame) -> pl.DataFrame:
@@ -84,7 +87,7 @@ def checked(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.DataFram
     nearer_lowest = highest.is_null() | nearer
     index = ("method", "tow_id", "season", "crew_class")
     return (
-        tows.select(*index, *(check.observed for check in checks))
+        tows.select(*index, *(_number(check) for check in checks))
         .filter(pl.col("method").is_not_null())
         .unpivot(index=index, variable_name="check", value_name="observed")
         .filter(x.is_finite())
@@ -101,6 +104,10 @@ def checked(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.DataFram
             ((x < lowest).fill_null(False) | (x > highest).fill_null(False)).alias("flagged"),
         )
     )
+
+
+def _number(check: Check) -> pl.Expr:
+    return pl.sql_expr(check.measured).cast(pl.Float64).alias(check.code)
 
 
 def _limits() -> pl.DataFrame:
@@ -155,6 +162,35 @@ def with_status(
 
 
 # The facts
+
+BY_HALF_A_STEP: Final = pl.max_horizontal(
+    pl.when(pl.col("calibration_factor").is_not_null()).then(
+        pl.col("gps_step_m_s") / pl.col("declared_speed_m_s")
+    ),
+    pl.col("force_step_n") / 2 / (pl.col("cw_kg_m") * pl.col("declared_speed_m_s") ** 2),
+)
+"""Change of Cw if readings were truncated to their step and not rounded: half a step, of which that
+of speed counts twice. That of a GPS counts only where it calibrates the tow."""
+
+
+def _beside_papers(tows: pl.DataFrame) -> pl.DataFrame:
+    """Measurements against the boat list, and against those of the boat's previous tow.
+
+    Null for a boat that was ever altered, and after a reported alteration, which explain it.
+    """
+
+    def before(column: str) -> pl.Expr:
+        return pl.col(column).shift(1).over("fsn_no", order_by=["tow_date", "tow_id"])
+
+    same, altered = ~pl.col("altered"), pl.col("altered").any().over("fsn_no")
+    off = [(pl.col(own) / pl.col(listed) - 1).abs() for own, listed in LISTED.items()]
+    moved = pl.max_horizontal((pl.col(c) - before(c)).abs() for c in FREEBOARDS)
+    return tows.select(
+        "tow_id",
+        pl.when(~altered).then(pl.max_horizontal(off)).alias("off_boat_list"),
+        pl.when(same).then(moved).alias("freeboard_change_m"),
+        *(pl.when(same).then(pl.col(c) / before(c) - 1).alias(f"{c}_change") for c in SIZES),
+    )
 
 
 def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:

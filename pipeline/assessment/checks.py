@@ -1,8 +1,8 @@
 """The checks of the assessment as one table of rules: code, what is measured, limits, sentence.
 
-What each measures is an expression over the facts of a tow, a row per tow, as
-`pipeline.assessment.assess` gathers them. Where a limit comes from is in the table of
-docs/method-details.md, 10.
+What each measures is an expression over the facts of a tow that `pipeline.assessment.assess`
+gathers. Nothing here needs Polars: methods and labels name checks too. Where a limit comes from is
+in the table of docs/method-details.md, 10.
 
 Severity says what a check asks of people. `refuse`: the tow gives nothing to register. `look`:
 somebody must decide, as the curve may be wrong, or rest on a boat that is not what the papers say;
@@ -12,8 +12,6 @@ or it is a property of how the curve may be used.
 """
 
 from typing import Final, NamedTuple, TypeAlias
-
-import polars as pl
 
 from pipeline.history import SLOW_POWER_W, STEERED_STRAIGHT_FROM
 from pipeline.messages import Sentence, say
@@ -28,7 +26,7 @@ class Check(NamedTuple):
 
     Attributes:
         code: stable name, as in `curves.flags` and `assessments.check`.
-        measured: the number of each tow, a fact or made of facts; null where it is not known.
+        measured: the number of each tow, in SQL; null where it is not known.
         sentence: what it says of a tow that is marked.
         lowest, highest: a number outside them is marked.
         unit: of the number and its limits; 1 also for a count, and for yes (1) or no (0).
@@ -37,19 +35,13 @@ class Check(NamedTuple):
     """
 
     code: str
-    measured: str | pl.Expr
+    measured: str
     sentence: Sentence
     lowest: Limit = None
     highest: Limit = None
     unit: str = "1"
     severity: Severity = "look"
     last_season: int | None = None
-
-    @property
-    def observed(self) -> pl.Expr:
-        """The number of each tow, named after the check."""
-        measured = pl.col(self.measured) if isinstance(self.measured, str) else self.measured
-        return measured.cast(pl.Float64).alias(self.code)
 
     def limits(self, crew_class: str) -> tuple[float | None, float | None]:
         """Lowest and highest for a class."""
@@ -64,53 +56,20 @@ POWER_W: Final = ({"H": 70.0, "D": 40.0}, {"H": 90.0, "D": 55.0})
 ROWER_KG: Final = ({"H": 81.0, "D": 64.0}, {"H": 114.0, "D": 90.0})
 
 
-def _before(column: str) -> pl.Expr:
-    """Of the previous tow of the boat, with any crew."""
-    return pl.col(column).shift(1).over("fsn_no", order_by=["tow_date", "tow_id"])
-
-
-def _changed(measured: pl.Expr) -> pl.Expr:
-    """Null after a reported alteration, which explains a change."""
-    return pl.when(~pl.col("altered")).then(measured)
-
-
-def _change(column: str) -> pl.Expr:
-    return _changed(pl.col(column) / _before(column) - 1)
-
-
-_FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
-_FREEBOARD: Final = pl.max_horizontal((pl.col(c) - _before(c)).abs() for c in _FREEBOARDS)
-
-_LISTED: Final = {"waterline_length_m": "listed_length_m", "beam_m": "listed_beam_m"}
-_OFF_LIST: Final = pl.max_horizontal(
-    (pl.col(own) / pl.col(listed) - 1).abs() for own, listed in _LISTED.items()
-)
-
-_SPEED: Final = pl.col("declared_speed_m_s")
-# Half a step: readings may be cut off and not rounded. Speed counts twice; a GPS only where it
-# calibrates the tow.
-_STEP: Final = pl.max_horizontal(
-    pl.when(pl.col("calibration_factor").is_not_null()).then(pl.col("gps_step_m_s") / _SPEED),
-    pl.col("force_step_n") / 2 / (pl.col("cw_kg_m") * _SPEED**2),
-)
-
-
 def _told_by_all(code: str, sentence: Sentence) -> Check:
     """What all other tows say of a tow (`pipeline.assessment.plausibility`)."""
     verdict = "doubts" if code.endswith("_not_plausible") else "unusual"
-    return Check(code, pl.col(verdict).list.contains(code), sentence, highest=0.0)
+    return Check(code, f"array_contains({verdict}, '{code}')", sentence, highest=0.0)
 
 
 CHECKS: Final = (
     # code, measured, sentence, lowest, highest
     # The curve itself
-    Check("no_curve", pl.col("a_kg_m").is_not_null(), say("no curve"), 1.0, severity="refuse"),
+    Check("no_curve", "a_kg_m IS NOT NULL", say("no curve"), 1.0, severity="refuse"),
     Check("few_runs", "runs_used", say("few runs"), 6.0, severity="note"),
     Check("runs_set_aside", "runs_set_aside", say("runs set aside"), None, 0.0),
     Check("unbalanced_runs", "unbalanced", say("unbalanced runs"), None, 1.0),
-    Check(
-        "out_and_back_differ", pl.col("out_over_back") - 1, say("out and back differ"), -0.04, 0.04
-    ),
+    Check("out_and_back_differ", "out_over_back - 1", say("out and back differ"), -0.04, 0.04),
     Check("unusual_calibration", "calibration_factor", say("unusual calibration"), 0.98, 1.02),
     # The samples beside all other tows
     _told_by_all("force_not_plausible", say("force cannot be right")),
@@ -120,7 +79,7 @@ CHECKS: Final = (
     _told_by_all("wind_unusual", say("wind stands out")),
     _told_by_all("speed_unusual", say("speed stands out")),
     Check("season_in_doubt", "season_doubted", say("season's instrument in doubt"), None, 0.0),
-    Check("coarse_readings", _STEP, say("coarse readings"), None, 0.01),
+    Check("coarse_readings", "by_half_a_step", say("coarse readings"), None, 0.01),
     # The runs
     Check(
         "log2_differs",
@@ -138,7 +97,7 @@ CHECKS: Final = (
     ),
     # Instruments, and the declared speed
     Check("lamps_burned", "lamp_ratio", say("warning lamps burned long"), None, 0.2),
-    Check("load_cell_off", pl.col("load_cell_ratio") - 1, say("load cell off"), -0.01, 0.01),
+    Check("load_cell_off", "load_cell_ratio - 1", say("load cell off"), -0.01, 0.01),
     Check(
         "power_outside_range",
         "power_w",
@@ -151,14 +110,14 @@ CHECKS: Final = (
     # The boat of the day
     Check(
         "crew_weight",
-        pl.col("crew_weight_kg") / pl.col("rowers"),
+        "crew_weight_kg / rowers",
         say("crew weight unusual"),
         *ROWER_KG,
         unit="kg",
     ),
     Check(
         "heavier_after",
-        pl.col("weight_after_kg") / pl.col("weight_kg") - 1,
+        "weight_after_kg / weight_kg - 1",
         say("heavier after"),
         None,
         0.02,
@@ -166,17 +125,17 @@ CHECKS: Final = (
     Check("water_differs", "water_off_c", say("water unlike its day's"), None, 3.0, unit="C"),
     Check(
         "boat_list_differs",
-        pl.when(~pl.col("altered").any().over("fsn_no")).then(_OFF_LIST),
+        "off_boat_list",
         say("differs from the boat list"),
         None,
         0.05,
     ),
-    Check("weight_changed", _change("weight_kg"), say("weight changed"), -0.02, 0.02),
-    Check("length_changed", _change("waterline_length_m"), say("length changed"), -0.01, 0.01),
-    Check("beam_changed", _change("beam_m"), say("beam changed"), -0.02, 0.02),
-    Check("bow_height_changed", _change("bow_height_m"), say("bow height changed"), -0.05, 0.05),
+    Check("weight_changed", "weight_kg_change", say("weight changed"), -0.02, 0.02),
+    Check("length_changed", "waterline_length_m_change", say("length changed"), -0.01, 0.01),
+    Check("beam_changed", "beam_m_change", say("beam changed"), -0.02, 0.02),
+    Check("bow_height_changed", "bow_height_m_change", say("bow height changed"), -0.05, 0.05),
     Check(
-        "freeboard_changed", _changed(_FREEBOARD), say("freeboard changed"), None, 0.03, unit="m"
+        "freeboard_changed", "freeboard_change_m", say("freeboard changed"), None, 0.03, unit="m"
     ),
     # The curve against others
     Check("curve_change_unexplained", "curve_change", say("unexplained curve change"), -0.05, 0.05),

@@ -114,7 +114,9 @@ class _MeanShifts:
         self._noise = scipy.sparse.diags_array(1.0 / seen.variance)
         within = self._effects.T @ self._noise @ self._effects
         prior = scipy.sparse.diags_array(1.0 / seen.effects.variance)
-        self._within = scipy.sparse.linalg.splu((within + prior).tocsc(), permc_spec="MMD_AT_PLUS_A")
+        self._within = scipy.sparse.linalg.splu(
+            (within + prior).tocsc(), permc_spec="MMD_AT_PLUS_A"
+        )
         self._taken: list[tuple[FloatArray, float]] = []
         self._score = np.asarray(may.directions.T @ self._precision_times(seen.values))
         starts = range(0, may.directions.shape[1], AT_A_TIME)
