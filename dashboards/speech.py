@@ -25,10 +25,6 @@ class Speech:
         """A text, escaped."""
         return escape(self.say(text))
 
-    def unbroken(self, heading: str) -> str:
-        """A heading without the places where it may be broken."""
-        return labels.unbroken(self.say(heading))
-
     def number(self, value: float, digits: int, sign: str = "") -> str:
         """A number with so many decimals; `sign` is "+" where a plus is to be shown."""
         return f"{value:{sign}z.{digits}f}".translate(self._marks)

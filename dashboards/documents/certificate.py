@@ -146,7 +146,7 @@ def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:
 
 def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str]:
     """A measure with its unit, by the heading of its column."""
-    name = speech.unbroken(labels.column(column))
+    name = labels.unbroken(speech.say(labels.column(column)))
     value = line[column]
     return name, "\u2013" if value is None else speech.number(value, digits)
 

@@ -139,7 +139,9 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
         *map(labels.column, ("exceeds_interval", "median", "lowest_ratio", "highest_ratio")),
     )
     return _part(
-        speech.say("The methods side by side"), head=[*map(speech.unbroken, heads)], rows=rows
+        speech.say("The methods side by side"),
+        head=[labels.unbroken(speech.say(head)) for head in heads],
+        rows=rows,
     )
 
 
@@ -194,7 +196,7 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
             "the same power, or has to be faster (\u2212). Last column: how many lines change "
             "by more than the uncertainty."
         ),
-        head=[*map(speech.unbroken, heads)],
+        head=[labels.unbroken(speech.say(head)) for head in heads],
         rows=[
             [
                 ", ".join((speech.say(labels.code(type_)), speech.say(labels.crew(crew_class)))),
@@ -231,7 +233,7 @@ def _crews(lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
         pgettext("proposal", "Change"),
         *map(labels.column, ("gain_in_two_hours_s", "exceeds_interval")),
     )
-    head = [*map(speech.unbroken, heads)]
+    head = [labels.unbroken(speech.say(head)) for head in heads]
     for title, shown in (
         (say("Who gains most"), moved.filter(gain > 0).reverse()),
         (say("Who loses most"), moved.filter(gain < 0)),

@@ -36,7 +36,7 @@ CODES: Final = {
 
 LONG: Final = {
     *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "messages", "decision"),
-    *("candidates", "name", "meanings", "confused_with", "old_remark", "new_remark"),
+    *("candidates", "name", "confused_with", "old_remark", "new_remark"),
 }
 """Columns of texts that may take several lines."""
 
@@ -98,7 +98,7 @@ class Cells:
         known, rows = self._of_many.get(table.name, (None, []))
         if known is not whole:
             # Column by column, because the cells of a column are made in one way.
-            cells = (self._cells(whole[c], page.root) for c in table.columns)
+            cells = (self._cells(whole[c], page.root) for c in table.shown)
             rows = list(map("".join, zip(*cells, strict=True)))
         if table.within:
             self._of_many[table.name] = whole, rows
@@ -127,7 +127,7 @@ class Cells:
         if name == "boat_type":
             return lambda value: self._type(value, root)
         named = {
-            **dict.fromkeys(("titles", "meanings", "messages"), self._titles),
+            "messages": self._message,
             "direction": lambda value: self.text(labels.code(f"direction.{value}")),
             "causes": self._causes,
             "candidates": lambda names: Markup(", ").join(
@@ -170,8 +170,8 @@ class Cells:
         ]
         return Markup("; ").join(parts)
 
-    def _titles(self, value: Any) -> Markup:
-        """The title in this language, of one in Dutch and one in English."""
+    def _message(self, value: Any) -> Markup:
+        """The message in this language, of one in Dutch and one in English."""
         return escape(value[LANGUAGES.index(self.speech.language)])
 
 

@@ -26,7 +26,7 @@ class Table:
     Attributes:
         name: names the download.
         frame: its rows; columns keep the names they have in the warehouse.
-        columns: what is shown, in order; the download holds the same.
+        columns: what is shown, in order, where it says something; the download holds the same.
         caption: the text above it.
         follows: columns that a selector of the page filters on.
         search: whether it has a search box.
@@ -47,9 +47,25 @@ class Table:
     within: tuple[pl.DataFrame, int] | None = None
 
     @cached_property
+    def shown(self) -> list[str]:
+        """The columns in which some row says something."""
+        frame = self.within[0] if self.within else self.frame
+        return [name for name in self.columns if frame.is_empty() or _says_something(frame[name])]
+
+    @cached_property
     def numeric(self) -> set[str]:
         """Columns that hold numbers."""
         return {name for name, dtype in self.frame.schema.items() if dtype.is_numeric()}
+
+
+def _says_something(column: pl.Series) -> bool:
+    """Whether a column holds anything but nothing, no and empty texts and lists."""
+    if column.dtype == pl.Boolean:
+        return bool(column.any())
+    if isinstance(column.dtype, pl.List):
+        return bool((column.list.len() > 0).any())
+    known = column.drop_nulls()
+    return bool((known != "").any()) if known.dtype == pl.String else not known.is_empty()
 
 
 @dataclass(frozen=True)

@@ -46,16 +46,15 @@ def _race(
     chances: Chances,
 ) -> Page:
     now = rows.filter(to_edition=chosen)
-    table = Table(
-        "race_changes", rows, COLUMNS, say("Races"), ["to_edition"], search=True, cards=CARDS
-    )
+    title = say("Results by both editions")
+    table = Table("race_changes", rows, COLUMNS, title, ["to_edition"], search=True, cards=CARDS)
     return Page(
         path,
         say("Races"),
         [
             Section(
                 "race_results",
-                say("Results by both editions"),
+                title,
                 say(
                     "Power per rower in this race, and the place by it, by class: among the crews "
                     "that have a valid line on that day in both editions."

@@ -157,6 +157,7 @@ class Edition:
         self._names = {
             "_": self.speech.text,
             "column_text": labels.column,
+            "unbroken": labels.unbroken,
             "speech": self.speech,
             "heading": cache(self._heading),
             "about": self.about,

@@ -5,6 +5,7 @@ the presentation and on the workbench.
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
 
 import polars as pl
 from markupsafe import Markup
@@ -27,7 +28,7 @@ from dashboards.site.parts import (
 from dashboards.slide_book import Book
 from dashboards.speech import Headline, Speech
 from dashboards.statements import Statement, together
-from dashboards.statements.boat_type import homogeneity, level
+from dashboards.statements.boat_type import LINES, SPREAD, Slopes, homogeneity, level, slopes
 from pipeline.messages import Sentence, say
 from warehouse.queries.audit_types import WEIGHT_LINE
 from warehouse.queries.chosen_tows import NEWEST
@@ -41,21 +42,11 @@ TOW_COLUMNS = (
     *("a_kg_m", "b_m_s", "cw_standard_kg_m"),
 )
 TYPE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "season", "cw_standard_kg_m", "b_m_s")
-LINE_COLUMNS = (
-    *("quantity", "explaining", "within", "n", "slope", "slope_lo", "slope_hi", "r2"),
-    "residual_sd_ratio",
-)
-LINES_OF = pl.col("quantity").is_in(["b_m_s", "a_kg_m", "cw_standard_kg_m"]) & pl.col(
-    "explaining"
-).is_in(["weight_kg", "declared_speed_m_s"])
 TYPE_FIGURES = ("cw_weight", "cw_speed", "b_weight")
 """Of `dashboards.figures.slides`."""
 OUTLIER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
     *("expected", "deviation_sd", "candidates"),
-)
-TEST_COLUMNS = (
-    *("boat_type", "n", "n_boats", "p_value", "power_at_10pct", "noise_share", "shared_b_m_s"),
 )
 OF_TYPE = ("after", "boat_type")
 
@@ -64,6 +55,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     """The verdict on every type; A, B and Cw at one speed against weight and speed; outliers."""
     if not views.has("compared_tows"):
         return Page("types.html", say("Types"), [])
+    book = Book(views)
     after = pl.col("method").alias("after")
     shown = pl.col("method").is_in(methods)
     tows = with_page(views.ask("type_tows")).filter("newest", shown).with_columns(after)
@@ -73,34 +65,17 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     )  # fmt: skip
     follows = {"method": SIDES, "boat_type": "boat_type"}
     charts = [Chart(name, "type_boats", labels.FIGURES[name], follows) for name in SCATTERS]
-    tests = views.table("type_homogeneity").filter(shown).with_columns(after)
     outliers = views.ask("outliers").filter(shown).with_columns(after)
     return Page(
         "types.html",
         say("Types"),
         [
+            _slopes_section(views, book, book.chosen_types(())),
             Section(
                 "types_verdicts",
                 say("Are equal boats equal?"),
                 say("By the newest tow of each boat and crew; every type has a page."),
                 prose=_verdicts(_judged(views, default_method(methods)), views.type_names()),
-            ),
-            *listed(
-                Section(
-                    "types_homogeneity",
-                    say("Could one B serve the type?"),
-                    say(
-                        "Every type has a page. Of the newest tow of each boat and crew (n). p: "
-                        "chance of so large a difference between the bends if all boats have the "
-                        "same B; a small p says that they have not. Chance to see 10 %: how likely "
-                        "a true spread of B of 10 % would have been noticed here. Share of noise: "
-                        "share of the spread that the runs alone give."
-                    ),
-                ),
-                "type_homogeneity",
-                tests,
-                TEST_COLUMNS,
-                follows=OF_TYPE,
             ),
             Section(
                 "types_charts",
@@ -179,7 +154,6 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     shown = pl.col("method").is_in(methods)
     tows = views.ask("type_tows").filter("newest", shown)
     tows = once_for_methods(tows.select("method", "boat_type", *TOW_COLUMNS))
-    lines = views.table("type_lines").filter(shown, LINES_OF, tows=NEWEST)
     judge = _judged(views, default_method(methods))
     book = Book(views)
     for boat_type in views.type_names():
@@ -197,8 +171,6 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             "type_boats", tows.filter(own), TOW_COLUMNS, say("Boats"), ["method"], search=True,
             cards=TYPE_CARDS,
         )  # fmt: skip
-        title = say("Does it follow weight or speed?")
-        fitted = Table("type_lines", lines.filter(own), LINE_COLUMNS, title, ["method"])
         yield Page(
             type_path(boat_type),
             say("Types"),
@@ -218,23 +190,63 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                     [listed_tows],
                     headline=together(judge(boat_type), " "),
                 ),
-                Section(
-                    "types_lines",
-                    title,
-                    say(
-                        "A straight line per type through n tows; tows of one boat count as "
-                        "repeats. The slope is the change of the quantity per kg or per m/s; a "
-                        "slope whose interval holds 0 is not shown to exist. R²: share of the "
-                        "spread that the line explains."
-                    ),
-                    tables=[fitted],
-                    folded=True,
-                ),
+                _slopes_section(views, book, [boat_type]),
             ],
             name=boat_type,
             selects=[methods_select(methods)],
             data={"slides": [book.drawn(boat_type, NEWEST)]},
         )
+
+
+def _slopes_section(views: Views, book: Book, types: Sequence[str]) -> Section:
+    """What B, A and Cw of these types follow, before and after, as one table."""
+    lines = views.table("type_lines").filter(pl.col("method").is_in(book.ends), tows=NEWEST)
+    rows = [row for name in types for row in lines.filter(boat_type=name).to_dicts()]
+    rows.sort(key=lambda row: book.ends.index(row["method"]))
+    return Section(
+        "types_slopes",
+        say("Does it follow weight or speed?"),
+        say(
+            "The slope of the best straight line through the newest tow of each boat and crew (n), "
+            "with its 95 % interval; spread about that line, and R², the share of the spread that "
+            "it explains. Cw at the standard speed."
+        ),
+        prose=_slopes_table(slopes(rows)),
+    )
+
+
+def _slopes_table(found: Sequence[Slopes]) -> Callable[[Speech], Markup]:
+    """A group of rows per type, a row per quantity and method."""
+    cell, row = Markup("<td>{}</td>"), Markup('<tr><th scope="row">{}</th>{}</tr>')
+    group = Markup('<tr><th scope="rowgroup" colspan="{}">{}</th></tr>')
+    whole = Markup(
+        '<div class="scroll" tabindex="0" role="region" aria-label="{}"><table><thead><tr>{}</tr>'
+        "</thead><tbody>{}</tbody></table></div>"
+    )
+    heads = ["", *LINES.values(), SPREAD]
+
+    def prose(speech: Speech) -> Markup:
+        head = Markup("").join(
+            Markup('<th scope="col">{}</th>').format(speech.say(text)) for text in heads
+        )
+        rows = []
+        for boat_type, of_type in groupby(found, key=lambda one: one.boat_type):
+            rows.append(group.format(len(heads), boat_type))
+            for one in of_type:
+                said = Markup("").join(
+                    cell.format(keep_units(text(speech))) for text in (*one.slopes, one.spread)
+                )
+                name = speech.say(
+                    "{quantity}, {method} (n = {n})",
+                    quantity=labels.code(one.quantity),
+                    method=labels.method(one.method),
+                    n=one.n,
+                )
+                rows.append(row.format(name, said))
+        title = speech.say("Does it follow weight or speed?")
+        return whole.format(title, head, Markup("").join(rows))
+
+    return prose
 
 
 def _said(sentences: Sequence[Sentence]) -> Headline:

@@ -1,6 +1,8 @@
 """Whether the boats of a type are equal: in the bend of their curves, and in level."""
 
-from typing import Final
+from collections.abc import Iterable, Sequence
+from math import floor, log10
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -108,3 +110,84 @@ def _outside(tows: list[Row]) -> Value:
         for tow in tows
     ]
     return Statement("outside", say(" These stand out: {boats}."), {"boats": named})
+
+
+QUANTITIES: Final = ("b_m_s", "a_kg_m", "cw_standard_kg_m")
+LINES: Final = {
+    ("weight_kg", "all"): say("Per kg of weight"),
+    ("declared_speed_m_s", "men"): say("Per m/s of tow speed, men"),
+    ("declared_speed_m_s", "women"): say("Per m/s of tow speed, women"),
+}
+"""What a slope is on, and among which crews, with its heading."""
+SPREAD: Final = say("Spread about the weight line")
+
+
+class Slopes(NamedTuple):
+    """How a quantity of a type follows weight and tow speed under a method.
+
+    Attributes:
+        quantity: its name as a code.
+        n: tows of the weight line.
+        slopes: in the order of `LINES`.
+    """
+
+    boat_type: str
+    method: str
+    quantity: str
+    n: int
+    slopes: Sequence[Statement]
+    spread: Statement
+
+
+def slopes(lines: Iterable[Row]) -> list[Slopes]:
+    """The slopes of B, A and Cw at the standard speed, from rows of `type_lines` of one choice.
+
+    Types and methods keep the order of the rows.
+    """
+    of: dict[tuple[str, str, str], dict[tuple[str, str], Row]] = {}
+    for line in lines:
+        if line["quantity"] in QUANTITIES:
+            own = of.setdefault((line["boat_type"], line["quantity"], line["method"]), {})
+            own[line["explaining"], line["within"]] = line
+    of_weight = next(iter(LINES))
+    found = [
+        Slopes(
+            boat_type,
+            method,
+            quantity,
+            own[of_weight]["n"] if of_weight in own else 0,
+            [slope(own.get(against)) for against in LINES],
+            _spread(own.get(of_weight)),
+        )
+        for (boat_type, quantity, method), own in of.items()
+    ]
+    types = list(dict.fromkeys(one.boat_type for one in found))
+    return sorted(found, key=lambda s: (types.index(s.boat_type), QUANTITIES.index(s.quantity)))
+
+
+def slope(line: Row | None) -> Statement:
+    """The slope of a line with its 95 % interval, and whether that leaves out zero."""
+    if line is None or line["slope"] is None:
+        reason = labels.code(line["reason"] if line else "few_boats")
+        return Statement("slope", say("{reason}"), {"reason": reason}, "not known")
+    low, high = line["slope_lo"], line["slope_hi"]
+    wording, verdict = say("no trend: {slope} ({low} to {high})"), "none"
+    if low > 0:
+        wording, verdict = say("rises: {slope} ({low} to {high})"), "rises"
+    elif high < 0:
+        wording, verdict = say("falls: {slope} ({low} to {high})"), "falls"
+    digits = max(0, 1 - floor(log10(max(abs(low), abs(high)) or 1.0)))  # two that say something
+    values = {"slope": Number(line["slope"], digits, line["explaining"], low, high)}
+    ends = {"low": Number(low, digits), "high": Number(high, digits)}
+    return Statement("slope", wording, values | ends, verdict, ("type_lines",))
+
+
+def _spread(line: Row | None) -> Statement:
+    """How far the tows lie from their line, and what share of their spread it explains."""
+    if line is None or line["residual_sd_ratio"] is None:
+        return Statement("spread", say("not known"), verdict="not known")
+    values: dict[str, Value] = {"spread": Number(100 * line["residual_sd_ratio"], 1, "%")}
+    if line["r2"] is None:
+        return Statement("spread", say("{spread} %"), values, rests_on=("type_lines",))
+    wording = say("{spread} % (R² {r2})")
+    return Statement("spread", wording, values | {"r2": Number(line["r2"])}, "", ("type_lines",))

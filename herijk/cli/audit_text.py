@@ -8,7 +8,7 @@ import polars as pl
 
 from dashboards.labels import candidate, code_in_words
 from dashboards.statements.boat import Answer, answers_by_boat
-from dashboards.statements.boat_type import homogeneity, level
+from dashboards.statements.boat_type import LINES, SPREAD, homogeneity, level, slopes
 from dashboards.statements.tow import statements as tow_statements
 from herijk.cli.render import (
     cell,
@@ -225,19 +225,12 @@ def _line_history(line: "LineLineage") -> str:
 # Types
 
 
-QUANTITIES: Final = ("b_m_s", "a_kg_m", "cw_standard_kg_m")
-AGAINST: Final = ("weight_kg", "declared_speed_m_s")
-LINE: Final = (
-    "boat_type method quantity explaining within slope slope_lo slope_hi r2 residual_sd_ratio n "
-    "follows reason"
-)
-
-
 def types_text(report: TypesAudit, steps: bool) -> str:
     """Whether the boats of one or two types are equal; with which statistics where asked."""
     newest = report.methods[-1]
-    parts = [_facts(one) + "\n" + _verdict(one, newest) for one in report.types]
-    parts.append(_lines(report, report.methods if steps else [newest], of_crews=steps))
+    compared = report.methods if steps else list(dict.fromkeys([report.methods[0], newest]))
+    parts = [_slopes(report, compared)]
+    parts += [_facts(one) + "\n" + _verdict(one, newest) for one in report.types]
     if differing := report.differences[newest]:
         parts.append(
             tell("What differs by more than chance: {}", ", ".join(map(_named, differing)))
@@ -273,37 +266,30 @@ RANGES: Final = (
 
 
 def _verdict(of_type: OneType, method: str) -> str:
-    """Whether they are equal, as the site says it, and which tows lie outside the type."""
+    """Whether they are equal, as the site says it, and which tows stand out."""
     under = of_type.under[method]
     tested = {"p_value": None} | under.bends
-    names = [with_crew(row) for row in under.tows_outside]
-    outside = ", ".join(
-        f"{row['fsn_no']} {row['name']} {row['crew']} {row['season']}" for row in names
-    )
     return "\n".join(
         [
             homogeneity(pl.DataFrame([tested]))(speech()),
             level(pl.DataFrame(under.newest), pl.DataFrame(under.weight_line))(speech()),
-            tell("Outside the type: {}.", outside or tell("no tow")),
         ]
     )
 
 
-def _lines(report: TypesAudit, methods: Sequence[str], of_crews: bool) -> str:
-    """The straight lines of B, A and Cw on weight and on tow speed."""
-    shown = [
-        row
-        for row in _rows(report, methods, "lines")
-        if row["explaining"] in AGAINST
-        and row["quantity"] in QUANTITIES
-        and (of_crews or row["within"] == "all")
-    ]
-    shown.sort(key=lambda r: (AGAINST.index(r["explaining"]), QUANTITIES.index(r["quantity"])))
+def _slopes(report: TypesAudit, methods: Sequence[str]) -> str:
+    """B, A and Cw on weight and on tow speed, of every type by method."""
+    names = {f"slope_{place}": tell(heading) for place, heading in enumerate(LINES.values())}
+    rows = []
+    for one in slopes(_rows(report, methods, "lines")):
+        cells = dict(zip(names, (statement(speech()) for statement in one.slopes), strict=True))
+        rows.append(one._asdict() | cells | {"spread": one.spread(speech())})
     title = tell(
         "Do B, A and Cw follow weight or tow speed? Cw at the standard speed; tows: {}.",
         report.statistics_over,
     )
-    return section(title, table(shown, LINE))
+    columns = f"boat_type quantity method n {' '.join(names)} spread"
+    return section(title, table(rows, columns, names | {"spread": tell(SPREAD)}))
 
 
 def _rows(report: TypesAudit, methods: Sequence[str], name: str) -> list[Row]:

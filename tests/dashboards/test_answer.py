@@ -230,3 +230,19 @@ def test_tows_that_are_not_worth_it_are_told(after, words):
 def test_a_type_s_verdict(equal_possible, words):
     test = pl.DataFrame({"p_value": [0.3], "equal_possible": [equal_possible], "n": [11]})
     assert words in boat_type.homogeneity(test)(NL)
+
+
+@pytest.mark.parametrize(
+    ("line", "said", "verdict"),
+    [
+        ((0.0123, 0.0101, 0.0149), "stijgt: 0,012 (0,010 tot 0,015)", "rises"),
+        ((-2.5, -4.0, -1.0), "daalt: \u22122,5 (\u22124,0 tot \u22121,0)", "falls"),
+        ((0.0, -14.0, 14.0), "geen verband: 0 (\u221214 tot 14)", "none"),
+        ((None, None, None), "te weinig sloepen", "not known"),
+    ],
+)
+def test_a_slope_says_which_way_it_goes_with_two_digits_of_its_interval(line, said, verdict):
+    slope, low, high = line
+    of = {"slope": slope, "slope_lo": low, "slope_hi": high, "explaining": "weight_kg"}
+    statement = boat_type.slope(of | {"reason": "few_boats"})
+    assert (statement(NL), statement.verdict) == (said, verdict)

@@ -11,13 +11,14 @@ import pytest
 
 from dashboards import labels
 from dashboards.guides import GUIDES
-from dashboards.html import as_json
+from dashboards.html import as_json, keep_units
 from dashboards.site.boats import boat_pages
 from dashboards.site.cells import CODES
 from dashboards.site.columns import DRAWN
 from dashboards.site.downloads import SHEETS
 from dashboards.site.pages import MENU, method_names, shared_pages
 from dashboards.site.parts import (
+    Table,
     boat_path,
     default_method,
     edition_page,
@@ -28,8 +29,11 @@ from dashboards.site.render import build_pages, build_site
 from dashboards.site.slides import slides_page
 from dashboards.site.start import ABOUT
 from dashboards.speech import Speech
+from dashboards.statements.boat_type import LINES, QUANTITIES, slope
 from dashboards.statements.race import winners
+from pipeline.messages import say
 from pipeline.tables.schemas import TABLES
+from tests.conftest import METHODS
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 from tests.texts import said
@@ -221,6 +225,27 @@ def test_a_column_and_a_code_on_a_page_have_a_text(store, site):
     assert "above_target_speed" in codes
     words = {code for code in codes if re.fullmatch(r"[a-z_]+", code)}
     assert words - labels.CODES.keys() == set()
+
+
+def test_the_types_page_begins_with_the_slopes_of_both_types_by_method(built, site):
+    page = (site / "types.html").read_text("utf-8")
+    first = page[page.index('id="types-slopes"') : page.index('id="types-verdicts"')]
+    lines = built.table("type_lines").filter(
+        pl.col("boat_type").is_in(["Kuikensloep", "Kromhoutwhaler"]),
+        pl.col("quantity").is_in(QUANTITIES),
+        pl.col("method").is_in([METHODS[0], default_method(METHODS)]),
+        tows="newest",
+    )
+    lines = lines.filter([one in LINES for one in lines.select("explaining", "within").rows()])
+    assert lines.height
+    for line in lines.to_dicts():
+        assert keep_units(slope(line)(Speech("nl"))) in first
+
+
+def test_a_column_without_anything_in_it_is_not_shown():
+    frame = pl.DataFrame({"a": [1, None], "b": [None, None], "c": [False, False], "d": ["", ""]})
+    assert Table("x", frame, frame.columns, say("Boats")).shown == ["a"]
+    assert Table("x", frame.clear(), frame.columns, say("Boats")).shown == frame.columns
 
 
 def test_nothing_half_made_is_left(store, tmp_path, monkeypatch):
