@@ -311,7 +311,7 @@ CODES: Final[dict[str, Sentence]] = {
     "season_log": say("log of the season"),
     "straightness": say("straight towing"),
     "altered": pgettext("boat", "altered"),
-    "askew":
+    "askew": say("pulled askew"),
     "line": say("curve"),
     "point": say("run point"),
     "declared": say("at the declared speed"),
