@@ -8,9 +8,9 @@ from typing import Final
 import segno
 
 from dashboards import labels
+from dashboards.addresses import boat_path
 from dashboards.documents import page, pdf
 from dashboards.pictures import curve_picture
-from dashboards.site.parts import boat_path
 from dashboards.speech import Speech
 from dashboards.statements.boat import crew_name, interval
 from pipeline.messages import pgettext, say
