@@ -104,20 +104,6 @@ class CheckCounts(PerMethod):
     beyond = column.count("of which beyond the limit")
 
 
-class Promise(PerMethod):
-    """Within 2 % for most tows and 1 % for all? Per method and season, as stated and as seen."""
-
-    season = dy.Int32(primary_key=True, description="year of the tow list")
-    tows = column.count("tows with a curve", least=1)
-    share_stated_1pct = column.optional("1", "share of tows that state less than 1 %")
-    share_stated_2pct = column.optional("1", "the same for 2 %")
-    n_pairs = column.count("of which a repeat of an unaltered boat")
-    share_seen_1pct = column.optional(
-        "1", "share of those off by less than 1 % (difference / root 2)"
-    )
-    share_seen_2pct = column.optional("1", "the same for 2 %")
-
-
 class PrintReproduction(PerTow):
     """Does a method reproduce print? A, B and Cw of a tow as printed, next to each method's."""
 
@@ -134,17 +120,6 @@ class PrintReproduction(PerTow):
     printed_cw_kg_m = column.optional("kg/m", "Cw as printed")
     cw_kg_m = column.optional("kg/m", "Cw by the method at the printed speed")
     cw_ratio = column.optional("1", "printed / recomputed Cw")
-
-
-class PrintSummary(PerMethod):
-    """How near each method comes to print, per season; look here before re-basing."""
-
-    season = dy.Int32(primary_key=True, description="year of the tow list")
-    tows = column.count("tows that were printed", least=1)
-    median_ratio = column.number("1", "printed / recomputed Cw, median")
-    lowest_ratio = column.number("1", "lowest of a tow")
-    highest_ratio = column.number("1", "highest of a tow")
-    share_within_1pct = column.number("1", "share of tows within 1 % of print")
 
 
 class RunStatistics(PerRun):
