@@ -169,40 +169,48 @@ class _SideBySide:
         adds K to the covariance is tr(P K) - y' P K P y, its average information y' P K P K P y.
         """
         between, other, cell = variances.T[:, :, None]
-        weight = np.where(self.real, 1.0 / (self.variance + cell), 0.0)
-        stretch = 1.0 + between * (self.alike @ weight[:, :, None])[:, :, 0]
-        shared = self.alike * (between / stretch * weight)[:, :, None]
-        inverse = np.eye(weight.shape[1]) * weight[:, :, None] - shared * weight[:, None]
-        rows_of_boat = np.maximum(self.alike.sum(axis=2), 1.0)
-        determinant = np.log(stretch) / rows_of_boat - np.log(np.where(self.real, weight, 1.0))
+        weight = np.where(self.real, 1.0 / (self.variance + cell), 0.0)[:, :, None]
+        stretch = 1.0 + between[:, :, None] * (self.alike @ weight)
+        shrink = between[:, :, None] / stretch
+
+        def solve(values: FloatArray) -> FloatArray:
+            """The precision of the rows, were the unknowns known, times values (m, n, any)."""
+            # What boats have in common is taken off first: large weights lose its digits.
+            return np.asarray(weight * (values - shrink * (self.alike @ (weight * values))))
 
         k = np.arange(self.design.shape[2])
         prior = np.where(k < self.n_others, other, 1.0)
-        weighed = inverse @ self.design
-        products = np.swapaxes(self.design, 1, 2) @ weighed
-        known = self.random[:, None] * np.eye(len(k)) + prior[:, :, None] * products
+        weighed = solve(self.design)
+        known = np.swapaxes(self.design, 1, 2) @ weighed
+        known = self.random[:, None] * np.eye(len(k)) + prior[:, :, None] * known
         covariance = np.linalg.inv(known).astype(np.float64) * prior[:, None]
-        precision = inverse - weighed @ covariance @ np.swapaxes(weighed, 1, 2)
-        pull = (precision @ self.residual[:, :, None])[:, :, 0]
         score = np.swapaxes(weighed, 1, 2) @ self.residual[:, :, None]
-        misfit = (self.residual * pull).sum(axis=1)
-        deviance = determinant.sum(axis=1) + np.linalg.slogdet(known)[1] + misfit
+        unknowns = covariance @ score
+        pull = solve(self.residual[:, :, None] - self.design @ unknowns)
+        precision = solve(np.eye(weight.shape[1])[None] * self.real[:, None])
+        precision -= weighed @ covariance @ np.swapaxes(weighed, 1, 2)
 
         others = self.design[:, :, : self.n_others]
-        of_other = np.swapaxes(others, 1, 2)
         traces = [
             (precision * self.alike).sum(axis=(1, 2)),
             ((precision @ others) * others).sum(axis=(1, 2)),
             np.trace(precision, axis1=1, axis2=2),
         ]
-        # K P y of each variance.
-        felt = [self.alike @ pull[:, :, None], others @ (of_other @ pull[:, :, None])]
-        along = np.concatenate([*felt, pull[:, :, None]], axis=2)
-        gradient = np.stack(traces, axis=1) - (pull[:, None] @ along)[:, 0]
-        information = np.swapaxes(along, 1, 2) @ precision @ along
+        # K P y of each variance, and y' P K P y.
+        of_other = others @ (np.swapaxes(others, 1, 2) @ pull)
+        felt = np.concatenate([self.alike @ pull, of_other, pull], axis=2)
+        squares = (np.swapaxes(pull, 1, 2) @ felt)[:, 0]
+        gradient = np.stack(traces, axis=1) - squares
+        information = np.swapaxes(felt, 1, 2) @ precision @ felt
+
+        misfit = (pull[:, :, 0] ** 2 * self.variance).sum(axis=1)
+        misfit += (variances * squares).sum(axis=1)
+        rows_of_boat = np.maximum(self.alike.sum(axis=2), 1.0)
+        determinant = np.log(stretch[:, :, 0]) / rows_of_boat
+        determinant -= np.log(np.where(self.real, weight[:, :, 0], 1.0))
+        deviance = determinant.sum(axis=1) + np.linalg.slogdet(known)[1] + misfit
         likelihood = Likelihood(deviance, gradient, information)
-        unknowns = (covariance @ score)[:, :, 0]
-        return _At(likelihood, unknowns, covariance, precision, pull, misfit)
+        return _At(likelihood, unknowns[:, :, 0], covariance, precision, pull[:, :, 0], misfit)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
-"""The mixed model: against the formulas of textbooks, another optimiser and another program."""
+"""The mixed model: against the formulas of textbooks and another optimiser."""
 
 import numpy as np
 import pytest
-from scipy import optimize
+from scipy import optimize, stats
 
 from pipeline.consistency import mixed
 from pipeline.consistency.mixed import Problem
@@ -34,7 +34,8 @@ def fit_at(problem, sd):
     at = mixed._SideBySide.of([problem]).at(np.square([sd]))
     k = problem.others.shape[1]
     beta, covariance = problem.plain + at.unknowns[0, k:], at.covariance[0, k:, k:]
-    return mixed.Fit(problem, mixed.COMPONENTS, sd, beta, covariance, at.misfit[0])
+    of_rows = at.precision[0], at.pull[0], at.misfit[0]
+    return mixed.Fit(problem, sd, beta, covariance, *of_rows, at.likelihood.information[0])
 
 
 def covariance_of(problem, sd):
@@ -95,39 +96,38 @@ def one_row_a_boat(variance, true_sd=0.0, seed=3):
     return Problem(y, variance, x, range(12))
 
 
-def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
-    from statsmodels.regression.linear_model import OLS, WLS  # noqa: PLC0415 - takes seconds to import
+def least_squares(problem, weights):
+    """Coefficients and 95 % intervals of weighted least squares, as in the textbooks."""
+    information = problem.x.T @ (weights[:, None] * problem.x)
+    beta = np.linalg.solve(information, problem.x.T @ (weights * problem.y))
+    misfit = (weights * (problem.y - problem.x @ beta) ** 2).sum()
+    dof = len(problem.y) - len(beta)
+    sd = np.sqrt(np.diag(np.linalg.inv(information)) * misfit / dof)
+    return beta, beta[:, None] + stats.t.ppf(0.975, dof) * sd[:, None] * [-1, 1]
 
+
+def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
     equal = one_row_a_boat(np.full(12, 1e-6), true_sd=1.0)
     known = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
-    for problem, free, other in (
-        (equal, (mixed.BOAT,), OLS(equal.y, equal.x).fit()),
-        (known, (), WLS(known.y, known.x, weights=1 / known.variance).fit()),
+    for problem, free, weights in (
+        (equal, (mixed.BOAT,), np.ones(12)),
+        (known, (), 1.0 / known.variance),
     ):
         found = fit(problem, free).coefficients()
-        assert found.value == pytest.approx(other.params, rel=1e-9)
-        assert np.column_stack([found.lo, found.hi]) == pytest.approx(other.conf_int(), rel=1e-9)
+        beta, interval = least_squares(problem, weights)
+        assert found.value == pytest.approx(beta, rel=1e-9)
+        assert np.column_stack([found.lo, found.hi]) == pytest.approx(interval, rel=1e-9)
 
 
-def test_variance_components_are_those_of_another_program():
+def test_variance_components_are_those_of_another_search():
     problem = grouped_data(known=1e-9)
-    groups = [np.eye(problem.boat.max() + 1)[problem.boat], problem.others]
-    from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec  # noqa: PLC0415 - takes seconds to import
-
-    crossed = VCSpec(
-        ["boat", "other"],
-        [[[str(i) for i in range(g.shape[1])]] for g in groups],
-        [[g] for g in groups],
-    )
-    whole = np.zeros(len(problem.y))
-    other = MixedLM(problem.y, problem.x, whole, exog_vc=crossed).fit(reml=True)
     found = fit(problem, mixed.COMPONENTS)
-    assert found.beta == pytest.approx(other.fe_params, rel=1e-3)
-    assert found.sd == pytest.approx(np.sqrt([*other.vcomp, other.scale]), rel=1e-3)
-    # The likelihood is flat at its top, so its height agrees more closely than the components.
-    other_sd = np.sqrt([*other.vcomp, other.scale])
-    height, of_other = (likelihood(problem, sd).deviance[0] for sd in (found.sd, other_sd))
-    assert height == pytest.approx(of_other, abs=1e-4)
+    other = optimize.minimize(
+        lambda ln_sd: dense_deviance(problem, np.exp(ln_sd)), np.zeros(3), method="Nelder-Mead"
+    )
+    assert found.sd == pytest.approx(np.exp(other.x), rel=1e-3)
+    # The deviance is flat at its least, so its height agrees more closely than the components.
+    assert likelihood(problem, found.sd).deviance[0] == pytest.approx(other.fun, abs=1e-6)
 
 
 def test_problems_side_by_side_are_fitted_as_each_alone():
@@ -142,9 +142,26 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
         Problem(first.y, first.variance, first.x[:, :1], first.boat),
         grouped_data(2, 30),
     ]
-    together = mixed.fit_all(problems, (mixed.BOAT, mixed.CELL))
-    for problem, found in zip(problems, together, strict=True):
-        assert found.sd == pytest.approx(fit(problem, found.free).sd, rel=1e-9)
+    free = (mixed.BOAT, mixed.CELL)
+    for problem, found in zip(problems, mixed.fit_all(problems, free), strict=True):
+        assert found.sd == pytest.approx(fit(problem, free).sd, rel=1e-9)
+
+
+def test_intervals_of_components_cover_the_truth():
+    rng, trials, true = np.random.default_rng(5), 60, (0.05, 0.03, 0.015)
+    boat, other = np.repeat(np.arange(20), 4), np.arange(80) % 8
+    problems = []
+    for _ in range(trials):
+        of_boat, of_other, cell = (
+            sd * rng.normal(size=n) for sd, n in zip(true, (20, 8, 80), strict=True)
+        )
+        y = 3.5 + of_boat[boat] + of_other[other] + cell + 0.01 * rng.normal(size=80)
+        problems.append(Problem(y, np.full(80, 1e-4), np.ones((80, 1)), boat, other))
+    found = [one.intervals() for one in mixed.fit_all(problems, mixed.COMPONENTS)]
+    for name, sd in zip(mixed.COMPONENTS, true, strict=True):
+        inside = [lo <= sd <= (np.inf if hi is None else hi) for lo, hi in (f[name] for f in found)]
+        # Four standard errors of a share of 0.95.
+        assert abs(np.mean(inside) - 0.95) <= 4 * np.sqrt(0.95 * 0.05 / trials)
 
 
 def test_leaving_a_boat_out_equals_fitting_without_it():

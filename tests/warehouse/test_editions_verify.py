@@ -251,6 +251,20 @@ def test_what_is_forged_and_sealed_anew_comes_out_otherwise(published_copy, what
     assert {(f.edition, f.kind, f.wrong) for f in findings} == {("2014-2", "differs", True)}
 
 
+def test_a_file_that_is_no_longer_made_stands_by_its_seal(published_copy):
+    path = folder(published_copy, "2014-2")
+    (path / "datapackage.json").write_text("{}", encoding="utf-8")
+    manifest = read_manifest(path)
+    sealed = manifest.model_copy(update={"files": {**manifest.files, "datapackage.json": ""}})
+    manifest_path(path).write_text(sealed.model_dump_json(), encoding="utf-8")
+    sealed_anew(path)
+    report = verify(published_copy.store, afresh=False)
+    assert [(f.kind, f.where) for f in report.findings] == [("notice", "datapackage.json")]
+    assert not report.wrong
+    (path / "datapackage.json").write_text("{ }", encoding="utf-8")
+    assert ("altered", True) in {(f.kind, f.wrong) for f in verify(published_copy.store).findings}
+
+
 def test_the_head_decides_whether_an_edition_was_forged(published_copy):
     minutes = chain_head(published_copy.store).seal
     path = folder(published_copy, "2014-2")

@@ -151,7 +151,10 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
         path = store.editions / name
         findings += [*_altered(path, manifest), *_swapped(path, archive, hashes)]
     checked, reproduced = _made_again(store, archive if afresh else None, manifests)
-    findings += [replace(f, wrong=f.kind != "differs" or head != found) for f in reproduced]
+    by_head = head is not None and head == found
+    findings += [
+        replace(f, wrong=f.wrong and not (f.kind == "differs" and by_head)) for f in reproduced
+    ]
     return Verification(checked, found, findings, any(f.wrong for f in findings))
 
 
@@ -390,11 +393,14 @@ def _files(store: Store, edition: Edition) -> Iterator[Finding]:
     expected = contents_of(store, Edition(manifest, bare, edition.method), files)
     if CHANGES + PARQUET in expected:
         yield from _table(edition, CHANGES, pl.read_parquet(expected[CHANGES + PARQUET]))
-    for file in sorted({*expected, *manifest.files} - {MANIFEST}):
-        if file.endswith(PARQUET) and file in expected:
+    for file in sorted(manifest.files.keys() - expected.keys()):
+        message = say("{} is no longer made; its seal alone says whether it is whole", file)
+        yield Finding(manifest.edition, "notice", file, message, wrong=False)
+    for file in sorted(expected.keys() - {MANIFEST}):
+        if file.endswith(PARQUET):
             continue
         found = (path / file).read_bytes() if (path / file).exists() else b""
-        if _is_unlike(file, expected.get(file, b""), found):
+        if _is_unlike(file, expected[file], found):
             message = say("{} does not say what the tables of the edition say", file)
             yield Finding(manifest.edition, "differs", file, message)
 
