@@ -16,6 +16,7 @@ import pypdf
 import pytest
 import tomlkit
 
+from herijk.cli.main import main
 from tests.architecture.repository import ROOT, read
 from tests.conftest import shared
 from warehouse.store.database import open_database
@@ -40,6 +41,23 @@ def herijk(command, folder):
     )
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
+
+
+def said(command, folder, monkeypatch, capsys):
+    """The same without a process of its own, which takes longer than most commands."""
+    for name, value in (
+        ("HERIJK_DATA", str(folder / "data")),
+        ("COLUMNS", "200"),
+        ("LANGUAGE", ""),
+    ):
+        monkeypatch.setenv(name, value)
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(sys, "argv", ["herijk", "--lang", "en", *shlex.split(command)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    printed = capsys.readouterr()
+    assert not ended.value.code, printed.err
+    return printed.out
 
 
 def make_sample(folder):
@@ -75,8 +93,11 @@ def world(tmp_path_factory):
 
 def entries(kind, *, of=None):
     chosen = [entry for entry in KEPT[kind] if of in (None, entry.get("world"))]
+    marks = {entry["run"]: pytest.mark.more for entry in chosen if entry.get("takes_long")}
     return pytest.mark.parametrize(
-        "entry", chosen, ids=lambda e: e.get("of") or e.get("run") or e.get("path") or e.get("name")
+        "entry",
+        [pytest.param(entry, marks=marks.get(entry.get("run"), ())) for entry in chosen],
+        ids=lambda e: e.get("of") or e.get("run") or e.get("path") or e.get("name"),
     )
 
 
@@ -92,14 +113,15 @@ def test_a_number_of_the_demo(entry, world):
 
 
 @entries("command")
-def test_a_command_prints(entry, world):
-    printed = herijk(entry["run"].format(data=SAMPLE.parent), world("sample"))
+def test_a_command_prints(entry, world, monkeypatch, capsys):
+    command = entry["run"].format(data=SAMPLE.parent)
+    printed = said(command, world("sample"), monkeypatch, capsys)
     assert [text for text in entry["shows"] if text not in printed] == []
 
 
 @entries("document")
-def test_a_document_shows(entry, world, tmp_path):
-    herijk(entry["run"].format(out=tmp_path), world("sample"))
+def test_a_document_shows(entry, world, tmp_path, monkeypatch, capsys):
+    said(entry["run"].format(out=tmp_path), world("sample"), monkeypatch, capsys)
     (made,) = tmp_path.glob("**/*.pdf")
     text = "\n".join(page.extract_text() for page in pypdf.PdfReader(made).pages)
     assert [shown for shown in entry["shows"] if shown not in text] == []

@@ -133,6 +133,7 @@ def test_what_dagster_calls_stale_has_all_that_is_and_nothing_after_a_rebuild(
         agrees_after(new_code, ask)
 
 
+@pytest.mark.more
 def test_a_season_is_made_from_dagsters_page_and_what_follows_too(bench, built, instance, tmp_path):
     fresh = Workbench(bench.archive, tmp_path / "fresh")
     materialise(fresh, instance, *intake.INDEXED)
