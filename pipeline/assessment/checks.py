@@ -1,39 +1,42 @@
-"""The checks of the assessment as data: code, limits, unit and severity.
+"""The checks of the assessment as one table of rules: code, what is measured, limits, sentence.
 
-What each observes, and where its limit comes from, is in the table of docs/method-details.md, 10;
-how it is observed, in `pipeline.assessment.assess`.
+What each measures is an expression over the facts of a tow that `pipeline.assessment.assess`
+gathers. Nothing here needs Polars: methods and labels name checks too. Where a limit comes from is
+in the table of docs/method-details.md, 10.
 
 Severity says what a check asks of people. `refuse`: the tow gives nothing to register. `look`:
 somebody must decide, as the curve may be wrong, or rest on a boat that is not what the papers say;
 of sound tows one in twenty at most gets there. `note`: worth knowing when someone looks. Most sound
-tows of some season exceed it (log 2, the scatter at 1000 Hz), or the method already acted on it
-(runs that do not count), or it is a property of how the curve may be used.
+tows of some season exceed it (log 2), or the method already acted on it (runs that do not count),
+or it is a property of how the curve may be used.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 from pipeline.history import SLOW_POWER_W, STEERED_STRAIGHT_FROM
+from pipeline.messages import Sentence, say
 from pipeline.tables.severity import Severity
 
-Limit: TypeAlias = float | Mapping[str, float] | None
+Limit: TypeAlias = float | dict[str, float] | None
 """One number, one for each class (`H` men, `D` women), or no limit on this side."""
 
 
-@dataclass(frozen=True)
-class Check:
+class Check(NamedTuple):
     """A check and what it is compared with.
 
     Attributes:
         code: stable name, as in `curves.flags` and `assessments.check`.
+        measured: the number of each tow, in SQL; null where it is not known.
+        sentence: what it says of a tow that is marked.
         lowest, highest: a number outside them is marked.
-        unit: of the observed number and its limits; 1 also for a count, and for yes (1) or no (0).
+        unit: of the number and its limits; 1 also for a count, and for yes (1) or no (0).
         severity: `note`, `look` or `refuse`.
         last_season: the check is made up to this season only.
     """
 
     code: str
+    measured: str
+    sentence: Sentence
     lowest: Limit = None
     highest: Limit = None
     unit: str = "1"
@@ -46,72 +49,106 @@ class Check:
 
 
 def _of_class(limit: Limit, crew_class: str) -> float | None:
-    return limit[crew_class] if isinstance(limit, Mapping) else limit
+    return limit[crew_class] if isinstance(limit, dict) else limit
+
+
+POWER_W: Final = ({"H": 70.0, "D": 40.0}, {"H": 90.0, "D": 55.0})
+ROWER_KG: Final = ({"H": 81.0, "D": 64.0}, {"H": 114.0, "D": 90.0})
+
+
+def _told_by_all(code: str, sentence: Sentence) -> Check:
+    """What all other tows say of a tow (`pipeline.assessment.plausibility`)."""
+    verdict = "doubts" if code.endswith("_not_plausible") else "unusual"
+    return Check(code, f"array_contains({verdict}, '{code}')", sentence, highest=0.0)
 
 
 CHECKS: Final = (
+    # code, measured, sentence, lowest, highest
     # The curve itself
-    Check("no_curve", lowest=1.0, severity="refuse"),
-    Check("few_runs", lowest=6.0, severity="note"),
-    Check("runs_set_aside", highest=0.0),
-    Check("unbalanced_runs", highest=1.0),
-    Check("residual_large", highest=0.04),
-    Check("out_and_back_differ", lowest=-0.04, highest=0.04),
-    Check("unusual_calibration", lowest=0.98, highest=1.02),
-    Check("log_not_linear", lowest=-0.02, highest=0.02),
-    Check("b_at_cap", highest=0.0, severity="note"),
-    Check("b_not_determined", highest=0.0, severity="note"),
-    # The samples beside all other tows (`pipeline.assessment.plausibility`)
-    Check("force_not_plausible", highest=0.0),
-    Check("wind_not_plausible", highest=0.0),
-    Check("speed_not_plausible", highest=0.0),
-    Check("force_unusual", highest=0.0),
-    Check("wind_unusual", highest=0.0),
-    Check("speed_unusual", highest=0.0),
-    Check("season_in_doubt", highest=0.0),
-    Check("coarse_readings", highest=0.01),
-    Check("ways_differ", lowest=-0.01, highest=0.01),
+    Check("no_curve", "a_kg_m IS NOT NULL", say("no curve"), 1.0, severity="refuse"),
+    Check("few_runs", "runs_used", say("few runs"), 6.0, severity="note"),
+    Check("runs_set_aside", "runs_set_aside", say("runs set aside"), None, 0.0),
+    Check("unbalanced_runs", "unbalanced", say("unbalanced runs"), None, 1.0),
+    Check("out_and_back_differ", "out_over_back - 1", say("out and back differ"), -0.04, 0.04),
+    Check("unusual_calibration", "calibration_factor", say("unusual calibration"), 0.98, 1.02),
+    # The samples beside all other tows
+    _told_by_all("force_not_plausible", say("force cannot be right")),
+    _told_by_all("wind_not_plausible", say("wind cannot be right")),
+    _told_by_all("speed_not_plausible", say("speed cannot be right")),
+    _told_by_all("force_unusual", say("force stands out")),
+    _told_by_all("wind_unusual", say("wind stands out")),
+    _told_by_all("speed_unusual", say("speed stands out")),
+    Check("season_in_doubt", "season_doubted", say("season's instrument in doubt"), None, 0.0),
+    Check("coarse_readings", "by_half_a_step", say("coarse readings"), None, 0.01),
     # The runs
-    Check("log2_differs", highest=0.01, unit="m/s", severity="note"),
-    Check("large_scatter_in_run", highest=0.1, severity="note"),
-    Check("off_target_speed", highest=0.05),
-    Check("ends_differ", highest=1.0, severity="note"),
-    Check("range_not_covered", highest=0.05, severity="note"),
-    Check("declared_speed_not_covered", highest=0.05),
+    Check(
+        "log2_differs",
+        "log2_off_m_s",
+        say("log 2 differs"),
+        None,
+        0.01,
+        unit="m/s",
+        severity="note",
+    ),
+    Check("off_target_speed", "off_target", say("off target speed"), None, 0.05),
+    Check("range_not_covered", "shortfall", say("range not covered"), None, 0.05, severity="note"),
+    Check(
+        "declared_speed_not_covered", "beyond", say("declared speed outside the runs"), None, 0.05
+    ),
     # Instruments, and the declared speed
-    Check("correction_not_used", lowest=0.0, highest=0.0, severity="note"),
-    Check("lamps_burned", highest=0.2),
-    Check("load_cell_off", lowest=-0.01, highest=0.01),
+    Check("lamps_burned", "lamp_ratio", say("warning lamps burned long"), None, 0.2),
+    Check("load_cell_off", "load_cell_ratio - 1", say("load cell off"), -0.01, 0.01),
     Check(
         "power_outside_range",
-        lowest={"H": 70.0, "D": 40.0},
-        highest={"H": 90.0, "D": 55.0},
+        "power_w",
+        say("power outside range"),
+        *POWER_W,
         unit="W",
         severity="note",
     ),
-    Check("slow_tow", lowest=SLOW_POWER_W, unit="W"),
+    Check("slow_tow", "power_w", say("slow tow"), SLOW_POWER_W, unit="W"),
     # The boat of the day
-    Check("crew_weight", lowest={"H": 81.0, "D": 64.0}, highest={"H": 114.0, "D": 90.0}, unit="kg"),
-    Check("heavier_after", highest=0.02),
-    Check("water_differs", highest=3.0, unit="C"),
-    Check("boat_list_differs", highest=0.05),
-    Check("weight_changed", lowest=-0.02, highest=0.02),
-    Check("length_changed", lowest=-0.01, highest=0.01),
-    Check("beam_changed", lowest=-0.02, highest=0.02),
-    Check("bow_height_changed", lowest=-0.05, highest=0.05),
-    Check("freeboard_changed", highest=0.03, unit="m"),
+    Check(
+        "crew_weight",
+        "crew_weight_kg / rowers",
+        say("crew weight unusual"),
+        *ROWER_KG,
+        unit="kg",
+    ),
+    Check(
+        "heavier_after",
+        "weight_after_kg / weight_kg - 1",
+        say("heavier after"),
+        None,
+        0.02,
+    ),
+    Check("water_differs", "water_off_c", say("water unlike its day's"), None, 3.0, unit="C"),
+    Check(
+        "boat_list_differs",
+        "off_boat_list",
+        say("differs from the boat list"),
+        None,
+        0.05,
+    ),
+    Check("weight_changed", "weight_kg_change", say("weight changed"), -0.02, 0.02),
+    Check("length_changed", "waterline_length_m_change", say("length changed"), -0.01, 0.01),
+    Check("beam_changed", "beam_m_change", say("beam changed"), -0.02, 0.02),
+    Check("bow_height_changed", "bow_height_m_change", say("bow height changed"), -0.05, 0.05),
+    Check(
+        "freeboard_changed", "freeboard_change_m", say("freeboard changed"), None, 0.03, unit="m"
+    ),
     # The curve against others
-    Check("curve_changed", lowest=-0.05, highest=0.05, severity="note"),
-    Check("curve_change_unexplained", lowest=-0.05, highest=0.05),
-    Check("pulled_askew", highest=0.05, last_season=STEERED_STRAIGHT_FROM - 1),
+    Check("curve_change_unexplained", "curve_change", say("unexplained curve change"), -0.05, 0.05),
+    Check(
+        "pulled_askew",
+        "over_like_boats",
+        say("pulled askew"),
+        None,
+        0.05,
+        last_season=STEERED_STRAIGHT_FROM - 1,
+    ),
 )
 """Every check, in the order in which flags are listed."""
-
-DOUBTS: Final = ("force_not_plausible", "wind_not_plausible", "speed_not_plausible")
-"""Checks by which the rest of the archive rules a tow out."""
-
-UNUSUAL: Final = ("force_unusual", "wind_unusual", "speed_unusual")
-"""Checks by which a tow stands out among the others, though chance may do that."""
 
 CHECK: Final = {check.code: check for check in CHECKS}
 CODES: Final = tuple(CHECK)

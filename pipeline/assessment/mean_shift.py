@@ -7,8 +7,7 @@ Regression, 2.2.2). The clearest shift is taken out, which makes it a fixed effe
 judged again. What is observed and what may shift is decided by the caller.
 """
 
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import scipy
@@ -28,8 +27,7 @@ AT_A_TIME: Final = 2048
 """Candidates that are weighed together: those of ten thousand tows would take gigabytes."""
 
 
-@dataclass(frozen=True)
-class Effects:
+class Effects(NamedTuple):
     """Random effects.
 
     Attributes:
@@ -41,25 +39,21 @@ class Effects:
     variance: FloatArray
 
 
-@dataclass(frozen=True)
-class Observations:
+class Observations(NamedTuple):
     """What is observed, and its prior scatter.
 
     Attributes:
         values: deviations from the expected mean, shape (n,).
         variance: of their independent noise, shape (n,).
-        own: random effects of which each observation has at most one: those of its boat.
-        shared: the other random effects.
+        effects: what observations share.
     """
 
     values: FloatArray
     variance: FloatArray
-    own: Effects
-    shared: Effects
+    effects: Effects
 
 
-@dataclass(frozen=True)
-class Candidates:
+class Candidates(NamedTuple):
     """What may have shifted.
 
     Attributes:
@@ -75,8 +69,7 @@ class Candidates:
     gross: FloatArray
 
 
-@dataclass(frozen=True)
-class Found:
+class Found(NamedTuple):
     """A shift: place of the candidate, its size, and the standard deviation of that.
 
     Attributes:
@@ -110,28 +103,47 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
 
 
 class _MeanShifts:
-    """What the candidates show given all that was taken out before."""
+    """What the candidates show given all that was taken out before.
+
+    The inverse of the covariance is by Woodbury's identity. What is factorised has a row per random
+    effect, and is sparse: boats have tows in few seasons.
+    """
 
     def __init__(self, seen: Observations, may: Candidates) -> None:
-        self._may = may
-        self._precision = _Precision(seen)
-        self._score = np.asarray(may.directions.T @ self._precision.times(seen.values))
-        self._at_first = self._precision.weights(may.directions)
+        self._may, self._effects = may, seen.effects.of
+        self._noise = scipy.sparse.diags_array(1.0 / seen.variance)
+        within = self._effects.T @ self._noise @ self._effects
+        prior = scipy.sparse.diags_array(1.0 / seen.effects.variance)
+        self._within = scipy.sparse.linalg.splu(
+            (within + prior).tocsc(), permc_spec="MMD_AT_PLUS_A"
+        )
+        self._taken: list[tuple[FloatArray, float]] = []
+        self._score = np.asarray(may.directions.T @ self._precision_times(seen.values))
+        starts = range(0, may.directions.shape[1], AT_A_TIME)
+        parts = [self._weights(may.directions[:, k : k + AT_A_TIME]) for k in starts]
+        self._at_first = np.concatenate(parts)
         self._weight = self._at_first.copy()
 
+    def _precision_times(self, values: FloatArray) -> FloatArray:
+        scaled = np.asarray(self._noise @ values)
+        effects = self._within.solve(np.asarray(self._effects.T @ scaled))
+        return np.asarray(scaled - self._noise @ (self._effects @ effects))
+
+    def _weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
+        """Gives g'Pg of each direction, before anything is taken out."""
+        scaled = self._noise @ directions
+        alone = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
+        across = (self._effects.T @ scaled).toarray()
+        return np.asarray(alone - (across * self._within.solve(across)).sum(axis=0))
+
     @property
-    def open(self) -> BoolArray:
+    def _open(self) -> BoolArray:
         """Which candidates are not taken out already, nor the same as one that is."""
         return np.asarray(self._weight > SAME_DIRECTION * self._at_first)
 
-    def sizes(self) -> tuple[FloatArray, FloatArray]:
-        """Size of each shift and its standard deviation; meaningless where `open` is false."""
-        sd = 1.0 / np.sqrt(np.where(self.open, self._weight, 1.0))
-        return self._score * sd**2, sd
-
     def scales(self) -> FloatArray:
         """How much wider or narrower tows scatter than is assumed; groups never narrower."""
-        single = self._may.single & self.open
+        single = self._may.single & self._open
         if single.sum() < FEWEST_FOR_SCALE:
             return np.ones(len(single))
         z = self._score[single] / np.sqrt(self._weight[single])
@@ -144,60 +156,19 @@ class _MeanShifts:
         """Takes out what is beyond its limit in standard deviations, the clearest first."""
         taken: list[Found] = []
         while True:
-            size, sd = self.sizes()
+            sd = 1.0 / np.sqrt(np.where(self._open, self._weight, 1.0))
+            size = self._score * sd**2
             beyond = np.abs(size) / (sd * limits)
-            beyond[~self.open | (np.abs(size) < least)] = 0.0
+            beyond[~self._open | (np.abs(size) < least)] = 0.0
             best = int(first_largest(beyond))
             if beyond[best] < 1.0:
                 return taken
             taken.append(Found(best, float(size[best]), float(sd[best]), clear))
-            moved = self._precision.take_out(self._may.directions[:, [best]].toarray()[:, 0])
+            direction = self._may.directions[:, [best]].toarray()[:, 0]
+            moved = self._precision_times(direction)
+            for before, inverse in self._taken:
+                moved -= before * (before @ direction) * inverse
+            self._taken.append((moved, 1.0 / float(moved @ direction)))
             share = np.asarray(self._may.directions.T @ moved)
             self._score = self._score - share * size[best]
             self._weight = self._weight - share**2 * sd[best] ** 2
-
-
-class _Precision:
-    """The inverse of the covariance of what is seen, less what was taken out (Woodbury).
-
-    Own effects are dealt with first, in closed form: what is left to invert grows with days and
-    seasons, and not with boats.
-    """
-
-    def __init__(self, seen: Observations) -> None:
-        own, shared = seen.own.of, seen.shared
-        noise = scipy.sparse.diags_array(1.0 / seen.variance)
-        of_own = (own.T @ noise @ own).diagonal() + 1.0 / seen.own.variance
-        by_own = noise @ own @ scipy.sparse.diags_array(1.0 / of_own)
-        self._without_shared = (noise - by_own @ own.T @ noise).tocsr()
-        self._shared = shared.of
-        within = (shared.of.T @ self._without_shared @ shared.of).toarray()
-        self._root = np.linalg.cholesky(within + np.diag(1.0 / shared.variance))
-        self._taken: list[tuple[FloatArray, float]] = []
-
-    def times(self, values: FloatArray) -> FloatArray:
-        """The product with a vector, before anything is taken out."""
-        scaled = self._without_shared @ values
-        effects = scipy.linalg.cho_solve((self._root, True), self._shared.T @ scaled)
-        return np.asarray(scaled - self._without_shared @ (self._shared @ effects))
-
-    def take_out(self, direction: FloatArray) -> FloatArray:
-        """The product with a direction, which is a fixed effect from then on."""
-        product = self.times(direction)
-        for before, inverse in self._taken:
-            product -= before * (before @ direction) * inverse
-        self._taken.append((product, 1.0 / float(product @ direction)))
-        return product
-
-    def weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
-        """Gives g'Pg of each direction, before anything is taken out."""
-        starts = range(0, directions.shape[1], AT_A_TIME)
-        return np.concatenate([self._weights(directions[:, k : k + AT_A_TIME]) for k in starts])
-
-    def _weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
-        scaled = self._without_shared @ directions
-        alone = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
-        shared = scipy.linalg.solve_triangular(
-            self._root, (self._shared.T @ scaled).toarray(), lower=True
-        )
-        return np.asarray(alone - (shared**2).sum(axis=0))

@@ -4,8 +4,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.assessment.assess import _beside_limits
-from pipeline.assessment.checks import CHECKS
+from pipeline.assessment.assess import checked
+from pipeline.assessment.checks import CHECK
 from pipeline.choice import first_largest
 
 
@@ -26,7 +26,7 @@ def test_of_equals_the_first_is_chosen(values, place):
 
 @pytest.mark.parametrize(("observed", "side"), [(-2e-16, 1), (0.0, 1), (-0.01, 0)])
 def test_half_way_between_two_limits_rounding_does_not_choose(observed, side):
-    check = next(check for check in CHECKS if check.code == "out_and_back_differ")
-    curves = pl.DataFrame({"method": ["m"], "tow_id": ["t"], "season": [2014], "crew_class": ["H"]})
-    long = pl.DataFrame({"tow_id": ["t"], "check": ["out_and_back_differ"], "observed": [observed]})
-    assert _beside_limits(long, curves)["limit"].item() == check.limits("H")[side]
+    check = CHECK["out_and_back_differ"]
+    of_tow = {"method": ["m"], "tow_id": ["t"], "season": [2014], "crew_class": ["H"]}
+    tows = pl.DataFrame({**of_tow, "out_over_back": [observed + 1.0]})
+    assert checked(tows, (check,))["limit"].item() == check.limits("H")[side]
