@@ -179,21 +179,21 @@ each tow has of a fault there, (tows,); as many as there are places where it may
 
 
 def _throughout(_season: FloatArray, _day: FloatArray, mine: BoolArray) -> list[FloatArray]:
-    return [mine * 1.0]
+    return [mine.astype(np.float64)]
 
 
 def _from_then_on(season: FloatArray, _day: FloatArray, mine: BoolArray) -> list[FloatArray]:
     """From a season on; not from the first."""
     later = season >= season[mine].min()
-    return [] if later.all() else [later * 1.0]
+    return [] if later.all() else [later.astype(np.float64)]
 
 
 def _drifting(_season: FloatArray, day: FloatArray, mine: BoolArray) -> list[FloatArray]:
     """From -1 to 1 in the course of a season; nothing where all tows are of one day."""
-    span = np.ptp(day[mine])
+    first, span = float(day[mine].min()), float(np.ptp(day[mine]))
     if span == 0.0:
         return []
-    return [np.asarray(np.where(mine, 2.0 * (day - day[mine].min()) / span - 1.0, 0.0))]
+    return [mine * (2.0 * (day - first) / span - 1.0)]
 
 
 def _replaced(_season: FloatArray, day: FloatArray, mine: BoolArray) -> list[FloatArray]:
