@@ -6,7 +6,7 @@ from typing import Final
 
 from pipeline.consistency.eras import era_shifts
 from pipeline.method.definition import Method
-from pipeline.studies.claims import promise
+from pipeline.studies.claims import print_reproduction
 from pipeline.studies.summaries import check_counts, option_summary, quality_counts, season_ladder
 from pipeline.tables.views import VIEWS
 from warehouse.derive import consistency, database, registers, summaries
@@ -68,10 +68,9 @@ STEPS: Final = (
             option_summary,
             quality_counts,
             check_counts,
-            promise,
+            print_reproduction,
         )
     ),
-    Step("summaries", summaries.print_tables, ("print_reproduction", "print_summary")),
     DATABASE,
 )
 """Every step comes after those whose tables it reads."""

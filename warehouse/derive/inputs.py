@@ -39,7 +39,7 @@ STUDY_TABLES: Final = ("correction_steps", "option_effects", "option_curves")
 LINE_TABLES: Final = ("type_lines", "type_line_points")
 TYPE_TABLES: Final = (
     *("compared_tows", "hull_speed", "type_outliers", "type_homogeneity"),
-    *("speed_trend", "predicted_cw", "variance_components"),
+    *("predicted_cw", "variance_components"),
 )
 PER_METHOD: Final = frozenset((*METHOD_TABLES, *STUDY_TABLES, *LINE_TABLES, *TYPE_TABLES))
 """Tables of which each method's rows are made, and kept, apart."""
