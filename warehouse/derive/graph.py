@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Final
 
 from pipeline.consistency.eras import era_shifts
+from pipeline.consistency.tables import line_tables
 from pipeline.method.definition import Method
 from pipeline.studies.claims import print_reproduction
 from pipeline.studies.summaries import check_counts, option_summary, quality_counts, season_ladder
@@ -28,7 +29,7 @@ from warehouse.store.store import Store
 ARCHIVE: Final = Step("archive", archive_tables, ARCHIVE_TABLES)
 METHOD: Final = Step("method", method_tables, METHOD_TABLES)
 STUDIES: Final = Step("studies", study_tables, STUDY_TABLES)
-LINES: Final = Step("lines", consistency.line_tables, LINE_TABLES)
+LINES: Final = Step("lines", line_tables, LINE_TABLES)
 TYPES: Final = Step("consistency", consistency.type_tables, TYPE_TABLES)
 REGISTERS: Final = Step(
     "register",
