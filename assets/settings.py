@@ -31,6 +31,8 @@ class Settings(BaseModel):
             takes precedence.
         set_aside_share: more of the tows set aside gives a warning.
         factor_jump: a log factor that moves more gives a warning; a ratio minus 1.
+        issuer: the federation, by whom certificates are issued.
+        site: where the site is for others, `https://...`; the QR code of certificates leads there.
         dask: scheduler of the Dask cluster that reads the seasons: `tcp://host:8786`; without it
             they are read in the process of the rebuild.
     """
@@ -48,6 +50,8 @@ class Settings(BaseModel):
     smtp_password_file: Path | None = None
     set_aside_share: float = Field(default=0.1, ge=0, le=1)
     factor_jump: float = Field(default=0.01, gt=0)
+    issuer: str = ""
+    site: str = Field(default="", pattern=r"^(https?://\S+)?$")
     dask: str | None = Field(default=None, pattern=r"^(tcp|tls)://")
 
 

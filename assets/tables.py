@@ -1,7 +1,7 @@
 """The steps of a build as assets: what `warehouse.derive.graph` declares, as Dagster sees it."""
 
 import logging
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final
 
@@ -13,24 +13,12 @@ from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.graph import STEPS, catch_up
-from warehouse.derive.inputs import IN_DATABASE, OTHERS, Scope, state_of_table
+from warehouse.derive.inputs import Scope, state_of_table
 from warehouse.derive.mending import mending
 from warehouse.derive.step import Step
 from warehouse.intake.seasons import SEASON_TABLES
 from warehouse.store.code import code_hash
 from warehouse.store.store import fingerprint
-
-READ_AS: Final[Mapping[str, Sequence[str]]] = {
-    **dict.fromkeys(SEASON_TABLES, ("samples",)),
-    **dict.fromkeys(OTHERS, ()),
-    "blocks": ("blocks",),
-    "all_tables": IN_DATABASE,
-}
-"""The assets behind what a step reads, where that is no asset of the same name.
-
-Methods, decisions and editions are no assets: the fingerprints know them.
-"""
-
 
 TITLES: Final = {
     "archive": say("boats, tows and what is set aside"),
@@ -92,7 +80,7 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
     schema = TABLES.get(table)
     return dg.AssetSpec(
         table,
-        deps=[_dep(asset) for asset in dict.fromkeys(_assets_read(step))],
+        deps=[_dep(asset) for asset in _assets_read(step)],
         description=(schema or step.compute).__doc__,
         metadata=None if schema is None else {"dagster/column_schema": _columns(schema)},
         group_name=step.group,
@@ -100,9 +88,9 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
     )
 
 
-def _assets_read(step: Step) -> Iterator[str]:
-    for name in step.inputs:
-        yield from READ_AS.get(name, (name,))
+def _assets_read(step: Step) -> list[str]:
+    """Methods, decisions and editions are no assets: the fingerprints know them."""
+    return list(dict.fromkeys("samples" if t in SEASON_TABLES else t for t in step.reads))
 
 
 def _dep(asset: str) -> dg.AssetDep:

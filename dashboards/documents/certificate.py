@@ -2,11 +2,13 @@
 
 import datetime as dt
 from contextlib import nullcontext
+from dataclasses import dataclass, field
 from typing import Final
 
 import segno
 
 from dashboards import labels
+from dashboards.addresses import boat_path
 from dashboards.documents import page, pdf
 from dashboards.pictures import curve_picture
 from dashboards.speech import Speech
@@ -26,11 +28,27 @@ READING: Final = (
 )
 
 
+@dataclass(frozen=True)
+class Issued:
+    """By whom and when certificates are made.
+
+    Attributes:
+        day: on which it is said whether they hold.
+        issuer: the federation; "" where it gave no name.
+        site: where its pages are, to which the QR code leads; "" where nowhere.
+    """
+
+    day: dt.date = field(default_factory=dt.date.today)
+    issuer: str = ""
+    site: str = ""
+
+
 def certificates(
     views: Views,
     edition: str,
     fsn_no: str | None,
     language: str,
+    issued: Issued,
     as_page: bool = False,
     border: Border = nullcontext,
 ) -> bytes | None:
@@ -49,7 +67,7 @@ def certificates(
     for line in lines:
         whose = f"{line['fsn_no']} {line['rowers']}{line['crew_class']}"
         with border(f"certificate {edition} {whose}"):
-            made.append(_one(line, speech))
+            made.append(_one(line, issued, speech))
     if not made:
         return None
     made_by = lines[0]["code_version"] or about.get("code_version", "")
@@ -63,6 +81,8 @@ def certificates(
         "power_head": [say("Speed [m/s]"), say("Cw [kg/m]"), say("W/rower")],
         "reading_title": say("How to read this certificate"),
         "reading": [say(text) for text in READING],
+        "others_title": say("The other crews of this boat in this register"),
+        "others_head": [say(text) for text in OTHERS],
         "checking_title": say("How to check it"),
         "footing": f"{say('Made by code')} {made_by}",
         "certificates": made,
@@ -70,7 +90,7 @@ def certificates(
     return page("certificate.html.j2", content) if as_page else pdf("certificate.typ", content)
 
 
-def _one(line: Row, speech: Speech) -> dict[str, object]:
+def _one(line: Row, issued: Issued, speech: Speech) -> dict[str, object]:
     say, number = speech.say, speech.number
     code = line["verification_code"] or ""
     crew, curve = crew_name(line, speech), curve_of(line)
@@ -78,16 +98,17 @@ def _one(line: Row, speech: Speech) -> dict[str, object]:
         "name": line["name"] or line["fsn_no"],
         "subtitle": " · ".join(filter(None, (line["fsn_no"], line["boat_type"], crew))),
         "code": code,
-        "qr": _qr(line, code),
+        "qr": _qr(line, code, issued.site),
         "headline": say(
             "Cw {cw} kg/m at {speed} m/s",
             cw=number(line["cw_kg_m"], 2),
             speed=number(line["declared_speed_m_s"], 2),
         ),
         "interval": _interval(line, speech),
-        "caution": _caution(line, speech),
+        "validity": _validity(line, issued.day, speech),
         "left": _numbers(line, speech),
-        "right": _terms(line, speech),
+        "right": _terms(line, issued.issuer, speech),
+        "others": [_other(other, speech) for other in line["others"]],
         "curve": str(curve_picture(curve, line, speech, crew)),
         "curve_note": say(
             "Cw against speed, from A and B; the bar is the interval at the declared speed"
@@ -98,8 +119,8 @@ def _one(line: Row, speech: Speech) -> dict[str, object]:
         ],
         "checking": say(
             "Look {fsn_no} up in the register of edition {edition}: the same verification "
-            "code {code} must be there, with the same numbers. The QR code holds edition, "
-            "number, crew and code. If something is wrong, tell the committee."
+            "code {code} must be there, with the same numbers. If something is wrong, tell the "
+            "committee."
             if code
             else "This line is not published and has no verification code.",
             code=code,
@@ -109,23 +130,40 @@ def _one(line: Row, speech: Speech) -> dict[str, object]:
     }
 
 
-def _qr(line: Row, code: str) -> str:
-    """What a phone reads: the words that the search for a line takes."""
+def _qr(line: Row, code: str, site: str) -> str:
+    """What a phone reads: the page of the boat, or the words that the search for a line takes."""
     if not code:
         return ""
-    text = f"{line['edition']} {line['fsn_no']} {line['rowers']}{line['crew_class']} {code}"
+    crew = f"{line['rowers']}{line['crew_class']}"
+    text = f"{line['edition']} {line['fsn_no']} {crew} {code}"
+    if site:
+        text = f"{site.rstrip('/')}/{boat_path(line['fsn_no'])}?code={code}#{crew}"
     return str(segno.make(text, micro=False).svg_inline(scale=4, border=1))
 
 
-def _caution(line: Row, speech: Speech) -> str:
-    """Why a line is no valid certificate; nothing where it is one."""
+def _validity(line: Row, day: dt.date, speech: Speech) -> str:
+    """Whether it is a valid certificate on a day."""
     if not line["verification_code"]:
         return speech.say("Draft: not decided, and so no valid certificate.")
-    return (
-        speech.say("Expired: this certificate is no longer valid.")
-        if line["status"] == "expired"
-        else ""
-    )
+    until = line["valid_until"]
+    if line["status"] == "expired" or (until is not None and until < day):
+        return speech.say(say("Expired: no longer valid on {}.", speech.day(day)))
+    return speech.say(say("Valid on {}.", speech.day(day)))
+
+
+OTHERS: Final = (say("Crew"), say("Cw [kg/m]"), say("Speed [m/s]"), say("Valid until"))
+
+
+def _other(line: Row, speech: Speech) -> list[str]:
+    """Another crew of the boat: its number, or why it has none."""
+    numbers = [line["cw_kg_m"], line["declared_speed_m_s"]]
+    until = line["valid_until"]
+    known = line["cw_kg_m"] is not None and until is not None
+    return [
+        crew_name(line, speech),
+        *("\u2013" if value is None else speech.number(value, 2) for value in numbers),
+        speech.day(until) if known else speech.say(labels.code(line["status"])),
+    ]
 
 
 def _interval(line: Row, speech: Speech) -> str:
@@ -151,17 +189,24 @@ def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str
     return name, "\u2013" if value is None else speech.number(value, digits)
 
 
-def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
+def _terms(line: Row, issuer: str, speech: Speech) -> list[tuple[str, str]]:
     say = speech.say
     method = say(labels.method(line["method"])) if line["method"] else None
     if line["basis"] == "printed_rebased":
         method = f"{method} ({say(labels.code('printed_rebased'))})"
+    before = None
+    if line["old_cw_kg_m"] is not None:
+        cw = f"{speech.number(line['old_cw_kg_m'], 2)}\u00a0kg/m"
+        before = f"{cw} ({speech.edition(line['from_edition'])})"
     rows = [
         (say("Tow of"), line["tow_date"]),
+        (say(labels.column("tow_id")), line["tow_id"]),
+        (say("Cw before"), before),
         (say(labels.column("valid_from")), line["valid_from"]),
         (say(pgettext("certificate", "Valid until")), line["valid_until"]),
         (say(labels.column("edition")), speech.edition(line["edition"])),
         (say(labels.column("method")), method),
+        (say("Issued by"), issuer or None),
         (say(labels.column("decision")), line["decision"]),
         (say(labels.column("empty_thwart")), line["empty_thwart"] or say(labels.code("none"))),
     ]

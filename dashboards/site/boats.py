@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import polars as pl
 
+from dashboards.addresses import boat_path, race_path, type_path
 from dashboards.site.columns import json_by, json_of
 from dashboards.site.parts import (
     Chart,
@@ -14,13 +15,10 @@ from dashboards.site.parts import (
     Section,
     Select,
     Table,
-    boat_path,
     default_method,
     draft_of,
     methods_select,
     once_for_methods,
-    race_path,
-    type_path,
 )
 from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say

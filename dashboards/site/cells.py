@@ -11,7 +11,8 @@ import polars as pl
 from markupsafe import Markup, escape
 
 from dashboards import labels
-from dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
+from dashboards.addresses import boat_path, type_path
+from dashboards.site.parts import Page, Table, is_chosen
 from dashboards.speech import Speech, duration
 from dashboards.statements.edition import cause_name
 from pipeline.messages import LANGUAGES

@@ -7,6 +7,7 @@ from typing import Final
 
 import polars as pl
 
+from dashboards.addresses import edition_page, race_path
 from dashboards.site.downloads import files_of
 from dashboards.site.parts import (
     Chart,
@@ -16,11 +17,9 @@ from dashboards.site.parts import (
     Table,
     default_method,
     draft_of,
-    edition_page,
     editions_select,
     listed,
     methods_select,
-    race_path,
     with_page,
 )
 from dashboards.site.prose import edition_pages, guide_links, guide_pages

@@ -1,8 +1,5 @@
 """What a page is made of: sections with tables, charts and selectors, as plain data."""
 
-import datetime as dt
-import hashlib
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -12,6 +9,7 @@ import polars as pl
 from markupsafe import Markup
 
 from dashboards import labels
+from dashboards.addresses import boat_path
 from dashboards.speech import Headline, Speech
 from dashboards.statements.boat import Answer
 from pipeline.messages import Sentence, say
@@ -240,33 +238,6 @@ def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "
 def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
     """A selector of editions; drafts by the name of their method."""
     return Select(name, say("Edition"), editions, chosen, named=lambda e, speech: speech.edition(e))
-
-
-def boat_path(fsn_no: str) -> str:
-    """The page of a boat: its number if that can be a file name, else with a hash of it."""
-    return _path("boats", fsn_no)
-
-
-def type_path(boat_type: str) -> str:
-    """The page of a type of boat."""
-    return _path("types", boat_type)
-
-
-def edition_page(edition: str) -> str:
-    """The page of a published edition."""
-    return _path("editions", edition)
-
-
-def race_path(race: str, day: dt.date) -> str:
-    """The page of a race."""
-    return _path("races", f"{race}-{day}")
-
-
-def _path(folder: str, name: str) -> str:
-    safe = re.sub(r"[^A-Za-z0-9-]+", "-", name)
-    if safe != name:
-        safe += "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
-    return f"{folder}/{safe}.html"
 
 
 def once_for_methods(rows: pl.DataFrame) -> pl.DataFrame:

@@ -6,10 +6,11 @@ from typing import Final
 
 from markupsafe import Markup
 
+from dashboards.addresses import edition_page
 from dashboards.guides import GUIDES, guide_file
 from dashboards.markdown import to_html
 from dashboards.site.downloads import files_of
-from dashboards.site.parts import Page, Section, edition_page
+from dashboards.site.parts import Page, Section
 from dashboards.speech import Speech
 from pipeline.messages import LANGUAGES, Sentence, say
 from warehouse.queries.views import Views

@@ -4,14 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from dashboards.site.parts import (
-    Page,
-    Section,
-    Table,
-    draft_of,
-    editions_select,
-    race_path,
-)
+from dashboards.addresses import race_path
+from dashboards.site.parts import Page, Section, Table, draft_of, editions_select
 from dashboards.statements.race import Chances, winners
 from pipeline.messages import say
 from warehouse.queries.answers import newest_edition, race_chances

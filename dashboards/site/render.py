@@ -17,13 +17,14 @@ import vl_convert
 from markupsafe import Markup
 
 from dashboards import fonts, labels
+from dashboards.addresses import boat_path, race_path, type_path
 from dashboards.html import as_json, environment
 from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
 from dashboards.site.columns import json_of
 from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import MENU, method_names, shared_pages
-from dashboards.site.parts import Page, boat_path, race_path, type_path
+from dashboards.site.parts import Page
 from dashboards.site.slides import slides_page
 from dashboards.site.specifications import chart_specifications
 from dashboards.site.start import TERMS

@@ -11,6 +11,7 @@ import polars as pl
 from markupsafe import Markup
 
 from dashboards import labels
+from dashboards.addresses import type_path
 from dashboards.html import keep_units
 from dashboards.site.parts import (
     Chart,
@@ -22,7 +23,6 @@ from dashboards.site.parts import (
     listed,
     methods_select,
     once_for_methods,
-    type_path,
     with_page,
 )
 from dashboards.slide_book import Book

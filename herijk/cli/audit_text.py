@@ -309,10 +309,6 @@ STEPS: Final = {
         say("Can all boats have the same bend?"),
         "n p_value power_at_10pct noise_share equal_possible reason",
     ),
-    "speed_trend": (
-        say("Does the bend q = (v/B)^2 / (1 - (v/B)^2) follow the tow speed?"),
-        "n slope slope_lo slope_hi follows reason",
-    ),
     "hull_speed": (say("Is B hull speed?"), "n b_ratio b_ratio_lo b_ratio_hi tow_ratio"),
     "outside": (
         say("Boats outside their type"),

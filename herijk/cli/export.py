@@ -28,7 +28,8 @@ def certificate(
     boat: str | None, data: Path, edition: str | None, out: Path | None, as_json: bool
 ) -> None:
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
-    from dashboards.documents.certificate import certificates
+    from assets.settings import read_settings
+    from dashboards.documents.certificate import Issued, certificates
     from warehouse.queries.answers import current_edition
     from warehouse.queries.views import Views
     from warehouse.store.boats import the_boat
@@ -40,7 +41,9 @@ def certificate(
         chosen = edition or current_edition(views)
         fsn_no = boat and the_boat(views.table("boats"), boat)
         as_page = out is not None and out.suffix == ".html"
-        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), as_page, border)
+        settings = read_settings(data)
+        issued = Issued(issuer=settings.issuer, site=settings.site)
+        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), issued, as_page, border)
         name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
         _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
 

@@ -8,7 +8,6 @@ from pipeline.consistency.lines import type_lines
 from pipeline.consistency.observed import Observed
 from pipeline.consistency.outliers import type_outliers
 from pipeline.consistency.prediction import predicted_cw
-from pipeline.consistency.tow_speed import speed_trend
 
 
 def line_tables(observed: Observed) -> dict[str, pl.DataFrame]:
@@ -25,6 +24,5 @@ def type_tables(observed: Observed) -> dict[str, pl.DataFrame]:
         "hull_speed": hull_speed_statistics(compared),
         "type_outliers": type_outliers(observed),
         "type_homogeneity": type_homogeneity(observed),
-        "speed_trend": speed_trend(observed),
         "predicted_cw": predicted_cw(observed),
     }

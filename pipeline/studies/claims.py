@@ -1,4 +1,4 @@
-"""What the texts claim or print, compared with the archive: the promise, print, the tool's figures.
+"""What the texts print, compared with the archive: registers, and the tool's figures.
 
 Frames of the warehouse in, frames out. Does not belong here: how a number is made, and what
 two methods do to it (`summaries`, `ladder`).
@@ -12,50 +12,14 @@ from pipeline.curve import cw
 from pipeline.races.power import curve_of_lines
 from pipeline.tables.keys import LINE
 
-PROMISED: Final = {"1pct": 0.01, "2pct": 0.02}
-"""Presentation 2015, "N.B.": within 2 % for the great majority; less than 1 % for all."""
-
-
-def promise(curves: pl.DataFrame, repeat_pairs: pl.DataFrame) -> pl.DataFrame:
-    """Is Cw within 2 % for most and within 1 % for all, per method and season?
-
-    Judged twice: by half the 95 % interval that a curve itself states, and by what repeat tows
-    show: the difference of a tow from the boat's tow before it over root 2, since both are off.
-
-    Args:
-        curves, repeat_pairs: the tables of that name, of several methods.
-
-    Returns:
-        Rows of the table `promise`.
-    """
-    key = ["method", "season"]
-    stated = curves.drop_nulls("cw_kg_m").select(
-        *key, "tow_id", half=(pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log() / 2.0
-    )
-    seen = repeat_pairs.select(*key, "tow_id", off=pl.col("ln_ratio").abs() / 2.0**0.5)
-    both = stated.join(
-        seen.drop("season"), on=["method", "tow_id"], how="left", maintain_order="left"
-    )
-    return (
-        both.group_by(key, maintain_order=True)
-        .agg(
-            pl.len().cast(pl.Int32).alias("tows"),
-            *((pl.col("half") < m).mean().alias(f"share_stated_{n}") for n, m in PROMISED.items()),
-            pl.col("off").count().cast(pl.Int32).alias("n_pairs"),
-            *((pl.col("off") < m).mean().alias(f"share_seen_{n}") for n, m in PROMISED.items()),
-        )
-        .sort(key)
-    )
-
 
 def print_reproduction(
-    printed: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
+    printed_registers: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
 ) -> pl.DataFrame:
     """Printed A, B and Cw of each tow next to those of each method, at the printed speed.
 
     Args:
-        printed: lines of registers as printed (`warehouse.archive.read_published_registers`); of a
-            tow printed in several the first counts.
+        printed_registers: lines of registers as printed; of a tow in several the first counts.
         curves: the table of that name.
         tows: `tow_id, tow_date` and the line.
 
@@ -64,7 +28,7 @@ def print_reproduction(
         none.
     """
     of_tow = (
-        printed.filter("has_valid_curve")
+        printed_registers.filter("has_valid_curve")
         .sort("season")
         .join(
             tows.select("tow_id", "tow_date", *LINE), on=["tow_date", *LINE], maintain_order="left"
@@ -93,31 +57,6 @@ def print_reproduction(
         .with_columns((pl.col("printed_cw_kg_m") / pl.col("cw_kg_m")).alias("cw_ratio"))
         .drop("declared_speed_m_s")
         .sort("method", "tow_id")
-    )
-
-
-def print_summary(reproduced: pl.DataFrame) -> pl.DataFrame:
-    """How near each method comes to print, per season: the first thing to look at.
-
-    Args:
-        reproduced: rows of `print_reproduction`.
-
-    Returns:
-        Rows of the table `print_summary`: what is left unexplained is median and spread of the
-        ratio printed / recomputed Cw.
-    """
-    ratio = pl.col("cw_ratio")
-    return (
-        reproduced.drop_nulls("cw_ratio")
-        .group_by("method", "season", maintain_order=True)
-        .agg(
-            pl.len().cast(pl.Int32).alias("tows"),
-            ratio.median().alias("median_ratio"),
-            ratio.min().alias("lowest_ratio"),
-            ratio.max().alias("highest_ratio"),
-            ((ratio - 1.0).abs() < PROMISED["1pct"]).mean().alias("share_within_1pct"),
-        )
-        .sort("method", "season")
     )
 
 

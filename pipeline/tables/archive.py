@@ -4,7 +4,7 @@ from functools import partial
 from typing import Final
 
 from pipeline.tables import column
-from pipeline.tables.bases import PerRun, RunList, TowFacts
+from pipeline.tables.bases import Fault, PerRun, RunList, TowFacts
 from pipeline.tables.declare import dy
 
 LOST: Final = partial(
@@ -31,32 +31,27 @@ class Seasons(dy.Schema):
     """What a rebuild read of each season."""
 
     season = column.season(primary_key=True)
-    listed = dy.Int32(description="tows in the tow list that could be read", min=0)
-    tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
-    runs_set_aside = dy.Int32(description="runs of these that are set aside", min=0)
+    listed = column.count("tows in the tow list that could be read")
+    tows = column.count("of which used; the others are in quarantine")
+    runs_set_aside = column.count("runs of these that are set aside")
     lost_s = column.number("s", "time left out of the other runs, all channels", min=0)
 
 
 class Tows(TowFacts):
     """Tows accepted into the warehouse, one row each."""
 
-    runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
-    gps_step_m_s = column.number(
-        "m/s", "step in which its GPS is written; empty without GPS", nullable=True, min=0
+    runs_set_aside = column.count("runs to be used that are in quarantine")
+    gps_step_m_s = column.optional(
+        "m/s", "step in which its GPS is written; empty without GPS", min=0
     )
-    force_step_n = column.number(
-        "N",
-        "step in which its force is written",
-        nullable=True,
-        min=0,
-    )
+    force_step_n = column.optional("N", "step in which its force is written", min=0)
     doubts = column.texts(
-        description="checks by which all other tows rule this one out: it needs a look, and takes "
-        "no part in what tows share",
+        "checks by which all other tows rule this one out: it needs a look, and takes "
+        "no part in what tows share"
     )
     unusual = column.texts(
-        description="checks by which it stands out among all other tows, though chance can do "
-        "that: it needs a look, and its numbers stand",
+        "checks by which it stands out among all other tows, though chance can do "
+        "that: it needs a look, and its numbers stand"
     )
 
 
@@ -85,17 +80,10 @@ class TraceSeconds(PerRun):
     wind_angle_deg = column.number("deg", "circular mean of the apparent wind", min=0, max=360)
 
 
-class Quarantine(dy.Schema):
+class Quarantine(Fault):
     """What is set aside, from seconds to files, each with the reason in a plain sentence."""
 
-    path = column.text("file, relative to the archive")
-    tow_id = column.tow_id(nullable=True)
-    line = dy.Int64(description="line in the file", nullable=True, min=1)
-    reason_code = column.text("short stable code")
-    message = column.text("what is wrong and what to do, in a sentence")
-    message_nl = column.text("the same in Dutch")
-    cause = column.text("what faults of one cause share: the sentence, with what differs left open")
     lost = LOST()
     run = column.run(nullable=True)
-    lost_s = column.number("s", "time that is lost", nullable=True, min=0)
-    first_seen = dy.Date(description="day on which this fault was first found")
+    lost_s = column.optional("s", "time that is lost", min=0)
+    first_seen = column.day("day on which this fault was first found")

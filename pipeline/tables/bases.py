@@ -43,7 +43,7 @@ class RunList(PerRun):
 
     direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
     target_speed_ratio = column.number("1", "intended speed / declared speed", min_exclusive=0)
-    selected = dy.Bool(description="the tow list says to use it")
+    selected = column.flag("the tow list says to use it")
 
 
 class TowFacts(dy.Schema):
@@ -51,7 +51,7 @@ class TowFacts(dy.Schema):
 
     tow_id = column.tow_id(primary_key=True)
     season = column.season()
-    tow_date = dy.Date(description="day of the tow")
+    tow_date = column.day("day of the tow")
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
@@ -63,14 +63,12 @@ class TowFacts(dy.Schema):
     )
     weight_kg = column.boat_weight("empty boat with oars, before", nullable=True)
     weight_after_kg = column.boat_weight("the same, after", nullable=True)
-    crew_weight_kg = column.number(
-        "kg", "crew and ballast on board", nullable=True, min=0, max=6_000
+    crew_weight_kg = column.optional("kg", "crew and ballast on board", min=0, max=6_000)
+    water_temperature_c = column.optional("C", "water temperature", min=0, max=35)
+    speed_correction_ratio = column.optional(
+        "1", "speed correction entered by hand, 0.06 for 6 %", min=-0.5, max=0.5
     )
-    water_temperature_c = column.number("C", "water temperature", nullable=True, min=0, max=35)
-    speed_correction_ratio = column.number(
-        "1", "speed correction entered by hand, 0.06 for 6 %", nullable=True, min=-0.5, max=0.5
-    )
-    altered = dy.Bool(description="the boat was altered since its previous tow")
+    altered = column.flag("the boat was altered since its previous tow")
     sample_rate_hz = dy.Int32(
         description="samples per second", metadata={"unit": "Hz"}, min=1, max=100_000
     )
@@ -78,21 +76,32 @@ class TowFacts(dy.Schema):
     freeboard_lowest_m = column.freeboard("freeboard at its lowest")
     freeboard_bow_m = column.freeboard("freeboard at the bow")
     freeboard_stern_m = column.freeboard("freeboard at the stern")
-    load_cell_ratio = column.number(
-        "1", "load cell / known weight, when it was last checked", nullable=True, min_exclusive=0
+    load_cell_ratio = column.optional(
+        "1", "load cell / known weight, when it was last checked", min_exclusive=0
     )
-    load_cell_sd = column.number("1", "its standard uncertainty", nullable=True, min=0)
-    lamp_ratio = column.number(
+    load_cell_sd = column.optional("1", "its standard uncertainty", min=0)
+    lamp_ratio = column.optional(
         "1",
         "largest part of a run in which a warning lamp burned; empty where nobody noted it",
-        nullable=True,
         min=0,
     )
-    wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
-    log2_measured = dy.Bool(description="there was a second log that can be used")
-    log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
-    log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
+    wind_measured = column.flag("there was an anemometer whose wind can be used")
+    log2_measured = column.flag("there was a second log that can be used")
+    log1_part = column.count("times log 1 had been replaced that season")
+    log2_part = column.count("times log 2 had been replaced that season")
     samples_path = column.text("samples file in the archive")
     samples_sha256 = column.sha256("its content hash")
     second_path = column.text("second samples file, if two tows were combined", nullable=True)
     second_sha256 = column.sha256("its content hash", nullable=True)
+
+
+class Fault(dy.Schema):
+    """What cannot be used, and why."""
+
+    path = column.text("file, relative to the archive")
+    tow_id = column.tow_id(nullable=True)
+    line = dy.Int64(description="line in the file", nullable=True, min=1)
+    reason_code = column.text("short stable code")
+    message = column.text("what is wrong and what to do, in a sentence")
+    message_nl = column.text("the same in Dutch")
+    cause = column.text("what faults of one cause share: the sentence, with what differs left open")

@@ -22,7 +22,41 @@ def number(unit: str, description: str, **rules: Any) -> dy.Float64:
     return dy.Float64(description=description, metadata={"unit": unit}, **rules)
 
 
-texts: Final = partial(dy.List, dy.String())
+def optional(unit: str, description: str, **rules: Any) -> dy.Float64:
+    """A number that is not always known."""
+    return number(unit, description, nullable=True, **rules)
+
+
+def lower(unit: str, **rules: Any) -> dy.Float64:
+    """Lower end of the interval of the number before it."""
+    return optional(unit, "lower end of its 95 % interval", **rules)
+
+
+def upper(unit: str, **rules: Any) -> dy.Float64:
+    """Upper end of that interval."""
+    return optional(unit, "upper end", **rules)
+
+
+def count(description: str, least: int = 0, **rules: Any) -> dy.Int32:
+    """How many of something."""
+    return dy.Int32(description=description, min=least, **rules)
+
+
+def flag(description: str, **rules: Any) -> dy.Bool:
+    """Yes or no."""
+    return dy.Bool(description=description, **rules)
+
+
+def day(description: str, **rules: Any) -> dy.Date:
+    """A day."""
+    return dy.Date(description=description, **rules)
+
+
+def texts(description: str, **rules: Any) -> dy.List:
+    """Several texts, such as codes."""
+    return dy.List(dy.String(), description=description, **rules)
+
+
 tow_id: Final = partial(text, "tow, as named in the tow list")
 fsn_no: Final = partial(text, "boat: its number with the federation")
 method: Final = partial(text, "name of the method that made the row")

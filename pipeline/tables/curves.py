@@ -18,30 +18,29 @@ class Curves(PerTow):
     rowers = column.rowers()
     crew_class = column.crew_class()
     declared_speed_m_s = column.speed("speed v0 the crew declared")
-    a_kg_m = column.number("kg/m", "A: coefficient at v = 0", nullable=True)
-    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True, min=0)
-    b_capped = dy.Bool(description="B was brought down to its cap and A fitted again")
-    cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
-    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
-    cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
-    cw_best_kg_m = column.number(
-        "kg/m", "best estimate: by this tow, the boat's others and all seasons", nullable=True
+    a_kg_m = column.optional("kg/m", "A: coefficient at v = 0")
+    b_m_s = column.optional("m/s", "B; empty where it is not determined", min=0)
+    b_capped = column.flag("B was brought down to its cap and A fitted again")
+    cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
+    cw_lo_kg_m = column.optional("kg/m", column.LOWER_END)
+    cw_hi_kg_m = column.upper("kg/m")
+    cw_best_kg_m = column.optional(
+        "kg/m", "best estimate: by this tow, the boat's others and all seasons"
     )
-    cw_best_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
-    cw_best_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
-    cw_others_kg_m = column.number(
+    cw_best_lo_kg_m = column.lower("kg/m")
+    cw_best_hi_kg_m = column.upper("kg/m")
+    cw_others_kg_m = column.optional(
         "kg/m",
         "Cw with log and load cell as all other boats show them; empty: nothing is estimated",
-        nullable=True,
     )
-    b_lo_m_s = column.number("m/s", f"{column.LOWER_END}; empty: cannot be told", nullable=True)
-    b_hi_m_s = column.number("m/s", "upper end; empty: no upper bound", nullable=True)
-    power_w = column.number("W", "power per rower at the declared speed", nullable=True)
-    residual_sd_ratio = column.number("1", "sd of the points about the curve / Cw", nullable=True)
-    calibration_factor = column.number("1", "GPS speed / log speed", nullable=True)
+    b_lo_m_s = column.optional("m/s", f"{column.LOWER_END}; empty: cannot be told")
+    b_hi_m_s = column.optional("m/s", "upper end; empty: no upper bound")
+    power_w = column.optional("W", "power per rower at the declared speed")
+    residual_sd_ratio = column.optional("1", "sd of the points about the curve / Cw")
+    calibration_factor = column.optional("1", "GPS speed / log speed")
     runs_used = dy.Int8(description="points the curve is fitted through", min=0)
     status = column.text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
-    flags = column.texts(description="codes of what a person should look at")
+    flags = column.texts("codes of what a person should look at")
 
 
 class CurvePoints(PerTow):
@@ -64,7 +63,7 @@ class Assessments(PerTow):
     observed = column.number("as in unit", "what was observed")
     limit = column.number("as in unit", "the limit that is exceeded, or the nearest")
     unit = column.text("unit of both; 1 for a ratio, a count or yes (1) and no (0)")
-    flagged = dy.Bool(description="the observed number is beyond its limit")
+    flagged = column.flag("the observed number is beyond its limit")
 
 
 class UncertaintyBudget(PerTow):
@@ -75,7 +74,7 @@ class UncertaintyBudget(PerTow):
     key = column.text("rows with one key share one error")
     effect_ratio = column.number("1", "change of ln Cw by one standard deviation of it")
     u_ratio = column.number("1", "relative standard uncertainty", min=0)
-    dof = column.number("1", "degrees of freedom; empty: not limited", nullable=True)
+    dof = column.optional("1", "degrees of freedom; empty: not limited")
 
 
 class Ensemble(PerTow):

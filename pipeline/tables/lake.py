@@ -5,32 +5,25 @@ These tables are not in the database and no other program relies on them.
 
 from pipeline.tables import column
 from pipeline.tables.archive import LOST, Boats, HandWindows
-from pipeline.tables.bases import RunList, TowFacts
+from pipeline.tables.bases import Fault, RunList, TowFacts
 from pipeline.tables.declare import dy
 
 
 class AboutArchive(dy.Schema):
     """What the archive says of itself, and where it lies; one row."""
 
-    simulated = dy.Bool(description="made by a simulator")
+    simulated = column.flag("made by a simulator")
     publisher = column.text("who publishes what is made from it", nullable=True)
     licence = column.text("its licence: an SPDX name or a web address", nullable=True)
     root = column.text("the folder")
 
 
-class Faults(dy.Schema):
+class Faults(Fault):
     """What cannot be used, and why."""
 
-    path = column.text("file, relative to the archive")
-    tow_id = column.tow_id(nullable=True)
-    line = dy.Int64(description="line in the file", nullable=True, min=1)
-    reason_code = column.text("short stable code")
-    message = column.text("what is wrong and what to do, in a sentence")
-    message_nl = column.text("the same in Dutch")
-    cause = column.text("what faults of one cause share: the sentence, with what differs left open")
     lost = LOST(nullable=True)
     run = column.run(nullable=True)
-    lost_s = column.number("s", "time that is lost", nullable=True, min=0)
+    lost_s = column.optional("s", "time that is lost", min=0)
 
 
 class ListedBoats(Boats):
@@ -44,13 +37,13 @@ class ListedTows(TowFacts):
     """Tows of the lists that could be read, whatever their samples are."""
 
     list_path = column.text("tow list, relative to the archive")
-    list_line = dy.Int32(description="line in it", min=2)
+    list_line = column.count("line in it", least=2)
 
 
 class ListedRuns(RunList):
     """Runs of the listed tows, by the plan of their season."""
 
-    planned_s = column.number("s", "how long a run should last", nullable=True, min=0)
+    planned_s = column.optional("s", "how long a run should last", min=0)
 
 
 class ListedWindows(HandWindows):
@@ -75,30 +68,30 @@ class ListedRaces(dy.Schema):
 
     season = column.season()
     race = column.text("name of the race")
-    race_date = dy.Date(description="day of the race")
+    race_date = column.day("day of the race")
     distance_m = column.number("m", "distance along the course", min=100, max=500_000)
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
     empty_thwart = column.text("thwart left free, where it is given", nullable=True)
     rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
-    stream_m = column.number(
-        "m", "distance that the current carried the boat", nullable=True, min=-500_000, max=500_000
+    stream_m = column.optional(
+        "m", "distance that the current carried the boat", min=-500_000, max=500_000
     )
-    penalty_w = column.number("W", "penalty", nullable=True, min=-1000, max=1000)
+    penalty_w = column.optional("W", "penalty", min=-1000, max=1000)
     path = column.text("file, relative to the archive")
-    line = dy.Int32(description="line in it", min=2)
+    line = column.count("line in it", least=2)
 
 
 class ListedForceChecks(dy.Schema):
     """Readings of the load cell while a known weight hung on it."""
 
     season = column.season()
-    day = dy.Date(description="day of the reading")
+    day = column.day("day of the reading")
     weight_kg = column.number("kg", "known weight", min=1, max=2000)
     reading_n = column.number("N", "what the load cell read", min=1, max=30_000)
     path = column.text("file, relative to the archive")
-    line = dy.Int32(description="line in it", min=2)
+    line = column.count("line in it", least=2)
 
 
 class ListedLamps(dy.Schema):
@@ -110,7 +103,7 @@ class ListedLamps(dy.Schema):
     start_s = column.number("s", "from the start of the run", min=0, max=600)
     end_s = column.number("s", "the same, when it went out", min=0, max=600)
     path = column.text("file, relative to the archive")
-    line = dy.Int32(description="line in it", min=2)
+    line = column.count("line in it", least=2)
 
 
 class PrintedLines(dy.Schema):
@@ -121,14 +114,14 @@ class PrintedLines(dy.Schema):
     rowers = column.rowers()
     crew_class = column.crew_class()
     empty_thwart = column.empty_thwart()
-    has_valid_curve = dy.Bool(description="A, B and Cw are of a measured curve")
-    a_kg_m = column.number("kg/m", "A", nullable=True, min=0, max=1000)
-    b_m_s = column.number("m/s", "B", nullable=True, min=0.1, max=1000)
-    cw_kg_m = column.number("kg/m", "Cw", nullable=True, min=0.9, max=1000)
+    has_valid_curve = column.flag("A, B and Cw are of a measured curve")
+    a_kg_m = column.optional("kg/m", "A", min=0, max=1000)
+    b_m_s = column.optional("m/s", "B", min=0.1, max=1000)
+    cw_kg_m = column.optional("kg/m", "Cw", min=0.9, max=1000)
     declared_speed_m_s = column.declared_speed(nullable=True)
-    tow_date = dy.Date(description="day of the tow", nullable=True)
+    tow_date = column.day("day of the tow", nullable=True)
     path = column.text("file, relative to the archive")
-    line = dy.Int32(description="line in it", min=2)
+    line = column.count("line in it", least=2)
 
 
 class SeasonIndex(dy.Schema):
@@ -141,9 +134,9 @@ class SeasonIndex(dy.Schema):
     samples_key = column.text("name of its samples in the lake", nullable=True)
     blocks_key = column.text("name of its blocks in the lake", nullable=True)
     samples = dy.Int64(description="number of samples", nullable=True, min=0)
-    wind_read = dy.Bool(description="its wind is that of an anemometer", nullable=True)
-    gps_step_m_s = column.number("m/s", "step in which its GPS is written", nullable=True, min=0)
-    force_step_n = column.number("N", "step in which its force is written", nullable=True, min=0)
+    wind_read = column.flag("its wind is that of an anemometer", nullable=True)
+    gps_step_m_s = column.optional("m/s", "step in which its GPS is written", min=0)
+    force_step_n = column.optional("N", "step in which its force is written", min=0)
     path = column.text("faulty file, relative to the archive", nullable=True)
     line = dy.Int64(description="line in it", nullable=True, min=1)
     reason_code = column.text("short stable code of the fault", nullable=True)

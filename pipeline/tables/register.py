@@ -34,22 +34,22 @@ class _Line(dy.Schema):
     crew_class = column.crew_class(primary_key=True)
     empty_thwart = column.empty_thwart(primary_key=True)
     tow_id = column.tow_id(nullable=True)
-    tow_date = dy.Date(description="day of the tow: from then on the line counts", nullable=True)
-    valid_until = dy.Date(description="last day the line counts", nullable=True)
+    tow_date = column.day("day of the tow: from then on the line counts", nullable=True)
+    valid_until = column.day("last day the line counts", nullable=True)
     declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
-    a_kg_m = column.number("kg/m", "A", nullable=True)
-    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True)
-    cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
-    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
-    cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+    a_kg_m = column.optional("kg/m", "A")
+    b_m_s = column.optional("m/s", "B; empty where it is not determined")
+    cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
+    cw_lo_kg_m = column.optional("kg/m", column.LOWER_END)
+    cw_hi_kg_m = column.upper("kg/m")
 
 
 class Register(_Line):
     """One line per edition, boat and crew."""
 
     status = column.text("valid, or why there is no valid curve")
-    as_of = dy.Date(
-        description="day on which validity was judged: that of the archive's last tow or race, or "
+    as_of = column.day(
+        "day on which validity was judged: that of the archive's last tow or race, or "
         "from which an edition counts",
         nullable=True,
     )
@@ -71,7 +71,7 @@ class RegisterHistory(_Line):
     is valid up to its last day.
     """
 
-    position = dy.Int32(primary_key=True, description="the highest goes before", min=1)
+    position = column.count("the highest goes before", least=1, primary_key=True)
     flags = _FLAGS()
 
 
@@ -82,13 +82,13 @@ class DueList(PerMethod):
     rowers = column.rowers(primary_key=True)
     crew_class = column.crew_class(primary_key=True)
     empty_thwart = column.empty_thwart(primary_key=True)
-    as_of = dy.Date(description="day on which it was judged: that of the last tow or race")
+    as_of = column.day("day on which it was judged: that of the last tow or race")
     status = column.text("valid, or why there is no valid curve")
     tow_id = column.tow_id(nullable=True)
-    tow_date = dy.Date(description="day of the tow", nullable=True)
-    valid_until = dy.Date(description="last day it counts", nullable=True)
+    tow_date = column.day("day of the tow", nullable=True)
+    valid_until = column.day("last day it counts", nullable=True)
     declared_speed_m_s = column.speed("speed that was declared for it", nullable=True)
-    power_w = column.number("W", "power per rower at that speed", nullable=True)
+    power_w = column.optional("W", "power per rower at that speed")
     raced_speed_m_s = column.speed(
         "fastest race of the past year, through the water", nullable=True
     )
@@ -96,9 +96,7 @@ class DueList(PerMethod):
     highest_speed_m_s = column.speed("speed at 90 W or 55 W", nullable=True)
     tow_speed_m_s = column.speed("speed proposed for the next tow", nullable=True)
     speed_reason = column.text("why that speed")
-    beyond_curve = dy.Bool(
-        description="it lies outside 85-115 % of the last declared speed", nullable=True
-    )
+    beyond_curve = column.flag("it lies outside 85-115 % of the last declared speed", nullable=True)
 
 
 class RegisterChanges(dy.Schema):
@@ -111,9 +109,9 @@ class RegisterChanges(dy.Schema):
     crew_class = column.crew_class(primary_key=True)
     empty_thwart = column.empty_thwart(primary_key=True)
     change = column.text("added, removed, changed or same", regex="^(added|removed|changed|same)$")
-    cw_ratio = column.number("1", "new / old Cw at the old declared speed", nullable=True)
-    power_ratio = column.number("1", "new / old power at that speed", nullable=True)
-    time_ratio = column.number("1", "new / old time at equal power", nullable=True)
+    cw_ratio = column.optional("1", "new / old Cw at the old declared speed")
+    power_ratio = column.optional("1", "new / old power at that speed")
+    time_ratio = column.optional("1", "new / old time at equal power")
     causes = column.text("what made the change, with its factor on Cw, as JSON")
 
 
@@ -123,16 +121,16 @@ class RaceChanges(dy.Schema):
     from_edition = column.text("old edition", primary_key=True)
     to_edition = column.text("new edition", primary_key=True)
     race = column.text("name of the race", primary_key=True)
-    race_date = dy.Date(primary_key=True, description="day of the race")
+    race_date = column.day("day of the race", primary_key=True)
     fsn_no = column.fsn_no(primary_key=True)
     rowers = column.rowers(primary_key=True)
     crew_class = column.crew_class(primary_key=True)
     empty_thwart = column.empty_thwart(primary_key=True)
     rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
-    old_power_w = column.number("W", "power per rower by the old edition", nullable=True)
-    new_power_w = column.number("W", "the same by the new one", nullable=True)
+    old_power_w = column.optional("W", "power per rower by the old edition")
+    new_power_w = column.optional("W", "the same by the new one")
     old_remark = column.text(REMARK, nullable=True)
     new_remark = column.text("the same by the new one", nullable=True)
     old_rank = dy.Int32(description=PLACE, nullable=True)
     new_rank = dy.Int32(description="the same by the new one", nullable=True)
-    podium_changed = dy.Bool(description=PODIUM_CHANGED, nullable=True)
+    podium_changed = column.flag(PODIUM_CHANGED, nullable=True)

@@ -43,7 +43,7 @@ TABLES: Final = _declared_in(
 
 STUDY: Final = (
     *("hand_windows", "season_links", "season_steps", "best_estimate_weights", "option_curves"),
-    *("type_line_points", "promise", "print_reproduction", "print_summary"),
+    *("type_line_points", "print_reproduction"),
 )
 """Tables that studies and pages work with: in the database they are in the schema `study`."""
 

@@ -10,8 +10,8 @@ class LogFactors(PerMethod):
 
     season = column.season(primary_key=True)
     factor = column.number("1", "true speed / log speed", min_exclusive=0)
-    lo = column.number("1", "lower end of the 95 % interval; empty where unknown", nullable=True)
-    hi = column.number("1", "upper end", nullable=True)
+    lo = column.optional("1", "lower end of the 95 % interval; empty where unknown")
+    hi = column.upper("1")
     source = column.text(
         "none, prescribed, estimated, gps, or not settled (the search did not come to rest, or the "
         "factor contradicts the season's repeat tows and is not used)",
@@ -23,31 +23,31 @@ class SeasonLinks(PerPart):
     """What each estimated log factor rests on, per method, season, part of it and log."""
 
     source = column.text("estimated, gps, not determined, or not settled")
-    n_tows = dy.Int32(description="tows of the season", min=0)
-    n_links = dy.Int32(description="boats also towed in other seasons", min=0)
-    component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
-    factor = column.number("1", "true speed / log speed; empty: not determined", nullable=True)
-    lo = column.number("1", "lower end of its 95 % interval", nullable=True)
-    hi = column.number("1", "upper end", nullable=True)
-    ln_sd = column.number("1", "standard deviation of ln factor", nullable=True)
-    dof = column.number("1", "its degrees of freedom", nullable=True)
-    repeat_tows_sd = column.number("1", "part of ln_sd by scatter of repeat tows", nullable=True)
-    gps_sd = column.number("1", "part of ln_sd by plain GPS", nullable=True)
-    assumed_sd = column.number(
-        "1", "part of ln_sd by what is assumed of log, load cell and boats", nullable=True
+    n_tows = column.count("tows of the season")
+    n_links = column.count("boats also towed in other seasons")
+    component = column.count("connected part of the network; 0 has the dGPS anchor")
+    factor = column.optional("1", "true speed / log speed; empty: not determined")
+    lo = column.lower("1")
+    hi = column.upper("1")
+    ln_sd = column.optional("1", "standard deviation of ln factor")
+    dof = column.optional("1", "its degrees of freedom")
+    repeat_tows_sd = column.optional("1", "part of ln_sd by scatter of repeat tows")
+    gps_sd = column.optional("1", "part of ln_sd by plain GPS")
+    assumed_sd = column.optional(
+        "1", "part of ln_sd by what is assumed of log, load cell and boats"
     )
-    influence = column.number("1", "largest change when one boat is left out", nullable=True)
+    influence = column.optional("1", "largest change when one boat is left out")
     influence_boat = column.text("that boat", nullable=True)
 
 
 class SeasonSteps(PerPart):
     """Whether a season's step against the boats' other tows is the log's or the load cell's."""
 
-    n_boats = dy.Int32(description="boats also towed in other seasons", min=0)
-    level_step = column.number("1", "step of ln Cw, by the log as it reads", nullable=True)
-    level_step_sd = column.number("1", "its standard deviation", nullable=True)
-    force_step = column.number("1", "the part of it in ln force, as the bend shows", nullable=True)
-    force_step_sd = column.number("1", "its standard deviation", nullable=True)
+    n_boats = column.count("boats also towed in other seasons")
+    level_step = column.optional("1", "step of ln Cw, by the log as it reads")
+    level_step_sd = column.optional("1", "its standard deviation")
+    force_step = column.optional("1", "the part of it in ln force, as the bend shows")
+    force_step_sd = column.optional("1", "its standard deviation")
     cause = column.text(
         "log, force (a log error may have come with it), none (no step), or not told",
         regex="^(log|force|none|not told)$",
@@ -69,11 +69,11 @@ class SeasonDiagnosis(PerPart):
     estimate = column.number("as in unit", "expected size; 0 where surely nothing is wrong")
     lo = column.number("as in unit", "lower end of its 95 % interval")
     hi = column.number("as in unit", "upper end")
-    p_fault = column.number(
-        "1", "probability of such a fault; empty for what there always is", nullable=True, min=0
+    p_fault = column.optional(
+        "1", "probability of such a fault; empty for what there always is", min=0
     )
-    distance_sd = column.number(
-        "1", "what is seen against what is assumed, in standard deviations", nullable=True
+    distance_sd = column.optional(
+        "1", "what is seen against what is assumed, in standard deviations"
     )
     verdict = column.text(
         "sound, would not show (one of the usual size would not be found), fault (likelier than "
@@ -83,9 +83,7 @@ class SeasonDiagnosis(PerPart):
         regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined"
         "|not settled)$",
     )
-    alarm = dy.Bool(
-        description="a person should look: fault, cannot be told, alarm, or not settled"
-    )
+    alarm = column.flag("a person should look: fault, cannot be told, alarm, or not settled")
     first_tow = column.text("likeliest first tow after a log changed", nullable=True)
     rests_on = column.text("what tells")
     confused_with = column.text("what else would explain it, likeliest first", nullable=True)
@@ -94,9 +92,7 @@ class SeasonDiagnosis(PerPart):
 class TowInstruments(PerTow):
     """What was found of the instruments of each tow, and is corrected in its curve."""
 
-    factor = column.number(
-        "1", "true speed / log speed; 1 with dGPS; empty: not determined", nullable=True
-    )
+    factor = column.optional("1", "true speed / log speed; 1 with dGPS; empty: not determined")
     force_factor = column.number("1", "force read / true force; 1 where no fault was found")
     force_zero_n = column.number("N", "force read without any; 0 where no fault was found")
     bend = column.number("1", "q = r / (1 - r) of the boat, r = (v/B)^2 at its usual speed")
@@ -104,7 +100,7 @@ class TowInstruments(PerTow):
         "1", "of Cw, by being pulled askew: root mean square; 0 where that is unlikely", min=0
     )
     ln_sd = column.number("1", "their standard deviation in ln Cw / the elasticity 2 + 2 q", min=0)
-    dof = column.number("1", "its degrees of freedom", nullable=True)
+    dof = column.optional("1", "its degrees of freedom")
 
 
 class BestEstimateWeights(PerTow):

@@ -28,7 +28,7 @@ class SeasonLadder(dy.Schema):
     season = column.season(primary_key=True)
     position = dy.Int8(primary_key=True, description="place of the step", min=1)
     step = column.text("step of the method that was exchanged")
-    tows = dy.Int32(description="tows", min=1)
+    tows = column.count("tows", least=1)
     factor = column.number(
         "1", "geometric mean of the factor on Cw; they multiply", min_exclusive=0
     )
@@ -39,7 +39,7 @@ class SeasonChanges(PerMethod):
 
     from_method = column.text("first method, which the others are compared with")
     season = column.season(primary_key=True)
-    tows = dy.Int32(description="tows with a curve under both", min=1)
+    tows = column.count("tows with a curve under both", least=1)
     median_ratio = column.number("1", "median of the ratio", min_exclusive=0)
     lowest_ratio = column.number("1", "lowest ratio of a tow", min_exclusive=0)
     highest_ratio = column.number("1", "highest ratio of a tow", min_exclusive=0)
@@ -66,12 +66,12 @@ class OptionCurves(PerTow):
         primary_key=True,
         regex="^(as_read|dgps|estimated|multiply|divide)$",
     )
-    optimisation = dy.Bool(description="air coefficients searched per run", primary_key=True)
-    trimming = dy.Bool(description="only the steady part of a run", primary_key=True)
-    vane = dy.Bool(description="wind averaged over 3 s", primary_key=True)
-    b_from_length = dy.Bool(description="B is hull speed", primary_key=True)
+    optimisation = column.flag("air coefficients searched per run", primary_key=True)
+    trimming = column.flag("only the steady part of a run", primary_key=True)
+    vane = column.flag("wind averaged over 3 s", primary_key=True)
+    b_from_length = column.flag("B is hull speed", primary_key=True)
     a_kg_m = column.number("kg/m", "A")
-    b_m_s = column.number("m/s", "B; empty where Cw does not rise", nullable=True)
+    b_m_s = column.optional("m/s", "B; empty where Cw does not rise")
     cw_kg_m = column.number("kg/m", "Cw at the declared speed")
 
 
@@ -80,7 +80,7 @@ class OptionSummary(PerMethod):
 
     study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
     option = column.text("option of a step", primary_key=True)
-    tows = dy.Int32(description="tows", min=1)
+    tows = column.count("tows", least=1)
     median_ratio = column.number("1", "median of Cw with the second value / with the first")
     lo_ratio = column.number("1", "5 % of the tows lie below")
     hi_ratio = column.number("1", "5 % of the tows lie above")
@@ -92,7 +92,7 @@ class QualityCounts(PerMethod):
     kind = column.text("status, flag or run", primary_key=True, regex="^(status|flag|run)$")
     code = column.text("the status, flag or reason", primary_key=True)
     scope = column.text("a season, or all", primary_key=True)
-    number = dy.Int32(description="how many", min=1)
+    number = column.count("how many", least=1)
 
 
 class CheckCounts(PerMethod):
@@ -100,22 +100,8 @@ class CheckCounts(PerMethod):
 
     check = column.text("code of the check", primary_key=True)
     severity = column.text("note, look or refuse", regex=SEVERITY_PATTERN)
-    tows = dy.Int32(description="tows on which it was made", min=1)
-    beyond = dy.Int32(description="of which beyond the limit", min=0)
-
-
-class Promise(PerMethod):
-    """Within 2 % for most tows and 1 % for all? Per method and season, as stated and as seen."""
-
-    season = dy.Int32(primary_key=True, description="year of the tow list")
-    tows = dy.Int32(description="tows with a curve", min=1)
-    share_stated_1pct = column.number("1", "share of tows that state less than 1 %", nullable=True)
-    share_stated_2pct = column.number("1", "the same for 2 %", nullable=True)
-    n_pairs = dy.Int32(description="of which a repeat of an unaltered boat", min=0)
-    share_seen_1pct = column.number(
-        "1", "share of those off by less than 1 % (difference / root 2)", nullable=True
-    )
-    share_seen_2pct = column.number("1", "the same for 2 %", nullable=True)
+    tows = column.count("tows on which it was made", least=1)
+    beyond = column.count("of which beyond the limit")
 
 
 class PrintReproduction(PerTow):
@@ -127,24 +113,13 @@ class PrintReproduction(PerTow):
     crew_class = column.crew_class()
     printed_in = dy.Int32(description="year of the first register that printed it")
     speed_m_s = column.speed("declared speed as printed; without it no Cw", nullable=True)
-    printed_a_kg_m = column.number("kg/m", "A as printed", nullable=True)
-    a_kg_m = column.number("kg/m", "A by the method", nullable=True)
-    printed_b_m_s = column.number("m/s", "B as printed", nullable=True)
-    b_m_s = column.number("m/s", "B by the method", nullable=True)
-    printed_cw_kg_m = column.number("kg/m", "Cw as printed", nullable=True)
-    cw_kg_m = column.number("kg/m", "Cw by the method at the printed speed", nullable=True)
-    cw_ratio = column.number("1", "printed / recomputed Cw", nullable=True)
-
-
-class PrintSummary(PerMethod):
-    """How near each method comes to print, per season; look here before re-basing."""
-
-    season = dy.Int32(primary_key=True, description="year of the tow list")
-    tows = dy.Int32(description="tows that were printed", min=1)
-    median_ratio = column.number("1", "printed / recomputed Cw, median")
-    lowest_ratio = column.number("1", "lowest of a tow")
-    highest_ratio = column.number("1", "highest of a tow")
-    share_within_1pct = column.number("1", "share of tows within 1 % of print")
+    printed_a_kg_m = column.optional("kg/m", "A as printed")
+    a_kg_m = column.optional("kg/m", "A by the method")
+    printed_b_m_s = column.optional("m/s", "B as printed")
+    b_m_s = column.optional("m/s", "B by the method")
+    printed_cw_kg_m = column.optional("kg/m", "Cw as printed")
+    cw_kg_m = column.optional("kg/m", "Cw by the method at the printed speed")
+    cw_ratio = column.optional("1", "printed / recomputed Cw")
 
 
 class RunStatistics(PerRun):
@@ -154,6 +129,6 @@ class RunStatistics(PerRun):
     mean = column.number("as channel", "mean")
     sd = column.number("as channel", "standard deviation of the means of a second", min=0)
     median = column.number("as channel", "their median")
-    sd_ratio = column.number("1", "sd / mean", nullable=True)
-    median_ratio = column.number("1", "median / mean", nullable=True)
-    log1_ratio = column.number("1", "speed / that of log 1; speeds only", nullable=True)
+    sd_ratio = column.optional("1", "sd / mean")
+    median_ratio = column.optional("1", "median / mean")
+    log1_ratio = column.optional("1", "speed / that of log 1; speeds only")

@@ -14,9 +14,9 @@ from itertools import product
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
+from dashboards.addresses import boat_path, edition_page, race_path, type_path
 from dashboards.guides import GUIDES
 from dashboards.site.pages import MENU
-from dashboards.site.parts import boat_path, edition_page, race_path, type_path
 from dashboards.site.start import ABOUT
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import ATTACK, EDITIONS, FORMULA

@@ -18,6 +18,8 @@ from warehouse.queries.answers import compared, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
 
+ISSUED = certificate.Issued(dt.date(2016, 1, 1), "Federatie", "https://register.example/")
+
 OF_TODAY = ("boats", "curves", "curve_points", "run_points", "due_list", "log_factors")
 """Tables that another rebuild makes anew."""
 
@@ -43,14 +45,18 @@ def lines_of(views, edition):
 
 def test_a_certificate_says_what_the_register_says(views, contents):
     line = lines_of(views, EDITIONS[-1]).row(0, named=True)
-    certificate.certificates(views, EDITIONS[-1], line["fsn_no"].lower(), "en")
+    certificate.certificates(views, EDITIONS[-1], line["fsn_no"].lower(), "en", ISSUED)
     mine = [c for c in contents[0]["certificates"] if c["code"] == line["verification_code"]]
     assert len(mine) == 1
     shown = dict(mine[0]["left"]) | dict(mine[0]["right"])
     assert shown["A [kg/m]"] == f"{line['a_kg_m']:.3f}"
     assert shown["Valid until"] == Speech("en").day(line["valid_until"])
     assert shown["Decision"] == "SKC <8 mei>"
+    assert shown["Issued by"] == "Federatie"
+    assert shown["Tow"] == line["tow_id"]
     assert "<svg" in mine[0]["qr"]
+    others = lines_of(views, EDITIONS[-1]).filter(fsn_no=line["fsn_no"]).height - 1
+    assert len([other for other in mine[0]["others"] if other[1] != "\u2013"]) == others
     speed, cw, power = (float(text) for text in mine[0]["powers"][3])
     assert speed == pytest.approx(line["declared_speed_m_s"], abs=0.005)
     assert cw == pytest.approx(line["cw_kg_m"], abs=0.005)
@@ -61,7 +67,7 @@ def test_a_certificate_says_what_the_register_says(views, contents):
 def test_a_certificate_of_an_edition_stays_when_the_warehouse_makes_other_methods(store, contents):
     with Views(store) as views:
         line = lines_of(views, EDITIONS[-1]).row(0, named=True)
-        certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en")
+        certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en", ISSUED)
     with Views(store) as views:
         views._db.execute("CREATE TEMP TABLE methods AS SELECT * FROM main.methods LIMIT 0")
         views._db.execute(
@@ -70,13 +76,15 @@ def test_a_certificate_of_an_edition_stays_when_the_warehouse_makes_other_method
         )
         for table in OF_TODAY:
             views._db.execute(f"CREATE TEMP TABLE {table} AS FROM main.{table} LIMIT 0")
-        certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en")
+        certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en", ISSUED)
     assert contents[0] == contents[1]
 
 
 def test_a_certificate_is_a_page_too(views):
     line = lines_of(views, EDITIONS[-1]).row(0, named=True)
-    text = certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en", True).decode()
+    text = certificate.certificates(
+        views, EDITIONS[-1], line["fsn_no"], "en", ISSUED, True
+    ).decode()
     assert line["verification_code"] in text
     assert f"Cw {line['cw_kg_m']:.2f} kg/m" in text
     assert text.count("<svg") >= 2
@@ -84,26 +92,30 @@ def test_a_certificate_is_a_page_too(views):
 
 
 def test_all_certificates_of_an_edition_are_in_one_file(views, contents):
-    certificate.certificates(views, EDITIONS[-1], None, "nl")
+    certificate.certificates(views, EDITIONS[-1], None, "nl", ISSUED)
     assert len(contents[0]["certificates"]) == lines_of(views, EDITIONS[-1]).height
 
 
 def test_an_expired_certificate_says_so(views, contents, monkeypatch):
     line = certificate.certificate_lines(views, EDITIONS[-1], None)[0]
-    for status, said in (("expired", "geldt niet meer"), ("valid", "")):
+    for status, said in (
+        ("expired", "geldt niet meer op 1"),
+        ("valid", "Geldig op 1"),
+    ):
         monkeypatch.setattr(
             certificate, "certificate_lines", lambda *_, s=status: [line | {"status": s}]
         )
-        certificate.certificates(views, EDITIONS[-1], None, "nl")
-        caution = contents[-1]["certificates"][0]["caution"]
-        assert said in caution
-        assert bool(said) == bool(caution)
+        certificate.certificates(views, EDITIONS[-1], None, "nl", ISSUED)
+        assert said in contents[-1]["certificates"][0]["validity"]
+    later = certificate.Issued(line["valid_until"] + dt.timedelta(days=1))
+    certificate.certificates(views, EDITIONS[-1], None, "nl", later)
+    assert "geldt niet meer" in contents[-1]["certificates"][0]["validity"]
 
 
 def test_a_draft_is_no_certificate(views, contents):
     line = lines_of(views, "concept-as-published").row(0, named=True)
-    certificate.certificates(views, "concept-as-published", line["fsn_no"], "nl")
-    assert "geen geldige meetbrief" in contents[0]["certificates"][0]["caution"]
+    certificate.certificates(views, "concept-as-published", line["fsn_no"], "nl", ISSUED)
+    assert "geen geldige meetbrief" in contents[0]["certificates"][0]["validity"]
     assert contents[0]["certificates"][0]["qr"] == ""
     assert contents[0]["simulated"].startswith("GESIMULEERD")
 
@@ -111,7 +123,7 @@ def test_a_draft_is_no_certificate(views, contents):
 @pytest.mark.parametrize(("edition", "fsn_no"), [("1999-1", None), (EDITIONS[-1], "FSN9")])
 def test_what_is_not_there_is_told(views, edition, fsn_no):
     with pytest.raises(MissingKnowledgeError, match=r"has no edition|no valid line"):
-        certificate.certificates(views, edition, fsn_no, "nl")
+        certificate.certificates(views, edition, fsn_no, "nl", ISSUED)
 
 
 def proposed(views, methods, against, language):
@@ -166,7 +178,7 @@ def test_several_methods_make_a_ballot(views, contents):
 
 def test_the_same_tables_give_the_same_document(views):
     fsn_no = lines_of(views, EDITIONS[-1])["fsn_no"][0]
-    made = [certificate.certificates(views, EDITIONS[-1], fsn_no, "nl") for _ in range(2)]
+    made = [certificate.certificates(views, EDITIONS[-1], fsn_no, "nl", ISSUED) for _ in range(2)]
     assert made[0] == made[1]
     crews = lines_of(views, EDITIONS[-1]).filter(fsn_no=fsn_no).height
     assert len(PdfReader(io.BytesIO(made[0])).pages) == crews

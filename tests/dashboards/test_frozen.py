@@ -26,7 +26,9 @@ def shown(store):
             [*(one(english) for one in answer.statements), answer.waterfall(english)]
             for answer in answers
         ]
-        paper = certificate.certificates(views, EDITION, None, "en", as_page=True)
+        paper = certificate.certificates(
+            views, EDITION, None, "en", certificate.Issued(DAY), as_page=True
+        )
     return pages, register_report(store, EDITION), paper.decode()
 
 

@@ -58,7 +58,7 @@ def surfaces(store, herijk, kept):
         shown["type"] = next(
             site.html(page) for page in type_pages(views, METHODS) if page.name == of_type
         )
-        certificate.certificates(views, DRAFT, line["fsn_no"], "en")
+        certificate.certificates(views, DRAFT, line["fsn_no"], "en", certificate.Issued())
         against = f"concept-{METHODS[0]}"
         proposal.proposal(views, [METHODS[-1]], against, "en", KnownMethods.of(store))
     shown |= dict(zip(("certificate", "proposal"), map(json.dumps, kept), strict=True))

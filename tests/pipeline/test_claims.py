@@ -1,4 +1,4 @@
-"""What the texts claim, held against frames small enough to do by hand."""
+"""What the texts print, held against frames small enough to do by hand."""
 
 import numpy as np
 import polars as pl
@@ -7,29 +7,6 @@ import pytest
 from pipeline.studies import claims
 
 LINE = {"fsn_no": "FSN1", "rowers": 8, "crew_class": "H"}
-
-
-def test_the_promise_is_judged_by_what_a_tow_states_and_by_its_repeat():
-    half = [0.005, 0.015, 0.030]
-    curves = pl.DataFrame(
-        {
-            "method": "m",
-            "season": 2014,
-            "tow_id": ["a", "b", "c"],
-            "cw_kg_m": 40.0,
-            "cw_lo_kg_m": [40.0 * np.exp(-h) for h in half],
-            "cw_hi_kg_m": [40.0 * np.exp(h) for h in half],
-        }
-    )
-    pairs = pl.DataFrame(
-        {"method": "m", "season": 2014, "tow_id": ["a"], "ln_ratio": [-0.05]},
-    )
-    row = claims.promise(curves, pairs).row(0, named=True)
-    assert row["tows"] == 3
-    assert row["share_stated_1pct"] == pytest.approx(1 / 3)
-    assert row["share_stated_2pct"] == pytest.approx(2 / 3)
-    # 5 % between two tows is 3.5 % of each: seen beyond 2 %, though it states 0.5 %.
-    assert (row["n_pairs"], row["share_seen_1pct"], row["share_seen_2pct"]) == (1, 0.0, 0.0)
 
 
 def printed(season, cw, speed=2.5):
@@ -58,10 +35,6 @@ def test_print_is_compared_at_the_printed_speed_by_the_first_register_that_print
     # A 30 and Cw 40 at 2.5 m/s are B 5: at 2.75 m/s 30 / (1 - 0.55^2).
     assert row["cw_kg_m"] == pytest.approx(30.0 / (1 - 0.55**2))
     assert row["cw_ratio"] == pytest.approx(41.0 / row["cw_kg_m"])
-    summary = claims.print_summary(found).row(0, named=True)
-    assert summary["tows"] == 1
-    assert summary["median_ratio"] == row["cw_ratio"]
-    assert summary["share_within_1pct"] == 0.0
 
 
 def test_run_statistics_are_those_of_the_tool():

@@ -18,7 +18,7 @@ from pipeline.consistency.observed import observe
 from pipeline.consistency.outliers import type_outliers
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
 from pipeline.consistency.tables import line_tables
-from pipeline.consistency.tow_speed import slow_tows, speed_trend
+from pipeline.consistency.tow_speed import slow_tows
 from pipeline.tables.schemas import conform
 from tests.pipeline.consistency_fleet import (
     consistency_tables,
@@ -139,22 +139,6 @@ def test_a_boat_pulled_askew_lies_outside_and_is_named():
         )
         assert found["tow_id"].to_list() == [f"{season}-003"]
         assert found["candidates"].to_list() == [candidates]
-
-
-def test_a_bend_that_follows_tow_speed_is_seen_and_none_is_not_claimed():
-    speeds = np.linspace(2.1, 2.7, 12)
-    plain = speed_trend(observe(*fleet(18, speeds_m_s=speeds)))
-    assert (plain["slope_lo"] < 0).all()
-    assert (plain["slope_hi"] > 0).all()
-    curves, tows, boats, points = fleet(18, speeds_m_s=speeds)
-    slow = curves.select("tow_id", "declared_speed_m_s")
-    # Cw of slow tows made to rise faster: (v/v0)^(3 (2.7 - v0)).
-    points = points.join(slow, on="tow_id").with_columns(
-        pl.col("cw_kg_m")
-        * (pl.col("speed_m_s") / pl.col("declared_speed_m_s"))
-        ** (3 * (2.7 - pl.col("declared_speed_m_s")))
-    )
-    assert (speed_trend(observe(curves, tows, boats, points))["slope_hi"] < 0).all()
 
 
 def raced(tables, tow_id, speed_m_s):
@@ -321,7 +305,6 @@ def test_degenerate_input_gives_no_nan_and_fits_the_schemas(case):
 
 SEARCHED = {
     "type_lines": "slope",
-    "speed_trend": "slope",
     "predicted_cw": "predicted_cw_kg_m",
     "variance_components": "sd_ratio",
 }

@@ -62,7 +62,6 @@ def of(built):
                 {"quantity": "b_m_s", "explaining": "weight_kg", "within": "all", "reason": ""}
                 | slope
             ],
-            speed_trend={"reason": "few_boats"},
             eras=[],
             bends={"equal_possible": bends},
         )
@@ -96,7 +95,7 @@ def test_a_type_is_found_whatever_its_case_and_blanks(built, name):
 def test_boats_without_a_type_have_a_page_without_claims(built):
     found = under(built, "unknown")
     assert {line["reason"] for line in found.lines} == {"no_type"}
-    assert (found.bends["reason"], found.speed_trend["reason"]) == ("no_type", "no_type")
+    assert found.bends["reason"] == "no_type"
     assert found.bends["equal_possible"] is None
 
 

@@ -140,20 +140,15 @@ def test_method_code_and_one_file_together_are_told_apart(bench_of_editions, mon
 def test_another_tow_shows_as_tow_beside_the_steps(bench_of_editions):
     bench = bench_of_editions
     bench.publish("a", "as-published")
-    twice = [
-        row
-        for row in read_edition(bench.store, "a").register.iter_rows(named=True)
-        if bench.store.read("tows").filter(*(pl.col(name) == row[name] for name in LINE)).height > 1
-    ]
-    assert twice
+    twice, _ = towed_twice(bench)
     (bench.data / FILE_NAME).write_text(
-        f'[[besluit]]\nsleep_id = "{twice[0]["tow_id"]}"\noordeel = "uitsluiten"\n'
+        f'[[besluit]]\nsleep_id = "{twice["tow_id"]}"\noordeel = "uitsluiten"\n'
         'reden = "scheef getrokken"\nwie = "SKC"\ndatum = 2014-05-01\n',
         encoding="utf-8",
     )
     bench.publish("b", "rebased")
     lines = diff(bench.store, "a", "b").lines
-    row = lines.filter(*(pl.col(name) == twice[0][name] for name in LINE))
+    row = lines.filter(*(pl.col(name) == twice[name] for name in LINE))
     assert row["old_tow_id"].item() != row["new_tow_id"].item()
     assert {cause for cause, _ in names(row)} == {"tow", "method"}
     assert_factors_multiply(lines)

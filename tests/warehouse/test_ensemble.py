@@ -21,10 +21,6 @@ def test_every_curve_has_its_members_about_its_cw(built: Workbench):
     assert ((both["ln"] - both["cw_kg_m"].log()).abs() / width).max() < 1 / np.sqrt(MEMBERS)
 
 
-def test_members_stay_out_of_the_database(built: Workbench):
-    assert "ensemble" not in built.tables()
-
-
 def test_a_rebuild_after_a_loss_draws_the_same_members(bench: Workbench):
     before = bench.store.read("ensemble", METHOD)
     bench.store.table_path("ensemble", METHOD).unlink()

@@ -11,11 +11,6 @@ def filled(folder, text):
     return folder
 
 
-def test_a_first_folder_gets_its_name(tmp_path):
-    put_in_place(filled(tmp_path / "beside", "new"), tmp_path / "site")
-    assert (tmp_path / "site" / "page.html").read_text("utf-8") == "new"
-
-
 def test_the_older_folder_is_beside_after(tmp_path):
     target = filled(tmp_path / "site", "old")
     put_in_place(filled(tmp_path / "beside", "new"), target)

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Final
 
 from pipeline.consistency.eras import era_shifts
+from pipeline.consistency.tables import line_tables
 from pipeline.method.definition import Method
-from pipeline.studies.claims import promise
+from pipeline.studies.claims import print_reproduction
 from pipeline.studies.summaries import check_counts, option_summary, quality_counts, season_ladder
 from pipeline.tables.views import VIEWS
 from warehouse.derive import consistency, database, registers, summaries
@@ -28,7 +29,7 @@ from warehouse.store.store import Store
 ARCHIVE: Final = Step("archive", archive_tables, ARCHIVE_TABLES)
 METHOD: Final = Step("method", method_tables, METHOD_TABLES)
 STUDIES: Final = Step("studies", study_tables, STUDY_TABLES)
-LINES: Final = Step("lines", consistency.line_tables, LINE_TABLES)
+LINES: Final = Step("lines", line_tables, LINE_TABLES)
 TYPES: Final = Step("consistency", consistency.type_tables, TYPE_TABLES)
 REGISTERS: Final = Step(
     "register",
@@ -68,10 +69,9 @@ STEPS: Final = (
             option_summary,
             quality_counts,
             check_counts,
-            promise,
+            print_reproduction,
         )
     ),
-    Step("summaries", summaries.print_tables, ("print_reproduction", "print_summary")),
     DATABASE,
 )
 """Every step comes after those whose tables it reads."""

@@ -14,6 +14,7 @@ import duckdb
 import polars as pl
 
 from pipeline.blocks.run_blocks import PLACE, RunBlocks, stack_blocks
+from pipeline.consistency.observed import Observed, observe, of_trusted
 from pipeline.errors import HerijkError
 from pipeline.method.definition import Method
 from pipeline.recompute.run_cache import RunCache
@@ -39,15 +40,21 @@ STUDY_TABLES: Final = ("correction_steps", "option_effects", "option_curves")
 LINE_TABLES: Final = ("type_lines", "type_line_points")
 TYPE_TABLES: Final = (
     *("compared_tows", "hull_speed", "type_outliers", "type_homogeneity"),
-    *("speed_trend", "predicted_cw", "variance_components"),
+    *("predicted_cw", "variance_components"),
 )
 PER_METHOD: Final = frozenset((*METHOD_TABLES, *STUDY_TABLES, *LINE_TABLES, *TYPE_TABLES))
 """Tables of which each method's rows are made, and kept, apart."""
+
+OF_FIRST: Final = ("tow_instruments",)
+"""Tables of which a step for one method also reads those of the first, where ladders begin."""
 
 LAKE_ONLY: Final = ("ensemble",)
 """Tables that are not in the database: 200 rows per tow would make up most of it."""
 
 IN_DATABASE: Final = tuple(name for name in TABLES if name not in LAKE_ONLY)
+
+OBSERVED: Final = ("curves", "tows", "boats", "run_points")
+"""What boats are compared by."""
 
 RUNS: Final = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
 """What a method is applied to."""
@@ -90,10 +97,11 @@ class Scope:
     def partitions(self, table: str) -> list[str] | None:
         """The partitions of a table that are read; None where it has none.
 
-        A step for one method sees the rows of that method and of the first.
+        A step for one method sees its rows alone; those in `OF_FIRST` of the first method too.
         """
         if table in PER_METHOD:
-            methods = self.methods if self.method is None else (self.methods[0], self.method)
+            first = self.methods[:1] if table in OF_FIRST else ()
+            methods = self.methods if self.method is None else (*first, self.method)
             return list(dict.fromkeys(method.name for method in methods))
         if table in SEASON_TABLES or table == "blocks":
             return self.store.partitions(table)
@@ -125,10 +133,11 @@ class Blocks:
 
 
 class Other(NamedTuple):
-    """How something that is no table is read, and what of it is in a fingerprint."""
+    """How something that is no table is read; what is in a fingerprint: a state, and tables."""
 
     read: Callable[[Scope], object]
     state: Callable[[Scope], object] = lambda _: None
+    tables: tuple[str, ...] = ()
 
 
 def read_table(scope: Scope, name: str) -> pl.DataFrame:
@@ -156,9 +165,21 @@ def argument(scope: Scope, name: str) -> object:
     return OTHERS[name].read(scope) if name in OTHERS else read_table(scope, name)
 
 
+def tables_behind(name: str) -> tuple[str, ...]:
+    """The tables that a parameter of that name makes a step read."""
+    return OTHERS[name].tables if name in OTHERS else (name,)
+
+
 def state(scope: Scope, name: str) -> object:
     """What of a parameter is in the fingerprint of what is made from it."""
-    return OTHERS[name].state(scope) if name in OTHERS else state_of_table(scope, name)
+    own = OTHERS[name].state(scope) if name in OTHERS else None
+    return own, {table: state_of_table(scope, table) for table in tables_behind(name)}
+
+
+def _observed(scope: Scope) -> Observed:
+    """What statistics of boats look at: tows that nothing is doubted about."""
+    curves, tows, boats, run_points = (read_table(scope, name) for name in OBSERVED)
+    return observe(of_trusted(curves, tows), tows, boats, of_trusted(run_points, tows))
 
 
 def _decisions(scope: Scope) -> pl.DataFrame:
@@ -210,7 +231,8 @@ OTHERS: Final[Mapping[str, Other]] = {
         lambda scope: (scope.methods[0].name, scope.methods[0].content_hash),
     ),
     "methods": Other(lambda scope: scope.methods, _rules),
-    "blocks": Other(Blocks, lambda scope: state_of_table(scope, "blocks")),
+    "blocks": Other(Blocks, tables=("blocks",)),
+    "observed": Other(_observed, tables=OBSERVED),
     "decisions": Other(_decisions, lambda scope: table_digest(_decisions(scope))),
     "failed_tows": Other(_failed_tows, lambda scope: table_digest(_failed_tows(scope))),
     "published": Other(
@@ -219,7 +241,7 @@ OTHERS: Final[Mapping[str, Other]] = {
     ),
     "all_tables": Other(
         lambda scope: {name: read_table(scope, name) for name in IN_DATABASE},
-        lambda scope: {name: state_of_table(scope, name) for name in IN_DATABASE},
+        tables=IN_DATABASE,
     ),
     "run_cache": Other(_run_cache),
     "quarantine_before": Other(_quarantine_before),

@@ -65,12 +65,20 @@ def due_list(
 ) -> pl.DataFrame:
     """Who is due to be towed, under every method."""
     as_of = reference_day(tows, listed_races)
-    parts = []
-    for method in methods:
-        lines = lines_on(method, curves, tows, listed_boats, decisions, as_of)
-        rows = due.due_list(lines, boats, listed_races, as_of)
-        parts.append(rows.select(pl.lit(method.name).alias("method"), pl.all()))
-    return pl.concat(parts)
+    known = (curves, tows, listed_boats, decisions, as_of)
+    lines = {method.name: lines_on(method, *known) for method in methods}
+    return due_of_lines(lines, boats, listed_races, as_of)
+
+
+def due_of_lines(
+    lines: Mapping[str, pl.DataFrame], boats: pl.DataFrame, races: pl.DataFrame, as_of: dt.date
+) -> pl.DataFrame:
+    """Rows of `due_list`, of the lines of each method."""
+    parts = {method: due.due_list(own, boats, races, as_of) for method, own in lines.items()}
+    named = (
+        part.select(pl.lit(method).alias("method"), pl.all()) for method, part in parts.items()
+    )
+    return pl.concat(named)
 
 
 def lines_on(

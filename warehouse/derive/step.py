@@ -19,9 +19,12 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.inputs import (
     ARCHIVE_TABLES,
+    PER_METHOD,
     Scope,
     argument,
+    read_table,
     state,
+    tables_behind,
 )
 from warehouse.derive.mending import failed_tows
 from warehouse.store.code import COMPUTING, code_hash
@@ -64,10 +67,15 @@ class Step:
         """What the step reads, as `warehouse.derive.inputs` knows it."""
         return tuple(inspect.signature(self.compute).parameters)
 
+    @cached_property
+    def reads(self) -> tuple[str, ...]:
+        """The tables that the step reads."""
+        return tuple(dict.fromkeys(table for name in self.inputs for table in tables_behind(name)))
+
     @property
     def per_method(self) -> bool:
         """Whether the step is made once for every method."""
-        return "method" in self.inputs
+        return set(self.outputs) <= PER_METHOD
 
     @property
     def may_fail(self) -> bool:
@@ -152,11 +160,8 @@ class Step:
 
     def _tow_ids(self, scope: Scope) -> list[str]:
         """The tows that the step works on, sorted; none where it knows of no tow."""
-        listed = next((name for name in ("tows", "season_tows") if name in self.inputs), None)
-        if listed is None:
-            return []
-        table = argument(scope, listed)
-        return sorted(table["tow_id"].unique()) if isinstance(table, pl.DataFrame) else []
+        listed = next((name for name in ("tows", "season_tows") if name in self.reads), None)
+        return [] if listed is None else sorted(read_table(scope, listed)["tow_id"].unique())
 
     def _failure(self, scope: Scope) -> str:
         return " ".join(filter(None, ("step", self.name, self._partition(scope))))

@@ -36,14 +36,6 @@ def season_changes(curves: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFr
     return summaries.season_changes(curves, methods[0].name)
 
 
-def print_tables(
-    printed_registers: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
-) -> dict[str, pl.DataFrame]:
-    """Printed registers beside what is computed today."""
-    printed = claims.print_reproduction(printed_registers, curves, tows)
-    return {"print_reproduction": printed, "print_summary": claims.print_summary(printed)}
-
-
 def race_changes(
     register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
 ) -> pl.DataFrame:

@@ -9,7 +9,7 @@ not, the code changed or the edition did; the head decides. Nothing is ever mend
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -132,19 +132,13 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
         head: the seal of the last edition as it was written down. Where it is still that, no
             edition was altered, and what comes out otherwise is the work of other code.
     """
-    last = chain_head(store)
+    manifests, unreadable = _manifests(store)
+    last = _last(manifests)
     found = None if last is None else last.seal
-    findings = list(chain_findings(store))
+    findings = [*unreadable, *_missing(store), *_chain_findings(manifests)]
     if head is not None and head != found:
         message = say("the head is {}, and should be {}", found, head)
         findings.append(Finding("", "altered", "chain", message))
-    manifests = {}
-    for name in edition_names(store):
-        try:
-            manifests[name] = read_manifest(store.editions / name)
-        except BrokenPromiseError as error:
-            where = manifest_path(store.editions / name).name
-            findings.append(Finding(name, "altered", where, str(error)))
     hashes = FileHashes() if afresh else FileHashes.load(store.file_hashes)
     archive = None if store.made_from("about_archive") is None else archive_root(store)
     for name, manifest in manifests.items():
@@ -185,17 +179,42 @@ def _altered(path: Path, manifest: Manifest) -> Iterator[Finding]:
 
 def chain_head(store: Store) -> Manifest | None:
     """The edition published last; None before the first that is chained."""
-    chained = (manifest for manifest in _readable(store) if manifest.number is not None)
+    return _last(_manifests(store)[0])
+
+
+def _last(manifests: Mapping[str, Manifest]) -> Manifest | None:
+    chained = (manifest for manifest in manifests.values() if manifest.number is not None)
     return max(chained, key=lambda manifest: manifest.number or 0, default=None)
 
 
-def chain_findings(store: Store) -> Iterator[Finding]:
-    """Editions that are gone, have no place in the chain, or were made anew."""
-    for name in sorted(_known(store) - set(edition_names(store))):
+def _manifests(store: Store) -> tuple[dict[str, Manifest], list[Finding]]:
+    """The manifests of all editions by the name of their folders, and those that cannot be read."""
+    manifests, unreadable = {}, []
+    for name in edition_names(store):
+        path = store.editions / name
+        try:
+            manifests[name] = read_manifest(path)
+        except BrokenPromiseError as error:
+            unreadable.append(Finding(name, "altered", manifest_path(path).name, str(error)))
+    return manifests, unreadable
+
+
+def _missing(store: Store) -> Iterator[Finding]:
+    """Editions that the last rebuild put into the database, and that are gone."""
+    try:
+        with open_database(store.database) as db:
+            known = {name for (name,) in db.sql("SELECT edition FROM editions").fetchall()}
+    except (HerijkError, duckdb.Error):  # not made yet, or damaged
+        return
+    for name in sorted(known - set(edition_names(store))):
         yield Finding(name, "altered", name, say("edition {} was published and is gone", name))
+
+
+def _chain_findings(manifests: Mapping[str, Manifest]) -> Iterator[Finding]:
+    """Editions that have no place in the chain, or were made anew."""
     seal: str | None = None
     number = 0
-    for manifest in sorted(_readable(store), key=lambda m: (m.number or 0, m.edition)):
+    for manifest in sorted(manifests.values(), key=lambda m: (m.number or 0, m.edition)):
         if manifest.number is None:
             message = say("it has no number in the chain of editions")
             yield Finding(manifest.edition, "altered", "chain", message)
@@ -214,23 +233,6 @@ def chain_findings(store: Store) -> Iterator[Finding]:
             message = say("the edition before it has another seal than when this one was published")
             yield Finding(manifest.edition, "altered", "chain", message)
         seal = manifest.seal
-
-
-def _readable(store: Store) -> list[Manifest]:
-    editions = []
-    for name in edition_names(store):
-        with suppress(BrokenPromiseError):  # said where its own files are looked at
-            editions.append(read_manifest(store.editions / name))
-    return editions
-
-
-def _known(store: Store) -> set[str]:
-    """Editions that the last rebuild put into the database."""
-    try:
-        with open_database(store.database) as db:
-            return {name for (name,) in db.sql("SELECT edition FROM editions").fetchall()}
-    except (HerijkError, duckdb.Error):  # not made yet, or damaged
-        return set()
 
 
 # Reproduction
@@ -304,13 +306,12 @@ def differing(store: Store, checked: CheckedEdition) -> tuple[CheckedEdition, li
     try:
         edition = read_edition(store, name)
     except MissingKnowledgeError as error:
-        return checked, [_by_other_code(name, str(error).splitlines()[0])]
+        return checked, [_by_other_code(name, error)]
     except CANNOT as error:
         return checked, [_not_made(name, error)]
     if edition.method is not None and edition.method.content_hash != edition.manifest.method_hash:
-        return checked, [
-            _by_other_code(name, say("its method has options that there are no longer"))
-        ]
+        gone = say("its method has options that there are no longer")
+        return checked, [_by_other_code(name, gone)]
     height = edition.register.height
     try:
         again = made_again(store, edition)
@@ -327,13 +328,18 @@ def differing(store: Store, checked: CheckedEdition) -> tuple[CheckedEdition, li
     return counted, [*inputs, *lines, *others]
 
 
-def _by_other_code(name: str, reason: str) -> Finding:
-    return Finding(name, "differs", METHOD, say("it was made by other code: {}", reason))
+def _by_other_code(name: str, reason: object) -> Finding:
+    message = say("it was made by other code: {}", _first_line(reason))
+    return Finding(name, "differs", METHOD, message)
 
 
-def _not_made(name: str, error: Exception) -> Finding:
-    reason = str(error).splitlines()[0]
-    return Finding(name, "unchecked", "register", say("it cannot be made again: {}", reason))
+def _not_made(name: str, reason: object) -> Finding:
+    message = say("it cannot be made again: {}", _first_line(reason))
+    return Finding(name, "unchecked", "register", message)
+
+
+def _first_line(reason: object) -> str:
+    return str(reason).splitlines()[0]
 
 
 def _inputs(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:

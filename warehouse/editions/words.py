@@ -73,20 +73,6 @@ CHANGES: Final[Words] = {
     "same": ("gelijk", "the same"),
 }
 CREWS: Final[Words] = {"H": ("heren", "men"), "D": ("dames", "women")}
-MONTHS: Final = (
-    ("januari", "January"),
-    ("februari", "February"),
-    ("maart", "March"),
-    ("april", "April"),
-    ("mei", "May"),
-    ("juni", "June"),
-    ("juli", "July"),
-    ("augustus", "August"),
-    ("september", "September"),
-    ("oktober", "October"),
-    ("november", "November"),
-    ("december", "December"),
-)
 
 
 @dataclass(frozen=True)
@@ -132,7 +118,9 @@ class Language:
 
     def day(self, day: dt.date) -> str:
         """A day in full."""
-        return f"{day.day} {self.one_of(MONTHS[day.month - 1])} {day.year}"
+        from babel.dates import format_date  # noqa: PLC0415 - needed where texts are written
+
+        return format_date(day, "d MMMM y", locale=self.code)
 
     def count(self, lines: int) -> str:
         """A number of lines."""

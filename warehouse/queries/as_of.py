@@ -12,11 +12,11 @@ import duckdb
 import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.register.due import due_list
 from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name
 from pipeline.tables.keys import SIZES
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.published import published_tables
+from warehouse.derive.registers import due_of_lines
 from warehouse.store.editions import CHANGES, edition_names
 from warehouse.store.store import Store
 
@@ -41,9 +41,10 @@ def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
     if not (read["tows"]["tow_date"] <= day).any():
         raise MissingKnowledgeError("the archive has no tow of {} or before", day)
     register = register_on(read["register"], read["register_history"], read["tows"], day)
+    drafts = {m: register.filter(edition=draft_name(m)) for m in read["methods"]["method"]}
     made = {
         "register": register,
-        "due_list": _due(register, read["methods"], read["boats"], store, day),
+        "due_list": due_of_lines(drafts, read["boats"], store.read("listed_races"), day),
         "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
     }
     for name, frame in made.items():
@@ -98,20 +99,3 @@ def register_on(
     )
     both = pl.concat([counted, rest], how="diagonal_relaxed")
     return both.with_columns(pl.lit(day).alias("as_of")).select(register.columns).sort(key)
-
-
-def _due(
-    register: pl.DataFrame,
-    methods: pl.DataFrame,
-    boats: pl.DataFrame,
-    store: Store,
-    day: dt.date,
-) -> pl.DataFrame:
-    """Rows of `due_list` of every method, as of a day."""
-    results = store.read("listed_races")
-    lists = []
-    for name in methods["method"]:
-        lines = register.filter(pl.col("edition") == draft_name(name))
-        due = due_list(lines, boats, results, day)
-        lists.append(due.select(pl.lit(name).alias("method"), pl.all()))
-    return pl.concat(lists)

@@ -11,6 +11,7 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.races.power import curve_of_lines
 from pipeline.races.race import power_per_rower_w
+from pipeline.register.register import LINE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import log_known
 from warehouse.queries.views import DRAFT, Views
@@ -31,7 +32,9 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
 
     Returns:
         Rows of `register` with the boat's `name` and `boat_type`, `basis` (None in a draft), the
-        columns `OF_EDITION` and `log_known` (whether the interval holds the error of the log).
+        columns `OF_EDITION`, `log_known` (whether the interval holds the error of the log),
+        `from_edition` and `old_cw_kg_m` (what held before, null where nothing did) and `others`:
+        the lines of the boat's other crews.
 
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line of that boat in it.
@@ -47,21 +50,37 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
     known = log_known(views).filter(edition=edition)["log_known"].first()
     about = views.table("editions").filter(edition=edition)
     terms = about.select(OF_EDITION).to_dicts() or [dict.fromkeys(OF_EDITION)]
+    crews = lines.sort("rowers", "crew_class").to_dicts()
     return [
-        line | terms[0] | {"log_known": known}
+        line
+        | terms[0]
+        | {
+            "log_known": known,
+            "others": [
+                other
+                for other in crews
+                if other["fsn_no"] == line["fsn_no"] and any(other[k] != line[k] for k in LINE)
+            ],
+        }
         for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts()
     ]
 
 
 def _lines(views: Views, edition: str) -> pl.DataFrame:
-    """The lines of an edition or draft, with name and type of their boats."""
+    """The lines of an edition or draft, with name and type of their boats, and what held before."""
     if not edition.startswith(DRAFT) and edition in edition_names(views.store):
-        return read_edition(views.store, edition).register
-    drafts = views.register().with_columns(basis=pl.lit(None, pl.String))
-    lines = drafts.filter(edition=edition)
-    if lines.is_empty():
-        raise no_such_edition(edition, drafts["edition"].unique())
-    return lines
+        read = read_edition(views.store, edition)
+        lines, previous = read.register, read.manifest.previous
+        before = lines.clear() if previous is None else read_edition(views.store, previous).register
+    else:
+        drafts = views.register().with_columns(basis=pl.lit(None, pl.String))
+        lines = drafts.filter(edition=edition)
+        if lines.is_empty():
+            raise no_such_edition(edition, drafts["edition"].unique())
+        changes = views.table("register_changes").filter(to_edition=edition)
+        before = drafts.join(changes, left_on="edition", right_on="from_edition", how="semi")
+    held = before.select(*LINE, from_edition="edition", old_cw_kg_m="cw_kg_m")
+    return lines.join(held, on=LINE, how="left", maintain_order="left")
 
 
 def curve_of(line: Row) -> Curve:

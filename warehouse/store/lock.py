@@ -19,9 +19,6 @@ LOCK_FILE: Final = "rebuild.lock"
 _NOT_OURS: Final = {"audit", "dagster", "editions"}
 """Folders of the data folder in which others write, without the lock."""
 
-_held: set[Path] = set()
-"""Folders this process writes in already: a step inside a rebuild needs no lock of its own."""
-
 
 @contextmanager
 def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
@@ -36,10 +33,8 @@ def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
     """
     root.mkdir(parents=True, exist_ok=True)
     folder = root.resolve()
-    if folder in _held:
-        yield
-        return
-    lock = FileLock(folder / LOCK_FILE)
+    # One lock for this process: a step inside a rebuild takes that of the rebuild again.
+    lock = FileLock(folder / LOCK_FILE, thread_local=False, is_singleton=True)
     try:
         lock.acquire(blocking=wait)
     except Timeout as error:
@@ -49,11 +44,10 @@ def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
             folder,
         ) from error
     try:
-        _held.add(folder)
-        _remove_leftovers(folder)
+        if lock.lock_counter == 1:
+            _remove_leftovers(folder)
         yield
     finally:
-        _held.discard(folder)
         lock.release()
 
 

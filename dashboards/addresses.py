@@ -1,0 +1,32 @@
+"""Where the pages of boats, types, editions and races lie within the site."""
+
+import datetime as dt
+import hashlib
+import re
+
+
+def boat_path(fsn_no: str) -> str:
+    """The page of a boat: its number if that can be a file name, else with a hash of it."""
+    return _path("boats", fsn_no)
+
+
+def type_path(boat_type: str) -> str:
+    """The page of a type of boat."""
+    return _path("types", boat_type)
+
+
+def edition_page(edition: str) -> str:
+    """The page of a published edition."""
+    return _path("editions", edition)
+
+
+def race_path(race: str, day: dt.date) -> str:
+    """The page of a race."""
+    return _path("races", f"{race}-{day}")
+
+
+def _path(folder: str, name: str) -> str:
+    safe = re.sub(r"[^A-Za-z0-9-]+", "-", name)
+    if safe != name:
+        safe += "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
+    return f"{folder}/{safe}.html"
