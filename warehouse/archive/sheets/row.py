@@ -258,7 +258,8 @@ class ListRow:
             try:
                 known[spelling] = self._read(column)
             except DefectiveInputError as error:
-                known[spelling] = error
+                # A copy: the error that is raised keeps every frame that it passes.
+                known[spelling] = DefectiveInputError(error.reason_code, error.message, error.line)
                 raise
         value = known[spelling]
         if isinstance(value, DefectiveInputError):
