@@ -328,7 +328,7 @@ class Book:
                 tows=ngettext("1 tow", "{n} tows", most["tows"]),
             )
         ]
-        yield Slide("options", "slide_options", rows, finding, notes, "option_summary")
+        yield Slide("options", "options", rows, finding, notes, "option_summary")
 
     def boat(self, fsn_no: str) -> Iterator[Slide]:
         """How far the tows of one boat lie apart through the years."""

@@ -217,8 +217,8 @@ def _crews(lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
     moved = lines.drop_nulls("gain_in_two_hours_s").filter(change="changed").sort(gain, "fsn_no")
     if moved.is_empty():
         return
-    crew = pl.format("{} {}{}", "fsn_no", "rowers", "crew_class")
-    spec = FIGURES["gains"](moved.select(gain, crew=crew), speech.say).to_dict()
+    drawn_columns = ("name", "fsn_no", "rowers", "crew_class", "gain_in_two_hours_s")
+    spec = FIGURES["changes"](moved.select(drawn_columns), speech.say).to_dict()
     yield _part(
         speech.say("For whom: every crew"),
         speech.say(

@@ -34,7 +34,6 @@ from pipeline.uncertainty.propagation import COMPONENTS
 
 alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
 
-STATUSES: Final = ("accepted", "flagged", "rejected")
 CAUSES: Final = ("boat", "season", "boat_season", "run")
 
 WEIGHT: Final = ("weight_kg", labels.column("weight_kg"))
@@ -108,48 +107,16 @@ def _ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     ).properties(width=WIDTH, height=alt.Step(22))
 
 
-def _statuses(frame: pl.DataFrame, say: Say) -> Drawing:
-    """Curves per season by status, of one method."""
-    shades = alt.Scale(
-        domain=list(STATUSES), range=[OKABE_ITO[5], OKABE_ITO[1], OKABE_ITO[6]]
-    )  # apart in grey print too
-    legend = alt.Legend(labelExpr=named(STATUSES, say))
-    ink = alt.Color("status:N", title=None, scale=shades, legend=legend)
-    number = alt.Y("number:Q", title=say(labels.column("number")))
-    return (
-        alt.Chart(frame)
-        .mark_bar(stroke="black", strokeWidth=0.5)
-        .encode(alt.X("season:O", title=None), number, ink)
-        .encode(tooltip=tips(say, "season:O", "status:N", "number:Q"))
-        .properties(width=WIDTH, height=240)
-    )
-
-
 def _gains(frame: pl.DataFrame, say: Say) -> Drawing:
-    """How many crews gain or lose how much time in a race of two hours, in steps of 15 s."""
-    gain = "datum.gain_in_two_hours_s"
-    inks = alt.condition(f"{gain} < 0", alt.value(OKABE_ITO[1]), alt.value(OKABE_ITO[0]))
-    return (
-        alt.Chart(frame)
-        .transform_calculate(gain_in_two_hours_s=f"15 * round({gain} / 15)")
-        .mark_bar(stroke="white", size=12)
-        .encode(
-            alt.X("gain_in_two_hours_s:Q", title=say(labels.column("gain_in_two_hours_s"))),
-            alt.Y("count():Q", title=say("Boats"), axis=alt.Axis(tickMinStep=1)),
-            color=inks,
-        )
-        .properties(width=WIDTH, height=220)
-    )
-
-
-def _gains_by_crew(frame: pl.DataFrame, say: Say) -> Drawing:
     """A bar for every crew: what a race of two hours at equal power gains or loses."""
     title = say("Seconds in a race of two hours [s]")
     inks = alt.condition(
         "datum.gain_in_two_hours_s < 0", alt.value(OKABE_ITO[1]), alt.value(OKABE_ITO[0])
     )
+    crew = "datum.name + ' ' + datum.fsn_no + ' ' + datum.rowers + datum.crew_class"
     return (
         alt.Chart(frame)
+        .transform_calculate(crew=crew)
         .mark_bar()
         .encode(alt.X("crew:N", sort="-y", axis=None), alt.Y("gain_in_two_hours_s:Q", title=title))
         .encode(color=inks, tooltip=tips(say, "crew:N", "gain_in_two_hours_s:Q"))
@@ -157,7 +124,8 @@ def _gains_by_crew(frame: pl.DataFrame, say: Say) -> Drawing:
     )
 
 
-JUDGED: Final = tuple(CHOICES)
+JUDGED: Final = (*CHOICES, *TICKS, *SPEEDS)
+"""What options are judged by: choices of a method, and those of the tool of 2015."""
 RUN_TIPS: Final = ("run:O", "speed_m_s:Q", "cw_kg_m:Q")
 STAGES: Final = ("gross", "net")
 SCOPES: Final = ("fleet", "within_type")
@@ -220,12 +188,7 @@ FIGURES: Final[dict[str, Figure]] = {
     ),
     "ladder": _ladder,
     "changes": _gains,
-    "gains": _gains_by_crew,
-    "statuses": _statuses,
     "slide_boat_years": slides.boat_years,
-    "slide_options": bars(
-        "option", ("median_ratio", CHANGE), (*TICKS, *SPEEDS), ("lo_ratio", "hi_ratio")
-    ),
     "slide_hull_speed": slides.b_and_hull_speed(LENGTH, B),
     "slide_towed_at": slides.towed_at(LENGTH, DECLARED),
     **{

@@ -7,8 +7,6 @@ from dashboards.documents import pdf
 from dashboards.markdown import to_blocks
 from warehouse.store.editions import (
     CSV,
-    NOTES,
-    NOTES_EN,
     NOTICE,
     NOTICE_EN,
     XLSX,
@@ -18,7 +16,7 @@ from warehouse.store.editions import (
 from warehouse.store.store import Store
 
 DOWNLOADS: Final = "downloads"
-SHEETS: Final = (CSV, XLSX, NOTICE, NOTES, NOTICE_EN, NOTES_EN)
+SHEETS: Final = (CSV, XLSX)
 PAPERS: Final = {"bericht.pdf": (NOTICE, "nl"), "notice.pdf": (NOTICE_EN, "en")}
 """What is made for paper: of which text, in which language."""
 
@@ -31,12 +29,12 @@ def files_of(edition: str) -> list[tuple[str, str]]:
 def copy_sheets(store: Store, folder: Path) -> None:
     """Copies the sheets of every edition to `downloads/<edition>/`, byte for byte, with papers."""
     for edition in edition_names(store):
-        target = folder / DOWNLOADS / edition
+        source, target = edition_path(store, edition), folder / DOWNLOADS / edition
         target.mkdir(parents=True)
         for name in SHEETS:
-            (target / name).write_bytes((edition_path(store, edition) / name).read_bytes())
+            (target / name).write_bytes((source / name).read_bytes())
         for name, (text, language) in PAPERS.items():
-            (target / name).write_bytes(notice((target / text).read_text("utf-8"), language))
+            (target / name).write_bytes(notice((source / text).read_text("utf-8"), language))
 
 
 def notice(text: str, language: str) -> bytes:

@@ -8,7 +8,6 @@ from typing import Final
 import polars as pl
 
 from dashboards.addresses import edition_page, race_path
-from dashboards.site.downloads import files_of
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -28,7 +27,7 @@ from dashboards.site.start import ABOUT, CARDS, start_page, words_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
-from pipeline.messages import Sentence, say
+from pipeline.messages import say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
@@ -66,17 +65,9 @@ def method_names(views: Views) -> list[str]:
     return [name for name in views.table("methods")["method"] if name != AS_PRINTED]
 
 
-def _whole(views: Views, name: str, title: Sentence, columns: Sequence[str] = ()) -> list[Section]:
-    """A section with a table as it is; none where there is no such table."""
-    if not views.has(name):
-        return []
-    frame = views.table(name)
-    return [Section(name, title, tables=[Table(name, frame, columns or frame.columns, title)])]
-
-
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "tow_date"),
-    *("valid_until", "status", "method"),
+    *("valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
     *("waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
     "verification_code",
@@ -116,32 +107,21 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
                 tables=[table],
                 headline=headline,
             ),
-            *_whole(views, "editions", say("Published editions"), EDITION_COLUMNS),
-            *_downloads(views),
+            *_editions(views),
         ],
         selects=[editions_select("edition", editions, chosen)],
     )
 
 
-def _downloads(views: Views) -> list[Section]:
-    """The sheets of every published edition, which `render` puts beside the pages."""
-    names = views.table("editions")["edition"].to_list()
-    if not names:
+def _editions(views: Views) -> list[Section]:
+    """Every published edition; its page has its notice and its sheets."""
+    frame = views.table("editions")
+    if frame.is_empty():
         return []
-    files = [file for name in names for file in files_of(name)]
-    pages = [(edition_page(name), name) for name in names]
-    return [
-        Section(
-            "downloads",
-            say("Downloads"),
-            say(
-                "The register of every edition as published, with the notice to the members "
-                "and the release notes in Dutch and English."
-            ),
-            pages=pages,
-            files=files,
-        )
-    ]
+    title = say("Published editions")
+    table = Table("editions", frame, EDITION_COLUMNS, title)
+    pages = [(edition_page(name), name) for name in frame["edition"]]
+    return [Section("editions", title, pages=pages, tables=[table])]
 
 
 DUE_COLUMNS = (
@@ -248,11 +228,11 @@ PART = pl.col("part") + 1
 """Parts of a season as people count them."""
 
 LINK_COLUMNS = (
-    *("method", "season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),
+    *("season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat"),
 )
 STEP_COLUMNS = (
-    *("method", "season", "part", "n_boats", "level_step_percent"),
+    *("season", "part", "n_boats", "level_step_percent"),
     *("level_sd_percent", "force_step_percent", "force_sd_percent", "cause"),
 )
 
@@ -282,7 +262,6 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     }
     links = views.table("season_links").with_columns(PART)
     steps = views.ask("season_steps").with_columns(PART)
-    shares = frames["reproducibility"].select(*SHARE_COLUMNS)
     sections: list[Section] = []
     for name, (figure, follows) in SEASON_FIGURES.items():
         if frames[name].height:
@@ -294,9 +273,6 @@ def _seasons(views: Views, methods: list[str]) -> Page:
                     charts=[chart],
                     headline=said.get(name),
                     folded=is_folded,
-                    tables=[Table(name, shares, SHARE_COLUMNS, SEASON_TEXTS[name].title)]
-                    if name == "reproducibility"
-                    else [],
                 )
             )
     told = (
@@ -313,7 +289,6 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     )
 
 
-SHARE_COLUMNS = ("method", "scope", "n_pairs", "share_within_1pct", "share_within_2pct")
 LINKS = Section(
     "season_links",
     say("What a log factor rests on"),
@@ -477,15 +452,8 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
 
 CHANGE_COLUMNS = (
     *("name", "fsn_no", "rowers", "crew_class", "change", "old_cw_kg_m", "new_cw_kg_m"),
-    *(
-        "cw_ratio",
-        "gain_in_two_hours_s",
-        "exceeds_interval",
-        "old_speed_rank",
-        "new_speed_rank",
-        "causes",
-    ),
-    "from_edition",
+    *("cw_ratio", "gain_in_two_hours_s", "exceeds_interval", "old_speed_rank", "new_speed_rank"),
+    "causes",
 )
 CHANGE_CARDS = (
     *("name", "fsn_no", "rowers", "crew_class", "old_cw_kg_m", "new_cw_kg_m"),
@@ -497,12 +465,10 @@ DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_i
 def _about(views: Views) -> Page:
     """The method, what the words mean, how the data fared, and what the rebuild read."""
     links = [*guide_links(), *((f"{name}.html", *texts) for name, texts in ABOUT.items())]
-    editions = [(edition_page(name), name) for name in views.table("editions")["edition"]]
     seasons = views.table("seasons")
     table = Table("seasons", seasons, seasons.columns, say("Seasons"))
     sections = [
         Section("about_pages", say("Where to find what"), links=links),
-        *([Section("editions", say("Published editions"), pages=editions)] if editions else []),
         Section(
             "seasons",
             say("Seasons"),
@@ -514,59 +480,45 @@ def _about(views: Views) -> Page:
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
-    statuses = views.ask("statuses")
-    sections = [
-        Section(
-            "statuses",
-            say("Status of the curves"),
-            headline=season.statuses(statuses.filter(method=default_method(methods))),
-            charts=[
-                Chart("statuses", "statuses", say("Status of the curves"), {"method": "method"})
-            ],
-        ),
-        _set_aside(views),
-    ]
-    for kind, name, title, note in (
-        (
-            "flag",
-            "flags",
-            say("Flags"),
-            say("A flag says what a person should look at; it never changes a number."),
-        ),
-        ("run", "run_reasons", say("Runs that do not count"), None),
-    ):
-        frame = views.ask("counts", kind)
-        if frame.height:
-            tables = [Table(name, frame, ["code", "number"], title, ["method"])]
-            if kind == "flag":
-                tables.append(_flagged_boats(views))
-            sections.append(Section(name, title, note, tables=tables))
-    checks = views.ask("checks")
-    columns = ["method", "check", "severity", "tows", "beyond"]
-    table = Table("check_counts", checks, columns, say("What the checks found"), ["method"])
-    sections += [
-        Section(
-            "checks",
-            say("What the checks found"),
-            say(
-                "On how many tows each check was made, and how often something lay beyond its "
-                "limit."
-            ),
-            tables=[table],
-        ),
-    ]
+    statuses = views.ask("statuses").filter(method=default_method(methods))
+    flagged, runs, checks = (
+        views.ask("flagged_boats"),
+        views.ask("counts", "run"),
+        views.ask("checks"),
+    )
+    flags = Section(
+        "flags",
+        say("Flags"),
+        say("A flag says what a person should look at; it never changes a number."),
+    )
+    found = Section(
+        "checks",
+        say("What the checks found"),
+        say("On how many tows each check was made, and how often something lay beyond its limit."),
+    )
     return Page(
         "quality.html",
         say("Quality"),
-        sections,
+        [
+            Section("statuses", say("Status of the curves"), headline=season.statuses(statuses)),
+            _set_aside(views),
+            *listed(flags, "flagged_boats", flagged, FLAG_COLUMNS),
+            *listed(
+                Section("run_reasons", say("Runs that do not count")),
+                "run_reasons",
+                runs,
+                ("code", "number"),
+            ),
+            *listed(found, "check_counts", checks, ("check", "severity", "tows", "beyond")),
+        ],
         selects=[methods_select(methods)],
-        data={"statuses": [statuses]},
     )
 
 
+FLAG_COLUMNS = ("flag", "name", "fsn_no", "rowers", "crew_class", "tow_date")
 SOUND_VERDICTS = ("sound", "estimated")
 DIAGNOSIS_COLUMNS = (
-    *("method", "season", "part", "instrument", "verdict", "p_fault", "size", "size_lo", "size_hi"),
+    *("season", "part", "instrument", "verdict", "p_fault", "size", "size_lo", "size_hi"),
     *("unit", "first_tow", "confused_with"),
 )
 
@@ -593,32 +545,18 @@ def _season_diagnosis(views: Views) -> list[Section]:
     return [Section("season_diagnosis", title, note, tables=[table])]
 
 
-def _flagged_boats(views: Views) -> Table:
-    """Which boats each flag is about."""
-    columns = ("flag", "name", "fsn_no", "rowers", "crew_class", "tow_date")
-    rows = views.ask("flagged_boats")
-    return Table(
-        "flagged_boats", rows, columns, say("Which tows they are about"), ["method"], search=True
-    )
-
-
 def _set_aside(views: Views) -> Section:
+    section = Section(
+        "set_aside",
+        say("Set aside"),
+        say("Files, lines and tows not used, with the reason."),
+    )
     if not views.has("quarantine"):
-        return Section(
-            "set_aside",
-            say("Set aside"),
-            say("Files, lines and tows not used, with the reason."),
-            empty=say("Nothing was set aside."),
-        )
+        return replace(section, empty=say("Nothing was set aside."))
     columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"]
     columns.append("first_seen")
     faults = views.table("quarantine").with_columns(
         lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
     )
-    table = Table("quarantine", faults, columns, say("Set aside"), search=True)
-    return Section(
-        "set_aside",
-        say("Set aside"),
-        say("Files, lines and tows not used, with the reason."),
-        tables=[table],
-    )
+    table = Table("quarantine", faults, columns, section.title, search=True)
+    return replace(section, tables=[table])

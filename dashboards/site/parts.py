@@ -46,9 +46,10 @@ class Table:
 
     @cached_property
     def shown(self) -> list[str]:
-        """The columns in which some row says something."""
-        frame = self.within[0] if self.within else self.frame
-        return [name for name in self.columns if frame.is_empty() or _says_something(frame[name])]
+        """The columns in which some row says something; those of many pages are the same on all."""
+        if self.within or self.frame.is_empty():
+            return list(self.columns)
+        return [name for name in self.columns if _says_something(self.frame[name])]
 
     @cached_property
     def numeric(self) -> set[str]:

@@ -46,8 +46,8 @@ def guide_pages() -> Iterator[Page]:
 
 
 def _below_title(file: Path) -> str:
-    """A document without its title: the page has one."""
-    return file.read_text(encoding="utf-8").split("\n", 1)[1]
+    """A document without its title: the page or section has one."""
+    return file.read_bytes().decode().split("\n", 1)[1]
 
 
 def guide_links() -> list[tuple[str, Sentence, Sentence]]:
@@ -67,22 +67,14 @@ def edition_pages(views: Views) -> Iterator[Page]:
                     Section(name, title, prose=_in_language(_texts(folder, files), {}))
                     for name, (title, *files) in _TEXTS.items()
                 ),
-                Section(
-                    "downloads",
-                    say("Downloads"),
-                    say(
-                        "The register of every edition as published, with the notice to the "
-                        "members and the release notes in Dutch and English."
-                    ),
-                    files=files_of(edition),
-                ),
+                Section("downloads", say("Downloads"), files=files_of(edition)),
             ],
             name=edition,
         )
 
 
 def _texts(folder: Path, files: Sequence[str]) -> tuple[str, str]:
-    dutch, english = ((folder / file).read_bytes().decode() for file in files)
+    dutch, english = (_below_title(folder / file) for file in files)
     return dutch, english
 
 

@@ -42,8 +42,12 @@ TOW_COLUMNS = (
     *("a_kg_m", "b_m_s", "cw_standard_kg_m"),
 )
 TYPE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "season", "cw_standard_kg_m", "b_m_s")
-TYPE_FIGURES = ("cw_weight", "cw_speed", "b_weight")
-"""Of `dashboards.figures.slides`."""
+TYPE_FIGURES = {
+    "cw_weight": "cw_standard_weight",
+    "cw_speed": "cw_standard_speed",
+    "b_weight": "b_weight",
+}
+"""Of `dashboards.figures.slides`, with the figure that has its caption."""
 OUTLIER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
     *("expected", "deviation_sd", "candidates"),
@@ -162,10 +166,10 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             Chart(
                 f"slide_{name}",
                 "slides",
-                labels.FIGURES[f"slide_{name}"],
+                labels.FIGURES[caption],
                 says=_said(book.in_words(name, boat_type, NEWEST)),
             )
-            for name in TYPE_FIGURES
+            for name, caption in TYPE_FIGURES.items()
         ]
         listed_tows = Table(
             "type_boats", tows.filter(own), TOW_COLUMNS, say("Boats"), ["method"], search=True,

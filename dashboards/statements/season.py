@@ -55,7 +55,8 @@ def reproducibility(rows: pl.DataFrame, method: str) -> Statement | None:
         "reproducibility",
         say(
             "The random error of one tow is {now} % ({method}; 95 %: {low} to {high} %, "
-            "from {pairs} pairs); it was {then} % ({first})."
+            "from {pairs} pairs); it was {then} % ({first}). Within 2 % of each other lie "
+            "{share} % of the pairs; it was {share_then} %."
         ),
         {
             "now": Number(100 * now["sd_ratio"], 1, "%", low, high),
@@ -65,6 +66,8 @@ def reproducibility(rows: pl.DataFrame, method: str) -> Statement | None:
             "pairs": now["n_pairs"],
             "then": Number(100 * spread[first]["sd_ratio"], 1, "%"),
             "first": labels.method(first),
+            "share": Number(100 * now["share_within_2pct"], 0, "%"),
+            "share_then": Number(100 * spread[first]["share_within_2pct"], 0, "%"),
         },
         rests_on=("reproducibility",),
     )

@@ -1,6 +1,5 @@
 """Figures draw the columns they name, with units, whatever the frame holds."""
 
-import itertools
 import json
 import re
 from functools import cache
@@ -113,15 +112,6 @@ def test_a_method_of_one_s_own_is_drawn_and_changes_no_other_s_colour():
 def test_a_bar_that_leaves_the_log_out_is_dashed(name):
     text = json.dumps(specification(FIGURES[name], speaker("nl")))
     assert "datum.interval == 'runs_alone'" in text
-
-
-def test_statuses_are_told_apart_in_grey_print():
-    shades = english("statuses")["encoding"]["color"]["scale"]["range"]
-    greys = sorted(
-        0.299 * red + 0.587 * green + 0.114 * blue
-        for red, green, blue in (bytes.fromhex(shade[1:]) for shade in shades)
-    )
-    assert min(b - a for a, b in itertools.pairwise(greys)) > 25  # of 255
 
 
 def test_a_trace_says_why_it_was_cut():

@@ -27,6 +27,7 @@ SHOWN_ON = {
     "two_hours": {"boat", "audit"},
     "next_tow": {"boat", "audit"},
     "level": {"types", "type", "audit of a type"},
+    "slope": {"types", "type", "audit of a type"},
     "bends": {"types", "type", "audit of a type"},
 }
 """Pages, commands and documents that show a kind of statement."""
