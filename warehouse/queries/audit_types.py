@@ -243,7 +243,7 @@ WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
 """Rows of tows for which a column says yes, with the boat's name."""
 
 _STATISTICS: Final = {
-    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'",
+    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ?",
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
     "bends": "SELECT * FROM type_homogeneity WHERE method = ? AND boat_type = ?",
