@@ -108,6 +108,7 @@ COLUMNS: Final[dict[str, Sentence]] = {
     "messages": say("Reason"),
     "explaining": say("Against"),
     "n_boats": say("Boats"),
+    "runs_used": say("Runs used"),
     "n_pairs": say("Pairs"),
     "slope_lo": say("low"),
     "slope_hi": say("high"),

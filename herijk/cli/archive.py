@@ -8,7 +8,6 @@ from herijk.cli.options import (
     PATH,
     Seasons,
     data_option,
-    folders_here,
     json_option,
     show,
     show_files,
@@ -81,7 +80,6 @@ def simulate(
     type=PATH,
     required=False,
     envvar="HERIJK_ARCHIVE",
-    default=lambda: folders_here(Path.cwd()).get("archive"),
     help="The archive folder. Without it only the machine and the data folder are checked.",
 )
 @data_option

@@ -77,8 +77,6 @@ def main() -> None:
     """Runs the command; an error that a user can act on becomes one sentence and status 1."""
     os.environ.setdefault(BLAS_THREADS, "1")
     os.environ.setdefault(ARROW_MEMORY, "system")
-    if sys.getfilesystemencoding() != "utf-8":
-        _begin_in_utf8()
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C; it is what systemd sends
     try:
         with machine_faults_explained(Path(os.environ.get("HERIJK_DATA", "data"))):
@@ -104,15 +102,6 @@ def _stopped() -> NoReturn:
     said = tell("stopped, as it was told to. {} Run it again to go on", REASSURANCE)
     click.echo(f"herijk: {said}", err=True)
     sys.exit(INTERRUPTED)
-
-
-def _begin_in_utf8() -> NoReturn:
-    """Begins this command again with names of files in UTF-8, also for the processes it starts.
-
-    In an old locale `Tréwes 8h.csv` would be another name than the one in the list.
-    """
-    os.environ["PYTHONUTF8"] = "1"
-    os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])  # noqa: S606
 
 
 def _written_down(error: BaseException) -> str:

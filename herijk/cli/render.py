@@ -28,8 +28,16 @@ DIGITS: Final = {
 """Decimals by the ending of a column's name; 3 otherwise."""
 
 CHANGES: Final = {
-    *("cw_ratio", "power_ratio", "median_ratio", "lowest_ratio", "highest_ratio", "total"),
-    *("median_factor", "lowest_factor", "highest_factor", "cw_effect_ratio", "shift_ratio"),
+    *(
+        "cw_ratio",
+        "power_ratio",
+        "total",
+        "median_factor",
+        "lowest_factor",
+        "highest_factor",
+        "cw_effect_ratio",
+        "shift_ratio",
+    ),
 }
 """Columns with new over old, shown as a change in per cent."""
 

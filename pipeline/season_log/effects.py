@@ -15,7 +15,7 @@ A load cell that reads exp(phi) times the force adds phi to ln Cw and leaves q. 
 off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (method-details, 4).
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple, Self
@@ -173,49 +173,62 @@ def _always(tows: ArchiveTows, settings: Settings) -> Iterator[Effect]:
         yield Effect(name, None, 0, values, prior.sd, prior.mean)
 
 
-def _faults(tows: ArchiveTows, settings: Settings) -> Iterator[Effect]:
-    season, chance = tows.numbers("season"), settings.fault_chance
-    day = np.nan_to_num(tows.numbers("day"))
-    years = np.unique(season).astype(int).tolist()
-    for year in years:
-        mine = season == year
-        yield Effect(FORCE, year, 0, mine * 1.0, settings.force_fault_sd, chance=chance)
-        yield Effect(ZERO, year, 0, mine * 1.0, settings.zero_fault_n, chance=chance)
-        drift = _within(day, mine)
-        if drift.any():
-            yield Effect(ZERO_DRIFT, year, 0, drift, settings.zero_fault_n, chance=chance)
-    for year in years[1:]:
-        later = (season >= year) * 1.0
-        yield Effect(FLEET, year, 0, later, settings.fleet_fault_sd, chance=chance)
-    for place, (year, part) in enumerate(tows.logs.select(LOG).rows()):
-        mine = tows.log == place
-        drift = _within(day, mine)
-        if not drift.any():
-            continue
-        yield Effect(TREND, year, part, drift, settings.trend_fault_sd, chance=chance)
-        starts = _starts(day[mine])
-        names = tows.frame["tow_id"].to_numpy()
-        for start in starts:
-            first = names[mine & (day == start)].min()
-            after = (mine & (day >= start)) * 1.0
-            each = chance / len(starts)
-            yield Effect(CHANGE, year, part, after, settings.change_fault_sd, 0.0, each, first)
+Design = Callable[[FloatArray, FloatArray, BoolArray], list[FloatArray]]
+"""From the season and day of every tow and which are of one season or log, (tows,) each: how much
+each tow has of a fault there, (tows,); as many as there are places where it may begin."""
 
 
-def _within(day: FloatArray, mine: BoolArray) -> FloatArray:
-    """Where in its season a tow is, -1 to 1; 0 for other tows, and where all are of one day."""
-    span = np.ptp(day[mine]) if mine.any() else 0.0
+def _throughout(_season: FloatArray, _day: FloatArray, mine: BoolArray) -> list[FloatArray]:
+    return [mine.astype(np.float64)]
+
+
+def _from_then_on(season: FloatArray, _day: FloatArray, mine: BoolArray) -> list[FloatArray]:
+    """From a season on; not from the first."""
+    later = season >= season[mine].min()
+    return [] if later.all() else [later.astype(np.float64)]
+
+
+def _drifting(_season: FloatArray, day: FloatArray, mine: BoolArray) -> list[FloatArray]:
+    """From -1 to 1 in the course of a season; nothing where all tows are of one day."""
+    first, span = float(day[mine].min()), float(np.ptp(day[mine]))
     if span == 0.0:
-        return np.zeros(len(day))
-    return np.asarray(np.where(mine, 2.0 * (day - day[mine].min()) / span - 1.0, 0.0))
+        return []
+    return [mine * (2.0 * (day - first) / span - 1.0)]
 
 
-def _starts(day: FloatArray) -> list[float]:
-    """Days on which a log may have been replaced, with tows enough before and after."""
-    first = np.unique(day)
-    before = (day < first[:, None]).sum(axis=1)
-    enough = (before >= FEWEST_AFTER_CHANGE) & (len(day) - before >= FEWEST_AFTER_CHANGE)
-    return [float(d) for d in first[enough]]
+def _replaced(_season: FloatArray, day: FloatArray, mine: BoolArray) -> list[FloatArray]:
+    """From each day on that has tows enough before and after."""
+    after = [mine & (day >= start) for start in np.unique(day[mine])]
+    least, most = FEWEST_AFTER_CHANGE, mine.sum() - FEWEST_AFTER_CHANGE
+    return [share * 1.0 for share in after if least <= share.sum() <= most]
+
+
+FAULTS: Final[tuple[tuple[str, str, str, Design], ...]] = (
+    (FORCE, "season", "force_fault_sd", _throughout),
+    (ZERO, "season", "zero_fault_n", _throughout),
+    (ZERO_DRIFT, "season", "zero_fault_n", _drifting),
+    (FLEET, "season", "fleet_fault_sd", _from_then_on),
+    (TREND, "log", "trend_fault_sd", _drifting),
+    (CHANGE, "log", "change_fault_sd", _replaced),
+)
+"""Every fault that there may be: its name, what has one, its size in `Settings`, its design."""
+
+
+def _faults(tows: ArchiveTows, settings: Settings) -> Iterator[Effect]:
+    season, day = tows.numbers("season"), np.nan_to_num(tows.numbers("day"))
+    of = {
+        "season": [(y, 0, season == y) for y in np.unique(season).astype(int).tolist()],
+        "log": [(*log, tows.log == i) for i, log in enumerate(tows.logs.select(LOG).rows())],
+    }
+    names = tows.frame["tow_id"].to_numpy()
+    for name, whose, size, design in FAULTS:
+        for year, part, mine in of[whose]:
+            shares = design(season, day, mine)
+            for share in shares:
+                begins = day == day[share > 0.0].min() if name == CHANGE else None
+                first = None if begins is None else names[begins & (share > 0.0)].min()
+                sd, chance = getattr(settings, size), settings.fault_chance / len(shares)
+                yield Effect(name, year, part, share, sd, 0.0, chance, first)
 
 
 def ln_size(tows: ArchiveTows, column: str) -> FloatArray:

@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 import scipy
 
-from pipeline.arrays import BoolArray, FloatArray
+from pipeline.arrays import FloatArray
 from pipeline.model import Boats
 from pipeline.quantiles import LEVEL as INTERVAL_LEVEL
 from pipeline.season_log.boats import LEVEL, Patterns
@@ -64,7 +64,7 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
         pl.Series("askew_ratio", _askew(fitted)),
         pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
         pl.Series("dof", fitted.dof(level)),
-        _where(determined, "others_ln_ratio", others),
+        others_ln_ratio=pl.Series(np.where(determined, others, np.nan)).fill_nan(None),
     )
 
 
@@ -82,11 +82,6 @@ def _askew(fitted: Fit) -> FloatArray:
         there = (weight * (mean**2 + variance - variance**2 * own)).sum(axis=1)
         square[group.tow] = there
     return np.sqrt(square)
-
-
-def _where(known: BoolArray, name: str, values: FloatArray) -> pl.Series:
-    """A column of numbers, null where not known."""
-    return pl.Series(name, np.where(known, values, np.nan)).fill_nan(None)
 
 
 def best_estimates(

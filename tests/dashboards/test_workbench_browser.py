@@ -215,6 +215,9 @@ def test_every_control_has_a_name_for_who_cannot_see_it(page):
     assert page.locator("fieldset:not(:has(> legend))").count() == 0
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.className") == "skip"
+    page.evaluate("document.querySelectorAll('main figure').forEach(one => one.remove())")
+    assert site.barriers(page) == []
+    assert page.get_by_role("form", name="Keuzes").is_visible()
 
 
 def test_a_method_is_saved_once(page, bench):

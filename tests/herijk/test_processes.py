@@ -67,16 +67,3 @@ def test_what_systemd_stops_says_so(tmp_path: Path):
     assert run.stderr.lstrip().startswith(
         "herijk: stopped, as it was told to. What was there before"
     )
-
-
-def test_names_of_files_are_utf8_in_an_old_locale(tmp_path: Path):
-    locale = {"LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    run = subprocess.run(
-        [sys.executable, "-m", "herijk", "methods", "check", tmp_path / "Tréwes.toml"],
-        cwd=ROOT,
-        env=os.environ | locale,
-        capture_output=True,
-        check=False,
-    )
-    assert run.returncode == 1
-    assert "Tréwes.toml" in run.stderr.decode("utf-8")
