@@ -43,15 +43,19 @@ def _catalogue(language: str) -> NullTranslations:
         raise RuntimeError("texts are not compiled yet: run `make env`") from error
 
 
-class _InWords(Formatter):
-    """Fills in values, numbers with the decimal mark of a language."""
+class _WithComma:
+    """A number that is written with a decimal comma, whatever the format."""
 
-    def __init__(self, language: str) -> None:
-        self._decimal = DECIMALS[language]
+    __slots__ = ("_value",)
 
-    def format_field(self, value: object, format_spec: str) -> str:
-        text = str(super().format_field(value, format_spec))
-        return text.replace(".", self._decimal) if isinstance(value, Real) else text
+    def __init__(self, value: Real) -> None:
+        self._value = value
+
+    def __format__(self, form: str) -> str:
+        return format(self._value, form).replace(".", ",")
+
+    def __repr__(self) -> str:
+        return format(self)
 
 
 class Sentence(str):
@@ -76,6 +80,8 @@ class Sentence(str):
 
     def spoken(self, language: str) -> str:
         """The sentence in `en` or `nl`; in English where there is no Dutch."""
+        if language == "en":
+            return str(self)
         known = self.template, self.context, self.plural, self.number
         return _filled(_looked_up(language, *known), language, self.in_order, self.values)
 
@@ -96,10 +102,16 @@ def _filled(
 ) -> str:
     if not in_order and not values:
         return text
-    shown = tuple(spoken(value, language) for value in in_order)
-    named = {name: spoken(value, language) for name, value in values.items()}
-    form = text.format if language == "en" else partial(_InWords(language).format, text)
-    return form(*shown, **named)
+    shown = [_in_words(value, language) for value in in_order]
+    named = {name: _in_words(value, language) for name, value in values.items()}
+    return text.format(*shown, **named)
+
+
+def _in_words(value: object, language: str) -> object:
+    """What is filled in for a value, a number with the decimal mark of the language."""
+    if isinstance(value, str | Exception):
+        return spoken(value, language)
+    return _WithComma(value) if DECIMALS[language] == "," and isinstance(value, Real) else value
 
 
 def _sentence(
@@ -206,8 +218,14 @@ def cause_of(text: str) -> str:
     shared = {name: what.values[name] for name in _SHARED if name in what.values}
     return "".join(
         literal + ("" if name is None else str(shared.get(name, "…")))
-        for literal, name, _, _ in Formatter().parse(what.template)
+        for literal, name in _parts(what.template)
     )
+
+
+@cache
+def _parts(template: str) -> tuple[tuple[str, str | None], ...]:
+    """The literals of a template, each with the name of the value that follows it."""
+    return tuple((literal, name) for literal, name, _, _ in Formatter().parse(template))
 
 
 _SHARED: Final = ("column", "names", "unit", "found")

@@ -15,7 +15,7 @@ from warehouse.archive.plausibility.left_out import LEFT_OUT_S
 
 RATE_HZ = 20
 BOATS = 3
-FAULTS = 160
+FAULTS = 80
 SPEEDS = ("log1_m_s", "log2_m_s", "gps_m_s")
 KINDS = ("dropout", "not a number", "spike", "push", "dead", "gust", "vane", "rows")
 

@@ -236,7 +236,6 @@ def test_faulty_rows_of_registers_and_races(archive: Archive) -> None:
     ("cells", "why"),
     [
         ("43,89;4,44;31,60;2,35", "Cw is 31,60, but A 43,89 and B 4,44 give 60.97 at 2,35 m/s"),
-        ("31,60;2,35;43,89;2,35", "B must be higher"),
         ("31,60;2,10;43,89;2,35", "B must be higher"),
         ("31,60;4,44;48,39;2,35", "give 43.90"),
     ],
@@ -254,7 +253,7 @@ def test_a_printed_line_must_fit_its_own_curve(archive: Archive, cells: str, why
     assert register["fsn_no"].to_list() == ["FSN2", "FSN3", "FSN4"]
 
 
-@pytest.mark.parametrize(("time", "stream"), [("0:02:10", ""), ("21:30:25", ""), ("2:10:25", "20")])
+@pytest.mark.parametrize(("time", "stream"), [("0:02:10", ""), ("2:10:25", "20")])
 def test_a_race_at_no_boats_speed_is_set_aside(archive: Archive, time: str, stream: str) -> None:
     (archive.root / "wedstrijden/race_2016.csv").write_text(
         "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]\n"
@@ -338,13 +337,11 @@ def test_boats_on_which_two_lists_disagree_are_set_aside_with_both_places(
     [
         (BOATS, ["2014-001", "2014-002", "2014-003"]),
         (TOWS, []),
-        ("sleeplijsten/lampjes_2014.csv", []),
     ],
 )
 def test_a_list_on_which_herijk_fails_costs_that_list(
     archive: Archive, monkeypatch: pytest.MonkeyPatch, path: str, lost: list[str]
 ) -> None:
-    (archive.root / "sleeplijsten/lampjes_2014.csv").write_text("sleep_id;run;van;tot\n")
     real = reading.date_order
 
     def fails(cells: list[str]) -> str:
@@ -366,15 +363,3 @@ def test_a_list_on_which_herijk_fails_costs_that_list(
     assert (of_list.path, of_list.reason_code) == (path, "unforeseen")
     assert "planted" in of_list.trace
     assert [f.tow_id for f in faults if f is not of_list and f.tow_id] == lost
-
-
-@pytest.mark.parametrize("error", [MemoryError, KeyboardInterrupt])
-def test_what_is_no_fault_of_ours_stops_the_reading_of_lists(
-    archive: Archive, monkeypatch: pytest.MonkeyPatch, error: type[BaseException]
-) -> None:
-    def fails(cells: list[str]) -> str:
-        raise error
-
-    monkeypatch.setattr(reading, "date_order", fails)
-    with pytest.raises(error):
-        archive.scan()

@@ -13,7 +13,7 @@ from warehouse.archive.files.list_kinds import TOWS
 from warehouse.archive.files.names import PARTS, PROFILE_FILE
 from warehouse.archive.lists import tows as tow_list
 from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.profile.plan import Plan
+from warehouse.archive.profile.season import Plan
 from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.sheets.row import ListRow
 

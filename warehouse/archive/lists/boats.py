@@ -1,6 +1,6 @@
 """The boats of the archive: `sloependata.csv`, or several lists of boats."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,7 +15,7 @@ from pipeline.tables.row import Row
 from warehouse.archive.faults import Fault, fault_from, place
 from warehouse.archive.files.finding import list_files
 from warehouse.archive.files.list_kinds import BOATS
-from warehouse.archive.sheets.reading import read_list
+from warehouse.archive.sheets.reading import CREW, read_list
 from warehouse.archive.sheets.row import ListRow, others_of
 from warehouse.archive.spelling.synonyms import NO_TYPE
 from warehouse.archive.spelling.text import fold, fold_word
@@ -49,40 +49,36 @@ class Boats:
 
     def frame(self) -> pl.DataFrame:
         """The good boats, a row for each crew that rows them, in the order of the list."""
-        rows = [{**boat, **self.good[boat["fsn_no"]], **_crew_of(boat)} for boat in self.crews]
+        rows = [self.good[boat["fsn_no"]] | {key: boat[key] for key in CREW} for boat in self.crews]
         return frame_of(ListedBoats, rows).unique(maintain_order=True)
 
     def find(self, fsn_no: str) -> Row | None:
         """A boat by its number or a name; leading zeros do not matter where one boat is left."""
         if fsn_no in self.good:
             return self.good[fsn_no]
-        numbers = self._by_bare_number.get(_bare(fsn_no))
-        alike = numbers or sorted(self._by_name.get(fold(fsn_no), ()))
-        return self.good[alike[0]] if len(alike) == 1 else None
+        alike = self._by_bare_number.get(_bare(fsn_no)) or self._by_name.get(fold(fsn_no), set())
+        return self.good[next(iter(alike))] if len(alike) == 1 else None
 
     @cached_property
     def _by_name(self) -> Mapping[str, set[str]]:
         """The numbers of the boats that have or had a name, by that name folded."""
-        boats: dict[str, set[str]] = {}
-        for boat in self.crews:
-            boats.setdefault(fold(boat["name"]), set()).add(boat["fsn_no"])
-        return boats
+        return _grouped((fold(boat["name"]), boat["fsn_no"]) for boat in self.crews)
 
     @cached_property
-    def _by_bare_number(self) -> Mapping[str, Sequence[str]]:
+    def _by_bare_number(self) -> Mapping[str, set[str]]:
         """The numbers of the good boats, by the number without leading zeros."""
-        numbers: dict[str, list[str]] = {}
-        for number in self.good:
-            numbers.setdefault(_bare(number), []).append(number)
-        return numbers
+        return _grouped((_bare(number), number) for number in self.good)
+
+
+def _grouped(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
+    numbers: dict[str, set[str]] = {}
+    for key, number in pairs:
+        numbers.setdefault(key, set()).add(number)
+    return numbers
 
 
 def _bare(fsn_no: str) -> str:
     return fsn_no.removeprefix("FSN").lstrip("0")
-
-
-def _crew_of(boat: Row) -> Row:
-    return {"rowers": boat["rowers"], "crew_class": boat["crew_class"]}
 
 
 def read_boats(root: Path, wording: Wording) -> Boats:

@@ -14,7 +14,7 @@ from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from pipeline.tables.row import Row
 from warehouse.archive.files.list_kinds import TOWS
-from warehouse.archive.profile.plan import Plan
+from warehouse.archive.profile.season import Plan
 from warehouse.archive.sheets.row import DefectiveRowError, ListRow, run_number
 from warehouse.archive.spelling.synonyms import ALL_RUNS
 from warehouse.archive.spelling.text import fold_word, shorten
@@ -70,7 +70,6 @@ def read_tow(
     Raises:
         DefectiveInputError: `bad_list_row` with the line.
     """
-    row.check_whole()
     tow_id = row.text("tow_id")
     if not _TOW_ID.fullmatch(tow_id):
         message = say("'{tow}' cannot be a sleep_id: it is too long, or has a slash.")

@@ -23,8 +23,13 @@ from pipeline.channels import (
     TARGET_SPEED_RATIOS,
 )
 from warehouse.archive.files.names import STANDS_FOR
-from warehouse.archive.profile.plan import STANDARD, Plan
-from warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS, SeasonProfile
+from warehouse.archive.profile.season import (
+    MAY_BE_ABSENT,
+    SAMPLE_COLUMNS,
+    STANDARD,
+    Plan,
+    SeasonProfile,
+)
 from warehouse.archive.spelling.columns import Column
 from warehouse.archive.spelling.headers import split_header
 from warehouse.archive.spelling.text import fold, fold_word
@@ -118,6 +123,9 @@ class _ProfileTable(_Strict):
             if find_scale(_DIMENSIONS[channel], unit) is None:
                 raise ValueError(f"units.{channel}: [{unit}] is not one of {sorted(known)}")
         return self
+
+
+_NO_PROFILE: Final = _ProfileTable.model_validate({"seasons": "0"})
 
 
 class _PlanTable(_Strict):
@@ -252,7 +260,7 @@ class Profiles(_Strict):
 
     def _table(self, season: int) -> _ProfileTable:
         given = (t for t in self.profile if t.seasons[0] <= season <= t.seasons[1])
-        return next(given, None) or _ProfileTable.model_validate({"seasons": str(season)})
+        return next(given, _NO_PROFILE)
 
     def _columns(self, table: _ProfileTable) -> tuple[Column, ...]:
         absent = {channel for name in table.absent for channel in MAY_BE_ABSENT[name]}

@@ -11,7 +11,7 @@ import polars as pl
 
 from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
-from pipeline.messages import say
+from pipeline.messages import innermost, say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import column_of, limits
 from warehouse.archive.faults import at_line
@@ -47,7 +47,8 @@ class Reading:
         is_told: `archief.toml` says which mark that is.
         table: declares the type and the limits of each value.
         sheet: the sheet, where a workbook has several.
-        known: the values of cells that were read, by column and spelling.
+        known: the values of cells that were read, or what is wrong with them, by column and
+            spelling.
     """
 
     columns: Mapping[str, FoundColumn]
@@ -252,10 +253,17 @@ class ListRow:
         It is None where the cell is empty, which it may be if the table or the header can do
         without the column.
         """
-        spelling = column.key, self.cells.get(column.key)
-        if spelling not in self.reading.known:
-            self.reading.known[spelling] = self._read(column)
-        return self.reading.known[spelling]
+        spelling, known = (column.key, self.cells.get(column.key)), self.reading.known
+        if spelling not in known:
+            try:
+                known[spelling] = self._read(column)
+            except DefectiveInputError as error:
+                known[spelling] = error
+                raise
+        value = known[spelling]
+        if isinstance(value, DefectiveInputError):
+            raise self.fault(innermost(value.message), value.reason_code)
+        return value
 
     def _read(self, column: Column) -> Any:
         declared = column_of(self.reading.table, column.key)

@@ -17,15 +17,14 @@ LONGEST_QUOTE: Final = 40
 
 
 def decode(data: bytes) -> str:
-    """The text of a file in UTF-8 or UTF-16 (with or without BOM) or Windows-1252.
+    """The text of a file in UTF-8 (with or without BOM), UTF-16 with BOM, or Windows-1252.
 
     Raises:
         DefectiveInputError: `unreadable_file` for anything else, and for an empty file.
     """
     if not data.strip():
         raise DefectiveInputError("unreadable_file", say("The file is empty."))
-    encodings = _encodings(data)
-    for encoding in encodings:
+    for encoding in _encodings(data):
         try:
             return data.decode(encoding)
         except UnicodeDecodeError:
@@ -37,16 +36,10 @@ def decode(data: bytes) -> str:
 
 
 def _encodings(data: bytes) -> tuple[str, ...]:
-    """What the bytes can be: text of Latin letters in UTF-16 has a zero in every other."""
+    """What the bytes can be; no text has a zero byte, but for UTF-16 with its mark."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return ("utf-16",)
-    start = data[:2000]
-    zeros = [start[place::2].count(0) for place in (0, 1)]
-    if not any(zeros):
-        return ("utf-8-sig", "cp1252") if 0 not in data else ()
-    if len(start) < 20 or max(zeros) < len(start) // 4 or min(zeros) > 0:
-        return ()
-    return ("utf-16-be",) if zeros[0] else ("utf-16-le",)
+    return () if 0 in data else ("utf-8-sig", "cp1252")
 
 
 def is_separator_line(line: str) -> bool:
@@ -75,6 +68,8 @@ def split_line(line: str, delimiter: str) -> list[str]:
     """
     if delimiter == " ":
         return line.split()
+    if line and len(line) < csv.field_size_limit() and '"' not in line and "\r" not in line:
+        return line.split(delimiter)  # as `csv` does, in a tenth of the time
     try:
         return next(csv.reader(io.StringIO(line), delimiter=delimiter, strict=True), [])
     except csv.Error as error:
