@@ -91,6 +91,8 @@ def _spoken(value: Value, speech: Speech) -> object:
         return "; ".join(str(_spoken(one, speech)) for one in value)
     if isinstance(value, dt.date):
         return speech.day(value)
+    if isinstance(value, Sentence):
+        return speech.say(value)
     return value(speech) if callable(value) else value
 
 

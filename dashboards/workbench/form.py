@@ -85,15 +85,11 @@ def control(step: str, option: str, rule: dict[str, Any]) -> Control:
         return Control(step, option, "choice", (False, True))
     if rule.get("type") == "array" and "enum" in rule["items"]:
         return Control(step, option, "several", rule["items"]["enum"])
-    # A bound that is itself excluded is one step away.
-    low, above = rule.get("minimum"), rule.get("exclusiveMinimum")
-    high, below = rule.get("maximum"), rule.get("exclusiveMaximum")
-    least, most = (low if above is None else above), (high if below is None else below)
+    least, most = rule.get("minimum"), rule.get("maximum")
     if rule.get("type") not in ("number", "integer") or least is None or most is None:
         return Control(step, option, "fixed")
     whole = rule["type"] == "integer"
     by = 1 if whole else 10.0 ** floor(log10((most - least) / POSITIONS))
-    least, most = least + by * (above is not None), most - by * (below is not None)
     return Control(step, option, "number", (), least, most, by, whole)
 
 

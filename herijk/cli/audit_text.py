@@ -111,6 +111,7 @@ BOAT: Final = {
         say("Its place among the other boats of its type"),
         "tow_id quantity value expected deviation_sd outside candidates",
     ),
+    "pooled": (say("If it shared its type's bend"), "tow_id pooling b_m_s cw_kg_m"),
     "slow_tows": (say("Slow tow"), "tow_id declared_speed_m_s power_w slow"),
     "repeat_pairs": (
         say("Its repeat tows (E_n above 1: they disagree)"),
@@ -309,7 +310,15 @@ STEPS: Final = {
         say("Can all boats have the same bend?"),
         "n p_value power_at_10pct noise_share equal_possible reason",
     ),
+    "speed_trend": (
+        say("Does the bend q = (v/B)^2 / (1 - (v/B)^2) follow the tow speed?"),
+        "n slope slope_lo slope_hi follows reason",
+    ),
     "hull_speed": (say("Is B hull speed?"), "n b_ratio b_ratio_lo b_ratio_hi tow_ratio"),
+    "shared": (
+        say("If like boats shared one bend: B, and the most that Cw would move at 115 %"),
+        "pooling n median_b_m_s b_sd_ratio most_115 most_fsn_no",
+    ),
     "outside": (
         say("Boats outside their type"),
         "fsn_no name tow_id quantity value expected deviation_sd",

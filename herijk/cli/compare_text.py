@@ -174,15 +174,24 @@ def _group(group: Group) -> str:
     )
 
 
+FATIGUE: Final = {
+    "none": say("Races, not corrected for fatigue: "),
+    "known": say("Races, corrected for fatigue as published: "),
+    "extend": (
+        say("Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): ")
+    ),
+}
+
+
 def _races(report: DiffReport) -> str:
-    if report.races is None or report.winners is None:
+    if report.races is None or report.race_rules is None or report.winners is None:
         return tell("Races: the archive holds none.")
     ranked = [r for r in report.races if r["new_rank"] is not None]
     moved = [r for r in ranked if r["old_rank"] != r["new_rank"]]
     text = tell(
-        "Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): {} "
-        "results, {} of them ranked by both editions: {} change rank among those, {} on or off the "
-        "podium.",
+        "{}{} results, {} of them ranked by both editions: {} change rank among those, "
+        "{} on or off the podium.",
+        tell(FATIGUE[report.race_rules.fatigue]),
         len(report.races),
         len(ranked),
         len(moved),

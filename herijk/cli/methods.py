@@ -107,8 +107,14 @@ def new(name: str, base: str, data: Path, as_json: bool) -> None:
 @argument("old", help="An edition or draft, or a method by its name or file.")
 @argument("new", help="What it is compared with, of the same kinds.")
 @data_option
+@option(
+    "--fatigue",
+    type=click.Choice(["none", "known", "extend"]),
+    default="extend",
+    help="Fatigue correction of races between editions: none, known (2 to 3 h only) or extend.",
+)
 @json_option
-def compare(old: str, new: str, data: Path, as_json: bool) -> None:
+def compare(old: str, new: str, data: Path, fatigue: str, as_json: bool) -> None:
     """Two editions or methods side by side: who gains, who loses, and why.
 
     Published editions are compared as they are, with races. For a draft, a method or a method file
@@ -120,13 +126,16 @@ def compare(old: str, new: str, data: Path, as_json: bool) -> None:
 
     store = Store(data)
     if {old, new} <= {*edition_names(store)}:
-        show(_editions(store, old, new), text.editions, as_json)
+        show(_editions(store, old, new, fatigue), text.editions, as_json)
         return
     show(text.of_methods(store, old, new), text.methods, as_json)
 
 
-def _editions(store: "Store", old: str, new: str) -> "DiffReport":
-    from pipeline.register.replay import RaceRules
+def _editions(store: "Store", old: str, new: str, fatigue: str) -> "DiffReport":
+    from typing import cast
+
+    from pipeline.register.replay import Fatigue, RaceRules
     from warehouse.editions.compare import diff, report_with_races
 
-    return report_with_races(store, diff(store, old, new), RaceRules())
+    rules = RaceRules(fatigue=cast(Fatigue, fatigue))
+    return report_with_races(store, diff(store, old, new), rules)

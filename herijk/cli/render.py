@@ -47,7 +47,7 @@ SHARES: Final = re.compile("share|_sd_ratio|^sd_|u_ratio|rmse|most_|r2|at_10pct|
 CODES: Final = {
     *("status", "reason", "change", "source", "step", "component", "kind", "scope", "cause"),
     *("quantity", "explaining", "within", "speed_reason", "instrument", "verdict", "log"),
-    *("reason_code", "lost", "shared", "flags", "cut_reason", "check"),
+    *("reason_code", "lost", "pooling", "shared", "flags", "cut_reason", "check"),
 }
 """Columns that hold codes, shown in words."""
 
@@ -61,6 +61,11 @@ HEADS: Final = {
     "fitted_cw_kg_m": say("curve"),
     "speed_factor": say("factor"),
     "cw_effect_ratio": say("Cw"),
+    "pooling": say("bend"),
+    "median_b_m_s": say("median B [m/s]"),
+    "b_sd_ratio": say("spread of B"),
+    "most_115": say("most that Cw moves"),
+    "most_fsn_no": say("of boat"),
     "follows": say("follows"),
     "equal_possible": say("possible"),
     "n_disagree": say("disagree"),

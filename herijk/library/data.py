@@ -25,7 +25,10 @@ class DataFolder:
     @property
     def tables(self) -> dict[str, str]:
         """The tables by name, each with what a row of it is."""
-        query = "SELECT table_name, comment FROM duckdb_tables() ORDER BY table_name"
+        query = """
+SELECT table_name, comment FROM duckdb_tables()
+UNION ALL SELECT view_name, comment FROM duckdb_views() WHERE NOT internal ORDER BY ALL
+"""
         return dict(self.sql(query).rows())
 
     def table(self, name: str) -> pl.DataFrame:

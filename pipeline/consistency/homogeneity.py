@@ -1,4 +1,4 @@
-"""Equal boats, equal B? A test, its power, and the bend that fits all boats of a type best.
+"""Equal boats, equal B? A test, its power, and what the register would be if boats shared a bend.
 
 Boats of a type may differ in the height of their curve; asked is whether they differ in its bend
 beyond one shape that all share and what class explains. Scatter of the runs is relative and
@@ -7,18 +7,22 @@ method caps it. The load cell's zero differs by `ZERO_N` from tow to tow; it loo
 tests and power take points of a tow as correlated by it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Self
 
 import numpy as np
+import polars as pl
 import scipy
 
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.consistency.observed import UNKNOWN_TYPE, Observed, newest
+from pipeline.consistency import mixed
+from pipeline.consistency.observed import UNKNOWN_TYPE, Observed, newest, q_at
 from pipeline.tables.consistency import TypeHomogeneity
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
+from pipeline.tables.keys import LINE
 from pipeline.tables.row import Row
 
 LEVEL: Final = 0.05
@@ -31,6 +35,8 @@ POWER_AT: Final = 0.10
 
 ZERO_N: Final = 2.0
 """Standard deviation of the load cell's zero from tow to tow [N] (inferred)."""
+
+SPEED_RATIOS: Final = {"cw_085_kg_m": 0.85, "cw_kg_m": 1.0, "cw_115_kg_m": 1.15}
 
 BEND_BOUNDS: Final = (-2.0, 0.999)
 """Limits of the shared s, as a share of the s that puts B on the fastest point."""
@@ -46,6 +52,8 @@ SAME_COLUMN: Final = 1e-9
 
 BEND_MARGIN: Final = 1e-3
 """The minimum lies within this of the one that a plain search gives."""
+
+OWN, PARTIAL, SHARED = "own", "partial", "shared"
 
 
 def shared_bend(boats: Observed) -> float:
@@ -273,3 +281,88 @@ def power(seen: FloatArray, dof: tuple[int, int]) -> float:
 def _middle_speed(boats: Observed) -> float:
     """The median declared speed, at which bends of a type are compared."""
     return float(np.median(boats.column("declared_speed_m_s")))
+
+
+def _bend_priors(types: Sequence[tuple[Observed, float]]) -> list[tuple[float, float] | None]:
+    """Mean of q at the middle speed of each type, and its true sd between boats (REML).
+
+    None where the search for that did not come to rest.
+
+    Args:
+        types: boats of a type, and the scatter of a run.
+    """
+    problems = []
+    for boats, sigma in types:
+        q, unit = q_at(boats, _middle_speed(boats))
+        known = np.isfinite(q)
+        hull = boats.table["hull"].to_numpy()[known]
+        problems.append(mixed.Problem(q[known], unit[known] * sigma**2, np.ones(len(hull)), hull))
+    fits = mixed.fit_all(problems, (mixed.BOAT,))
+    return [(float(fit.beta[0]), fit.sd[0]) if fit else None for fit in fits]
+
+
+def pooled_curves(observed: Observed) -> pl.DataFrame:
+    """The register if boats of a type kept their own bend, shared it in part, or wholly.
+
+    In part: q at the standard speed is drawn to the type's mean, the more the noisier it is
+    (empirical Bayes). Heights are fitted anew to the runs, so Cw near the tow hardly moves.
+
+    Returns:
+        Rows of the table `pooled_curves`, three per method and tow; of types of fewer than three
+        boats, and boats of no type, only the own curve. Where the search for the spread of a type's
+        bends did not come to rest, none is shared in part.
+    """
+    boats = newest(observed)
+    groups = boats.groups("method", "boat_type")
+    alike = {
+        key: (own, float(own.column("run_sd_ratio")[0]))
+        for key, own in groups
+        if key[1] != UNKNOWN_TYPE and own.table["fsn_no"].n_unique() >= FEWEST_BOATS
+    }
+    priors = dict(zip(alike, _bend_priors(list(alike.values())), strict=True))
+    speed, partial, shared = np.full((3, boats.table.height), np.nan)
+    for (key, own), (_, rows) in zip(groups, boats.rows_by("method", "boat_type"), strict=True):
+        speed[rows] = _middle_speed(own)
+        if key in priors:
+            shared[rows] = shared_bend(own)
+            if (prior := priors[key]) is not None:
+                partial[rows] = _drawn(own, *prior)
+    parts = [
+        _pooled(boats.take(rows), pooling, s[rows], speed[rows])
+        for pooling, s in ((OWN, boats.column("s_s2_m2")), (PARTIAL, partial), (SHARED, shared))
+        for rows in [np.flatnonzero(~np.isnan(s))]
+    ]
+    return pl.concat(parts).sort("method", "boat_type", maintain_order=True)
+
+
+def _drawn(boats: Observed, mean: float, between: float) -> FloatArray:
+    """The s of each boat of a type with its q drawn to the mean of the type."""
+    speed = _middle_speed(boats)
+    q, unit = q_at(boats, speed)
+    noise = unit * boats.column("run_sd_ratio") ** 2
+    share = between**2 / np.maximum(between**2 + noise, 1e-300)
+    drawn = mean + np.where(np.isfinite(q), share * (q - mean), 0.0)
+    ceiling = 0.999 / np.where(boats.points.used, boats.points.speed_m_s, 0.0).max(axis=1) ** 2
+    return np.asarray(np.minimum(drawn / (1.0 + drawn) / speed**2, ceiling))
+
+
+def _pooled(boats: Observed, pooling: str, s: FloatArray, speed_m_s: FloatArray) -> pl.DataFrame:
+    a = height_given_bend(boats.points, s)
+    declared = boats.column("declared_speed_m_s")
+    q = curve.cw(1.0, s, speed_m_s) - 1.0
+    b = np.where(s > 0, 1.0 / np.sqrt(np.where(s > 0, s, 1.0)), np.inf)
+    numbers = {"q": q, "a_kg_m": a, "b_m_s": b} | {
+        name: curve.cw(a, s, ratio * declared) for name, ratio in SPEED_RATIOS.items()
+    }
+    return boats.table.select(
+        "method",
+        "tow_id",
+        *LINE,
+        "boat_type",
+        pl.lit(pooling).alias("pooling"),
+        pl.Series("standard_speed_m_s", speed_m_s),
+        *(
+            pl.Series(name, np.where(np.isfinite(v), v, np.nan)).fill_nan(None)
+            for name, v in numbers.items()
+        ),
+    )

@@ -215,3 +215,13 @@ def bend_at(observed: Observed, speed_m_s: FloatArray | float) -> tuple[FloatArr
     stretch = (speed_m_s / observed.column("declared_speed_m_s")) ** 2
     stretch = stretch / (1.0 + observed.column("q")) ** 2
     return r, stretch * stretch * observed.column("q_unit_variance")
+
+
+def q_at(observed: Observed, speed_m_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
+    """Bend q at a common speed and its variance for a run scatter of 1; NaN where v >= B."""
+    s, declared = observed.column("s_s2_m2"), observed.column("declared_speed_m_s")
+    r = s * speed_m_s**2
+    below = r < 1.0
+    q = np.where(below, r / np.where(below, 1.0 - r, 1.0), np.nan)
+    stretch = (speed_m_s / declared * (1.0 + q) / (1.0 + observed.column("q"))) ** 2
+    return q, stretch * stretch * observed.column("q_unit_variance")

@@ -19,7 +19,9 @@ from pipeline.consistency.observed import (
     newest,
 )
 from pipeline.quantiles import NORMAL, t_quantile
-from pipeline.tables.consistency import PredictedCw
+from pipeline.tables.consistency import PredictedCw, PredictionError
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
 from pipeline.tables.keys import LINE
 
 FEWEST_BOATS_PER_COLUMN: Final = 3
@@ -99,3 +101,26 @@ def _columns(fleet: Observed) -> FloatArray:
         if len(values) and np.sqrt((rest**2).mean()) > 1e-6:
             kept = np.column_stack([kept, values - values.mean()])
     return kept
+
+
+def prediction_error(predicted: pl.DataFrame) -> dy.DataFrame[PredictionError]:
+    """Cross-validated error of the prediction, next to the uncertainty of a tow, per method.
+
+    Args:
+        predicted: rows of `predicted_cw`.
+
+    Returns:
+        Rows of the table `prediction_error`.
+    """
+    known = predicted.drop_nulls("ln_ratio")
+    rows = [
+        {
+            "method": method,
+            "n": group.height,
+            "n_boats": group["fsn_no"].n_unique(),
+            "rmse_ratio": float(np.sqrt((group["ln_ratio"].to_numpy() ** 2).mean())),
+            "tow_sd_ratio": float(np.sqrt((group["cw_sd_ratio"].to_numpy() ** 2).mean())),
+        }
+        for (method,), group in known.sort("method").group_by("method", maintain_order=True)
+    ]
+    return frame_of(PredictionError, rows)

@@ -3,11 +3,12 @@
 import polars as pl
 
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
-from pipeline.consistency.homogeneity import type_homogeneity
+from pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
 from pipeline.consistency.lines import type_lines
 from pipeline.consistency.observed import Observed
 from pipeline.consistency.outliers import type_outliers
-from pipeline.consistency.prediction import predicted_cw
+from pipeline.consistency.prediction import predicted_cw, prediction_error
+from pipeline.consistency.tow_speed import speed_trend
 
 
 def line_tables(observed: Observed) -> dict[str, pl.DataFrame]:
@@ -18,11 +19,14 @@ def line_tables(observed: Observed) -> dict[str, pl.DataFrame]:
 
 def type_tables(observed: Observed) -> dict[str, pl.DataFrame]:
     """The other statistics of boats of a type, for all methods."""
-    compared = compared_tows(observed)
+    compared, predicted = compared_tows(observed), predicted_cw(observed)
     return {
         "compared_tows": compared,
         "hull_speed": hull_speed_statistics(compared),
         "type_outliers": type_outliers(observed),
         "type_homogeneity": type_homogeneity(observed),
-        "predicted_cw": predicted_cw(observed),
+        "pooled_curves": pooled_curves(observed),
+        "speed_trend": speed_trend(observed),
+        "predicted_cw": predicted,
+        "prediction_error": prediction_error(predicted),
     }

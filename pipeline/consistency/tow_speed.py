@@ -1,4 +1,7 @@
-"""What a slow tow does to race power: its curve is used at speeds at which it was never towed."""
+"""Does the bend of a curve follow the speed of the tow? If the hyperbola is true, it does not.
+
+And what a slow tow does to race power: its curve is used at speeds at which it was never towed.
+"""
 
 from collections.abc import Mapping
 from typing import Final
@@ -8,19 +11,26 @@ import polars as pl
 
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
+from pipeline.consistency import mixed
 from pipeline.consistency.homogeneity import height_given_bend, shared_bend
+from pipeline.consistency.mixed import Problem
 from pipeline.consistency.observed import (
+    ALL_TYPES,
     UNKNOWN_TYPE,
     Observed,
     counts_at,
     curve_anywhere,
     newest,
+    q_at,
 )
 from pipeline.history import SLOW_POWER_W
 from pipeline.hull import hull_speed_m_s
 from pipeline.races.race import mean_speed_m_s, power_per_rower_w
-from pipeline.tables.consistency import SlowTows
+from pipeline.tables.consistency import SlowTows, SpeedTrend
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
 from pipeline.tables.keys import LINE
+from pipeline.tables.row import Row
 
 BORDERLINE_POWER_W: Final = {"H": 70.0, "D": 40.0}
 RACED_POWER_W: Final = {"H": 100.0, "D": 57.0}
@@ -31,6 +41,7 @@ MIDDLE_RATIO: Final = (0.67, 0.80)
 """Tow speed / hull speed: between these "the curve is relatively flat", below it the wave
 resistance rises (Cw-kromme, R. Pot 2015, "Totale weerstand")."""
 
+FEWEST_BOATS: Final = 4
 FEWEST_OTHERS: Final = 2
 
 
@@ -39,6 +50,57 @@ def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> 
     limit = pl.col("crew_class").replace_strict(limits, return_dtype=pl.Float64)
     slow = table.select((pl.col("power_w") < limit).fill_null(value=False)).to_series()
     return slow.to_numpy()
+
+
+def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
+    """Trend of the bend q at a type's standard speed with the speed of the tow.
+
+    Per type and over all types, each about its own level. The trend is per unit of ln v0; 0.1 of
+    it is what 10 % of tow speed does to q.
+
+    Returns:
+        Rows of the table `speed_trend`.
+    """
+    boats = newest(observed)
+    rows: list[Row] = []
+    to_fit: list[tuple[Row, Problem]] = []
+    for (method,), fleet in boats.groups("method"):
+        typed = {t: own for (t,), own in fleet.rows_by("boat_type") if t != UNKNOWN_TYPE}
+        every = np.concatenate([np.zeros(0, np.int64), *typed.values()])
+        for boat_type, own in [*typed.items(), (ALL_TYPES, every)]:
+            facts, problem = _trend(fleet.take(own))
+            rows.append({"method": method, "boat_type": boat_type} | facts)
+            if problem is not None:
+                to_fit.append((rows[-1], problem))
+    fits = mixed.fit_all([problem for _, problem in to_fit], (mixed.BOAT,))
+    for (row, _), fit in zip(to_fit, fits, strict=True):
+        if fit is None:
+            row["reason"] = "not_settled"
+            continue
+        slope, lo, hi = (float(e[-1]) for e in fit.coefficients())
+        row |= {"slope": slope, "slope_lo": lo, "slope_hi": hi}
+    return frame_of(SpeedTrend, rows)
+
+
+def _trend(boats: Observed) -> tuple[Row, Problem | None]:
+    """How many tows a trend is of, and its problem; without one, why."""
+    median = pl.col("declared_speed_m_s").median().over("boat_type")
+    speed = boats.table.select(median).to_series().to_numpy()
+    q, unit = q_at(boats, speed)
+    known = np.isfinite(q)
+    hull, boat_type = (boats.table[name].to_numpy()[known] for name in ("hull", "boat_type"))
+    types = (boat_type[:, None] == np.unique(boat_type)).astype(np.float64)
+    n_boats = boats.table["fsn_no"].to_frame().filter(pl.Series(known)).n_unique()
+    counts = {"n": len(hull), "n_boats": n_boats}
+    if n_boats < max(FEWEST_BOATS, types.shape[1] + 2):
+        return counts | {"reason": "few_boats"}, None
+    x = np.log(boats.column("declared_speed_m_s") / speed)[known]
+    centred = x - types @ np.linalg.lstsq(types, x)[0]
+    if np.abs(centred).max() < 1e-9:
+        return counts | {"reason": "equal_values"}, None
+    variance = unit * boats.column("run_sd_ratio") ** 2
+    columns = np.column_stack([types, centred])
+    return counts | {"reason": ""}, Problem(q[known], variance[known], columns, hull)
 
 
 def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:

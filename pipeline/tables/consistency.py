@@ -121,6 +121,36 @@ class TypeHomogeneity(PerMethod):
     reason = column.text("why there is no test: no_type, few_boats, no_scatter; else empty")
 
 
+class PooledCurves(PerCrewTow):
+    """The register if boats of a type kept their bend (own), shared it in part, or wholly."""
+
+    boat_type = column.text("type of boat, or unknown")
+    pooling = column.text(
+        "own, partial or shared", primary_key=True, regex="^(own|partial|shared)$"
+    )
+    standard_speed_m_s = column.speed("common speed of q")
+    q = column.optional("1", "bend at the standard speed")
+    a_kg_m = column.optional("kg/m", "A")
+    b_m_s = column.optional("m/s", "B; empty where it is not determined")
+    cw_085_kg_m = column.optional("kg/m", "Cw at 85 % of the declared speed")
+    cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
+    cw_115_kg_m = column.optional("kg/m", "Cw at 115 % of the declared speed")
+
+
+class SpeedTrend(PerMethod):
+    """Does the bend follow the speed of the tow? If the hyperbola is true, it does not."""
+
+    boat_type = column.text(
+        "type of boat, or all: all types, each about its level", primary_key=True
+    )
+    n = column.count("tows: the newest of each boat and crew")
+    n_boats = column.count("boats")
+    slope = column.optional("1", "change of q at the standard speed per ln of tow speed")
+    slope_lo = column.lower("1")
+    slope_hi = column.upper("1")
+    reason = column.text("why there is no trend: few_boats, equal_values, not_settled; else empty")
+
+
 class SlowTows(PerCrewTow):
     """Tows made with little power or raced beyond their curve, and race power by their curve.
 
@@ -213,3 +243,12 @@ class PredictedCw(PerCrewTow):
     ln_ratio = column.optional("1", "ln of the tow's Cw / the predicted")
     disagrees = column.flag("differs by more than both uncertainties", nullable=True)
     reason = column.text("why there is no prediction: few_boats, not_settled; else empty")
+
+
+class PredictionError(PerMethod):
+    """Cross-validated error of the prediction, boats left out one by one."""
+
+    n = column.count("boats and crews predicted")
+    n_boats = column.count("boats")
+    rmse_ratio = column.number("1", "root mean square of ln tow / predicted", min=0)
+    tow_sd_ratio = column.number("1", "of which uncertainty of the tow itself", min=0)

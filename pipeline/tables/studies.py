@@ -3,7 +3,6 @@
 from pipeline.tables import column
 from pipeline.tables.bases import PerMethod, PerRun, PerTow
 from pipeline.tables.declare import dy
-from pipeline.tables.severity import SEVERITY_PATTERN
 
 
 class CorrectionSteps(dy.Schema):
@@ -18,20 +17,6 @@ class CorrectionSteps(dy.Schema):
         "1", "Cw after / before the step; they multiply to the total", min_exclusive=0
     )
     cw_kg_m = column.number("kg/m", "Cw at the declared speed after the step")
-
-
-class SeasonLadder(dy.Schema):
-    """The ladder per season: what each step does to Cw on average."""
-
-    from_method = column.text("method the ladder begins with", primary_key=True)
-    to_method = column.text("method it ends with", primary_key=True)
-    season = column.season(primary_key=True)
-    position = dy.Int8(primary_key=True, description="place of the step", min=1)
-    step = column.text("step of the method that was exchanged")
-    tows = column.count("tows", least=1)
-    factor = column.number(
-        "1", "geometric mean of the factor on Cw; they multiply", min_exclusive=0
-    )
 
 
 class SeasonChanges(PerMethod):
@@ -73,35 +58,6 @@ class OptionCurves(PerTow):
     a_kg_m = column.number("kg/m", "A")
     b_m_s = column.optional("m/s", "B; empty where Cw does not rise")
     cw_kg_m = column.number("kg/m", "Cw at the declared speed")
-
-
-class OptionSummary(PerMethod):
-    """How much each option moves Cw over all tows to which it can matter."""
-
-    study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
-    option = column.text("option of a step", primary_key=True)
-    tows = column.count("tows", least=1)
-    median_ratio = column.number("1", "median of Cw with the second value / with the first")
-    lo_ratio = column.number("1", "5 % of the tows lie below")
-    hi_ratio = column.number("1", "5 % of the tows lie above")
-
-
-class QualityCounts(PerMethod):
-    """How many curves have each status and flag, and how many runs do not count, and why."""
-
-    kind = column.text("status, flag or run", primary_key=True, regex="^(status|flag|run)$")
-    code = column.text("the status, flag or reason", primary_key=True)
-    scope = column.text("a season, or all", primary_key=True)
-    number = column.count("how many", least=1)
-
-
-class CheckCounts(PerMethod):
-    """How often each check was made, and found something beyond its limit."""
-
-    check = column.text("code of the check", primary_key=True)
-    severity = column.text("note, look or refuse", regex=SEVERITY_PATTERN)
-    tows = column.count("tows on which it was made", least=1)
-    beyond = column.count("of which beyond the limit")
 
 
 class PrintReproduction(PerTow):

@@ -1,7 +1,7 @@
 """Views of the database: the questions that people ask most, each under the name they look for.
 
-SQL that any DuckDB since 1.1 understands. A view computes nothing that a table does not already
-hold, but for Cw of a curve at another speed.
+SQL that any DuckDB since 1.1 understands. A view joins and counts what tables hold, and takes means
+of it; it computes nothing else but Cw of a curve at another speed.
 """
 
 from collections.abc import Mapping
@@ -74,6 +74,69 @@ ORDER BY method, boat_type, crew_class""",
             "b_m_s": "median of B, over the tows that have one [m/s]",
             "cw_standard_kg_m": "median of Cw at the common speed of the type and class [kg/m]",
         },
+    ),
+    "season_ladder": View(
+        "The ladder per season: what each step does to Cw on average.",
+        """
+SELECT from_method, to_method, season, position, step, count(*) AS tows,
+    exp(avg(ln(factor))) AS factor
+FROM correction_steps JOIN tows USING (tow_id)
+WHERE position > 0
+GROUP BY ALL
+ORDER BY from_method, to_method, season, position""",
+        ("correction_steps", "tows"),
+        {"tows": "tows", "factor": "geometric mean of the factor on Cw; they multiply [1]"},
+    ),
+    "option_summary": View(
+        "How much each option moves Cw over all tows to which it can matter.",
+        """
+SELECT method, study, option, count(*) AS tows, median(cw_effect_ratio) AS median_ratio,
+    quantile_cont(cw_effect_ratio, 0.05) AS lo_ratio,
+    quantile_cont(cw_effect_ratio, 0.95) AS hi_ratio
+FROM option_effects
+GROUP BY ALL
+ORDER BY method, study, option""",
+        ("option_effects",),
+        {
+            "tows": "tows",
+            "median_ratio": "median of Cw with the second value / with the first [1]",
+            "lo_ratio": "5 % of the tows lie below [1]",
+            "hi_ratio": "5 % of the tows lie above [1]",
+        },
+    ),
+    "quality_counts": View(
+        "How many curves have each status and flag, and how many runs do not count, and why.",
+        """
+WITH events AS (
+    SELECT method, 'status' AS kind, status AS code, season FROM curves
+    UNION ALL
+    SELECT method, 'flag', unnest(flags), season FROM curves
+    UNION ALL
+    SELECT p.method, 'run', p.reason, c.season
+    FROM run_points AS p JOIN curves AS c USING (method, tow_id) WHERE NOT p.used
+)
+SELECT method, kind, code, CAST(season AS VARCHAR) AS scope, count(*) AS number
+FROM events GROUP BY ALL
+UNION ALL
+SELECT method, kind, code, 'all', count(*) FROM events GROUP BY ALL
+ORDER BY ALL""",
+        ("curves",),
+        {
+            "kind": "status, flag or run",
+            "code": "the status, flag or reason",
+            "scope": "a season, or all",
+            "number": "how many",
+        },
+    ),
+    "check_counts": View(
+        "How often each check was made, and found something beyond its limit.",
+        """
+SELECT method, "check", severity, count(*) AS tows, count(*) FILTER (WHERE flagged) AS beyond
+FROM assessments
+GROUP BY ALL
+ORDER BY method, "check", severity""",
+        ("assessments",),
+        {"tows": "tows on which it was made", "beyond": "of which beyond the limit"},
     ),
     "changes_by_cause": View(
         "One row per changed line and cause; the factors of a line multiply to its cw_ratio.",

@@ -57,8 +57,8 @@ def test_an_edge_is_a_table_that_is_read():
     def read(table):
         return {key.to_user_string() for key in graph.get(dg.AssetKey(table)).parent_keys}
 
-    assert read("season_ladder") == {"correction_steps", "tows"}
-    assert read("check_counts") == {"assessments"}
+    assert read("era_shifts") == {"repeat_pairs", "boats"}
+    assert read("type_lines") == {"curves", "run_points", "tows", "boats"}
     assert read("race_changes") == {"register_changes", "register_history", "listed_races"}
     assert read("blocks") == {"samples"}
     assert read("samples") == {"listed_tows", "listed_runs"}

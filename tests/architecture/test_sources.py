@@ -9,10 +9,11 @@ from herijk.cli.main import app
 from pipeline.assessment.checks import CODES
 from pipeline.method.definition import Steps, shipped_methods
 from pipeline.tables.schemas import TABLES
+from pipeline.tables.views import VIEWS
 from tests.architecture.repository import ROOT, read
 
 LEDGER = read("docs/sources.md")
-NAMED = re.compile(r"\b(table|command|figure|test|check|method|option)s? `([^`]+)`")
+NAMED = re.compile(r"\b(table|view|command|figure|test|check|method|option)s? `([^`]+)`")
 COLUMNS = re.compile(r"columns? ((?:`\w+`(?:, | and )?)+) of table `(\w+)`")
 ROWS = [line for line in LEDGER.splitlines() if re.match(r"\| [PCS]\d+ \|", line)]
 
@@ -28,6 +29,7 @@ COMMANDS = {
 }
 KNOWN = {
     "table": set(TABLES),
+    "view": set(VIEWS),
     "figure": set(FIGURES),
     "check": set(CODES),
     "method": set(shipped_methods()),

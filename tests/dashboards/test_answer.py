@@ -7,10 +7,12 @@ import re
 import polars as pl
 import pytest
 
+from dashboards import labels
 from dashboards.speech import Speech, duration
-from dashboards.statements import boat_type, due, edition
+from dashboards.statements import Statement, boat_type, due, edition
 from dashboards.statements.boat import Answer
 from dashboards.statements.race import winners
+from pipeline.messages import say
 
 NL, EN = Speech("nl"), Speech("en")
 LINE = {
@@ -246,3 +248,10 @@ def test_a_slope_says_which_way_it_goes_with_two_digits_of_its_interval(line, sa
     of = {"slope": slope, "slope_lo": low, "slope_hi": high, "explaining": "weight_kg"}
     statement = boat_type.slope(of | {"reason": "few_boats"})
     assert (statement(NL), statement.verdict) == (said, verdict)
+
+
+def test_words_in_a_list_are_in_the_language_of_the_page():
+    why = [labels.candidate("weight"), labels.candidate("askew")]
+    listed = Statement("why", say("{why}"), {"why": why})
+    assert listed(EN) == "unusual weight; perhaps pulled askew"
+    assert listed(NL) == "; ".join(one.spoken("nl") for one in why) != listed(EN)

@@ -27,6 +27,7 @@ from dashboards.statements.boat_type import LINES, QUANTITIES, slope
 from dashboards.statements.race import winners
 from pipeline.messages import say
 from pipeline.tables.schemas import TABLES
+from pipeline.tables.views import VIEWS
 from tests.conftest import METHODS
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
@@ -277,7 +278,7 @@ def test_the_default_method_is_shown_first():
 
 def test_every_number_in_a_chart_stands_in_the_warehouse(store, site):
     with Views(store) as views:
-        frames = [views.table(name) for name in TABLES.keys() - {*LAKE_ONLY}]
+        frames = [views.table(name) for name in (TABLES.keys() | VIEWS.keys()) - {*LAKE_ONLY}]
         frames += [
             views.ask("run_points"),
             line_changes(views),

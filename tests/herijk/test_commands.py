@@ -73,7 +73,7 @@ def test_a_folder_comes_from_its_option_or_else_from_the_environment(herijk, mon
         ("recalculate", "No such command 'recalculate'"),
         ("rebuildd", "Did you mean 'rebuild'?"),
         ("compare a", "Missing argument 'NEW'"),
-        ("register --lang de", "'de' is not one of 'nl', 'en'"),
+        ("compare a b --fatigue x", "'x' is not one of 'none', 'known', 'extend'"),
         ("register --as-of 1-6-2014", "write a day as 2026-05-08"),
         ("publish x --valid-from 2014-06-01 --decision d", "give --method NAME, or --printed"),
         ("publish x --method m --valid-from 2014-06-01", "Missing option '--decision'"),
@@ -97,7 +97,7 @@ def test_wrong_arguments_are_status_2_and_a_sentence(herijk, call, said):
         ("rebuildd", "Er is geen opdracht 'rebuildd'. Bedoelt u 'rebuild'?"),
         ("register --frob", "Er is geen optie '--frob'"),
         ("register --as-of gisteren", "schrijf een dag als 2026-05-08"),
-        ("register --lang de", "'--lang': 'de' is niet een van 'nl', 'en'"),
+        ("compare a b --fatigue x", "'--fatigue': 'x' is niet een van 'none', 'known'"),
     ],
 )
 def test_wrong_arguments_are_named_in_dutch(herijk, call, said):

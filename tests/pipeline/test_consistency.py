@@ -9,7 +9,7 @@ import pytest
 from pipeline import model
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.components import variance_components
-from pipeline.consistency.homogeneity import equal_possible, type_homogeneity
+from pipeline.consistency.homogeneity import equal_possible, pooled_curves, type_homogeneity
 from pipeline.consistency.lines import (
     quantities,
     type_lines,
@@ -18,7 +18,7 @@ from pipeline.consistency.observed import observe
 from pipeline.consistency.outliers import type_outliers
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
 from pipeline.consistency.tables import line_tables
-from pipeline.consistency.tow_speed import slow_tows
+from pipeline.consistency.tow_speed import slow_tows, speed_trend
 from pipeline.tables.schemas import conform
 from tests.pipeline.consistency_fleet import (
     consistency_tables,
@@ -75,6 +75,17 @@ def test_power_is_what_is_stated_and_enough():
     # Stated with the estimated bend and noise, so a few points beside the sampling error.
     stated = found["power_at_10pct"].mean()
     assert abs(rejected - stated) < 3 * np.sqrt(stated * (1 - stated) / TRIALS) + 0.01
+
+
+def test_pooling_halves_the_error_of_the_bend_of_like_boats():
+    found = pooled_curves(observe(*fleet(11, TRIALS)))
+    s = pl.col("q") / (1 + pl.col("q")) / pl.col("standard_speed_m_s") ** 2
+    error = {
+        kind: np.sqrt((((group.select(s).to_series() * 4.6**2) - 1) ** 2).mean())
+        for (kind,), group in found.group_by("pooling")
+    }
+    assert error["partial"] <= 0.5 * error["own"]
+    assert error["shared"] <= 0.5 * error["own"]
 
 
 # Lines, outliers, tow speed
@@ -139,6 +150,22 @@ def test_a_boat_pulled_askew_lies_outside_and_is_named():
         )
         assert found["tow_id"].to_list() == [f"{season}-003"]
         assert found["candidates"].to_list() == [candidates]
+
+
+def test_a_bend_that_follows_tow_speed_is_seen_and_none_is_not_claimed():
+    speeds = np.linspace(2.1, 2.7, 12)
+    plain = speed_trend(observe(*fleet(18, speeds_m_s=speeds)))
+    assert (plain["slope_lo"] < 0).all()
+    assert (plain["slope_hi"] > 0).all()
+    curves, tows, boats, points = fleet(18, speeds_m_s=speeds)
+    slow = curves.select("tow_id", "declared_speed_m_s")
+    # Cw of slow tows made to rise faster: (v/v0)^(3 (2.7 - v0)).
+    points = points.join(slow, on="tow_id").with_columns(
+        pl.col("cw_kg_m")
+        * (pl.col("speed_m_s") / pl.col("declared_speed_m_s"))
+        ** (3 * (2.7 - pl.col("declared_speed_m_s")))
+    )
+    assert (speed_trend(observe(curves, tows, boats, points))["slope_hi"] < 0).all()
 
 
 def raced(tables, tow_id, speed_m_s):
@@ -305,6 +332,7 @@ def test_degenerate_input_gives_no_nan_and_fits_the_schemas(case):
 
 SEARCHED = {
     "type_lines": "slope",
+    "speed_trend": "slope",
     "predicted_cw": "predicted_cw_kg_m",
     "variance_components": "sd_ratio",
 }

@@ -62,6 +62,7 @@ def of(built):
                 {"quantity": "b_m_s", "explaining": "weight_kg", "within": "all", "reason": ""}
                 | slope
             ],
+            speed_trend={"reason": "few_boats"},
             eras=[],
             bends={"equal_possible": bends},
         )
@@ -95,7 +96,7 @@ def test_a_type_is_found_whatever_its_case_and_blanks(built, name):
 def test_boats_without_a_type_have_a_page_without_claims(built):
     found = under(built, "unknown")
     assert {line["reason"] for line in found.lines} == {"no_type"}
-    assert found.bends["reason"] == "no_type"
+    assert (found.bends["reason"], found.speed_trend["reason"]) == ("no_type", "no_type")
     assert found.bends["equal_possible"] is None
 
 
@@ -112,6 +113,7 @@ def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
     tables = {
         "tows": "tows",
         "in_type": "type_outliers",
+        "pooled": "pooled_curves",
         "repeat_pairs": "repeat_pairs",
         "predicted": "predicted_cw",
         "register": "register",

@@ -101,3 +101,29 @@ def test_factors_of_causes_multiply_to_the_change(built: Workbench):
     line = ["from_edition", "to_edition", "fsn_no", "rowers", "crew_class", "cw_ratio"]
     product = found.group_by(line).agg(pl.col("factor").product())
     assert product["factor"].to_numpy() == pytest.approx(product["cw_ratio"].to_numpy(), rel=1e-9)
+
+
+def test_steps_of_a_season_multiply_to_what_its_tows_change(built: Workbench):
+    ladder, steps = built.table("season_ladder"), built.table("correction_steps")
+    line = ["from_method", "to_method", "season"]
+    steps = steps.join(built.table("tows").select("tow_id", "season"), on="tow_id")
+    of_tow = steps.filter(pl.col("position") > 0).group_by(*line, "tow_id")
+    total = of_tow.agg(pl.col("factor").product()).group_by(line).agg(pl.col("factor").log().mean())
+    both = ladder.group_by(line).agg(pl.col("factor").log().sum()).join(total, on=line)
+    assert both.height == total.height > 0
+    assert both["factor"].to_numpy() == pytest.approx(both["factor_right"].to_numpy(), rel=1e-9)
+
+
+def test_what_is_counted_is_what_the_tables_hold(built: Workbench):
+    counts, curves = built.table("quality_counts"), built.table("curves")
+    of_all, each = (counts.filter((pl.col("scope") == "all") == all_) for all_ in (True, False))
+    key = ["method", "kind", "code"]
+    summed = each.group_by(key).agg(pl.col("number").sum()).sort(key)
+    assert of_all.drop("scope").sort(key).rows() == summed.rows()
+    assert of_all.filter(kind="status")["number"].sum() == curves.height
+    assert of_all.filter(kind="flag")["number"].sum() == curves["flags"].list.len().sum()
+    unused = built.table("run_points").filter(~pl.col("used")).height
+    assert of_all.filter(kind="run")["number"].sum() == unused
+    checks, assessed = built.table("check_counts"), built.table("assessments")
+    assert checks["tows"].sum() == assessed.height
+    assert checks["beyond"].sum() == assessed["flagged"].sum()

@@ -5,7 +5,7 @@ import inspect
 import pkgutil
 import random
 import sys
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from types import FunctionType
 from unittest import mock
 
@@ -75,24 +75,10 @@ def failing(module, name, path, called):
         if getattr(other, "__name__", "").startswith(PACKAGES)
         and other.__dict__.get(name) is function
     ]
-    with (
-        mock.patch.object(places[0], name, raises)
-        if len(places) == 1
-        else _all(places, name, raises)
-    ):
+    with ExitStack() as patched:
+        for place in places:
+            patched.enter_context(mock.patch.object(place, name, raises))
         yield
-
-
-@contextmanager
-def _all(places, name, raises):
-    patches = [mock.patch.object(place, name, raises) for place in places]
-    for patch in patches:
-        patch.start()
-    try:
-        yield
-    finally:
-        for patch in patches:
-            patch.stop()
 
 
 def comparable(bench):

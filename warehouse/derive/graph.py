@@ -8,7 +8,6 @@ from pipeline.consistency.eras import era_shifts
 from pipeline.consistency.tables import line_tables
 from pipeline.method.definition import Method
 from pipeline.studies.claims import print_reproduction
-from pipeline.studies.summaries import check_counts, option_summary, quality_counts, season_ladder
 from pipeline.tables.views import VIEWS
 from warehouse.derive import consistency, database, registers, summaries
 from warehouse.derive.archive_tables import archive_tables
@@ -65,10 +64,6 @@ STEPS: Final = (
         for compute in (
             summaries.race_changes,
             summaries.season_changes,
-            season_ladder,
-            option_summary,
-            quality_counts,
-            check_counts,
             print_reproduction,
         )
     ),

@@ -39,8 +39,8 @@ METHOD_TABLES: Final = (
 STUDY_TABLES: Final = ("correction_steps", "option_effects", "option_curves")
 LINE_TABLES: Final = ("type_lines", "type_line_points")
 TYPE_TABLES: Final = (
-    *("compared_tows", "hull_speed", "type_outliers", "type_homogeneity"),
-    *("predicted_cw", "variance_components"),
+    *("compared_tows", "hull_speed", "type_outliers", "type_homogeneity", "pooled_curves"),
+    *("speed_trend", "predicted_cw", "prediction_error", "variance_components"),
 )
 PER_METHOD: Final = frozenset((*METHOD_TABLES, *STUDY_TABLES, *LINE_TABLES, *TYPE_TABLES))
 """Tables of which each method's rows are made, and kept, apart."""

@@ -3,7 +3,7 @@
 Everything is read from the edition itself, so it holds however archive and warehouse have changed.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from typing import Final
 
 import polars as pl
@@ -51,10 +51,10 @@ class LineLineage:
     line: Row
     printed: dict[str, str]
     code: str | None
-    tow: Row | None = None
-    files: list[Row] = field(default_factory=list)
-    runs: list[Row] = field(default_factory=list)
-    curve: Row | None = None
+    tow: Row | None
+    files: list[Row]
+    runs: list[Row]
+    curve: Row | None
 
 
 def lineage(store: Store, edition: str, boat: str) -> Lineage:
@@ -79,21 +79,19 @@ def lineage(store: Store, edition: str, boat: str) -> Lineage:
 
 
 def _line(edition: Edition, row: Row) -> LineLineage:
+    def of_tow(table: str) -> list[Row]:
+        frame = edition.tables.get(table)
+        return [] if frame is None else frame.filter(tow_id=row["tow_id"]).to_dicts()
+
     frame = pl.DataFrame([row], schema=edition.register.schema)
-    cells = printed(frame, REGISTER_FIELDS).row(0, named=True)
-    line = LineLineage(row, cells, row[CODE_FIELD.column])
-    if row["tow_id"] is None or "tows" not in edition.tables:
-        return line
-    tows, curves, run_points = (
-        edition.tables[name].filter(tow_id=row["tow_id"])
-        for name in ("tows", "curves", "run_points")
-    )
-    tow = tows.row(0, named=True)
-    files = [(tow[f"{which}_path"], tow[f"{which}_sha256"]) for which in ("samples", "second")]
-    return replace(
-        line,
+    tow = next(iter(of_tow("tows")), None)
+    files = [(tow[f"{n}_path"], tow[f"{n}_sha256"]) for n in ("samples", "second")] if tow else []
+    return LineLineage(
+        line=row,
+        printed=printed(frame, REGISTER_FIELDS).row(0, named=True),
+        code=row[CODE_FIELD.column],
         tow=tow,
         files=[{"path": path, "sha256": sha256} for path, sha256 in files if path],
-        runs=run_points.to_dicts(),
-        curve=curves.row(0, named=True),
+        runs=of_tow("run_points"),
+        curve=next(iter(of_tow("curves")), None),
     )

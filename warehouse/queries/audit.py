@@ -35,6 +35,7 @@ class BoatAudit(Audit):
         predicted: rows of `predicted_cw`.
         options: rows of `option_effects`.
         set_aside: rows of `quarantine`.
+        pooled: rows of `pooled_curves`.
         slow_tows, repeat_pairs, register: rows of those tables.
     """
 
@@ -42,6 +43,7 @@ class BoatAudit(Audit):
     boat: Row
     tows: list[Row]
     in_type: list[Row]
+    pooled: list[Row]
     slow_tows: list[Row]
     repeat_pairs: list[Row]
     predicted: list[Row]
@@ -139,6 +141,7 @@ def _boat_audit(
         boat=boat,
         tows=rows(db, _TOWS, fsn_no, methods),
         in_type=of_boat("type_outliers"),
+        pooled=of_boat("pooled_curves"),
         slow_tows=of_boat("slow_tows"),
         repeat_pairs=of_boat("repeat_pairs"),
         predicted=of_boat("predicted_cw"),

@@ -45,6 +45,8 @@ class TypeStatistics:
     Attributes:
         lines: rows of `type_lines` with `follows`.
         bends: the row of `type_homogeneity`, or `n`, `reason` and `equal_possible`.
+        speed_trend: the row of that table with `follows`, or `n` and `reason`.
+        shared: per pooling, what sharing a bend does to B and Cw.
         repeats: how repeat pairs spread, how many have an E_n, and of how many it is above 1.
         eras: a row of `era_shifts` each, or `era`, `n`, `apart` and `reason`.
         prediction: how far `predicted_cw` is off.
@@ -59,6 +61,8 @@ class TypeStatistics:
     hull_speed: list[Row]
     tows_outside: list[Row]
     bends: Row
+    speed_trend: Row
+    shared: list[Row]
     outside: list[Row]
     slow_tows: list[Row]
     repeats: Row
@@ -126,17 +130,19 @@ def _type_under(
     """All statistics of a type under one method; lines are of all tows, or of the newest chosen."""
     found = {name: rows(db, query, method, boat_type) for name, query in _STATISTICS.items()}
     reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
-    absent = {"n": 0, "reason": reason, "equal_possible": None}
+    absent = {"n": 0, "reason": reason, "equal_possible": None, "follows": None}
     no_era = {"n": 0, "apart": None, "reason": "few_pairs"}
     eras = {row["era"]: row for row in found.pop("eras")}
-    bends, repeats, prediction = (
-        (found.pop(name) or [absent])[0] for name in ("bends", "repeats", "prediction")
+    bends, trend, repeats, prediction = (
+        (found.pop(name) or [absent])[0]
+        for name in ("bends", "speed_trend", "repeats", "prediction")
     )
     newest = rows(db, _LINES, method, boat_type, NEWEST)
     return TypeStatistics(
         lines=rows(db, _LINES, method, boat_type, ALL) if tows == ALL else newest,
         weight_line=[row for row in newest if row.items() >= WEIGHT_LINE.items()],
         bends=bends,
+        speed_trend=trend,
         repeats=repeats,
         prediction=prediction,
         eras=[eras.get(era.name, {"era": era.name} | no_era) for era in ERAS[:-1]],
@@ -150,7 +156,7 @@ def differences(first: TypeStatistics, *others: TypeStatistics) -> list[str]:
     One that follows weight and one in which no trend is seen do not differ by that alone.
 
     Returns:
-        `quantity explaining` of lines, the names of eras, `bends`; of one type,
+        `quantity explaining` of lines, `speed_trend`, the names of eras, `bends`; of one type,
         nothing.
     """
     found = []
@@ -166,6 +172,7 @@ def _intervals(under: TypeStatistics) -> dict[str, tuple[float, float, float]]:
     """Every slope and shift with its interval; shifts as logarithms."""
     lines = (line for line in under.lines if line["within"] == "all")
     slopes = {f"{line['quantity']} {line['explaining']}": line for line in lines}
+    slopes["speed_trend"] = under.speed_trend
     intervals = {
         name: (line["slope"], line["slope_lo"], line["slope_hi"])
         for name, line in slopes.items()
@@ -201,6 +208,20 @@ WHERE method = ? AND boat_type = ? AND tows = ?
 ORDER BY quantity, explaining, within
 """  # noqa: S608
 
+_TREND = f"SELECT *, {_FOLLOWS} FROM speed_trend WHERE method = ? AND boat_type = ?"  # noqa: S608
+
+_SHARED = """
+SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
+       count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
+       stddev_samp(p.b_m_s) / avg(p.b_m_s) AS b_sd_ratio,
+       max(abs(ln(p.cw_085_kg_m / o.cw_085_kg_m))) AS most_085,
+       max(abs(ln(p.cw_kg_m / o.cw_kg_m))) AS most_100,
+       max(abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_115,
+       arg_max(p.fsn_no, abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_fsn_no
+FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
+WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
+"""
+
 _REPEATS = f"""
 SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
        count(p.e_n) AS n_e_n, count(*) FILTER (WHERE abs(p.e_n) > 1) AS n_disagree
@@ -226,6 +247,8 @@ _STATISTICS: Final = {
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
     "bends": "SELECT * FROM type_homogeneity WHERE method = ? AND boat_type = ?",
+    "speed_trend": _TREND,
+    "shared": _SHARED,
     "outside": _NAMED.format("type_outliers", "outside", "abs(deviation_sd) DESC"),
     "slow_tows": _NAMED.format("slow_tows", "slow", "power_w"),
     "repeats": _REPEATS,

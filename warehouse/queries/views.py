@@ -135,7 +135,6 @@ FROM (SELECT *, unnest(flags) AS flag FROM curves) AS c JOIN tows AS t USING (to
 LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
 ORDER BY c.method, c.flag, lower(b.name), c.fsn_no, t.tow_date
 """,
-    # Curves of a tow under the tool's ticks, with boat and declared speed.
     # Boats that differ from their type, furthest first; Cw itself instead of its logarithm.
     "outliers": """
 SELECT t.* REPLACE (
@@ -194,7 +193,6 @@ SELECT *, 100 * (exp(level_step) - 1) AS level_step_percent, 100 * level_step_sd
        100 * force_step_sd AS force_sd_percent
 FROM season_steps
 """,
-    # Tows made with little power or raced off their curve, with the boat's name.
     # Curves per method, season and status.
     "statuses": """
 SELECT method, CAST(scope AS INTEGER) AS season, code AS status, number

@@ -5,6 +5,8 @@ import io
 import json
 import tomllib
 
+import numpy as np
+import polars as pl
 import pytest
 
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
@@ -188,3 +190,39 @@ def test_an_empty_folder_is_used_and_an_interrupted_writer_leaves_nothing(world,
     write_simulated_archive(tmp_path / "a", world)
     assert (tmp_path / "a" / "archief.toml").exists()
     assert {p.name for p in tmp_path.iterdir()} == {"a", "a-truth.json"}
+
+
+@pytest.mark.parametrize("season", SETTINGS.seasons)
+def test_samples_read_back_as_simulated(archive, world, season):
+    tow = next(tow for tow in world.tows if tow.season == season)
+    path, spelling = sample_file(archive, tow), spelling_of(season)
+    assert path.name == f"{tow.samples_name}{spelling.extension}"
+    if spelling.extension == ".parquet":
+        table = pl.read_parquet(path)
+    else:
+        table = pl.read_csv(
+            path, separator=spelling.separator, decimal_comma=spelling.decimal_comma
+        )
+    frame, _ = simulate_tow(world, tow)
+    assert table["run"].to_list() == frame["run"].to_list()
+    speed = {"m/s": 1.0, "km/h": 1 / 3.6, "kn": 1852 / 3600}[spelling.speed_unit]
+    force = {"N": 1.0, "kgf": 9.80665}[spelling.force_unit]
+    own = spelling.own_names
+    expected = {
+        f"{'snelheid A' if own else 'log1'} [{spelling.speed_unit}]": ("log1_m_s", speed),
+        f"log2 [{spelling.speed_unit}]": ("log2_m_s", speed),
+        "trek" if own else f"kracht [{spelling.force_unit}]": ("force_n", force),
+        f"wind [{spelling.speed_unit}]": ("wind_speed_m_s", speed),
+    }
+    if season >= 2011:
+        expected[f"gps [{spelling.speed_unit}]"] = ("gps_m_s", speed)
+    extra = {"tijd [s]"} if spelling.time_column else set()
+    assert set(table.columns) == {"run", "wind [gra]", *expected, *extra}
+    for header, (name, factor) in expected.items():
+        # Three decimals in the unit of the file.
+        np.testing.assert_allclose(table[header] * factor, frame[name], atol=0.51e-3 * factor)
+    angle = table["wind [gra]"].to_numpy()
+    assert (angle.min() < 0) == spelling.signed_vane or angle.max() <= 180
+    np.testing.assert_allclose(np.mod(angle, 360.0), frame["wind_angle_deg"], atol=1e-3)
+    if spelling.time_column:
+        np.testing.assert_allclose(table["tijd [s]"].to_numpy()[:1001:500], [0, 25, 0])
