@@ -8,6 +8,7 @@ from typing import Final
 from dashboards import labels
 from dashboards.speech import Speech
 from pipeline.messages import Sentence, pgettext, say
+from pipeline.method.definition import LAST_SEASON
 
 TEXTS: Final[dict[str, Sentence]] = {
     "workbench": say("Workbench"),
@@ -89,10 +90,6 @@ def value_in_words(value: object, speech: Speech) -> str:
 
 def range_in_words(first: int, last: int) -> Sentence:
     """Seasons from one to another; those of the last range go on."""
-    if last >= OPEN:
+    if last >= LAST_SEASON:
         return say("{} and later", first)
     return say("{}", str(first) if first == last else f"{first}\u2013{last}")
-
-
-OPEN: Final = 9999
-"""The last season of a method that holds until another."""
