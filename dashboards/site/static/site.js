@@ -90,7 +90,8 @@
     }
   }
 
-  function writeAddress(asked = new URLSearchParams(location.search)) {
+  function writeAddress() {
+    const asked = new URLSearchParams(location.search);
     for (const { name, value } of fields()) {
       if (value === defaults.get(name)) asked.delete(name);
       else asked.set(name, value);
@@ -173,7 +174,6 @@
     table.querySelector(".clear")?.addEventListener("click", () => select(null));
     table.querySelector(".csv").addEventListener("click", () => download(table));
     all("th", table).forEach((head) => head.firstElementChild.addEventListener("click", () => sort(table, head)));
-    filter(table);
   }
 
   // -- Charts ---------------------------------------------------------------------------------------
@@ -330,7 +330,7 @@
   // What an address points at is opened, so that it can be seen.
   const open = () => document.getElementById(location.hash.slice(1))?.closest("details")?.setAttribute("open", "");
   window.addEventListener("hashchange", open);
-  window.herijk = { start, writeAddress };
+  window.herijk = { start };
   start(document);
   open();
 })();
