@@ -6,7 +6,6 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.consistency.components import variance_components
 from pipeline.consistency.eras import era_shifts
 from pipeline.consistency.lines import type_lines
 from pipeline.consistency.observed import observe
@@ -134,11 +133,9 @@ def newest_lines(observed):
 def consistency_tables(curves, tows, boats, run_points):
     """All tables of the analysis but the lines, without races."""
     observed, pairs = observe(curves, tows, boats, run_points), repeat_pairs(curves, tows)
-    components = variance_components(observed)
     return type_tables(observed) | {
         "slow_tows": slow_tows(observed, NO_RACES),
         "repeat_pairs": pairs,
         "era_shifts": era_shifts(pairs, boats),
         "reproducibility": reproducibility(pairs, observed),
-        "variance_components": components,
     }
