@@ -14,7 +14,7 @@ import duckdb
 import polars as pl
 
 from pipeline.blocks.run_blocks import PLACE, RunBlocks, stack_blocks
-from pipeline.consistency.observed import Observed, observe, of_trusted
+from pipeline.consistency.observed import Observed, observe_trusted
 from pipeline.errors import HerijkError
 from pipeline.method.definition import Method
 from pipeline.recompute.run_cache import RunCache
@@ -178,8 +178,7 @@ def state(scope: Scope, name: str) -> object:
 
 def _observed(scope: Scope) -> Observed:
     """What statistics of boats look at: tows that nothing is doubted about."""
-    curves, tows, boats, run_points = (read_table(scope, name) for name in OBSERVED)
-    return observe(of_trusted(curves, tows), tows, boats, of_trusted(run_points, tows))
+    return observe_trusted(*(read_table(scope, name) for name in OBSERVED))
 
 
 def _decisions(scope: Scope) -> pl.DataFrame:
