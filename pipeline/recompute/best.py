@@ -57,7 +57,12 @@ def with_best(
         .join(shared, on="tow_id", how="left", maintain_order="left")
         .join(misfit, on="tow_id", how="left", maintain_order="left")
     )
-    moved = pl.col("best_ln_cw") - pl.col("measured_ln_cw") + pl.col("by_bend") + pl.col("misfit").log1p()
+    moved = (
+        pl.col("best_ln_cw")
+        - pl.col("measured_ln_cw")
+        + pl.col("by_bend")
+        + pl.col("misfit").log1p()
+    )
     best = pl.col("cw_kg_m") * moved.exp()
 
     def half(end: str) -> pl.Expr:

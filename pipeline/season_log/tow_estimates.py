@@ -116,7 +116,9 @@ def _best(posterior: Posterior) -> tuple[FloatArray, pl.DataFrame]:
         .with_columns(pl.col("weight") / pl.col("weight").sum().over("tow"))
     )
     return numbers, weights.select(
-        tow_id=names.gather(weights["tow"]), rests_on=names.gather(weights["other"]), weight="weight"
+        tow_id=names.gather(weights["tow"]),
+        rests_on=names.gather(weights["other"]),
+        weight="weight",
     )
 
 

@@ -30,6 +30,7 @@ ten times as sure as white noise would make it."""
 
 CURVE_PARAMETERS: Final = 2
 
+
 def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: IntArray) -> FloatArray:
     """Relative standard uncertainty of the mean F/v^2 over each run's window.
 
