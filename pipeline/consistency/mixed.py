@@ -160,7 +160,7 @@ class _SideBySide:
         inverse = np.linalg.inv(rows)
         weighed = inverse @ self.x
         known = np.swapaxes(self.x, 1, 2) @ weighed + self.absent
-        covariance = np.linalg.inv(known)
+        covariance: FloatArray = np.linalg.inv(known).astype(np.float64)
         effects = covariance @ (np.swapaxes(weighed, 1, 2) @ self.residual[:, :, None])
         precision = inverse - weighed @ covariance @ np.swapaxes(weighed, 1, 2)
         pull = precision @ self.residual[:, :, None]
