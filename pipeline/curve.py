@@ -360,7 +360,8 @@ def _search(
         done = state.movement <= TOLERANCE * np.sqrt(cc)
         if done.any():
             found.append((open_fits[done], state.q[done], state.c0[done], state.rss[done]))
-            open_fits, damping, upper, cc = (x[~done] for x in (open_fits, damping, upper, cc))
+            open_fits = open_fits[~done]
+            damping, upper, cc = (x[~done] for x in (damping, upper, cc))
             z, c, w = (x[:, ~done] for x in (z, c, w))
             state = _State(*(x[~done] for x in state))
             if not open_fits.size:
