@@ -54,10 +54,8 @@ def proposal(
     """
     speech = Speech(language)
     say = speech.say
-    lines = {
-        method: compared(views, against, draft_name(method), letter.valid_from)
-        for method in methods
-    }
+    day = letter.valid_from
+    lines = {method: compared(views, against, draft_name(method), day) for method in methods}
     about = views.about()
     titles = {method: known.get(method).titled(language) for method in methods}
     content = {
