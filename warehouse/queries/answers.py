@@ -60,13 +60,10 @@ def line_changes(views: Views) -> pl.DataFrame:
 
 
 def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None) -> pl.DataFrame:
-    """Any two editions or drafts side by side, compared as an edition is when it is published.
+    """Any two editions or drafts, compared as on publication; columns as of `line_changes`.
 
     Args:
         valid_from: the day on which drafts would begin to count; theirs of today when left out.
-
-    Returns:
-        As `line_changes`.
 
     Raises:
         MissingKnowledgeError: there is no such edition or draft.
