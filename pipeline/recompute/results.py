@@ -258,7 +258,7 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
         "season_links": estimated.factors.select(*of_links).cast(pl.Schema(of_links)),
         "retow_choice": retow_choice(estimated),
         "season_steps": estimated.steps,
-        "tow_instruments": estimated.instruments.select(*schemas["tow_instruments"]).sort("tow_id"),
+        "tow_instruments": estimated.tows.select(*schemas["tow_instruments"]).sort("tow_id"),
         "best_estimate_weights": estimated.weights,
     }
 

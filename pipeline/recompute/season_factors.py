@@ -94,7 +94,7 @@ def instruments_of(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> pl.
     """What was estimated of each tow of a batch, as far as its steps ask for it.
 
     Args:
-        rows: `SeasonFactors.instruments` or rows of the table `tow_instruments`; None where nothing
+        rows: `SeasonFactors.tows` or rows of the table `tow_instruments`; None where nothing
             was estimated.
 
     Returns:

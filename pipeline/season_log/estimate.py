@@ -20,7 +20,7 @@ from pipeline.season_log.factors import (
 )
 from pipeline.season_log.faults import Posterior, roughly, solve
 from pipeline.season_log.fit import OF_TOWS, Problem
-from pipeline.season_log.tow_estimates import best_estimates, instrument_errors
+from pipeline.season_log.tow_estimates import with_estimates
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,8 @@ class SeasonFactors:
         tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
         ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
         drift_sd: standard deviation of what a boat drifts from that in a year.
-        tows: what it was estimated from.
-        instruments: per tow, what its instruments did, and `best`, what all tows together say of
-            its Cw; `weights`: what that rests on (`tow_estimates`).
+        tows: what it was estimated from, with what the instruments did to each and what all tows
+            say of its Cw; `weights`: what that rests on (`tow_estimates.with_estimates`).
         diagnosis: per season and instrument, what is wrong; `steps`: whether a season's step is the
             log's or the load cell's (`pipeline.season_log.diagnosis`).
     """
@@ -53,8 +52,6 @@ class SeasonFactors:
     ageing_sd: float
     drift_sd: float
     tows: pl.DataFrame
-    instruments: pl.DataFrame
-    best: pl.DataFrame
     weights: pl.DataFrame
     diagnosis: pl.DataFrame
     steps: pl.DataFrame
@@ -140,8 +137,7 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
     posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
     fitted, change = posterior.fit, without_each_boat(posterior.fit)
     factors, covariance = factors_of(posterior, change)
-    instruments = instrument_errors(posterior, change)
-    best, weights = best_estimates(posterior, instruments)
+    of_tows, weights = with_estimates(posterior, change)
     diagnosis = season_diagnosis(posterior)
     sd = np.exp(0.5 * fitted.ln_variance).tolist()
     *tow_log_sd, calibration_sd, drift_sd = sd[OF_TOWS:]
@@ -155,9 +151,7 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         ageing_per_year=float(fitted.value[ageing]),
         ageing_sd=float(np.sqrt(fitted.covariance[ageing, ageing])),
         drift_sd=drift_sd,
-        tows=tows,
-        instruments=instruments,
-        best=best,
+        tows=of_tows,
         weights=weights,
         diagnosis=diagnosis,
         steps=season_steps(posterior, diagnosis),

@@ -93,8 +93,7 @@ def test_points_that_determine_no_curve_are_flagged_and_flat(speed, cw):
     points = curve.Points.of(speed, cw)
     scatter = curve.own_scatter(fitted)
     assert curve.b_interval(points, fitted, scatter).hi[0] == np.inf
-    errors = curve.covariance(points, fitted, scatter, 2.5)
-    assert curve.cw_interval(fitted, errors, scatter.dof, 2.5) == (0.0, np.inf)
+    assert curve.cw_interval(points, fitted, scatter, 2.5) == (0.0, np.inf)
 
 
 def test_a_search_that_does_not_come_to_rest_gives_no_curve(monkeypatch):
@@ -120,8 +119,7 @@ def test_two_points_are_interpolated_and_have_unbounded_intervals():
     scatter = curve.own_scatter(fitted)
     assert curve.b_interval(points, fitted, scatter) == (pytest.approx(3.0), np.inf)
     assert b_interval_fieller(points, fitted, scatter) == (0.0, np.inf)
-    errors = curve.covariance(points, fitted, scatter, 2.5)
-    assert curve.cw_interval(fitted, errors, scatter.dof, 2.5) == (0.0, np.inf)
+    assert curve.cw_interval(points, fitted, scatter, 2.5) == (0.0, np.inf)
 
 
 def test_from_b_on_the_resistance_is_infinite():
@@ -210,8 +208,7 @@ def test_intervals_cover_the_truth_as_often_as_they_say(pooled):
         # As a season would pool it: the noise is proportional to Cw, so its ratio is pooled.
         ratio = np.mean(scatter.variance_kg2_m2 / fitted.cw_at(v0) ** 2)
         scatter = curve.Scatter(ratio * fitted.cw_at(v0) ** 2, np.full(n_fits, np.inf))
-    errors = curve.covariance(points, fitted, scatter, v0)
-    at_v0 = curve.cw_interval(fitted, errors, scatter.dof, v0)
+    at_v0 = curve.cw_interval(points, fitted, scatter, v0)
     b = curve.b_interval(points, fitted, scatter)
     true_b = 1 / np.sqrt(s)
     # Three standard errors of a share of n_fits trials.
