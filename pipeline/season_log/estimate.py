@@ -136,7 +136,7 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
     _refuse_unknown(tows)
     posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
     fitted, change = posterior.fit, without_each_boat(posterior.fit)
-    factors, covariance = factors_of(posterior, change)
+    factors, covariance = factors_of(fitted, posterior.determined, posterior.refused, change)
     of_tows, weights = with_estimates(posterior, change)
     diagnosis = season_diagnosis(posterior)
     sd = np.exp(0.5 * fitted.ln_variance).tolist()

@@ -5,7 +5,7 @@ and boats that were not altered come out alike beside dGPS.
 """
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -17,9 +17,6 @@ from pipeline.season_log.boats import GPS as GPS_NUMBER
 from pipeline.season_log.boats import LEVEL
 from pipeline.season_log.effects import GPS_SCALE
 from pipeline.season_log.fit import Fit, level_of_boats
-
-if TYPE_CHECKING:
-    from pipeline.season_log.faults import Posterior
 
 ESTIMATED: Final = "estimated"
 GPS: Final = "gps"
@@ -57,16 +54,19 @@ def without_each_boat(fitted: Fit) -> FloatArray:
     return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
 
 
-def factors_of(posterior: "Posterior", change: FloatArray) -> tuple[pl.DataFrame, FloatArray]:
+def factors_of(
+    fitted: Fit, known: BoolArray, contradicted: BoolArray, change: FloatArray
+) -> tuple[pl.DataFrame, FloatArray]:
     """The factor of each log, and the covariance between those that are determined.
 
     Args:
+        known: logs that are determined, (logs,).
+        contradicted: those that are `refused`.
         change: of every effect of the fit without each boat, as `without_each_boat` gives it.
 
     Returns:
         Rows of `SeasonFactors.factors`, and (determined, determined) covariance of ln factor.
     """
-    fitted, known = posterior.fit, posterior.determined
     tows, along = fitted.problem.tows, means(fitted)[known]
     covariance = _of_means(fitted, along @ fitted.covariance @ along.T, known)
     by_gps, assumed = _beside_repeats(fitted, along)
@@ -97,7 +97,7 @@ def factors_of(posterior: "Posterior", change: FloatArray) -> tuple[pl.DataFrame
     source = (
         pl.when(pl.col("component") > 0)
         .then(pl.lit(NOT_DETERMINED))
-        .when(pl.Series(posterior.refused) | pl.lit(not fitted.settled))
+        .when(pl.Series(contradicted) | pl.lit(not fitted.settled))
         .then(pl.lit(NOT_SETTLED))
         .otherwise(usable)
     )
