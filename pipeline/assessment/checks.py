@@ -109,27 +109,11 @@ CHECKS: Final = (
     Check("slow_tow", "power_w", say("slow tow"), SLOW_POWER_W, unit="W"),
     # The boat of the day
     Check(
-        "crew_weight",
-        "crew_weight_kg / rowers",
-        say("crew weight unusual"),
-        *ROWER_KG,
-        unit="kg",
+        "crew_weight", "crew_weight_kg / rowers", say("crew weight unusual"), *ROWER_KG, unit="kg"
     ),
-    Check(
-        "heavier_after",
-        "weight_after_kg / weight_kg - 1",
-        say("heavier after"),
-        None,
-        0.02,
-    ),
+    Check("heavier_after", "weight_after_kg / weight_kg - 1", say("heavier after"), None, 0.02),
     Check("water_differs", "water_off_c", say("water unlike its day's"), None, 3.0, unit="C"),
-    Check(
-        "boat_list_differs",
-        "off_boat_list",
-        say("differs from the boat list"),
-        None,
-        0.05,
-    ),
+    Check("boat_list_differs", "off_boat_list", say("differs from the boat list"), None, 0.05),
     Check("weight_changed", "weight_kg_change", say("weight changed"), -0.02, 0.02),
     Check("length_changed", "waterline_length_m_change", say("length changed"), -0.01, 0.01),
     Check("beam_changed", "beam_m_change", say("beam changed"), -0.02, 0.02),
