@@ -71,6 +71,7 @@ CHECKS: Final = (
     Check("unbalanced_runs", "unbalanced", say("unbalanced runs"), None, 1.0),
     Check("out_and_back_differ", "out_over_back - 1", say("out and back differ"), -0.04, 0.04),
     Check("unusual_calibration", "calibration_factor", say("unusual calibration"), 0.98, 1.02),
+    Check("log_not_linear", "log_slope", say("log not in proportion"), -0.015, 0.015),
     # The samples beside all other tows
     _told_by_all("force_not_plausible", say("force cannot be right")),
     _told_by_all("wind_not_plausible", say("wind cannot be right")),
