@@ -23,7 +23,7 @@ from dashboards.site.parts import (
 )
 from dashboards.site.prose import edition_pages, guide_links, guide_pages
 from dashboards.site.races import race_pages
-from dashboards.site.start import ABOUT, CARDS, start_page, words_page
+from dashboards.site.start import ABOUT, MENU, start_page, words_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
@@ -31,8 +31,6 @@ from pipeline.messages import say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
-
-MENU: Final = {name: title for name, (title, _) in CARDS.items()}
 
 
 def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
@@ -257,6 +255,7 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     }
     first = default_method(methods)
     said = {
+        "season_change": season.changes(frames["season_change"], first),
         "log_factors": season.log_factors(frames["log_factors"].filter(method=first)),
         "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
@@ -266,15 +265,9 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     for name, (figure, follows) in SEASON_FIGURES.items():
         if frames[name].height:
             chart = Chart(figure, name, SEASON_TEXTS[name].title, follows)
-            is_folded = name not in said and name != "season_change"
-            sections.append(
-                replace(
-                    SEASON_TEXTS[name],
-                    charts=[chart],
-                    headline=said.get(name),
-                    folded=is_folded,
-                )
-            )
+            text, headline = SEASON_TEXTS[name], said.get(name)
+            folded = name not in said
+            sections.append(replace(text, charts=[chart], headline=headline, folded=folded))
     told = (
         *listed(LINKS, "season_links", links, LINK_COLUMNS),
         *listed(STEPS, "season_steps", steps, STEP_COLUMNS),
@@ -414,7 +407,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
         empty = Section(
             "changes_list", say("Changed lines"), empty=say("There are no changed lines.")
         )
-        return Page("changes.html", CARDS["changes"][0], [empty, races])
+        return Page("changes.html", MENU["changes"], [empty, races])
     editions = changed["to_edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     table = Table(
@@ -428,7 +421,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
     drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
     return Page(
         "changes.html",
-        CARDS["changes"][0],
+        MENU["changes"],
         [
             Section(
                 "changes_list",
@@ -476,7 +469,7 @@ def _about(views: Views) -> Page:
             tables=[table],
         ),
     ]
-    return Page("about.html", CARDS["about"][0], sections)
+    return Page("about.html", MENU["about"], sections)
 
 
 def _quality(views: Views, methods: list[str]) -> Page:

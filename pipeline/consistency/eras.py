@@ -6,7 +6,6 @@ age. How boats age is seen in the last era, where instruments are alike.
 
 from collections.abc import Iterable, Sequence
 from math import exp, hypot
-from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -14,31 +13,11 @@ import scipy
 
 from pipeline.arrays import FloatArray
 from pipeline.consistency.observed import ALL_TYPES, UNKNOWN_TYPE
+from pipeline.history import ERAS, Era
 from pipeline.tables.consistency import EraShifts
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.row import Row
-
-
-class Era(NamedTuple):
-    """Seasons with like instruments.
-
-    Attributes:
-        name: as it is in tables.
-        first, last: seasons, both included.
-    """
-
-    name: str
-    first: int
-    last: int
-
-
-ERAS: Final = (
-    Era("2009-2011", 2009, 2011),
-    Era("2012-2013", 2012, 2013),
-    Era("2014-", 2014, 9999),
-)
-"""Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017)."""
 
 
 def season_ranges(seasons: Iterable[int]) -> dict[str, tuple[int, int]]:
