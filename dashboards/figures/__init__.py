@@ -60,11 +60,6 @@ def _black(_: Say) -> Sequence[Any]:
     return (alt.ColorValue("black"),)
 
 
-def _of_crew(say: Say) -> Sequence[Any]:
-    ink = style.colour("crew", say("Boat"), sort=None)
-    return ink, alt.StrokeDash("crew:N", title=say("Boat"), sort=None)
-
-
 def _of_method(_: Say) -> Sequence[Any]:
     """Two methods, the older one dashed; the legend is that of the points."""
     ink = alt.Scale(range=[OKABE_ITO[0], OKABE_ITO[4]])
@@ -154,7 +149,6 @@ WIND: Final = (
 FIGURES: Final[dict[str, Figure]] = {
     "resistance_curve": curves(_black, style.directions),
     "curves_compared": curves(_of_method, _points_of_method),
-    "boats_compared": curves(_of_crew, _of_crew),
     "traces": boat.traces,
     "out_and_back": scatter(
         ("speed_m_s", SPEED), ("cw_kg_m", CW), style.directions, RUN_TIPS,

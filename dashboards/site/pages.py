@@ -12,7 +12,6 @@ from dashboards.site.parts import (
     Chart,
     Page,
     Section,
-    Select,
     Table,
     default_method,
     draft_of,
@@ -136,17 +135,13 @@ CHOICE_COLUMNS = (
 
 
 def _boats(views: Views, methods: Sequence[str]) -> Page:
-    """Who has to tow again, at what speed, which boats to tow again, and two boats compared."""
+    """Who has to tow again, at what speed, and which boats to tow again."""
     rows = views.ask("due_list").filter(method=default_method(methods))
     rows = rows.rename({"tow_date": "last_tow"})
     title = say("Who has to tow again")
     due = Table("due_list", rows, DUE_COLUMNS, title, search=True, cards=DUE_CARDS)
     choice = views.ask("retow_choice").filter(method=default_method(methods))
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
-    curves = _curves(views, methods)
-    crews = curves["crew"].unique().sort().to_list()
-    first, second = PAIR_OF_BOATS
-    can_compare = len(crews) >= len(PAIR_OF_BOATS)
     sections = [
         Section(
             "due_list",
@@ -177,49 +172,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
             headline=of_due.retow(choice) if choice.height else None,
         ),
     ]
-    if can_compare:
-        chart = Chart(
-            "boats_compared", "curves", say("Two boats compared"), {"crew": PAIR_OF_BOATS}
-        )
-        note = say(
-            "The curves under the best method, each with its 95 % band. Where bands touch, "
-            "the data do not say which boat runs easier."
-        )
-        sections.append(Section("compare_boats", say("Two boats compared"), note, [chart]))
-    return Page(
-        "boats.html",
-        say("Boats"),
-        sections,
-        selects=[
-            Select(first, say("Compare"), crews, crews[0]),
-            Select(second, say("with"), crews, _another(crews)),
-        ]
-        if can_compare
-        else [],
-        data={"curves": [curves]} if can_compare else {},
-    )
-
-
-def _curves(views: Views, methods: Sequence[str]) -> pl.DataFrame:
-    """The curve of every boat and crew, by the tow that counts."""
-    lines = views.register().filter(edition=draft_of(methods)).drop_nulls("cw_kg_m")
-    called = pl.format("{} · {} · {}{}", "name", "fsn_no", "rowers", "crew_class")
-    points = views.table("curve_points").filter(method=default_method(methods))
-    return (
-        lines.select("tow_id", crew=called)
-        .join(points, on="tow_id", maintain_order="left")
-        .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", kind=pl.lit("line"))
-        .sort("crew", "speed_m_s")
-    )
-
-
-def _another(crews: Sequence[str]) -> str:
-    """The first crew of another boat than the first, if there is one."""
-    boat = crews[0].rpartition(" · ")[0]
-    return next((crew for crew in crews if not crew.startswith(boat)), crews[1])
-
-
-PAIR_OF_BOATS = ("boat_first", "boat_second")
+    return Page("boats.html", say("Boats"), sections)
 
 
 PART = pl.col("part") + 1
