@@ -7,14 +7,14 @@ first assessment (Sleepproef, R. Pot 2017, "Eerste beoordeling" and "Opmetingen 
 of them reject a tow, the method says.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import reduce
 from typing import Final
 
+import numpy as np
 import polars as pl
 
 from pipeline.assessment.checks import CHECK, CHECKS, CODES, Check
-from pipeline.assessment.season_levels import season_levels
 from pipeline.choice import SAME_SHARE
 from pipeline.season_log.diagnosis import FAULT
 from pipeline.season_log.effects import FLEET
@@ -25,6 +25,12 @@ from pipeline.tables.keys import LINE, SIZES
 LIKE: Final = ("boat_type", "rowers", "crew_class")
 FEWEST_LIKE_BOATS: Final = 4
 """Fewest boats of a type among which one can stand out (inferred)."""
+
+FEWEST_CHANGES: Final = 4
+"""Fewest changes for which what they share is taken to be the season's (inferred)."""
+
+ROUNDS: Final = 60
+"""Half a step is made in each, as neighbouring seasons move each other; 1e-4 is left at most."""
 
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 LISTED: Final = {"waterline_length_m": "listed_length_m", "beam_m": "listed_beam_m"}
@@ -293,12 +299,41 @@ def _beside_previous(
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
     )
     to_scale = {*_by_gps(curves), *diagnosis.filter(verdict="estimated")["season"]}
-    level = season_levels(changed.drop_nulls("ln"), to_scale)
+    level = _season_levels(changed.drop_nulls("ln"), to_scale)
     now, then = (
         pl.col(column).replace_strict(level, default=0.0, return_dtype=pl.Float64)
         for column in ("season", "before")
     )
     return changed.select("tow_id", curve_change=(pl.col("ln") - now + then).exp() - 1)
+
+
+def _season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int, float]:
+    """Level of ln Cw of every season that is not to scale and has enough changes.
+
+    A log that nothing calibrates gives every tow of its season the same error: between two such
+    seasons each boat seems to change. By medians, so that a tow that is off moves it little (median
+    polish; Tukey 1977, Exploratory Data Analysis, ch. 11).
+
+    Args:
+        changes: `season`, `before` (the season of the boat's previous tow), and `ln`, the logarithm
+            of its change.
+        to_scale: seasons whose level is 0.
+    """
+    between = changes.filter(pl.col("season") != pl.col("before"))
+    ends = (("season", "before", 1.0), ("before", "season", -1.0))
+    rows = pl.concat(
+        between.select(here=pl.col(here), there=pl.col(there), ln=sign * pl.col("ln"))
+        for here, there, sign in ends
+    )
+    seasons, place = np.unique(rows[["here", "there"]].to_numpy(), return_inverse=True)
+    here, there = place.reshape(-1, 2).T
+    free = np.bincount(here, minlength=len(seasons)) >= FEWEST_CHANGES
+    free &= ~np.isin(seasons, list(to_scale))
+    level, ln = np.zeros(len(seasons)), rows["ln"].to_numpy()
+    for _ in range(ROUNDS):
+        apart = ln + level[there] - level[here]
+        level += [0.5 * np.median(apart[here == s]) if free[s] else 0.0 for s in range(len(level))]
+    return dict(zip(seasons[free].tolist(), level[free].tolist(), strict=True))
 
 
 def _by_gps(curves: pl.DataFrame) -> pl.Series:

@@ -18,7 +18,6 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
-from pipeline.assessment.likely_unit import Cause, instead_of, likely_causes
 from pipeline.assessment.mean_shift import Candidates, Observations, find_shifts
 from pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
 from pipeline.blocks.batch import Batch
@@ -42,6 +41,36 @@ GROSS: Final = np.log(1.6)
 
 _WITH_UNITS: Final = ("force", "wind")
 """Quantities that a wrong unit shifts so far."""
+
+
+EXCHANGE_TOLERANCE: Final = 0.12
+"""How far a logarithm that is known exactly may lie from that of an exchange."""
+
+Cause = tuple[str, ...]
+"""A text, and what goes between its braces."""
+
+
+def _instead_of(unit: str, meant: str) -> Cause:
+    """A number in one unit that is read as in another."""
+    return say("{} instead of {}"), unit, meant
+
+
+_EXCHANGES: Final[dict[str, dict[Cause, float]]] = {
+    "force": {
+        _instead_of("kgf", "N"): 9.80665,
+        _instead_of("daN", "N"): 10.0,
+        _instead_of("lbf", "N"): 4.4482216,
+        _instead_of("kN", "N"): 1e3,
+        (say("a gain of two"),): 2.0,
+    },
+    "wind": {
+        _instead_of("km/h", "m/s"): 3.6,
+        _instead_of(say("knots"), "m/s"): 1.9438445,
+        _instead_of("mph", "m/s"): 2.2369363,
+        _instead_of("ft/s", "m/s"): 3.2808399,
+    },
+}
+"""Ratio of the two units. kgf and daN differ by 2 % and are named together."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +164,7 @@ def plausibility(batch: Batch) -> tuple[Shift, ...]:
     )
 
 
-_RADIANS: Final = (instead_of(say("radians"), say("degrees")),)
+_RADIANS: Final = (_instead_of(say("radians"), say("degrees")),)
 TURNED: Final = (("a vane that is turned",),)
 _TURNED_DEG: Final = {"season": 45.0, "tow": 90.0}
 """Where the wind out and back together comes from at least, for the vane to be turned (inferred):
@@ -330,7 +359,7 @@ def _shifts(
             size = ln_size = _of_whole_force(size, air_share[mine])
         if quantity == "wind":
             ln_size = float(np.log(max(1.0 + size, 0.01)))
-        causes = likely_causes(quantity, ln_size, found.sd)
+        causes = _likely_causes(quantity, ln_size, found.sd)
         if quantity == "wind" and stands_still[mine].any():
             causes = ()  # an anemometer that died on the way is in no other unit
         ids = tuple(tow_ids.gather(np.sort(mine)))
@@ -342,3 +371,17 @@ def _of_whole_force(ln_size: float, air_share: FloatArray) -> float:
     """Shift of ln force that gives a shift of its water part: no unit changes what the air took."""
     water = np.maximum(1.0 - air_share, LEAST_WATER)
     return float(-np.log(np.median(water * np.exp(-ln_size) + air_share)))
+
+
+def _likely_causes(quantity: str, ln_size: float, sd: float) -> tuple[Cause, ...]:
+    """The exchanges that explain a shift, likeliest first; several where they are too alike.
+
+    Args:
+        quantity: `force` or `wind`; nothing is known of others.
+        ln_size: logarithm of the number in the file / the number expected.
+        sd: its standard deviation.
+    """
+    known = _EXCHANGES.get(quantity, {})
+    far = {cause: abs(abs(ln_size) - np.log(ratio)) for cause, ratio in known.items()}
+    near = sorted((d, cause) for cause, d in far.items() if d <= EXCHANGE_TOLERANCE + 2.0 * sd)
+    return tuple(cause for d, cause in near if d <= near[0][0] + EXCHANGE_TOLERANCE)

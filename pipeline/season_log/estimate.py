@@ -123,7 +123,7 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
         GPS alone, `not determined` (numbers null) where neither ties it to an anchored season, and
         `not settled` where the search did not come to rest, and (numbers null) where the factor
-        contradicts what needs no model (`guard`). `ln_sd`, the standard deviation of
+        contradicts what needs no model (`factors.refused`). `ln_sd`, the standard deviation of
         ln factor, is made up of three parts: `repeat_tows_sd`, by the scatter of repeat tows;
         `gps_sd`, by plain GPS; `assumed_sd`, by what is assumed of log, load cell and boats.
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
@@ -136,7 +136,7 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
     _refuse_unknown(tows)
     posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
     fitted, change = posterior.fit, without_each_boat(posterior.fit)
-    factors, covariance = factors_of(posterior, change)
+    factors, covariance = factors_of(fitted, posterior.determined, posterior.refused, change)
     of_tows, weights = with_estimates(posterior, change)
     diagnosis = season_diagnosis(posterior)
     sd = np.exp(0.5 * fitted.ln_variance).tolist()

@@ -12,8 +12,8 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.choice import first_largest
 from pipeline.model import Scores
+from pipeline.season_log.factors import refused
 from pipeline.season_log.fit import Fit, Problem, fit
-from pipeline.season_log.guard import refused
 
 MOST_FAULTS: Final = 12
 ROUGH: Final = 1e-4
@@ -32,7 +32,8 @@ class Posterior:
             was in the model.
         shows: (faults,) whether a fault of the usual size would be likelier than not.
         hidden_by: (faults,) effect of the fit that would move most, in standard deviations.
-        refused: (logs,) whether the factor of a log contradicts what needs no model (`guard`).
+        refused: (logs,) whether the factor of a log contradicts what needs no model
+            (`factors.refused`).
     """
 
     fit: Fit
@@ -105,7 +106,7 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
 def _kinds(fitted: Fit, also: int | None = None) -> tuple[int, ...]:
     """Kinds of the faults of a model, and of one more, sorted."""
     places = fitted.active[fitted.is_fault].tolist() + ([] if also is None else [also])
-    return tuple(sorted(fitted.problem.effects.kind[places].tolist()))
+    return tuple(sorted(fitted.problem.effects.column("kind", places).tolist()))
 
 
 def _better(fitted: Fit, fitted_before: set[tuple[int, ...]]) -> IntArray | None:
@@ -136,14 +137,16 @@ def _odds(
     fitted: Fit, scores: Scores, covariance: FloatArray, away: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
     """Ln odds of every fault beside a posterior, and whether it would show (`Scores.odds`)."""
-    _, prior, chance = (p[fitted.problem.effects.faults] for p in fitted.problem.effects.prior)
+    effects = fitted.problem.effects
+    prior, chance = (effects.column(name, effects.faults) for name in ("variance", "chance"))
     return scores.odds(covariance, away, prior, chance)
 
 
 def _in_fit(fitted: Fit) -> tuple[IntArray, FloatArray]:
     """Faults in the fit, as places among its effects, and their ln odds (Savage-Dickey)."""
     places = np.flatnonzero(fitted.is_fault)
-    _, prior, chance = (p[fitted.active[places]] for p in fitted.problem.effects.prior)
+    effects, active = fitted.problem.effects, fitted.active[places]
+    prior, chance = (effects.column(name, active) for name in ("variance", "chance"))
     variance = np.diag(fitted.covariance)[places]
     square = fitted.value[places] ** 2 / variance
     return places, 0.5 * (square + np.log(variance / prior)) + scipy.special.logit(chance)

@@ -160,7 +160,7 @@ class Fit:
     @cached_property
     def name(self) -> StrArray:
         """What each effect in the model is, (k,)."""
-        return self.problem.effects.name[self.active]
+        return np.asarray(self.problem.effects.column("name", self.active), dtype=np.str_)
 
     @cached_property
     def design(self) -> FloatArray:
@@ -180,7 +180,7 @@ class Fit:
     @cached_property
     def of_log(self) -> BoolArray:
         """Effects that act as the scale of a log does, (k,)."""
-        return np.asarray(self.problem.effects.way[self.active] == "speed")
+        return np.asarray(self.problem.effects.column("way", self.active) == "speed")
 
     @property
     def is_fault(self) -> BoolArray:
@@ -248,7 +248,7 @@ def fit(
         tolerance: movement below which nothing moves any more.
         changes: boats may have been altered, and tows pulled askew.
     """
-    value, ln_variance = problem.effects.prior[0].copy(), problem.variance_prior
+    value, ln_variance = problem.effects.frame["mean"].to_numpy().copy(), problem.variance_prior
     shares = np.array([problem.settings.changed_share, problem.settings.askew_share])
     if start is not None:
         value[start.active], ln_variance, shares = start.value, start.ln_variance, start.shares
@@ -269,8 +269,8 @@ def _step(
     value, ln_variance, logit = np.split(place, [len(active), len(place) - 2])
     shares = scipy.special.expit(logit)
     effects = problem.effects
-    mean, variance = (prior[active] for prior in effects.prior[:2])
-    by_speed = effects.way[active] == "speed"
+    mean, variance = (effects.column(name, active) for name in ("mean", "variance"))
+    by_speed = effects.column("way", active) == "speed"
     tangent = problem.slopes(effects.share[:, active] @ np.where(by_speed, value, 0.0))
     design = effects.design(tangent, active)
     residual = problem.observed - tangent.predicted - design @ np.where(by_speed, 0.0, value)

@@ -121,42 +121,24 @@ towed early in the year. The season log assumes the same (`season_log.assumed`).
 
 @dataclass(frozen=True)
 class Assumed:
-    """Standard uncertainties that the archive itself cannot show (docs/method-details.md, 9).
+    """Standard uncertainties that the archive itself cannot show (docs/method-details.md, 9)."""
 
-    Attributes:
-        calibration_speed_ratio: dGPS calibration of the speed of a tow: 0.2 % by dGPS, 0.3 % by a
-            current that changes between the runs out and those back.
-        force_ratio: calibration of the load cell, as daily with a known weight.
-        wind_coefficient: of a prescribed air drag coefficient: 0.2 either way, all equally likely.
-        unmeasured_wind: where there was no anemometer, net wind correction / still-air part: wind
-            as fast as the boat, from ahead out and from behind back, makes it 1.
-        anemometer_ratio: wind speed by an anemometer that is taken as it reads.
-        mass_ratio: crew and gear, on Cw.
-        temperature_known_c, temperature_unknown_c: water temperature with and without a record,
-            this one where a method does not estimate the logs.
-        temperature_ratio_per_c: change of Cw with water temperature.
-        temperature_formula_ratio: wetted surface and friction formula.
-        straightness_ratio: tows that are pulled slightly askew.
-        force_standard_ratio: the part of `force_ratio` that all seasons share: what differs
-            between them is estimated with the log.
-        mass_standard_ratio: the part of `mass_ratio` that all tows of a boat share.
-        between_tows_ratio: what repeat tows show of all that differs from tow to tow.
-    """
-
-    calibration_speed_ratio: float = math.hypot(0.002, 0.003)
-    force_ratio: float = 0.003
-    wind_coefficient: float = 0.115
+    calibration_speed_ratio: float = math.hypot(0.002, 0.003)  # by dGPS, by current out and back
+    force_ratio: float = 0.003  # calibration of the load cell, as daily with a known weight
+    force_standard_ratio: float = 0.002  # of that what all seasons share: the rest is estimated
+    wind_coefficient: float = 0.115  # prescribed: 0.2 either way, all equally likely
+    # Without an anemometer, net wind correction / still-air part: wind as fast as the boat, from
+    # ahead out and from behind back, makes it 1.
     unmeasured_wind: float = 1.0
-    anemometer_ratio: float = 0.05
-    mass_ratio: float = 0.006
+    anemometer_ratio: float = 0.05  # wind speed by one that is taken as it reads
+    mass_ratio: float = 0.006  # crew and gear, on Cw
+    mass_standard_ratio: float = 0.002  # the part that all tows of a boat share
     temperature_known_c: float = 0.3
-    temperature_unknown_c: float = 2.0
+    temperature_unknown_c: float = 2.0  # without a record, where no logs are estimated
     temperature_ratio_per_c: float = 0.003
-    temperature_formula_ratio: float = 0.002
-    straightness_ratio: float = 0.002
-    force_standard_ratio: float = 0.002
-    mass_standard_ratio: float = 0.002
-    between_tows_ratio: float = 0.0
+    temperature_formula_ratio: float = 0.002  # wetted surface and friction formula
+    straightness_ratio: float = 0.002  # tows that are pulled slightly askew
+    between_tows_ratio: float = 0.0  # what repeat tows show of all that differs from tow to tow
 
     def beside_repeats(self, tow_sd: float, calibration_sd: float) -> "Assumed":
         """What remains assumed where repeat tows show how far tows scatter.

@@ -16,7 +16,7 @@ from pipeline.season_log import estimate_season_factors, faults, fit, retow_choi
 from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.assumed import USUAL
 from pipeline.season_log.effects import slopes
-from pipeline.season_log.guard import refused
+from pipeline.season_log.factors import refused
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 
