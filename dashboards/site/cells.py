@@ -16,7 +16,6 @@ from dashboards.site.parts import Page, Table, is_chosen
 from dashboards.speech import Speech, duration
 from dashboards.statements.edition import cause_name
 from pipeline.messages import LANGUAGES
-from warehouse.queries.chosen_tows import STATED, spoken_range
 
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
@@ -134,9 +133,7 @@ class Cells:
             "candidates": lambda names: Markup(", ").join(
                 self.text(labels.candidate(name)) for name in names
             ),
-            "tows": lambda value: (
-                self.text(labels.code(value)) if value in STATED else escape(spoken_range(value))
-            ),
+            "tows": lambda value: self.text(labels.code(value)),
             "unit": lambda value: self._plain("" if value == "1" else value),
             **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
             **dict.fromkeys(METHODS, lambda value: self.text(labels.method(value))),

@@ -12,7 +12,6 @@ from dashboards.site.parts import (
     Chart,
     Page,
     Section,
-    Select,
     Table,
     default_method,
     draft_of,
@@ -23,7 +22,7 @@ from dashboards.site.parts import (
 )
 from dashboards.site.prose import edition_pages, guide_links, guide_pages
 from dashboards.site.races import race_pages
-from dashboards.site.start import ABOUT, CARDS, start_page, words_page
+from dashboards.site.start import ABOUT, MENU, start_page, words_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
@@ -31,8 +30,6 @@ from pipeline.messages import say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
-
-MENU: Final = {name: title for name, (title, _) in CARDS.items()}
 
 
 def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
@@ -138,17 +135,13 @@ CHOICE_COLUMNS = (
 
 
 def _boats(views: Views, methods: Sequence[str]) -> Page:
-    """Who has to tow again, at what speed, which boats to tow again, and two boats compared."""
+    """Who has to tow again, at what speed, and which boats to tow again."""
     rows = views.ask("due_list").filter(method=default_method(methods))
     rows = rows.rename({"tow_date": "last_tow"})
     title = say("Who has to tow again")
     due = Table("due_list", rows, DUE_COLUMNS, title, search=True, cards=DUE_CARDS)
     choice = views.ask("retow_choice").filter(method=default_method(methods))
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
-    curves = _curves(views, methods)
-    crews = curves["crew"].unique().sort().to_list()
-    first, second = PAIR_OF_BOATS
-    can_compare = len(crews) >= len(PAIR_OF_BOATS)
     sections = [
         Section(
             "due_list",
@@ -179,49 +172,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
             headline=of_due.retow(choice) if choice.height else None,
         ),
     ]
-    if can_compare:
-        chart = Chart(
-            "boats_compared", "curves", say("Two boats compared"), {"crew": PAIR_OF_BOATS}
-        )
-        note = say(
-            "The curves under the best method, each with its 95 % band. Where bands touch, "
-            "the data do not say which boat runs easier."
-        )
-        sections.append(Section("compare_boats", say("Two boats compared"), note, [chart]))
-    return Page(
-        "boats.html",
-        say("Boats"),
-        sections,
-        selects=[
-            Select(first, say("Compare"), crews, crews[0]),
-            Select(second, say("with"), crews, _another(crews)),
-        ]
-        if can_compare
-        else [],
-        data={"curves": [curves]} if can_compare else {},
-    )
-
-
-def _curves(views: Views, methods: Sequence[str]) -> pl.DataFrame:
-    """The curve of every boat and crew, by the tow that counts."""
-    lines = views.register().filter(edition=draft_of(methods)).drop_nulls("cw_kg_m")
-    called = pl.format("{} · {} · {}{}", "name", "fsn_no", "rowers", "crew_class")
-    points = views.table("curve_points").filter(method=default_method(methods))
-    return (
-        lines.select("tow_id", crew=called)
-        .join(points, on="tow_id", maintain_order="left")
-        .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", kind=pl.lit("line"))
-        .sort("crew", "speed_m_s")
-    )
-
-
-def _another(crews: Sequence[str]) -> str:
-    """The first crew of another boat than the first, if there is one."""
-    boat = crews[0].rpartition(" · ")[0]
-    return next((crew for crew in crews if not crew.startswith(boat)), crews[1])
-
-
-PAIR_OF_BOATS = ("boat_first", "boat_second")
+    return Page("boats.html", say("Boats"), sections)
 
 
 PART = pl.col("part") + 1
@@ -257,6 +208,7 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     }
     first = default_method(methods)
     said = {
+        "season_change": season.changes(frames["season_change"], first),
         "log_factors": season.log_factors(frames["log_factors"].filter(method=first)),
         "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
@@ -266,15 +218,9 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     for name, (figure, follows) in SEASON_FIGURES.items():
         if frames[name].height:
             chart = Chart(figure, name, SEASON_TEXTS[name].title, follows)
-            is_folded = name not in said and name != "season_change"
-            sections.append(
-                replace(
-                    SEASON_TEXTS[name],
-                    charts=[chart],
-                    headline=said.get(name),
-                    folded=is_folded,
-                )
-            )
+            text, headline = SEASON_TEXTS[name], said.get(name)
+            folded = name not in said
+            sections.append(replace(text, charts=[chart], headline=headline, folded=folded))
     told = (
         *listed(LINKS, "season_links", links, LINK_COLUMNS),
         *listed(STEPS, "season_steps", steps, STEP_COLUMNS),
@@ -414,7 +360,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
         empty = Section(
             "changes_list", say("Changed lines"), empty=say("There are no changed lines.")
         )
-        return Page("changes.html", CARDS["changes"][0], [empty, races])
+        return Page("changes.html", MENU["changes"], [empty, races])
     editions = changed["to_edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     table = Table(
@@ -428,7 +374,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
     drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
     return Page(
         "changes.html",
-        CARDS["changes"][0],
+        MENU["changes"],
         [
             Section(
                 "changes_list",
@@ -476,7 +422,7 @@ def _about(views: Views) -> Page:
             tables=[table],
         ),
     ]
-    return Page("about.html", CARDS["about"][0], sections)
+    return Page("about.html", MENU["about"], sections)
 
 
 def _quality(views: Views, methods: list[str]) -> Page:

@@ -23,11 +23,11 @@ from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
 from dashboards.site.columns import json_of
 from dashboards.site.downloads import copy_sheets
-from dashboards.site.pages import MENU, method_names, shared_pages
+from dashboards.site.pages import method_names, shared_pages
 from dashboards.site.parts import Page
 from dashboards.site.slides import slides_page
 from dashboards.site.specifications import chart_specifications
-from dashboards.site.start import TERMS
+from dashboards.site.start import MENU, TERMS
 from dashboards.site.still import first_chart, still
 from dashboards.speech import Speech
 from pipeline.messages import LANGUAGES, speaker

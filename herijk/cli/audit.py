@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 @option(
     "--tows",
     default="newest",
-    metavar="all|newest|SEASON|A:B",
+    type=click.Choice(["all", "newest"]),
     help="Which tows a type's statistics rest on.",
 )
 @option("--plots", type=PATH, help="Draw the plots in this folder.")

@@ -143,18 +143,3 @@ def test_set_aside_tows_of_a_boat_are_found_by_number_or_file_and_no_others(benc
     )
     found = [row["path"] for row in audit(bench.store, ["FSN101"]).set_aside]
     assert found == ["a.csv", "meetdata_2014/razende snol 8h 2014.csv"]
-
-
-def test_statistics_of_a_season_rest_on_its_tows_alone(built):
-    boat_type = types_of(built)[0]
-    numbers = built.table("boats").filter(boat_type=boat_type)["fsn_no"]
-    own = built.table("tows").filter(pl.col("fsn_no").is_in(numbers.to_list()), season=2014)
-    report = audit(built.store, [boat_type], "rebased-2015", tows="2014")
-    page = report.types[0]
-    assert report.statistics_over == "2014"
-    assert page.n_tows == own.height < built.table("tows").height
-    figures = page.under["rebased-2015"]
-    assert all(line["n"] <= own.height for line in figures.lines)
-    assert {row["season"] for row in figures.outside} <= {2014}
-    again = audit(built.store, [boat_type], "rebased-2015")
-    assert again.types[0].n_tows > own.height, "the database is as it was"
