@@ -98,14 +98,7 @@ def test_keys_say_what_tows_have_in_common():
     rows = [tows(), tows(tow_id="2014-002"), tows(tow_id="2015-001", season=2015)]
     held = budget(pl.concat(rows))
     keys = dict(held.group_by("component").agg(pl.col("key").n_unique()).iter_rows())
-    one_each = {
-        "between_tows",
-        "misfit",
-        "random",
-        "calibration",
-        "mass",
-        "straightness",
-    }
+    one_each = {"between_tows", "misfit", "random", "calibration", "mass", "straightness"}
     assert {name for name, count in keys.items() if count == 3} == one_each
     assert {name for name, count in keys.items() if count == 1} == {"wind"}
     season = {"force", "anemometer", "temperature", "season_log"}
