@@ -14,7 +14,7 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.arrays import BoolArray, FloatArray
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
 from pipeline.uncertainty.misfit import Departure, departure_of_boats
@@ -42,14 +42,10 @@ def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     if not pooled:
         return curve.own_scatter(c.free)
     residual, used, on_curve = _residuals(c)
-    ratio, dof = residual_scatter(residual, used, _season(c))
+    ratio, dof = residual_scatter(residual, used, c.batch.of_tow("season"))
     known = np.isfinite(ratio) & used.any(axis=1)
     height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
     return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
-
-
-def _season(c: Computed) -> IntArray:
-    return c.batch.of_tow("season").astype(np.int64)
 
 
 def _residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
@@ -86,8 +82,7 @@ def files_log_sd(c: Computed) -> FloatArray:
 
 def run_point_ratio(c: Computed) -> FloatArray:
     """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
-    season = _season(c)[c.batch.tow]
-    return run_point_uncertainty(c.batch.blocks, c.windows.mask, season)
+    return run_point_uncertainty(c.batch.blocks, c.windows.mask, c.batch.of_run("season"))
 
 
 def facts_of(

@@ -31,7 +31,7 @@ ten times as sure as white noise would make it."""
 CURVE_PARAMETERS: Final = 2
 
 
-def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: IntArray) -> FloatArray:
+def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: FloatArray) -> FloatArray:
     """Relative standard uncertainty of the mean F/v^2 over each run's window.
 
     50,000 samples are not 50,000 measurements: the variance of a mean is that of the noise at
@@ -89,7 +89,7 @@ def _taper(lag: IntArray, length: FloatArray) -> FloatArray:
 
 
 def residual_scatter(
-    residual_ratio: FloatArray, used: BoolArray, season: IntArray
+    residual_ratio: FloatArray, used: BoolArray, season: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
