@@ -407,11 +407,6 @@ def _quality(views: Views, methods: list[str]) -> Page:
         say("Flags"),
         say("A flag says what a person should look at; it never changes a number."),
     )
-    found = Section(
-        "checks",
-        say("What the checks found"),
-        say("On how many tows each check was made, and how often something lay beyond its limit."),
-    )
     return Page(
         "quality.html",
         say("Quality"),
@@ -425,7 +420,18 @@ def _quality(views: Views, methods: list[str]) -> Page:
                 views.ask("counts", "run"),
                 ("code", "number"),
             ),
-            *listed(found, "check_counts", checks, ("check", "severity", "tows", "beyond")),
+            *listed(
+                Section(
+                    "checks",
+                    say("What the checks found"),
+                    say(
+                        "On how many tows each check was made, and how often something lay beyond its limit."
+                    ),
+                ),
+                "check_counts",
+                checks,
+                ("check", "severity", "tows", "beyond"),
+            ),
         ],
         selects=[methods_select(methods)],
     )
