@@ -425,7 +425,8 @@ def _quality(views: Views, methods: list[str]) -> Page:
                     "checks",
                     say("What the checks found"),
                     say(
-                        "On how many tows each check was made, and how often something lay beyond its limit."
+                        "On how many tows each check was made, and how often something lay "
+                        "beyond its limit."
                     ),
                 ),
                 "check_counts",
