@@ -402,6 +402,7 @@ def _about() -> Page:
 def _quality(views: Views, methods: list[str]) -> Page:
     statuses = views.ask("statuses").filter(method=default_method(methods))
     flagged, checks = views.ask("flagged_boats"), views.ask("checks")
+    left_out = Section("run_reasons", say("Runs that do not count"))
     flags = Section(
         "flags",
         say("Flags"),
@@ -414,12 +415,7 @@ def _quality(views: Views, methods: list[str]) -> Page:
             Section("statuses", say("Status of the curves"), headline=season.statuses(statuses)),
             _set_aside(views),
             *listed(flags, "flagged_boats", flagged, FLAG_COLUMNS),
-            *listed(
-                Section("run_reasons", say("Runs that do not count")),
-                "run_reasons",
-                views.ask("counts", "run"),
-                ("code", "number"),
-            ),
+            *listed(left_out, "run_reasons", views.ask("counts", "run"), ("code", "number")),
             *listed(
                 Section(
                     "checks",
