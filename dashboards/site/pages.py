@@ -32,12 +32,12 @@ from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
 
 
-def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
+def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Iterable[Page]]]:
     """What makes the pages of the site but those of boats and slides, by what they show."""
     methods = method_names(views)
     changes = cache(partial(line_changes, views))
     return {
-        "start": lambda: [start_page(views, methods, changes())],
+        "start": lambda: [start_page(views, methods, changes(), by_reports)],
         "register": lambda: [_register(views, methods)],
         "boats": lambda: [_boats(views, methods)],
         "types": lambda: [types_page(views, methods)],
@@ -45,7 +45,7 @@ def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
         "seasons": lambda: [_seasons(views, methods)],
         "changes": lambda: [_changes(views, methods, changes())],
         "races": lambda: race_pages(views, methods),
-        "about": lambda: [_about(views)],
+        "about": lambda: [_about()],
         "quality": lambda: [_quality(views, methods)],
         "words": lambda: [words_page()],
         "guides": guide_pages,
@@ -182,10 +182,6 @@ LINK_COLUMNS = (
     *("season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat"),
 )
-STEP_COLUMNS = (
-    *("season", "part", "n_boats", "level_step_percent"),
-    *("level_sd_percent", "force_step_percent", "force_sd_percent", "cause"),
-)
 
 
 def _seasons(views: Views, methods: list[str]) -> Page:
@@ -213,7 +209,6 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
     links = views.table("season_links").with_columns(PART)
-    steps = views.ask("season_steps").with_columns(PART)
     sections: list[Section] = []
     for name, (figure, follows) in SEASON_FIGURES.items():
         if frames[name].height:
@@ -223,7 +218,6 @@ def _seasons(views: Views, methods: list[str]) -> Page:
             sections.append(replace(text, charts=[chart], headline=headline, folded=folded))
     told = (
         *listed(LINKS, "season_links", links, LINK_COLUMNS),
-        *listed(STEPS, "season_steps", steps, STEP_COLUMNS),
         *_season_diagnosis(views),
     )
     return Page(
@@ -242,16 +236,6 @@ LINKS = Section(
         "Where a log was replaced within a season each part has its own factor; "
         "the chart above shows their mean. Largest influence: how far the factor "
         "moves at most when one boat is left out."
-    ),
-)
-STEPS = Section(
-    "season_steps",
-    say("Log or load cell?"),
-    say(
-        "A season may differ from the other tows of the same boats because the log "
-        "or because the load cell was wrong. The bend of the curves tells the two "
-        "apart. Steps of Cw in per cent, with their standard deviation (sd); for a "
-        "step below 3 % or below twice its sd no cause is looked for."
     ),
 )
 SEASON_FIGURES = {
@@ -408,39 +392,21 @@ CHANGE_CARDS = (
 DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_in_two_hours_s")
 
 
-def _about(views: Views) -> Page:
-    """The method, what the words mean, how the data fared, and what the rebuild read."""
+def _about() -> Page:
+    """The method, what the words mean, and how the data fared."""
     links = [*guide_links(), *((f"{name}.html", *texts) for name, texts in ABOUT.items())]
-    seasons = views.table("seasons")
-    table = Table("seasons", seasons, seasons.columns, say("Seasons"))
-    sections = [
-        Section("about_pages", say("Where to find what"), links=links),
-        Section(
-            "seasons",
-            say("Seasons"),
-            say("Tows per season that the tow list holds and that were used."),
-            tables=[table],
-        ),
-    ]
-    return Page("about.html", MENU["about"], sections)
+    where = say("Where to find what")
+    return Page("about.html", MENU["about"], [Section("about_pages", where, links=links)])
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
     statuses = views.ask("statuses").filter(method=default_method(methods))
-    flagged, runs, checks = (
-        views.ask("flagged_boats"),
-        views.ask("counts", "run"),
-        views.ask("checks"),
-    )
+    flagged, checks = views.ask("flagged_boats"), views.ask("checks")
+    left_out = Section("run_reasons", say("Runs that do not count"))
     flags = Section(
         "flags",
         say("Flags"),
         say("A flag says what a person should look at; it never changes a number."),
-    )
-    found = Section(
-        "checks",
-        say("What the checks found"),
-        say("On how many tows each check was made, and how often something lay beyond its limit."),
     )
     return Page(
         "quality.html",
@@ -449,13 +415,20 @@ def _quality(views: Views, methods: list[str]) -> Page:
             Section("statuses", say("Status of the curves"), headline=season.statuses(statuses)),
             _set_aside(views),
             *listed(flags, "flagged_boats", flagged, FLAG_COLUMNS),
+            *listed(left_out, "run_reasons", views.ask("counts", "run"), ("code", "number")),
             *listed(
-                Section("run_reasons", say("Runs that do not count")),
-                "run_reasons",
-                runs,
-                ("code", "number"),
+                Section(
+                    "checks",
+                    say("What the checks found"),
+                    say(
+                        "On how many tows each check was made, and how often something lay "
+                        "beyond its limit."
+                    ),
+                ),
+                "check_counts",
+                checks,
+                ("check", "severity", "tows", "beyond"),
             ),
-            *listed(found, "check_counts", checks, ("check", "severity", "tows", "beyond")),
         ],
         selects=[methods_select(methods)],
     )
@@ -499,8 +472,10 @@ def _set_aside(views: Views) -> Section:
     )
     if not views.has("quarantine"):
         return replace(section, empty=say("Nothing was set aside."))
-    columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"]
-    columns.append("first_seen")
+    columns = (
+        *("path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"),
+        "first_seen",
+    )
     faults = views.table("quarantine").with_columns(
         lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
     )

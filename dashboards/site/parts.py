@@ -122,6 +122,7 @@ class Section:
         empty: what is said where there is nothing to show.
         folded: whether it opens only when asked for.
         headline: what it shows, in each language; see `dashboards.statements`.
+        state: `good` or `bad`, where that is what the headline says.
         terms: a word and its meaning.
         key_figures: what is counted, and the figure.
         prose: a text to read, as HTML.
@@ -138,6 +139,7 @@ class Section:
     empty: Sentence | None = None
     folded: bool = False
     headline: Headline | None = None
+    state: str = ""
     terms: Sequence[tuple[Sentence, Sentence]] = ()
     key_figures: Sequence[tuple[Sentence, str | Headline]] = ()
     prose: Callable[[Speech], Markup] | None = None
