@@ -30,8 +30,6 @@ class Table:
         search: whether it has a search box.
         linked: whether a selection in a chart filters it by boat.
         cards: on a narrow screen, the columns of a card: its name, then its numbers.
-        within: the rows of many pages, and at which of them `frame` begins: their cells are made
-            at once.
     """
 
     name: str
@@ -42,12 +40,11 @@ class Table:
     search: bool = False
     linked: bool = False
     cards: Sequence[str] = ()
-    within: tuple[pl.DataFrame, int] | None = None
 
     @cached_property
     def shown(self) -> list[str]:
-        """The columns in which some row says something; those of many pages are the same on all."""
-        if self.within or self.frame.is_empty():
+        """The columns in which some row says something."""
+        if self.frame.is_empty():
             return list(self.columns)
         return [name for name in self.columns if _says_something(self.frame[name])]
 
@@ -154,7 +151,6 @@ class Page:
         subtitle: what tells a boat from one of the same name: its numbers and type.
         selects: selectors.
         data: frames that charts draw, by name; of several, the rows come one below the other.
-        json: the same as `site.columns` writes it, where it is made for many pages at once.
         site: the way to the site, of a page that lies outside it.
         answers: what an owner asks, of each crew of a boat.
         others: the same page in other languages, where it lies elsewhere.
@@ -166,7 +162,6 @@ class Page:
     name: str = ""
     selects: Sequence[Select] = ()
     data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
-    json: Mapping[str, str] = field(default_factory=dict)
     site: str = ""
     answers: Sequence[Answer] = ()
     others: Mapping[str, str] = field(default_factory=dict)

@@ -21,10 +21,9 @@ from starlette.routing import Route
 
 from dashboards import labels
 from dashboards.guard import guarded
-from dashboards.html import as_json, environment
-from dashboards.site.columns import json_of
+from dashboards.html import environment
 from dashboards.site.parts import Page
-from dashboards.site.render import Edition, shared_files
+from dashboards.site.render import Edition, page_json, shared_files
 from dashboards.workbench.bench import Asked, Bench, Saving
 from dashboards.workbench.form import CONTROLS, Control
 from dashboards.workbench.results import BenchCells, results
@@ -142,10 +141,7 @@ class BenchPage:
         ranges = self._bench.ranges(asked)
         other = next(name for name in LANGUAGES if name != self.language)
         shown = page or Page("index.html", text("workbench"), [])
-        data = ",".join(
-            f"{as_json(name)}:[{','.join(map(json_of, frames))}]"
-            for name, frames in shown.data.items()
-        ).replace("<", "\\u003c")
+        data = page_json(shown).replace("<", "\\u003c")
         return self._template.render(
             **self._edition.names(shown),
             stills={},
@@ -154,7 +150,7 @@ class BenchPage:
             asked=asked,
             changed=changed,
             refused=refused,
-            data=Markup(f'{{"charts":{{{data}}}}}'),  # noqa: S704 - no text in it closes the element
+            data=Markup(data),  # noqa: S704 - no text in it closes the element
             methods=list(shipped_methods()),
             saved=list(self._bench.known.own),
             editions=self._bench.editions(),
