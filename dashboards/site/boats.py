@@ -245,8 +245,8 @@ def _related(answers: Sequence[Answer]) -> list[Section]:
         for one in answers
         for race in one.races
     }
-    pages = [(path, name) for name, path in (types | races).items()]
-    return [Section("boat_related", say("Its type and its races"), pages=pages)] if pages else []
+    links = [(path, name, "") for name, path in (types | races).items()]
+    return [Section("boat_related", say("Its type and its races"), links=links)] if links else []
 
 
 DRAWN = {

@@ -1,6 +1,6 @@
 """Which page shows what. A section is there only if its table is, and holds rows."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import Final
@@ -117,8 +117,8 @@ def _editions(views: Views) -> list[Section]:
         return []
     title = say("Published editions")
     table = Table("editions", frame, EDITION_COLUMNS, title)
-    pages = [(edition_page(name), name) for name in frame["edition"]]
-    return [Section("editions", title, pages=pages, tables=[table])]
+    links = [(edition_page(name), name, "") for name in frame["edition"]]
+    return [Section("editions", title, links=links, tables=[table])]
 
 
 DUE_COLUMNS = (
@@ -214,13 +214,16 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     }
     links = views.table("season_links").with_columns(PART)
     steps = views.ask("season_steps").with_columns(PART)
-    sections: list[Section] = []
-    for name, (figure, follows) in SEASON_FIGURES.items():
-        if frames[name].height:
-            chart = Chart(figure, name, SEASON_TEXTS[name].title, follows)
-            text, headline = SEASON_TEXTS[name], said.get(name)
-            folded = name not in said
-            sections.append(replace(text, charts=[chart], headline=headline, folded=folded))
+    sections = [
+        replace(
+            section,
+            charts=[Chart(figure, name, section.title, follows)],
+            headline=said.get(name),
+            folded=name not in said,
+        )
+        for name, figure, follows, section in SEASON_CHARTS
+        if frames[name].height
+    ]
     told = (
         *listed(LINKS, "season_links", links, LINK_COLUMNS),
         *listed(STEPS, "season_steps", steps, STEP_COLUMNS),
@@ -254,92 +257,128 @@ STEPS = Section(
         "step below 3 % or below twice its sd no cause is looked for."
     ),
 )
-SEASON_FIGURES = {
-    "season_change": ("season_change", {}),
-    "log_factors": ("log_factors", {}),
-    "reproducibility": ("reproducibility", {}),
-    "ladder": ("ladder", {"to_method": "method"}),
-    "options": ("options", {}),
-    "era_shifts": ("eras", {}),
-    "repeat_pairs": ("repeats", {}),
-    "variance_components": ("components", {}),
-    "predicted_cw": ("predicted", {"method": "method"}),
-}
-"""Figure of each section, and what its selectors choose."""
-
-SEASON_TEXTS = {
-    "season_change": Section(
+SEASON_CHARTS: Final[Sequence[tuple[str, str, Mapping[str, str], Section]]] = (
+    (
         "season_change",
-        say("Relative to the published Cw"),
-        say("Cw by the method / Cw as published, of the same tow: median, and lowest to highest."),
+        "season_change",
+        {},
+        Section(
+            "season_change",
+            say("Relative to the published Cw"),
+            say(
+                "Cw by the method / Cw as published, of the same tow: median, and lowest to "
+                "highest."
+            ),
+        ),
     ),
-    "log_factors": Section(
+    (
         "log_factors",
-        say("Log factor per season"),
-        say("True speed = log speed x factor. A factor without a bar has no known interval."),
+        "log_factors",
+        {},
+        Section(
+            "log_factors",
+            say("Log factor per season"),
+            say("True speed = log speed x factor. A factor without a bar has no known interval."),
+        ),
     ),
-    "ladder": Section(
+    (
+        "reproducibility",
+        "reproducibility",
+        {},
+        Section(
+            "repro",
+            say("Spread of one tow"),
+            say(
+                "Standard deviation of one tow from repeats of unaltered boats, with 95 % "
+                "interval. Lower is better."
+            ),
+        ),
+    ),
+    (
         "ladder",
-        say("What each step does"),
-        say(
-            "Factor on Cw of each step, geometric mean over a season's tows. The "
-            "factors of a season multiply to the total."
+        "ladder",
+        {"to_method": "method"},
+        Section(
+            "ladder",
+            say("What each step does"),
+            say(
+                "Factor on Cw of each step, geometric mean over a season's tows. The "
+                "factors of a season multiply to the total."
+            ),
         ),
     ),
-    "options": Section(
+    (
         "options",
-        say("Sensitivity to choices"),
-        say(
-            "How Cw would change if one choice were made otherwise: median and the "
-            "middle 90 % of tows."
+        "options",
+        {},
+        Section(
+            "options",
+            say("Sensitivity to choices"),
+            say(
+                "How Cw would change if one choice were made otherwise: median and the "
+                "middle 90 % of tows."
+            ),
         ),
     ),
-    "reproducibility": Section(
-        "repro",
-        say("Spread of one tow"),
-        say(
-            "Standard deviation of one tow from repeats of unaltered boats, with 95 % "
-            "interval. Lower is better."
-        ),
-    ),
-    "era_shifts": Section(
+    (
+        "era_shifts",
         "eras",
-        say("Does an era differ?"),
-        say(
-            "Next tow of the same boats, in a later era, against that in the era itself, "
-            "without ageing: median of n pairs with 95 % interval, all types together."
+        {},
+        Section(
+            "eras",
+            say("Does an era differ?"),
+            say(
+                "Next tow of the same boats, in a later era, against that in the era itself, "
+                "without ageing: median of n pairs with 95 % interval, all types together."
+            ),
         ),
     ),
-    "repeat_pairs": Section(
+    (
+        "repeat_pairs",
         "repeats",
-        say("Every pair"),
-        say(
-            "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by "
-            "both intervals together; beyond 1 two tows disagree. Where these are the "
-            "spread of the runs alone, that may be the log's error. Click a point to go to "
-            "the boat."
+        {},
+        Section(
+            "repeats",
+            say("Every pair"),
+            say(
+                "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by "
+                "both intervals together; beyond 1 two tows disagree. Where these are the "
+                "spread of the runs alone, that may be the log's error. Click a point to go to "
+                "the boat."
+            ),
         ),
     ),
-    "variance_components": Section(
+    (
+        "variance_components",
         "components",
-        say("Where the spread comes from"),
-        say(
-            "What differences between boats, between seasons, of a boat between seasons, "
-            "and between runs add to the spread of Cw: standard deviation with 95 % "
-            "interval, from one model of all tows with a curve (n). Each crew of a boat "
-            "counts as a boat, and again after an alteration."
+        {},
+        Section(
+            "components",
+            say("Where the spread comes from"),
+            say(
+                "What differences between boats, between seasons, of a boat between seasons, "
+                "and between runs add to the spread of Cw: standard deviation with 95 % "
+                "interval, from one model of all tows with a curve (n). Each crew of a boat "
+                "counts as a boat, and again after an alteration."
+            ),
         ),
     ),
-    "predicted_cw": Section(
+    (
+        "predicted_cw",
         "predicted",
-        say("Predicted without towing"),
-        say(
-            "Cw from length, weight, beam and type against Cw from the tow. On the line "
-            "they agree. Disagrees: by more than the uncertainty of both; under a method "
-            "that does not estimate the log's error, that is not in it."
+        {"method": "method"},
+        Section(
+            "predicted",
+            say("Predicted without towing"),
+            say(
+                "Cw from length, weight, beam and type against Cw from the tow. On the line "
+                "they agree. Disagrees: by more than the uncertainty of both; under a method "
+                "that does not estimate the log's error, that is not in it."
+            ),
         ),
     ),
-}
+)
+"""Sections with a chart each: its rows, its figure, what its selectors choose, and its texts."""
 
 
 def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
@@ -350,7 +389,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
         "races",
         say("Races"),
         say("Every result computed again by the old and the new edition; choose a race."),
-        pages=[(race_path(race, day), f"{race} {day}") for race, day in days],
+        links=[(race_path(race, day), f"{race} {day}", "") for race, day in days],
     )
     if not days:
         races = Section(

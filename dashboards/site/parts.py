@@ -85,6 +85,23 @@ class Chart:
     says: Headline | None = None
 
 
+Text = str | Headline
+"""A sentence or a statement, or a text that is data."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table of what is said, not of numbers.
+
+    Attributes:
+        heads: of its columns, after that of the names of rows.
+        groups: the name of a group, and its rows: a name, then a text for each column.
+    """
+
+    heads: Sequence[Text]
+    groups: Sequence[tuple[str, Sequence[tuple[Text, Sequence[Text]]]]]
+
+
 def _as_it_is(option: str, _: Speech) -> str:
     return option
 
@@ -113,14 +130,14 @@ class Section:
 
     Attributes:
         name: by which links find it.
-        links: path of a page, its title and a sentence about it.
-        pages: path of a page and its name, which is data.
+        links: path of a page, its name, and what is said of it.
         files: path of a file to download, and its name, which is data.
         empty: what is said where there is nothing to show.
         folded: whether it opens only when asked for.
         headline: what it shows, in each language; see `dashboards.statements`.
         terms: a word and its meaning.
         key_figures: what is counted, and the figure.
+        grid: a table of texts.
         prose: a text to read, as HTML.
     """
 
@@ -129,14 +146,14 @@ class Section:
     note: Sentence | None = None
     charts: Sequence[Chart] = ()
     tables: Sequence[Table] = ()
-    links: Sequence[tuple[str, Sentence, Sentence]] = ()
-    pages: Sequence[tuple[str, str]] = ()
+    links: Sequence[tuple[str, Text, Text]] = ()
     files: Sequence[tuple[str, str]] = ()
     empty: Sentence | None = None
     folded: bool = False
     headline: Headline | None = None
     terms: Sequence[tuple[Sentence, Sentence]] = ()
-    key_figures: Sequence[tuple[Sentence, str | Headline]] = ()
+    key_figures: Sequence[tuple[Sentence, Text]] = ()
+    grid: Grid | None = None
     prose: Callable[[Speech], Markup] | None = None
 
 
