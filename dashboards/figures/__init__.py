@@ -121,14 +121,18 @@ def _gains(frame: pl.DataFrame, say: Say) -> Drawing:
 
 
 def _eras(say: Say) -> list[alt.Chart]:
-    """With what was measured, beneath the first season of each era that there is."""
+    """With what was measured, beneath the first season of each era; in turn on two lines."""
     return [
         alt.Chart()
         .transform_filter(f"datum.season >= {era.first} && datum.season <= {era.last}")
         .transform_aggregate(first="min(season)")
         .mark_text(align="left", baseline="top", dx=-14, fontSize=12, fontStyle="italic")
-        .encode(x="first:O", y=alt.value(style.HEIGHT + 22), text=alt.value(say(era.measured)))
-        for era in ERAS
+        .encode(
+            x="first:O",
+            y=alt.value(style.HEIGHT + 22 + 14 * (place % 2)),
+            text=alt.value(say(era.measured)),
+        )
+        for place, era in enumerate(ERAS)
     ]
 
 

@@ -1,6 +1,6 @@
 """Which page shows what. A section is there only if its table is, and holds rows."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import Final
@@ -26,18 +26,18 @@ from dashboards.site.start import ABOUT, MENU, start_page, words_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
-from pipeline.messages import say
+from pipeline.messages import Sentence, say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
 
 
-def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
+def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Iterable[Page]]]:
     """What makes the pages of the site but those of boats and slides, by what they show."""
     methods = method_names(views)
     changes = cache(partial(line_changes, views))
     return {
-        "start": lambda: [start_page(views, methods, changes())],
+        "start": lambda: [start_page(views, methods, changes(), by_reports)],
         "register": lambda: [_register(views, methods)],
         "boats": lambda: [_boats(views, methods)],
         "types": lambda: [types_page(views, methods)],
@@ -45,7 +45,7 @@ def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
         "seasons": lambda: [_seasons(views, methods)],
         "changes": lambda: [_changes(views, methods, changes())],
         "races": lambda: race_pages(views, methods),
-        "about": lambda: [_about(views)],
+        "about": lambda: [_about()],
         "quality": lambda: [_quality(views, methods)],
         "words": lambda: [words_page()],
         "guides": guide_pages,
@@ -182,10 +182,6 @@ LINK_COLUMNS = (
     *("season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat"),
 )
-STEP_COLUMNS = (
-    *("season", "part", "n_boats", "level_step_percent"),
-    *("level_sd_percent", "force_step_percent", "force_sd_percent", "cause"),
-)
 
 
 def _seasons(views: Views, methods: list[str]) -> Page:
@@ -213,20 +209,13 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
     links = views.table("season_links").with_columns(PART)
-    steps = views.ask("season_steps").with_columns(PART)
     sections = [
-        replace(
-            section,
-            charts=[Chart(figure, name, section.title, follows)],
-            headline=said.get(name),
-            folded=name not in said,
-        )
-        for name, figure, follows, section in SEASON_CHARTS
-        if frames[name].height
+        replace(section, headline=said.get(section.name), folded=section.name not in said)
+        for section in SEASON_CHARTS
+        if frames[section.name].height
     ]
     told = (
         *listed(LINKS, "season_links", links, LINK_COLUMNS),
-        *listed(STEPS, "season_steps", steps, STEP_COLUMNS),
         *_season_diagnosis(views),
     )
     return Page(
@@ -247,138 +236,96 @@ LINKS = Section(
         "moves at most when one boat is left out."
     ),
 )
-STEPS = Section(
-    "season_steps",
-    say("Log or load cell?"),
-    say(
-        "A season may differ from the other tows of the same boats because the log "
-        "or because the load cell was wrong. The bend of the curves tells the two "
-        "apart. Steps of Cw in per cent, with their standard deviation (sd); for a "
-        "step below 3 % or below twice its sd no cause is looked for."
-    ),
-)
-SEASON_CHARTS: Final[Sequence[tuple[str, str, Mapping[str, str], Section]]] = (
-    (
+
+
+def _charted(rows: str, figure: str, title: Sentence, note: Sentence, **follows: str) -> Section:
+    """A section with one chart of these rows, in which selectors choose what `follows` says."""
+    return Section(rows, title, note, [Chart(figure, rows, title, follows)])
+
+
+SEASON_CHARTS: Final = (
+    _charted(
         "season_change",
         "season_change",
-        {},
-        Section(
-            "season_change",
-            say("Relative to the published Cw"),
-            say(
-                "Cw by the method / Cw as published, of the same tow: median, and lowest to "
-                "highest."
-            ),
-        ),
+        say("Relative to the published Cw"),
+        say("Cw by the method / Cw as published, of the same tow: median, and lowest to highest."),
     ),
-    (
+    _charted(
         "log_factors",
         "log_factors",
-        {},
-        Section(
-            "log_factors",
-            say("Log factor per season"),
-            say("True speed = log speed x factor. A factor without a bar has no known interval."),
-        ),
+        say("Log factor per season"),
+        say("True speed = log speed x factor. A factor without a bar has no known interval."),
     ),
-    (
+    _charted(
         "reproducibility",
         "reproducibility",
-        {},
-        Section(
-            "repro",
-            say("Spread of one tow"),
-            say(
-                "Standard deviation of one tow from repeats of unaltered boats, with 95 % "
-                "interval. Lower is better."
-            ),
+        say("Spread of one tow"),
+        say(
+            "Standard deviation of one tow from repeats of unaltered boats, with 95 % interval."
+            " Lower is better."
         ),
     ),
-    (
+    _charted(
         "ladder",
         "ladder",
-        {"to_method": "method"},
-        Section(
-            "ladder",
-            say("What each step does"),
-            say(
-                "Factor on Cw of each step, geometric mean over a season's tows. The "
-                "factors of a season multiply to the total."
-            ),
+        say("What each step does"),
+        say(
+            "Factor on Cw of each step, geometric mean over a season's tows. The factors of a "
+            "season multiply to the total."
         ),
+        to_method="method",
     ),
-    (
+    _charted(
         "options",
         "options",
-        {},
-        Section(
-            "options",
-            say("Sensitivity to choices"),
-            say(
-                "How Cw would change if one choice were made otherwise: median and the "
-                "middle 90 % of tows."
-            ),
+        say("Sensitivity to choices"),
+        say(
+            "How Cw would change if one choice were made otherwise: median and the middle 90 % "
+            "of tows."
         ),
     ),
-    (
+    _charted(
         "era_shifts",
         "eras",
-        {},
-        Section(
-            "eras",
-            say("Does an era differ?"),
-            say(
-                "Next tow of the same boats, in a later era, against that in the era itself, "
-                "without ageing: median of n pairs with 95 % interval, all types together."
-            ),
+        say("Does an era differ?"),
+        say(
+            "Next tow of the same boats, in a later era, against that in the era itself, "
+            "without ageing: median of n pairs with 95 % interval, all types together."
         ),
     ),
-    (
+    _charted(
         "repeat_pairs",
         "repeats",
-        {},
-        Section(
-            "repeats",
-            say("Every pair"),
-            say(
-                "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by "
-                "both intervals together; beyond 1 two tows disagree. Where these are the "
-                "spread of the runs alone, that may be the log's error. Click a point to go to "
-                "the boat."
-            ),
+        say("Every pair"),
+        say(
+            "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by both"
+            " intervals together; beyond 1 two tows disagree. Where these are the spread of the"
+            " runs alone, that may be the log's error. Click a point to go to the boat."
         ),
     ),
-    (
+    _charted(
         "variance_components",
         "components",
-        {},
-        Section(
-            "components",
-            say("Where the spread comes from"),
-            say(
-                "What differences between boats, between seasons, of a boat between seasons, "
-                "and between runs add to the spread of Cw: standard deviation with 95 % "
-                "interval, from one model of all tows with a curve (n). Each crew of a boat "
-                "counts as a boat, and again after an alteration."
-            ),
+        say("Where the spread comes from"),
+        say(
+            "What differences between boats, between seasons, of a boat between seasons, and "
+            "between runs add to the spread of Cw: standard deviation with 95 % interval, from "
+            "one model of all tows with a curve (n). Each crew of a boat counts as a boat, and "
+            "again after an alteration."
         ),
     ),
-    (
+    _charted(
         "predicted_cw",
         "predicted",
-        {"method": "method"},
-        Section(
-            "predicted",
-            say("Predicted without towing"),
-            say(
-                "Cw from length, weight, beam and type against Cw from the tow. On the line "
-                "they agree. Disagrees: by more than the uncertainty of both; under a method "
-                "that does not estimate the log's error, that is not in it."
-            ),
+        say("Predicted without towing"),
+        say(
+            "Cw from length, weight, beam and type against Cw from the tow. On the line they "
+            "agree. Disagrees: by more than the uncertainty of both; under a method that does "
+            "not estimate the log's error, that is not in it."
         ),
+        method="method",
     ),
 )
-"""Sections with a chart each: its rows, its figure, what its selectors choose, and its texts."""
 
 
 def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
@@ -447,39 +394,21 @@ CHANGE_CARDS = (
 DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_in_two_hours_s")
 
 
-def _about(views: Views) -> Page:
-    """The method, what the words mean, how the data fared, and what the rebuild read."""
+def _about() -> Page:
+    """The method, what the words mean, and how the data fared."""
     links = [*guide_links(), *((f"{name}.html", *texts) for name, texts in ABOUT.items())]
-    seasons = views.table("seasons")
-    table = Table("seasons", seasons, seasons.columns, say("Seasons"))
-    sections = [
-        Section("about_pages", say("Where to find what"), links=links),
-        Section(
-            "seasons",
-            say("Seasons"),
-            say("Tows per season that the tow list holds and that were used."),
-            tables=[table],
-        ),
-    ]
-    return Page("about.html", MENU["about"], sections)
+    where = say("Where to find what")
+    return Page("about.html", MENU["about"], [Section("about_pages", where, links=links)])
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
     statuses = views.ask("statuses").filter(method=default_method(methods))
-    flagged, runs, checks = (
-        views.ask("flagged_boats"),
-        views.ask("counts", "run"),
-        views.ask("checks"),
-    )
+    flagged, checks = views.ask("flagged_boats"), views.ask("checks")
+    left_out = Section("run_reasons", say("Runs that do not count"))
     flags = Section(
         "flags",
         say("Flags"),
         say("A flag says what a person should look at; it never changes a number."),
-    )
-    found = Section(
-        "checks",
-        say("What the checks found"),
-        say("On how many tows each check was made, and how often something lay beyond its limit."),
     )
     return Page(
         "quality.html",
@@ -488,13 +417,20 @@ def _quality(views: Views, methods: list[str]) -> Page:
             Section("statuses", say("Status of the curves"), headline=season.statuses(statuses)),
             _set_aside(views),
             *listed(flags, "flagged_boats", flagged, FLAG_COLUMNS),
+            *listed(left_out, "run_reasons", views.ask("counts", "run"), ("code", "number")),
             *listed(
-                Section("run_reasons", say("Runs that do not count")),
-                "run_reasons",
-                runs,
-                ("code", "number"),
+                Section(
+                    "checks",
+                    say("What the checks found"),
+                    say(
+                        "On how many tows each check was made, and how often something lay "
+                        "beyond its limit."
+                    ),
+                ),
+                "check_counts",
+                checks,
+                ("check", "severity", "tows", "beyond"),
             ),
-            *listed(found, "check_counts", checks, ("check", "severity", "tows", "beyond")),
         ],
         selects=[methods_select(methods)],
     )
@@ -538,8 +474,10 @@ def _set_aside(views: Views) -> Section:
     )
     if not views.has("quarantine"):
         return replace(section, empty=say("Nothing was set aside."))
-    columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"]
-    columns.append("first_seen")
+    columns = (
+        *("path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"),
+        "first_seen",
+    )
     faults = views.table("quarantine").with_columns(
         lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
     )

@@ -135,6 +135,7 @@ class Section:
         empty: what is said where there is nothing to show.
         folded: whether it opens only when asked for.
         headline: what it shows, in each language; see `dashboards.statements`.
+        state: `good` or `bad`, where that is what the headline says.
         terms: a word and its meaning.
         key_figures: what is counted, and the figure.
         grid: a table of texts.
@@ -151,6 +152,7 @@ class Section:
     empty: Sentence | None = None
     folded: bool = False
     headline: Headline | None = None
+    state: str = ""
     terms: Sequence[tuple[Sentence, Sentence]] = ()
     key_figures: Sequence[tuple[Sentence, Text]] = ()
     grid: Grid | None = None

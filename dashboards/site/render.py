@@ -93,7 +93,7 @@ def build_pages(
     bordered = bordered or partial(border, store.root)
     with folder_written_beside(target) as beside:
         with Views(store, as_of) as views:
-            _write_pages(bordered, views, beside)
+            _write_pages(bordered, views, beside, target.parent == store.root)
             _write_shared(views, beside)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
@@ -116,11 +116,11 @@ def _write_shared(views: Views, folder: Path) -> None:
         _put(folder / "static" / name, text)
 
 
-def _write_pages(border: Border, views: Views, folder: Path) -> None:
+def _write_pages(border: Border, views: Views, folder: Path, by_reports: bool) -> None:
     """Writes every page in both languages."""
     editions = [Edition(views, language) for language in LANGUAGES]
     methods = method_names(views)
-    makers = shared_pages(views) | {"slides": lambda: [slides_page(views)]}
+    makers = shared_pages(views, by_reports) | {"slides": lambda: [slides_page(views)]}
     for name, make in makers.items():
         with border(f"pages {name}"):
             for page in make():

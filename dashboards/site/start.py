@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
+from markupsafe import Markup
 
 from dashboards import labels
-from dashboards.report import in_short
+from dashboards.report import PAGES, in_short
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -156,8 +157,14 @@ TERMS: Final = {
 """Words with what they mean."""
 
 
-def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
-    """The edition in force, key figures, what changes, the years, and where to go."""
+def start_page(
+    views: Views, methods: Sequence[str], changes: pl.DataFrame, by_reports: bool
+) -> Page:
+    """The edition in force, key figures, what changes, the years, and where to go.
+
+    Args:
+        by_reports: whether the site lies beside the reports of rebuilds, so that it can lead there.
+    """
     editions = changes["to_edition"].unique().sort().to_list() if changes.height else []
     chosen = newest_edition(editions, draft_of(methods))
     years = views.table("season_changes").filter(pl.col("method").is_in(methods))
@@ -190,12 +197,12 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
     return Page(
         "index.html",
         say("Start"),
-        [*sections, *_last_rebuild(views)],
+        [*sections, *_last_rebuild(views, by_reports)],
         data={"years": [years]} if years.height else {},
     )
 
 
-def _last_rebuild(views: Views) -> list[Section]:
+def _last_rebuild(views: Views, by_reports: bool) -> list[Section]:
     """What the rebuild that last changed something changed."""
     changes = last_changes(views.store)
     if changes is None:
@@ -204,9 +211,15 @@ def _last_rebuild(views: Views) -> list[Section]:
         Section(
             "last_rebuild",
             say("What the last rebuild changed"),
-            headline=lambda speech: in_short(changes, (), speech.say),
+            headline=lambda speech: in_short(changes, speech.say),
+            prose=_to_report if by_reports else None,
         )
     ]
+
+
+def _to_report(speech: Speech) -> Markup:
+    page = {"nl": "../report/", "en": "../../report/"}[speech.language] + PAGES[speech.language]
+    return Markup('<p><a href="{}">{}</a></p>').format(page, speech.say("Report of the rebuild"))
 
 
 def _figures(views: Views) -> list[tuple[Sentence, str | Headline]]:

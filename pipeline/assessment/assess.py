@@ -32,6 +32,16 @@ FEWEST_CHANGES: Final = 4
 ROUNDS: Final = 60
 """Half a step is made in each, as neighbouring seasons move each other; 1e-4 is left at most."""
 
+FEWEST_TOWS: Final = 6
+"""Fewest tows with GPS that show whether the log of their season is in proportion to speed."""
+
+CLEAR_SD: Final = 3.5
+"""Standard errors from which chance does not explain that it is not. With the limit of its check
+none of 990 sound seasons of 90 simulated archives is marked, and all 36 with logs of v^1.03."""
+
+LEAST_SPREAD: Final = 0.004
+"""Least sum of squares of ln speed, about the mean of a direction, over the runs of a tow."""
+
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 LISTED: Final = {"waterline_length_m": "listed_length_m", "beam_m": "listed_beam_m"}
 NOT_ALWAYS_KNOWN: Final = pl.DataFrame(
@@ -66,6 +76,7 @@ def assess(
         curves.drop(set(curves.columns) & set(tows.columns) - {"tow_id"}),
         _of_runs(curves, run_points),
         _of_season(curves, tows, diagnosis),
+        _of_log(curves, run_points),
         _beside_previous(boats, curves, diagnosis),
         _beside_like_boats(boats),
     ]
@@ -275,6 +286,33 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
     return tows.join(seasons, on="season", maintain_order="left").select(
         "tow_id", season_doubted="season_in_doubt"
     )
+
+
+def _of_log(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    """How the log's factor changes with speed, by the GPS of all tows of its season.
+
+    The slope of ln(GPS / log) by ln speed among runs one way, in which the current is the same; its
+    mean over the season, 0 where chance explains it.
+    """
+    ways, slope = ["tow_id", "direction"], pl.col("slope")
+    x, y = (pl.col(name).log() for name in ("speed_m_s", "gps_ratio"))
+    of_tows = (
+        run_points.filter("used", pl.col("gps_ratio") > 0)
+        .select("tow_id", x=x - x.mean().over(ways), y=y - y.mean().over(ways))
+        .group_by("tow_id", maintain_order=True)
+        .agg(product=(pl.col("x") * pl.col("y")).sum(), spread=(pl.col("x") ** 2).sum())
+        .filter(pl.col("spread") > LEAST_SPREAD)
+        .with_columns(slope=pl.col("product") / pl.col("spread"))
+    )
+    seasons = curves.select("tow_id", "season")
+    by_chance = CLEAR_SD * slope.std() / pl.len().sqrt()
+    found = (
+        of_tows.join(seasons, on="tow_id", maintain_order="left")
+        .group_by("season", maintain_order=True)
+        .agg(pl.len(), log_slope=slope.mean() * (slope.mean().abs() > by_chance))
+        .filter(pl.col("len") >= FEWEST_TOWS)
+    )
+    return seasons.join(found, on="season", maintain_order="left").select("tow_id", "log_slope")
 
 
 def _beside_previous(

@@ -31,7 +31,7 @@ def with_best(
     curves: pl.DataFrame,
     estimated: SeasonFactors | None,
     budget: pl.DataFrame,
-    misfit: pl.DataFrame,
+    facts: pl.DataFrame,
 ) -> pl.DataFrame:
     """Curves with `BEST`: Cw at the declared speed by all tows together, with its 95 % interval.
 
@@ -41,7 +41,7 @@ def with_best(
         curves: rows of the table.
         estimated: what all tows say; None where the method does not ask it: the columns are null.
         budget: rows of the budget at the declared speed.
-        misfit: how far each hull lies from its curve there.
+        facts: of each tow there, with how far its hull lies from its curve.
     """
     if estimated is None:
         return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
@@ -55,7 +55,12 @@ def with_best(
     joined = (
         curves.join(known, on="tow_id", how="left", maintain_order="left")
         .join(shared, on="tow_id", how="left", maintain_order="left")
-        .join(misfit, on="tow_id", how="left", maintain_order="left")
+        .join(
+            facts.select("tow_id", "misfit", "misfit_variance"),
+            on="tow_id",
+            how="left",
+            maintain_order="left",
+        )
     )
     moved = (
         pl.col("best_ln_cw")

@@ -145,15 +145,13 @@ def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, F
     return np.stack([average, np.sqrt(spread), *bounds], axis=2), shares.ravel()
 
 
-def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> list[FloatArray]:
-    """Bounds of the 95 % interval of normal mixtures over axis 1, by bisection."""
-    bounds = []
-    for level in (0.5 - INTERVAL_LEVEL / 2, 0.5 + INTERVAL_LEVEL / 2):
-        low = (mean - FARTHEST_SD * sd).min(axis=1)
-        high = (mean + FARTHEST_SD * sd).max(axis=1)
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            below = (weight * scipy.special.ndtr((middle[:, None] - mean) / sd)).sum(axis=1)
-            low, high = np.where(below < level, middle, low), np.where(below < level, high, middle)
-        bounds.append(0.5 * (low + high))
-    return bounds
+def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
+    """Both bounds of the 95 % interval of normal mixtures over axis 1, by bisection."""
+    level = 0.5 + 0.5 * INTERVAL_LEVEL * np.array([-1.0, 1.0])[:, None, None]
+    low = (mean - FARTHEST_SD * sd).min(axis=1) + np.zeros_like(level)
+    high = (mean + FARTHEST_SD * sd).max(axis=1) + np.zeros_like(level)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        below = (weight * scipy.special.ndtr((middle[:, :, None] - mean) / sd)).sum(axis=2) < level
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.asarray(0.5 * (low + high))

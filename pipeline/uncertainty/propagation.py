@@ -10,7 +10,7 @@ shares are kept apart from those of a single tow, because they do not average ou
 """
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -31,7 +31,7 @@ ten times as sure as white noise would make it."""
 CURVE_PARAMETERS: Final = 2
 
 
-def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: IntArray) -> FloatArray:
+def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: FloatArray) -> FloatArray:
     """Relative standard uncertainty of the mean F/v^2 over each run's window.
 
     50,000 samples are not 50,000 measurements: the variance of a mean is that of the noise at
@@ -89,7 +89,7 @@ def _taper(lag: IntArray, length: FloatArray) -> FloatArray:
 
 
 def residual_scatter(
-    residual_ratio: FloatArray, used: BoolArray, season: IntArray
+    residual_ratio: FloatArray, used: BoolArray, season: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
@@ -211,7 +211,7 @@ its log in place of calibration: a log feels the water, not the current."""
 COMPONENTS: Final = tuple(RULES)
 
 
-def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
+def budget(tows: pl.DataFrame) -> pl.DataFrame:
     """Every component of the uncertainty of Cw at one speed, per tow.
 
     Args:
@@ -226,17 +226,15 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             part / Cw;
             `temperature_known`; `water_off_c`, of the water from its day's; `askew_ratio`, by being
             pulled askew, null where repeat tows do not tell; `force_sd`, of the load cell by its
-            record, null without one.
-        assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
-            came to where that was used.
+            record, null without one; and every number of `Assumed`, with for `wind_coefficient`
+            what the archive-wide search came to where that was used.
 
     Returns:
         One row per tow, speed and component: `tow_id, speed_ratio, component, shared`, `key` (rows
         with one key share one error), `effect_ratio`, `u_ratio` (its size) and `dof`.
     """
-    facts = tows.with_columns(**{name: pl.lit(value) for name, value in asdict(assumed).items()})
     return pl.concat(
-        facts.select(
+        tows.select(
             "tow_id",
             "speed_ratio",
             component=pl.lit(name),

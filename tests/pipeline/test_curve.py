@@ -104,14 +104,6 @@ def test_a_search_that_does_not_come_to_rest_gives_no_curve(monkeypatch):
     assert unsettled.a_kg_m == pytest.approx(points.cw_kg_m.mean(axis=1))
 
 
-def test_a_flat_curve_is_a_curve_without_b():
-    fitted = curve.fit(curve.Points.of([2.0, 2.5, 3.0], [32.0, 31.0, 30.0]))
-    assert fitted.converged[0]
-    assert fitted.s_s2_m2[0] < 0
-    assert not fitted.b_determined[0]
-    assert fitted.b_m_s[0] == np.inf
-
-
 def test_two_points_are_interpolated_and_have_unbounded_intervals():
     points = curve.Points.of([2.0, 3.0], [20.0, 30.0])
     fitted = curve.fit(points)
