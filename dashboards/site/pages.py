@@ -26,7 +26,7 @@ from dashboards.site.start import ABOUT, MENU, start_page, words_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
-from pipeline.messages import say
+from pipeline.messages import Sentence, say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
@@ -117,8 +117,8 @@ def _editions(views: Views) -> list[Section]:
         return []
     title = say("Published editions")
     table = Table("editions", frame, EDITION_COLUMNS, title)
-    pages = [(edition_page(name), name) for name in frame["edition"]]
-    return [Section("editions", title, pages=pages, tables=[table])]
+    links = [(edition_page(name), name, "") for name in frame["edition"]]
+    return [Section("editions", title, links=links, tables=[table])]
 
 
 DUE_COLUMNS = (
@@ -209,13 +209,11 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
     links = views.table("season_links").with_columns(PART)
-    sections: list[Section] = []
-    for name, (figure, follows) in SEASON_FIGURES.items():
-        if frames[name].height:
-            chart = Chart(figure, name, SEASON_TEXTS[name].title, follows)
-            text, headline = SEASON_TEXTS[name], said.get(name)
-            folded = name not in said
-            sections.append(replace(text, charts=[chart], headline=headline, folded=folded))
+    sections = [
+        replace(section, headline=said.get(section.name), folded=section.name not in said)
+        for section in SEASON_CHARTS
+        if frames[section.name].height
+    ]
     told = (
         *listed(LINKS, "season_links", links, LINK_COLUMNS),
         *_season_diagnosis(views),
@@ -238,55 +236,56 @@ LINKS = Section(
         "moves at most when one boat is left out."
     ),
 )
-SEASON_FIGURES = {
-    "season_change": ("season_change", {}),
-    "log_factors": ("log_factors", {}),
-    "reproducibility": ("reproducibility", {}),
-    "ladder": ("ladder", {"to_method": "method"}),
-    "options": ("options", {}),
-    "era_shifts": ("eras", {}),
-    "repeat_pairs": ("repeats", {}),
-    "variance_components": ("components", {}),
-    "predicted_cw": ("predicted", {"method": "method"}),
-}
-"""Figure of each section, and what its selectors choose."""
 
-SEASON_TEXTS = {
-    "season_change": Section(
+
+def _charted(rows: str, figure: str, title: Sentence, note: Sentence, **follows: str) -> Section:
+    """A section with one chart of these rows, in which selectors choose what `follows` says."""
+    return Section(rows, title, note, [Chart(figure, rows, title, follows)])
+
+
+SEASON_CHARTS: Final = (
+    _charted(
+        "season_change",
         "season_change",
         say("Relative to the published Cw"),
         say("Cw by the method / Cw as published, of the same tow: median, and lowest to highest."),
     ),
-    "log_factors": Section(
+    _charted(
+        "log_factors",
         "log_factors",
         say("Log factor per season"),
         say("True speed = log speed x factor. A factor without a bar has no known interval."),
     ),
-    "ladder": Section(
+    _charted(
+        "reproducibility",
+        "reproducibility",
+        say("Spread of one tow"),
+        say(
+            "Standard deviation of one tow from repeats of unaltered boats, with 95 % interval."
+            " Lower is better."
+        ),
+    ),
+    _charted(
+        "ladder",
         "ladder",
         say("What each step does"),
         say(
-            "Factor on Cw of each step, geometric mean over a season's tows. The "
-            "factors of a season multiply to the total."
+            "Factor on Cw of each step, geometric mean over a season's tows. The factors of a "
+            "season multiply to the total."
         ),
+        to_method="method",
     ),
-    "options": Section(
+    _charted(
+        "options",
         "options",
         say("Sensitivity to choices"),
         say(
-            "How Cw would change if one choice were made otherwise: median and the "
-            "middle 90 % of tows."
+            "How Cw would change if one choice were made otherwise: median and the middle 90 % "
+            "of tows."
         ),
     ),
-    "reproducibility": Section(
-        "repro",
-        say("Spread of one tow"),
-        say(
-            "Standard deviation of one tow from repeats of unaltered boats, with 95 % "
-            "interval. Lower is better."
-        ),
-    ),
-    "era_shifts": Section(
+    _charted(
+        "era_shifts",
         "eras",
         say("Does an era differ?"),
         say(
@@ -294,36 +293,39 @@ SEASON_TEXTS = {
             "without ageing: median of n pairs with 95 % interval, all types together."
         ),
     ),
-    "repeat_pairs": Section(
+    _charted(
+        "repeat_pairs",
         "repeats",
         say("Every pair"),
         say(
-            "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by "
-            "both intervals together; beyond 1 two tows disagree. Where these are the "
-            "spread of the runs alone, that may be the log's error. Click a point to go to "
-            "the boat."
+            "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by both"
+            " intervals together; beyond 1 two tows disagree. Where these are the spread of the"
+            " runs alone, that may be the log's error. Click a point to go to the boat."
         ),
     ),
-    "variance_components": Section(
+    _charted(
+        "variance_components",
         "components",
         say("Where the spread comes from"),
         say(
-            "What differences between boats, between seasons, of a boat between seasons, "
-            "and between runs add to the spread of Cw: standard deviation with 95 % "
-            "interval, from one model of all tows with a curve (n). Each crew of a boat "
-            "counts as a boat, and again after an alteration."
+            "What differences between boats, between seasons, of a boat between seasons, and "
+            "between runs add to the spread of Cw: standard deviation with 95 % interval, from "
+            "one model of all tows with a curve (n). Each crew of a boat counts as a boat, and "
+            "again after an alteration."
         ),
     ),
-    "predicted_cw": Section(
+    _charted(
+        "predicted_cw",
         "predicted",
         say("Predicted without towing"),
         say(
-            "Cw from length, weight, beam and type against Cw from the tow. On the line "
-            "they agree. Disagrees: by more than the uncertainty of both; under a method "
-            "that does not estimate the log's error, that is not in it."
+            "Cw from length, weight, beam and type against Cw from the tow. On the line they "
+            "agree. Disagrees: by more than the uncertainty of both; under a method that does "
+            "not estimate the log's error, that is not in it."
         ),
+        method="method",
     ),
-}
+)
 
 
 def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
@@ -334,7 +336,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
         "races",
         say("Races"),
         say("Every result computed again by the old and the new edition; choose a race."),
-        pages=[(race_path(race, day), f"{race} {day}") for race, day in days],
+        links=[(race_path(race, day), f"{race} {day}", "") for race, day in days],
     )
     if not days:
         races = Section(
