@@ -87,7 +87,7 @@ def write_report(
     if not changes.nothing:
         from dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
 
-        for name, page in report_pages(store, changes, checks, report.made_at).items():
+        for name, page in report_pages(store, changes, checks, f"{now:%Y-%m-%d %H:%M}").items():
             _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
     _write(folder / "latest.json", text)

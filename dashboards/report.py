@@ -80,14 +80,16 @@ def headlines(changes: ChangeReport, checks: Sequence[Check], say: Say) -> list[
     return sentences or [say("Nothing changed since the last report.")]
 
 
-def in_short(changes: ChangeReport, checks: Sequence[Check], say: Say) -> str:
-    """The headlines as sentences of one paragraph."""
-    return " ".join(f"{line.rstrip('.')}." for line in headlines(changes, checks, say))
+def in_short(changes: ChangeReport, say: Say) -> str:
+    """What changed, as sentences of one paragraph."""
+    return " ".join(f"{line.rstrip('.')}." for line in headlines(changes, (), say))
 
 
-def minutes_of(made_at: str) -> str:
-    """A moment as people read it, to the minute."""
-    return made_at.replace("T", " ")[:16]
+def verdict(checks: Sequence[Check], say: Say) -> str:
+    """Whether all is well, in a line; what Herijk itself failed on comes first."""
+    if all(check.passed for check in checks):
+        return say("In order: all {number} checks passed.", number=len(checks))
+    return say("Not in order: {wrong}.", wrong="; ".join(_wrong(checks, say)))
 
 
 FAILED: Final = {
@@ -109,7 +111,7 @@ FAILED: Final = {
 
 
 def _wrong(checks: Sequence[Check], say: Say) -> Iterable[str]:
-    for check in checks:
+    for check in sorted(checks, key=lambda check: check.check != "nothing_unforeseen"):
         if not check.passed:
             outcome = say(labels.code(outcome_of(check)))
             failed = say(FAILED.get(check.check, check.check))

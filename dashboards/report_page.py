@@ -7,14 +7,15 @@ from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
+from markupsafe import Markup
 
 from dashboards.report import (
     PAGES,
     Check,
     in_short,
-    minutes_of,
     outcome_of,
     values_found,
+    verdict,
 )
 from dashboards.site.parts import Page, Section, Table
 from dashboards.site.render import Edition
@@ -42,14 +43,14 @@ _COLUMNS: Final = {
         *("old_cw_kg_m", "new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s"),
         *("exceeds_interval", "causes"),
     ),
-    "checks": (*OF_A_CHECK, "number"),
+    "checks": OF_A_CHECK,
 }
 
 
 def report_pages(
-    store: Store, changes: ChangeReport, checks: Sequence[Check], made_at: str
+    store: Store, changes: ChangeReport, checks: Sequence[Check], moment: str
 ) -> dict[str, str]:
-    """The page by its file name, in each language, with the moment it was made.
+    """The page by its file name, in each language, with the moment of the rebuild.
 
     It has what came in, what was set aside, what changed and why, and what the checks say.
     """
@@ -62,11 +63,10 @@ def report_pages(
         schema=dict.fromkeys(OF_A_CHECK, pl.String),
         orient="row",
     )
-    counted = of_checks.group_by(OF_A_CHECK, maintain_order=True).len("number")
     changed = ("lines", "tows", "set_aside", "factors")
     frames = {
         name: pl.DataFrame(getattr(changes, name), infer_schema_length=None) for name in changed
-    } | {"checks": counted}
+    } | {"checks": of_checks}
     sections = [
         Section(
             f"report_{name}",
@@ -80,7 +80,9 @@ def report_pages(
     in_words = Section(
         "report_summary",
         say("In short"),
-        headline=lambda speech: in_short(changes, checks, speech.say),
+        headline=lambda speech: verdict(checks, speech.say),
+        state="good" if all(check.passed for check in checks) else "bad",
+        prose=lambda speech: Markup("<p>{}</p>").format(in_short(changes, speech.say)),
     )
     with Views(store) as views:
         return {
@@ -89,7 +91,7 @@ def report_pages(
                     PAGES[language],
                     say("Report of the rebuild"),
                     [in_words, *sections],
-                    name=f"{speaker(language)('Report of the rebuild')} {minutes_of(made_at)}",
+                    name=f"{speaker(language)('Report of the rebuild')} {moment}",
                     site=TO_SITE,
                     others=PAGES,
                 )

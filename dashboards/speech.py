@@ -7,7 +7,7 @@ from typing import Final, TypeAlias
 from markupsafe import Markup, escape
 
 from dashboards import labels
-from pipeline.messages import DECIMALS, speaker
+from pipeline.messages import DECIMALS, speaker, spoken
 
 MINUS: Final = "\u2212"
 
@@ -20,6 +20,10 @@ class Speech:
         self.say = speaker(language)
         self.decimal = DECIMALS[language]
         self._marks = str.maketrans({".": self.decimal, "-": MINUS})
+
+    def words(self, what: "str | Headline") -> str:
+        """A sentence or a statement in this language; any other text is data, and stays."""
+        return what(self) if callable(what) else str(spoken(what, self.language))
 
     def text(self, text: str) -> Markup:
         """A text, escaped."""

@@ -67,17 +67,15 @@ class Points:
             raise BrokenPromiseError(
                 "Points need three arrays of one shape (n_fits, n_points), not {}.", shapes
             )
-        for name, values in (("speed_m_s", self.speed_m_s), ("cw_kg_m", self.cw_kg_m)):
-            unsound = self.used & ~(np.isfinite(values) & (values > 0))
-            if unsound.any():
-                faulty = np.flatnonzero(unsound.any(axis=1))
-                raise BrokenPromiseError(
-                    "{}: {} curves use a point that is not a positive number, the first is curve "
-                    "{}. Set such points to unused beforehand.",
-                    name,
-                    faulty.size,
-                    faulty[0],
-                )
+        both = np.stack([self.speed_m_s, self.cw_kg_m])
+        unsound = (self.used & ~(np.isfinite(both) & (both > 0))).any(axis=(0, 2))
+        if unsound.any():
+            raise BrokenPromiseError(
+                "{} curves use a point that is not a positive number, the first is curve {}. Set "
+                "such points to unused beforehand.",
+                unsound.sum(),
+                unsound.argmax(),
+            )
 
     @classmethod
     def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:
@@ -149,20 +147,9 @@ class Scatter:
     dof: FloatArray
 
 
-@dataclass(frozen=True)
-class Covariance:
-    """Covariance of (C0, q) of every curve; shape (n_fits,).
+class Covariance(NamedTuple):
+    """Covariance of C0 and q at one speed of every curve, (n_fits,); infinite where not known."""
 
-    A systematic component (say the season's log factor) is a covariance of the same two numbers
-    at the same reference speed, and adds to it term by term.
-
-    Attributes:
-        reference_speed_m_s: v0, the speed that C0 and q belong to.
-        c0_variance_kg2_m2, q_variance: infinite where they are not known.
-        c0_q_covariance_kg_m: 0 where it is not known.
-    """
-
-    reference_speed_m_s: FloatArray
     c0_variance_kg2_m2: FloatArray
     q_variance: FloatArray
     c0_q_covariance_kg_m: FloatArray
@@ -240,9 +227,17 @@ def fit(points: Points) -> Curves:
     """
     curves = _flat(points)
     for start in range(0, len(curves.a_kg_m), CHUNK_FITS):
-        chunk = slice(start, start + CHUNK_FITS)
-        speed, cw_kg_m, used = points.speed_m_s[chunk], points.cw_kg_m[chunk], points.used[chunk]
-        _fit_chunk(speed, cw_kg_m, used, curves, start)
+        u, c, w = _arrange(points, slice(start, start + CHUNK_FITS))
+        n = _sum(w)
+        u_mean = _sum(u) / np.maximum(n, 1.0)
+        z = w * (u / np.where(u_mean > 0, u_mean, 1.0) - 1.0)
+        solvable = np.flatnonzero((n >= 2) & (_sum(z * z) > n * MIN_SPREAD**2))
+        if not solvable.size:
+            continue
+        found, q, c0, rss = _search(*(x.take(solvable, axis=1) for x in (z, c, w)))
+        rows = start + solvable[found]
+        curves.a_kg_m[rows], curves.s_s2_m2[rows] = from_c0_q(c0, q, np.sqrt(u_mean[rows - start]))
+        curves.rss_kg2_m2[rows], curves.converged[rows] = rss, True
     return curves
 
 
@@ -304,30 +299,25 @@ def _flat(points: Points) -> Curves:
 
 def _fit_given_s(points: Points, s: FloatArray) -> Curves:
     flat = _flat(points)
-    rss, a, valid = _profile(_arrange(points.speed_m_s, points.cw_kg_m, points.used), s)
+    rss, a, valid = _profile(_arrange(points), s)
     valid &= flat.n_points > 0
     return _where(valid, replace(flat, a_kg_m=a, s_s2_m2=s, rss_kg2_m2=rss, converged=valid), flat)
 
 
-class _Arranged(NamedTuple):
-    """Points turned to (n_points, n_fits), 0 where not used.
+def _arrange(points: Points, rows: slice = slice(None)) -> tuple[FloatArray, ...]:
+    """v^2 and Cw, 0 where not used, and 1 where used, turned to (n_points, n_fits).
 
     Sums over points then run along whole rows: fast, and always in the same order.
     """
-
-    u: FloatArray  # v^2
-    c: FloatArray  # Cw
-    w: FloatArray  # 1 where used
-
-
-def _arrange(speed: FloatArray, cw_kg_m: FloatArray, used: BoolArray) -> _Arranged:
-    v = np.where(used, speed, 0.0)
-    c = np.where(used, cw_kg_m, 0.0)
+    used = points.used[rows]
+    v, c = (np.where(used, x[rows], 0.0) for x in (points.speed_m_s, points.cw_kg_m))
     u, c, w = (np.ascontiguousarray(x.T, dtype=np.float64) for x in (v * v, c, used))
-    return _Arranged(u, c, w)
+    return u, c, w
 
 
-def _profile(arranged: _Arranged, s: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
+def _profile(
+    arranged: tuple[FloatArray, ...], s: FloatArray
+) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Residual sum of squares and best A for a given s, and whether s leaves all points below B."""
     u, c, w = arranged
     denominator = 1.0 - s * u
@@ -337,27 +327,6 @@ def _profile(arranged: _Arranged, s: FloatArray) -> tuple[FloatArray, FloatArray
     a = _sum(g * c) / np.where(gg > 0, gg, 1.0)
     residual = c - a * g
     return _sum(residual * residual), a, np.asarray(below_b.all(axis=0))
-
-
-def _fit_chunk(
-    speed: FloatArray, cw_kg_m: FloatArray, used: BoolArray, curves: Curves, start: int
-) -> None:
-    """Fit one chunk and write what was solved into `curves` from row `start` on."""
-    u, c, w = _arrange(speed, cw_kg_m, used)
-    n = _sum(w)
-    u_mean = _sum(u) / np.maximum(n, 1.0)
-    z = w * (u / np.where(u_mean > 0, u_mean, 1.0) - 1.0)
-    solvable = np.flatnonzero((n >= 2) & (_sum(z * z) > n * MIN_SPREAD**2))
-    if not solvable.size:
-        return
-    q, c0, rss, converged = _gauss_newton(*(x.take(solvable, axis=1) for x in (z, c, w)))
-    solved = solvable[converged]
-    a, s = from_c0_q(c0[converged], q[converged], np.sqrt(u_mean[solved]))
-    rows = start + solved
-    curves.a_kg_m[rows] = a
-    curves.s_s2_m2[rows] = s
-    curves.rss_kg2_m2[rows] = rss[converged]
-    curves.converged[rows] = True
 
 
 class _State(NamedTuple):
@@ -370,45 +339,40 @@ class _State(NamedTuple):
     movement: FloatArray  # length of that step in the space of the fitted points, kg/m
 
 
-def _gauss_newton(
+def _search(
     z: FloatArray, c: FloatArray, w: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
     """Minimise over q; z = (v/v_pivot)^2 - 1, Cw and weights (1 or 0) are (n_points, n_fits).
 
     The bend stays between q = -1 (A infinite, s = -infinity) and the q that puts B on the fastest
     point: a step goes at most half way to either, and is halved until the sum of squares falls.
+
+    Returns:
+        The fits that came to rest, with their q, C0 and residual sum of squares.
     """
-    n_fits = z.shape[1]
-    q_out, c0_out, rss_out = np.zeros(n_fits), np.zeros(n_fits), np.zeros(n_fits)
-    converged = np.zeros(n_fits, bool)
-    upper = 1.0 / z.max(axis=0)
-    cc = _sum(c * c)
-    open_fits = np.arange(n_fits)
+    upper, cc = 1.0 / z.max(axis=0), _sum(c * c)
+    open_fits, damping = np.arange(z.shape[1]), np.ones(z.shape[1])
     state = _evaluate(np.clip(_start(z, c), -0.9, 0.9 * upper), z, c, w)
-    damping = np.ones(n_fits)
+    found: list[tuple[IntArray, FloatArray, FloatArray, FloatArray]] = []
     for _ in range(MAX_ITERATIONS):
         done = state.movement <= TOLERANCE * np.sqrt(cc)
         if done.any():
-            rows = open_fits[done]
-            q_out[rows], c0_out[rows] = state.q[done], state.c0[done]
-            rss_out[rows], converged[rows] = state.rss[done], True
-            going = np.flatnonzero(~done)
-            if not going.size:
+            found.append((open_fits[done], state.q[done], state.c0[done], state.rss[done]))
+            open_fits = open_fits[~done]
+            damping, upper, cc = (x[~done] for x in (damping, upper, cc))
+            z, c, w = (x[:, ~done] for x in (z, c, w))
+            state = _State(*(x[~done] for x in state))
+            if not open_fits.size:
                 break
-            open_fits, damping = open_fits[going], damping[going]
-            upper, cc = upper[going], cc[going]
-            z, c, w = (x.take(going, axis=1) for x in (z, c, w))
-            state = _State(*(x[going] for x in state))
         trial_q = np.maximum(state.q + damping * state.step, 0.5 * (state.q - 1.0))
         trial = _evaluate(np.minimum(trial_q, 0.5 * (state.q + upper)), z, c, w)
         # The slack lets the last steps pass, whose gain is below the rounding of the sum.
         better = trial.rss <= state.rss + TOLERANCE * cc
         damping = np.where(better, 1.0, 0.5 * damping)
-        if better.all():
-            state = trial
-        else:
-            state = _State(*(np.where(better, t, old) for t, old in zip(trial, state, strict=True)))
-    return q_out, c0_out, rss_out, converged
+        state = _State(*(np.where(better, new, old) for new, old in zip(trial, state, strict=True)))
+    none = np.empty(0)
+    rows, q, c0, rss = zip((np.empty(0, np.int64), none, none, none), *found, strict=True)
+    return np.concatenate(rows), np.concatenate(q), np.concatenate(c0), np.concatenate(rss)
 
 
 def _start(z: FloatArray, c: FloatArray) -> FloatArray:
@@ -455,7 +419,7 @@ def own_scatter(curves: Curves) -> Scatter:
 
 
 def covariance(
-    points: Points, curves: Curves, scatter: Scatter, reference_speed_m_s: ArrayLike
+    points: Points, curves: Curves, scatter: Scatter, speed_m_s: ArrayLike
 ) -> Covariance:
     """Covariance of (C0, q) that follows from the scatter of the points: variance (J'J)^-1.
 
@@ -464,52 +428,39 @@ def covariance(
     Args:
         points: run points the curves were fitted to.
         scatter: own or pooled scatter of a point.
-        reference_speed_m_s: v0, (n_fits,) or one for all; usually the declared speed.
+        speed_m_s: v0, that of C0 and q, (n_fits,) or one for all; usually the declared speed.
     """
-    v0 = np.broadcast_to(np.asarray(reference_speed_m_s, dtype=np.float64), curves.a_kg_m.shape)
-    height, bend = _sensitivities(curves, v0[:, None], points.speed_m_s, points.used)
+    v0 = np.broadcast_to(np.asarray(speed_m_s, dtype=np.float64), curves.a_kg_m.shape)[:, None]
+    a, s, v = curves.a_kg_m[:, None], curves.s_s2_m2[:, None], points.speed_m_s
+    c0, c = cw(a, s, v0), cw(a, s, np.where(points.used, v, 0.0))
+    valid = points.used & np.isfinite(c0) & np.isfinite(c) & (c0 > 0)
+    # Cw(v) / C0 = 1 / (1 - q x), x = (v/v0)^2 - 1.
+    height = np.where(valid, c, 0.0) / np.where(valid, c0, 1.0)
+    bend = np.where(valid, c0, 0.0) * height**2 * (np.where(valid, v / v0, 1.0) ** 2 - 1.0)
     hh, hb, bb = ((x * y).sum(axis=1) for x, y in ((height, height), (height, bend), (bend, bend)))
     determinant = hh * bb - hb * hb
     known = curves.converged & (scatter.dof > 0) & (determinant > 0)
     unit = np.where(known, scatter.variance_kg2_m2 / np.where(known, determinant, 1.0), 0.0)
     return Covariance(
-        reference_speed_m_s=v0,
         c0_variance_kg2_m2=np.where(known, unit * bb, np.inf),
         q_variance=np.where(known, unit * hh, np.inf),
         c0_q_covariance_kg_m=np.where(known, -unit * hb, 0.0),
     )
 
 
-def cw_interval(
-    curves: Curves, errors: Covariance, dof: ArrayLike, speed_m_s: ArrayLike
-) -> Interval:
-    """95 % interval of Cw [kg/m] at one speed per curve, from the covariance of (C0, q).
+def cw_interval(points: Points, curves: Curves, scatter: Scatter, speed_m_s: ArrayLike) -> Interval:
+    """95 % interval of Cw [kg/m] at one speed per curve, by the scatter of the points alone.
 
     Taken on the logarithm, since errors of speed and force act as factors; so it is positive. It
-    runs from 0 to infinity where the covariance is not known or the speed is not below B.
+    runs from 0 to infinity where the scatter is not known or the speed is not below B.
 
-    Args:
-        errors: covariance of (C0, q): scatter alone, or with systematic components added.
-        dof: (n_fits,) degrees of freedom of the t-quantile; infinite for a normal quantile.
-        speed_m_s: (n_fits,) or one for all; any speed, not only the reference speed.
+    Args: as of `covariance`.
     """
-    v0 = errors.reference_speed_m_s
-    speed = np.broadcast_to(np.asarray(speed_m_s, dtype=np.float64), v0.shape)
-    centre = curves.cw_at(speed)
-    known = np.isfinite(errors.c0_variance_kg2_m2) & np.isfinite(centre)
-    height, bend = _sensitivities(curves, v0, speed, known)
-    variance = (
-        height * height * np.where(known, errors.c0_variance_kg2_m2, 0.0)
-        + 2.0 * height * bend * errors.c0_q_covariance_kg_m
-        + bend * bend * np.where(known, errors.q_variance, 0.0)
-    )
-    safe_centre = np.where(known, centre, 1.0)
-    sd_ratio = np.sqrt(np.maximum(variance, 0.0)) / safe_centre
-    half_width = np.where(known, _t_quantile(dof) * sd_ratio, 0.0)
-    factor = np.exp(np.minimum(half_width, WIDEST_LOG_INTERVAL))
-    return Interval(
-        np.where(known, safe_centre / factor, 0.0), np.where(known, safe_centre * factor, np.inf)
-    )
+    variance, centre = covariance(points, curves, scatter, speed_m_s)[0], curves.cw_at(speed_m_s)
+    known = np.isfinite(variance) & np.isfinite(centre)
+    centre, sd = np.where(known, centre, 1.0), np.sqrt(np.where(known, variance, 0.0))
+    factor = np.exp(np.minimum(_t_quantile(scatter.dof) * sd / centre, WIDEST_LOG_INTERVAL))
+    return Interval(np.where(known, centre / factor, 0.0), np.where(known, centre * factor, np.inf))
 
 
 def b_interval(points: Points, curves: Curves, scatter: Scatter) -> Interval:
@@ -532,7 +483,7 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter) -> Interval:
     fastest = np.where(points.used, points.speed_m_s, 0.0).max(axis=1, initial=0.0)
     s_edge = np.where(fastest > 0, 1.0 / np.where(fastest > 0, fastest, 1.0) ** 2, np.inf)
     best = np.where(curves.converged, curves.s_s2_m2, 0.0)
-    arranged = _arrange(points.speed_m_s, points.cw_kg_m, points.used)
+    arranged = _arrange(points)
     s_hi = _last_below(arranged, best, np.where(known, s_edge, best), limit)
     s_hi = np.where(known, s_hi, s_edge)
     s_lo = _last_below(arranged, best, np.minimum(best, 0.0), limit)
@@ -545,30 +496,13 @@ def _b_of_s(s: FloatArray) -> FloatArray:
     return np.where(positive, 1.0 / np.sqrt(np.where(positive, s, 1.0)), np.inf)
 
 
-def _sensitivities(
-    curves: Curves, v0: FloatArray, speed: FloatArray, wanted: BoolArray
-) -> tuple[FloatArray, FloatArray]:
-    """dCw/dC0 and dCw/dq at a speed, 0 where not wanted or where v0 or the speed is not below B.
-
-    Written with Cw(v)/C0 = 1 / (1 - q x), x = (v/v0)^2 - 1; shapes as `speed`.
-    """
-    extra_axes = (...,) + (None,) * (speed.ndim - 1)
-    a, s = curves.a_kg_m[extra_axes], curves.s_s2_m2[extra_axes]
-    v = np.where(wanted, speed, 0.0)
-    c0, c = cw(a, s, v0), cw(a, s, v)
-    valid = wanted & np.isfinite(c0) & np.isfinite(c) & (c0 > 0)
-    height = np.where(valid, np.where(valid, c, 0.0) / np.where(valid, c0, 1.0), 0.0)
-    c0 = np.where(valid, c0, 0.0)
-    return height, c0 * height * height * ((v / v0) ** 2 - 1.0) * valid
-
-
 def _t_quantile(dof: ArrayLike) -> FloatArray:
     """Two-sided t-quantile; 0 degrees of freedom give that of 1: callers treat them apart."""
     return t_quantile(np.maximum(dof, 1.0))
 
 
 def _last_below(
-    arranged: _Arranged, inside: FloatArray, outside: FloatArray, limit: FloatArray
+    arranged: tuple[FloatArray, ...], inside: FloatArray, outside: FloatArray, limit: FloatArray
 ) -> FloatArray:
     """The s farthest from `inside` towards `outside` with RSS(s) <= limit, by bisection.
 

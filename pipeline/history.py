@@ -1,6 +1,8 @@
 """Facts of the history of the tow test that several parts need, each said once with its source."""
 
-from typing import Final
+from typing import Final, NamedTuple
+
+from pipeline.messages import Sentence, say
 
 STEERED_STRAIGHT_FROM: Final = 2014
 """First season in which steering straight was aided, so that a tow pulled askew would have been
@@ -13,3 +15,26 @@ UNKNOWN_LOG_SD: Final = 0.06
 SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
 """Power per rower under which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
 2015). Women tow at 40-55 W instead of 70-90 W: the same share of their range (inferred)."""
+
+
+class Era(NamedTuple):
+    """Seasons with like instruments.
+
+    Attributes:
+        name: as it is in tables.
+        first, last: seasons, both included.
+        measured: what was peculiar to how they were measured, in a few words.
+    """
+
+    name: str
+    first: int
+    last: int
+    measured: Sentence
+
+
+ERAS: Final = (
+    Era("2009-2011", 2009, 2011, say("worn logs")),
+    Era("2012-2013", 2012, 2013, say("Doppler logs")),
+    Era("2014-", 2014, 9999, say("dGPS, trimmed boats")),
+)
+"""Worn logs, Doppler logs, dGPS and trimming (Sleepproef, R. Pot 2017)."""

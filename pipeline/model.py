@@ -143,18 +143,26 @@ class Boats:
         """Slope of the ln density by the unknowns, per boat, (b, k)."""
         return np.asarray((np.swapaxes(self.design, 1, 2) @ self.mean_pull[..., None])[..., 0])
 
-    def excess(self, covariance: FloatArray) -> FloatArray:
-        """By how much residuals differ more than they should, as pulls, (b, n, n).
-
-        Half its sum over what a variance adds to the covariance of the numbers is the slope of the
-        restricted ln likelihood by that variance.
+    def by_variances(
+        self, parts: FloatArray, covariance: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Slope of the restricted ln likelihood by ln variances, (v,), and information, (v, v).
 
         Args:
-            covariance: of the unknowns, (k, k) or (1, k, k).
+            parts: what each variance adds to the covariance of the numbers, (v, b, n, n).
+            covariance: of the unknowns, (k, k).
         """
         squares = np.swapaxes(self.weight[..., None] * self.pull, 1, 2) @ self.pull
         known = self.weighed @ covariance @ np.swapaxes(self.weighed, 1, 2)
-        return np.asarray(squares - self.precision + known)
+        excess = squares - self.precision + known
+        along = self.precision @ parts
+        turned = np.swapaxes(along, 2, 3).reshape(len(parts), -1)
+        slope = np.tensordot(parts, excess, axes=3)
+        return 0.5 * slope, 0.5 * along.reshape(len(parts), -1) @ turned.T
+
+    def moved_by(self, parts: FloatArray) -> FloatArray:
+        """Covariance of the scores that each of these parts is the cause of, (v, k, k)."""
+        return np.asarray((np.swapaxes(self.weighed, 1, 2) @ parts @ self.weighed).sum(axis=1))
 
 
 def shares(ln_weight: FloatArray) -> FloatArray:
@@ -195,10 +203,25 @@ class Scores(NamedTuple):
         across, itself, pull = (np.sum(part, axis=0) for part in at)
         return cls(across.reshape(k, size), itself, pull)
 
-    def information(self, covariance: FloatArray) -> FloatArray:
-        """Of each candidate, the unknowns not being known, (c,)."""
-        known = (self.across * (covariance @ self.across)).sum(axis=0)
-        return np.asarray(np.maximum(self.itself - known, 0.0))
+    def odds(
+        self, covariance: FloatArray, away: FloatArray, prior: FloatArray, chance: FloatArray
+    ) -> tuple[FloatArray, BoolArray]:
+        """Ln odds of each candidate that is normal about 0, were it added by itself, (c,).
+
+        Args:
+            covariance: of the unknowns, (k, k).
+            away: how far their mean lies from where the scores are, (k,).
+            prior, chance: its variance, and the probability that there is one, (c,).
+
+        Returns:
+            The odds, and whether one of the size of its prior would be likelier than not.
+        """
+        pull = self.pull - self.across.T @ away
+        of_unknowns = (self.across * (covariance @ self.across)).sum(axis=0)
+        known = prior * np.maximum(self.itself - of_unknowns, 0.0)
+        ln_prior = np.log(chance / (1.0 - chance)) - 0.5 * np.log1p(known)
+        ln_odds = 0.5 * pull**2 * prior / (1.0 + known) + ln_prior
+        return ln_odds, 0.5 * known**2 / (1.0 + known) + ln_prior > 0.0
 
 
 class Likelihood(NamedTuple):

@@ -54,7 +54,7 @@ def proposal(
     """
     speech = Speech(language)
     say = speech.say
-    lines = {method: compared(views, against, draft_name(method)) for method in methods}
+    lines = {m: compared(views, against, draft_name(m), letter.valid_from) for m in methods}
     about = views.about()
     titles = {method: known.get(method).titled(language) for method in methods}
     content = {

@@ -27,6 +27,7 @@ from dashboards.figures.charts import (
     scatter,
 )
 from dashboards.figures.style import WIDTH, Column, Drawing, named, tips
+from pipeline.history import ERAS
 from pipeline.messages import Say, say
 from pipeline.studies.ladder import STEP_ORDER
 from pipeline.studies.options import CHOICES, SPEEDS, TICKS
@@ -57,11 +58,6 @@ def _against(quantity: Column, explaining: Column) -> Figure:
 def _black(_: Say) -> Sequence[Any]:
     """A curve that stands alone."""
     return (alt.ColorValue("black"),)
-
-
-def _of_crew(say: Say) -> Sequence[Any]:
-    ink = style.colour("crew", say("Boat"), sort=None)
-    return ink, alt.StrokeDash("crew:N", title=say("Boat"), sort=None)
 
 
 def _of_method(_: Say) -> Sequence[Any]:
@@ -124,6 +120,22 @@ def _gains(frame: pl.DataFrame, say: Say) -> Drawing:
     )
 
 
+def _eras(say: Say) -> list[alt.Chart]:
+    """With what was measured, beneath the first season of each era; in turn on two lines."""
+    return [
+        alt.Chart()
+        .transform_filter(f"datum.season >= {era.first} && datum.season <= {era.last}")
+        .transform_aggregate(first="min(season)")
+        .mark_text(align="left", baseline="top", dx=-14, fontSize=12, fontStyle="italic")
+        .encode(
+            x="first:O",
+            y=alt.value(style.HEIGHT + 22 + 14 * (place % 2)),
+            text=alt.value(say(era.measured)),
+        )
+        for place, era in enumerate(ERAS)
+    ]
+
+
 JUDGED: Final = (*CHOICES, *TICKS, *SPEEDS)
 """What options are judged by: choices of a method, and those of the tool of 2015."""
 RUN_TIPS: Final = ("run:O", "speed_m_s:Q", "cw_kg_m:Q")
@@ -141,7 +153,6 @@ WIND: Final = (
 FIGURES: Final[dict[str, Figure]] = {
     "resistance_curve": curves(_black, style.directions),
     "curves_compared": curves(_of_method, _points_of_method),
-    "boats_compared": curves(_of_crew, _of_crew),
     "traces": boat.traces,
     "out_and_back": scatter(
         ("speed_m_s", SPEED), ("cw_kg_m", CW), style.directions, RUN_TIPS,
@@ -163,7 +174,7 @@ FIGURES: Final[dict[str, Figure]] = {
     ),
     "season_change": by_group(
         "season", ("median_ratio", CHANGE), ("lowest_ratio", "highest_ratio"),
-        tip=("season:O", "tows:Q"), one=True,
+        tip=("season:O", "tows:Q"), one=True, beside=_eras,
     ),
     "reproducibility": by_group(
         "scope", ("sd_ratio", SPREAD), ("lo", "hi"), tip=("n_pairs:Q",), codes=["all"], zero=True

@@ -162,6 +162,7 @@ def by_group(
     zero: bool = False,
     dashed: bool = False,
     facet: tuple[str, Label] | None = None,
+    beside: Marks = lambda _: (),
 ) -> Figure:
     """A value of every method, side by side, for each season, era or tow, with its interval.
 
@@ -175,6 +176,7 @@ def by_group(
         zero: whether the axis begins at zero.
         dashed: whether a bar is dashed where it is the spread of the runs alone.
         facet: a column of which each value has a panel, and an expression for its title.
+        beside: other marks of the same axes.
     """
     (field, title), known = value, list(codes)
 
@@ -193,7 +195,8 @@ def by_group(
                 alt.Color("method:N"),
             )  # fmt: skip
             layers.append(bar.encode(strokeDash=interval_kind()) if dashed else bar)
-        drawing = alt.layer(*layers, point, data=frame).properties(height=HEIGHT)
+        layers += [point, *beside(say)]
+        drawing = alt.layer(*layers, data=frame).properties(height=HEIGHT)
         return _panels(drawing, facet, say) if facet else drawing.properties(width=WIDTH)
 
     return figure

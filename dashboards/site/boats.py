@@ -3,12 +3,10 @@
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 import polars as pl
 
 from dashboards.addresses import boat_path, race_path, type_path
-from dashboards.site.columns import json_by, json_of
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -17,34 +15,44 @@ from dashboards.site.parts import (
     Table,
     default_method,
     draft_of,
+    listed,
     methods_select,
     once_for_methods,
 )
 from dashboards.statements.boat import Answer, answers_by_boat
-from pipeline.messages import Sentence, say
+from pipeline.messages import say
 from warehouse.queries.answers import newest_edition
 from warehouse.queries.views import DRAFT, Views
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
-EXTRA = {
-    "assessments": ("check", "severity", "observed", "limit", "unit"),
-    "hand_windows": ("run", "start_s", "end_s", "reason"),
-}
-"""Tables about tows that are shown where there are any, with the columns shown; which tow and
-method they are of, the selectors say."""
-
-
-EXTRA_TEXTS = {
-    "assessments": (
-        say("Checks"),
-        say("Only what lies beyond its limit; all checks are in the table assessments."),
+EXTRA = (
+    (
+        Section(
+            "assessments",
+            say("Checks"),
+            say("Only what lies beyond its limit; all checks are in the table assessments."),
+        ),
+        ("check", "severity", "observed", "limit", "unit"),
     ),
-    "hand_windows": (
-        say("Windows chosen by hand"),
-        say("Windows that a person chose, with the reason."),
+    (
+        Section(
+            "hand_windows",
+            say("Windows chosen by hand"),
+            say("Windows that a person chose, with the reason."),
+        ),
+        ("run", "start_s", "end_s", "reason"),
     ),
-}
+    (
+        Section(
+            "lineage",
+            say("Lineage"),
+            say("The files, the method and the code behind every register line."),
+        ),
+        ("edition", "crew", "tow_id", "path", "sha256", "method_hash", "code_version"),
+    ),
+)
+"""Tables that are shown where they hold anything of the boat, with the columns shown."""
 
 
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Callable[[], Page]]]:
@@ -54,9 +62,13 @@ def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Call
     crews = answers_by_boat(views, newest_edition(editions, draft_of(methods)))
     frames = _of_methods(frames, {methods[0], default_method(methods), *_of_editions(views)})
     frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
-    boats = _Boats(frames)
+    parts = {
+        name: frame.partition_by("fsn_no", as_dict=True, maintain_order=True)
+        for name, frame in frames.items()
+    }
     for fsn_no in frames["boats"]["fsn_no"]:
-        yield fsn_no, partial(_page, fsn_no, boats, methods, crews.get(fsn_no, ()))
+        own = {name: parts[name].get((fsn_no,), frame.clear()) for name, frame in frames.items()}
+        yield fsn_no, partial(_page, fsn_no, own, methods, crews.get(fsn_no, ()))
 
 
 def _of_editions(views: Views) -> list[str]:
@@ -72,66 +84,6 @@ def _of_methods(
         name: frame.filter(pl.col("method").is_in(methods)) if "method" in frame.columns else frame
         for name, frame in frames.items()
     }
-
-
-class _Boats:
-    """Everything that the pages of boats show, split by boat."""
-
-    def __init__(self, frames: dict[str, pl.DataFrame]) -> None:
-        drawn = {part for parts in DRAWN.values() for part in parts}
-        self._json = {name: json_by(frames[name], "fsn_no") for name in drawn}
-        self._none = {name: json_of(frames[name].drop("fsn_no").clear()) for name in drawn}
-        self._listed = {
-            name: frame.sort("fsn_no", maintain_order=True)
-            for name, frame in frames.items()
-            if name not in drawn
-        }
-        self._places = {name: _places(frame["fsn_no"]) for name, frame in self._listed.items()}
-
-    def json(self, fsn_no: str) -> dict[str, str]:
-        """What the charts of a boat draw."""
-        return {
-            name: ",".join(self._json[part].get(fsn_no, self._none[part]) for part in parts)
-            for name, parts in DRAWN.items()
-        }
-
-    def tables(self, fsn_no: str) -> "dict[str, _Own]":
-        """The rows of a boat, by what they are about."""
-        return {
-            name: _Own(frame, *self._places[name].get(fsn_no, (0, 0)))
-            for name, frame in self._listed.items()
-        }
-
-
-class _Own(NamedTuple):
-    """Rows of a boat within those of several."""
-
-    whole: pl.DataFrame
-    start: int
-    number: int
-
-    @property
-    def rows(self) -> pl.DataFrame:
-        """The boat's rows."""
-        return self.whole.slice(self.start, self.number)
-
-    def table(
-        self,
-        name: str,
-        columns: Sequence[str],
-        caption: Sentence,
-        follows: Sequence[str] = (),
-    ) -> Table:
-        """The table of these rows."""
-        within = self.whole, self.start
-        return Table(name, self.rows, columns, caption, follows, within=within)
-
-
-def _places(keys: pl.Series) -> dict[str, tuple[int, int]]:
-    """Where the rows of each key begin, and how many they are; the keys are sorted."""
-    runs = keys.rle().struct.unnest()
-    starts = runs["len"].cum_sum() - runs["len"]
-    return dict(zip(runs["value"], zip(starts, runs["len"], strict=True), strict=True))
 
 
 ALIKE = ("runs", "wind", "line", "point", "declared", "stages", "assessments")
@@ -157,9 +109,6 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         .join(boat_of, on="tow_id", maintain_order="left")
         .join(intervals, on="method", maintain_order="left")
     )
-    lineage = views.table("lineage").with_columns(
-        pl.format("{}{}", "rowers", "crew_class").alias("crew")
-    )
     frames = {
         "boats": views.table("boats"),
         "register": _once(register),
@@ -181,12 +130,14 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
             "run",
             *WINDOW,
         ),
-        "lineage": lineage,
+        "lineage": views.table("lineage").with_columns(
+            crew=pl.format("{}{}", "rowers", "crew_class")
+        ),
         "budget": views.table("uncertainty_budget")
         .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
         .join(boat_of, on="tow_id", maintain_order="left"),
     }
-    for name in EXTRA:
+    for name in ("assessments", "hand_windows"):
         if views.has(name):
             rows = views.ask("flagged") if name == "assessments" else views.table(name)
             frames[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
@@ -254,20 +205,17 @@ FACT_COLUMNS = (
     *("name", "fsn_no", "ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m"),
     "weight_kg",
 )
-LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash", "code_version")
 
 
-def _page(fsn_no: str, boats: _Boats, methods: Sequence[str], told: Sequence[Answer]) -> Page:
-    own = boats.tables(fsn_no)
-    facts = Section(
-        "facts",
-        say("Dimensions"),
-        tables=[own["boats"].table("boats", FACT_COLUMNS, say("Dimensions"))],
-    )
-    boat = own["boats"].rows.row(0, named=True)
+def _page(
+    fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str], told: Sequence[Answer]
+) -> Page:
+    title = say("Dimensions")
+    facts = Section("facts", title, tables=[Table("boats", own["boats"], FACT_COLUMNS, title)])
+    boat = own["boats"].row(0, named=True)
     name = boat["name"]
     subtitle = " · ".join(filter(None, (fsn_no, boat["ht_no"], boat["boat_type"])))
-    curves = own["curves"].rows
+    curves = own["curves"]
     named = dict(zip(curves["tow_id"], curves["tow"], strict=True))
     if not named:
         return Page(boat_path(fsn_no), say("Boat"), [facts], name=name, subtitle=subtitle)
@@ -282,7 +230,7 @@ def _page(fsn_no: str, boats: _Boats, methods: Sequence[str], told: Sequence[Ans
         [*_related(told), replace(facts, folded=True), *_sections(own)],
         name=name,
         selects=selects,
-        json=boats.json(fsn_no),
+        data={name: [own[kind].drop("fsn_no") for kind in kinds] for name, kinds in DRAWN.items()},
         answers=told,
         subtitle=subtitle,
     )
@@ -297,8 +245,8 @@ def _related(answers: Sequence[Answer]) -> list[Section]:
         for one in answers
         for race in one.races
     }
-    pages = [(path, name) for name, path in (types | races).items()]
-    return [Section("boat_related", say("Its type and its races"), pages=pages)] if pages else []
+    links = [(path, name, "") for name, path in (types | races).items()]
+    return [Section("boat_related", say("Its type and its races"), links=links)] if links else []
 
 
 DRAWN = {
@@ -312,7 +260,7 @@ DRAWN = {
 """What the charts draw, by name; rows of several kinds stand one below the other."""
 
 
-def _sections(own: dict[str, _Own]) -> list[Section]:
+def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     """How the numbers were made: all of it folded."""
     curve = Chart("resistance_curve", "curve", say("Resistance curve"), OF_THE_CURVE)
     history = Chart("history", "curves", say("Through the years"))
@@ -322,8 +270,8 @@ def _sections(own: dict[str, _Own]) -> list[Section]:
         Chart("out_and_back", "stages", say("Out against back, and the wind"), OF_THE_CURVE),
         Chart("wind", "runs", say("Apparent wind [m/s]"), OF_THE_CURVE),
     ]
-    runs = own["runs"].table("run_points", RUN_COLUMNS, say("Runs"), FOLLOWS)
-    lines = own["register"].table("register", LINE_COLUMNS, say("In the register"))
+    runs = Table("run_points", own["runs"], RUN_COLUMNS, say("Runs"), FOLLOWS)
+    lines = Table("register", own["register"], LINE_COLUMNS, say("In the register"))
     sections = [
         Section("boat_lines", say("In the register"), tables=[lines]),
         Section(
@@ -385,23 +333,11 @@ def _sections(own: dict[str, _Own]) -> list[Section]:
             [budget],
         ),
     ]
-    for name, columns in EXTRA.items():
-        rows = own.get(name)
-        if rows is not None and rows.number:
-            follows = [c for c in FOLLOWS if c in rows.whole.columns]
-            title, note = EXTRA_TEXTS[name]
-            table = rows.table(name, columns, title, follows)
-            sections.append(Section(name, title, note, tables=[table]))
-    lineage = own["lineage"].table("lineage", LINEAGE_COLUMNS, say("Lineage"))
-    if own["lineage"].number:
-        sections.append(
-            Section(
-                "boat_lineage",
-                say("Lineage"),
-                say("The files, the method and the code behind every register line."),
-                tables=[lineage],
-            )
-        )
+    for section, columns in EXTRA:
+        rows = own.get(section.name)
+        if rows is not None:
+            follows = [name for name in FOLLOWS if name in rows.columns]
+            sections += listed(section, section.name, rows, columns, follows=follows)
     return [replace(section, folded=True) for section in sections]
 
 

@@ -67,7 +67,6 @@ class Cells:
         self.speech = speech
         self.text = speech.text
         self._text = cache(self._made)
-        self._of_many: dict[str, tuple[pl.DataFrame, list[str]]] = {}
 
     def _made(self, name: str, root: str, value: object) -> str:
         """The cell of a text in a column of this name; the same value comes often."""
@@ -88,21 +87,13 @@ class Cells:
         boats = [""] * height
         if table.linked:
             boats = [f' data-boat="{escape(number)}"' for number in table.frame["fsn_no"]]
-        rows = zip(self._cells_by_row(page, table), keys, boats, strict=True)
-        lines = (f"<tr{boat}{marks[key]}>{cells}</tr>" for cells, key, boat in rows)
+        # Column by column, because the cells of a column are made in one way.
+        cells = zip(
+            *(self._cells(table.frame[name], page.root) for name in table.shown), strict=True
+        )
+        rows = zip(map("".join, cells), keys, boats, strict=True)
+        lines = (f"<tr{boat}{marks[key]}>{row}</tr>" for row, key, boat in rows)
         return Rows(Markup("\n".join(lines)), distinct)  # noqa: S704 - escaped parts
-
-    def _cells_by_row(self, page: Page, table: Table) -> list[str]:
-        """The cells of each row, one text; of rows of many pages they are made once."""
-        whole, start = table.within or (table.frame, 0)
-        known, rows = self._of_many.get(table.name, (None, []))
-        if known is not whole:
-            # Column by column, because the cells of a column are made in one way.
-            cells = (self._cells(whole[c], page.root) for c in table.shown)
-            rows = list(map("".join, zip(*cells, strict=True)))
-        if table.within:
-            self._of_many[table.name] = whole, rows
-        return rows[start : start + table.frame.height]
 
     def _cells(self, column: pl.Series, root: str) -> Sequence[str]:
         """Cells of a column; a number is what has no class, and text that may be wide is `w`."""

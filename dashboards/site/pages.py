@@ -12,7 +12,6 @@ from dashboards.site.parts import (
     Chart,
     Page,
     Section,
-    Select,
     Table,
     default_method,
     draft_of,
@@ -23,24 +22,22 @@ from dashboards.site.parts import (
 )
 from dashboards.site.prose import edition_pages, guide_links, guide_pages
 from dashboards.site.races import race_pages
-from dashboards.site.start import ABOUT, CARDS, start_page, words_page
+from dashboards.site.start import ABOUT, MENU, start_page, words_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
-from pipeline.messages import say
+from pipeline.messages import Sentence, say
 from warehouse.derive.studies import JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
 
-MENU: Final = {name: title for name, (title, _) in CARDS.items()}
 
-
-def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
+def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Iterable[Page]]]:
     """What makes the pages of the site but those of boats and slides, by what they show."""
     methods = method_names(views)
     changes = cache(partial(line_changes, views))
     return {
-        "start": lambda: [start_page(views, methods, changes())],
+        "start": lambda: [start_page(views, methods, changes(), by_reports)],
         "register": lambda: [_register(views, methods)],
         "boats": lambda: [_boats(views, methods)],
         "types": lambda: [types_page(views, methods)],
@@ -48,7 +45,7 @@ def shared_pages(views: Views) -> dict[str, Callable[[], Iterable[Page]]]:
         "seasons": lambda: [_seasons(views, methods)],
         "changes": lambda: [_changes(views, methods, changes())],
         "races": lambda: race_pages(views, methods),
-        "about": lambda: [_about(views)],
+        "about": lambda: [_about()],
         "quality": lambda: [_quality(views, methods)],
         "words": lambda: [words_page()],
         "guides": guide_pages,
@@ -120,8 +117,8 @@ def _editions(views: Views) -> list[Section]:
         return []
     title = say("Published editions")
     table = Table("editions", frame, EDITION_COLUMNS, title)
-    pages = [(edition_page(name), name) for name in frame["edition"]]
-    return [Section("editions", title, pages=pages, tables=[table])]
+    links = [(edition_page(name), name, "") for name in frame["edition"]]
+    return [Section("editions", title, links=links, tables=[table])]
 
 
 DUE_COLUMNS = (
@@ -138,17 +135,13 @@ CHOICE_COLUMNS = (
 
 
 def _boats(views: Views, methods: Sequence[str]) -> Page:
-    """Who has to tow again, at what speed, which boats to tow again, and two boats compared."""
+    """Who has to tow again, at what speed, and which boats to tow again."""
     rows = views.ask("due_list").filter(method=default_method(methods))
     rows = rows.rename({"tow_date": "last_tow"})
     title = say("Who has to tow again")
     due = Table("due_list", rows, DUE_COLUMNS, title, search=True, cards=DUE_CARDS)
     choice = views.ask("retow_choice").filter(method=default_method(methods))
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
-    curves = _curves(views, methods)
-    crews = curves["crew"].unique().sort().to_list()
-    first, second = PAIR_OF_BOATS
-    can_compare = len(crews) >= len(PAIR_OF_BOATS)
     sections = [
         Section(
             "due_list",
@@ -179,49 +172,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
             headline=of_due.retow(choice) if choice.height else None,
         ),
     ]
-    if can_compare:
-        chart = Chart(
-            "boats_compared", "curves", say("Two boats compared"), {"crew": PAIR_OF_BOATS}
-        )
-        note = say(
-            "The curves under the best method, each with its 95 % band. Where bands touch, "
-            "the data do not say which boat runs easier."
-        )
-        sections.append(Section("compare_boats", say("Two boats compared"), note, [chart]))
-    return Page(
-        "boats.html",
-        say("Boats"),
-        sections,
-        selects=[
-            Select(first, say("Compare"), crews, crews[0]),
-            Select(second, say("with"), crews, _another(crews)),
-        ]
-        if can_compare
-        else [],
-        data={"curves": [curves]} if can_compare else {},
-    )
-
-
-def _curves(views: Views, methods: Sequence[str]) -> pl.DataFrame:
-    """The curve of every boat and crew, by the tow that counts."""
-    lines = views.register().filter(edition=draft_of(methods)).drop_nulls("cw_kg_m")
-    called = pl.format("{} · {} · {}{}", "name", "fsn_no", "rowers", "crew_class")
-    points = views.table("curve_points").filter(method=default_method(methods))
-    return (
-        lines.select("tow_id", crew=called)
-        .join(points, on="tow_id", maintain_order="left")
-        .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", kind=pl.lit("line"))
-        .sort("crew", "speed_m_s")
-    )
-
-
-def _another(crews: Sequence[str]) -> str:
-    """The first crew of another boat than the first, if there is one."""
-    boat = crews[0].rpartition(" · ")[0]
-    return next((crew for crew in crews if not crew.startswith(boat)), crews[1])
-
-
-PAIR_OF_BOATS = ("boat_first", "boat_second")
+    return Page("boats.html", say("Boats"), sections)
 
 
 PART = pl.col("part") + 1
@@ -230,10 +181,6 @@ PART = pl.col("part") + 1
 LINK_COLUMNS = (
     *("season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat"),
-)
-STEP_COLUMNS = (
-    *("season", "part", "n_boats", "level_step_percent"),
-    *("level_sd_percent", "force_step_percent", "force_sd_percent", "cause"),
 )
 
 
@@ -257,27 +204,18 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     }
     first = default_method(methods)
     said = {
+        "season_change": season.changes(frames["season_change"], first),
         "log_factors": season.log_factors(frames["log_factors"].filter(method=first)),
         "reproducibility": season.reproducibility(frames["reproducibility"], first),
     }
     links = views.table("season_links").with_columns(PART)
-    steps = views.ask("season_steps").with_columns(PART)
-    sections: list[Section] = []
-    for name, (figure, follows) in SEASON_FIGURES.items():
-        if frames[name].height:
-            chart = Chart(figure, name, SEASON_TEXTS[name].title, follows)
-            is_folded = name not in said and name != "season_change"
-            sections.append(
-                replace(
-                    SEASON_TEXTS[name],
-                    charts=[chart],
-                    headline=said.get(name),
-                    folded=is_folded,
-                )
-            )
+    sections = [
+        replace(section, headline=said.get(section.name), folded=section.name not in said)
+        for section in SEASON_CHARTS
+        if frames[section.name].height
+    ]
     told = (
         *listed(LINKS, "season_links", links, LINK_COLUMNS),
-        *listed(STEPS, "season_steps", steps, STEP_COLUMNS),
         *_season_diagnosis(views),
     )
     return Page(
@@ -298,65 +236,56 @@ LINKS = Section(
         "moves at most when one boat is left out."
     ),
 )
-STEPS = Section(
-    "season_steps",
-    say("Log or load cell?"),
-    say(
-        "A season may differ from the other tows of the same boats because the log "
-        "or because the load cell was wrong. The bend of the curves tells the two "
-        "apart. Steps of Cw in per cent, with their standard deviation (sd); for a "
-        "step below 3 % or below twice its sd no cause is looked for."
-    ),
-)
-SEASON_FIGURES = {
-    "season_change": ("season_change", {}),
-    "log_factors": ("log_factors", {}),
-    "reproducibility": ("reproducibility", {}),
-    "ladder": ("ladder", {"to_method": "method"}),
-    "options": ("options", {}),
-    "era_shifts": ("eras", {}),
-    "repeat_pairs": ("repeats", {}),
-    "variance_components": ("components", {}),
-    "predicted_cw": ("predicted", {"method": "method"}),
-}
-"""Figure of each section, and what its selectors choose."""
 
-SEASON_TEXTS = {
-    "season_change": Section(
+
+def _charted(rows: str, figure: str, title: Sentence, note: Sentence, **follows: str) -> Section:
+    """A section with one chart of these rows, in which selectors choose what `follows` says."""
+    return Section(rows, title, note, [Chart(figure, rows, title, follows)])
+
+
+SEASON_CHARTS: Final = (
+    _charted(
+        "season_change",
         "season_change",
         say("Relative to the published Cw"),
         say("Cw by the method / Cw as published, of the same tow: median, and lowest to highest."),
     ),
-    "log_factors": Section(
+    _charted(
+        "log_factors",
         "log_factors",
         say("Log factor per season"),
         say("True speed = log speed x factor. A factor without a bar has no known interval."),
     ),
-    "ladder": Section(
+    _charted(
+        "reproducibility",
+        "reproducibility",
+        say("Spread of one tow"),
+        say(
+            "Standard deviation of one tow from repeats of unaltered boats, with 95 % interval."
+            " Lower is better."
+        ),
+    ),
+    _charted(
+        "ladder",
         "ladder",
         say("What each step does"),
         say(
-            "Factor on Cw of each step, geometric mean over a season's tows. The "
-            "factors of a season multiply to the total."
+            "Factor on Cw of each step, geometric mean over a season's tows. The factors of a "
+            "season multiply to the total."
         ),
+        to_method="method",
     ),
-    "options": Section(
+    _charted(
+        "options",
         "options",
         say("Sensitivity to choices"),
         say(
-            "How Cw would change if one choice were made otherwise: median and the "
-            "middle 90 % of tows."
+            "How Cw would change if one choice were made otherwise: median and the middle 90 % "
+            "of tows."
         ),
     ),
-    "reproducibility": Section(
-        "repro",
-        say("Spread of one tow"),
-        say(
-            "Standard deviation of one tow from repeats of unaltered boats, with 95 % "
-            "interval. Lower is better."
-        ),
-    ),
-    "era_shifts": Section(
+    _charted(
+        "era_shifts",
         "eras",
         say("Does an era differ?"),
         say(
@@ -364,36 +293,39 @@ SEASON_TEXTS = {
             "without ageing: median of n pairs with 95 % interval, all types together."
         ),
     ),
-    "repeat_pairs": Section(
+    _charted(
+        "repeat_pairs",
         "repeats",
         say("Every pair"),
         say(
-            "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by "
-            "both intervals together; beyond 1 two tows disagree. Where these are the "
-            "spread of the runs alone, that may be the log's error. Click a point to go to "
-            "the boat."
+            "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by both"
+            " intervals together; beyond 1 two tows disagree. Where these are the spread of the"
+            " runs alone, that may be the log's error. Click a point to go to the boat."
         ),
     ),
-    "variance_components": Section(
+    _charted(
+        "variance_components",
         "components",
         say("Where the spread comes from"),
         say(
-            "What differences between boats, between seasons, of a boat between seasons, "
-            "and between runs add to the spread of Cw: standard deviation with 95 % "
-            "interval, from one model of all tows with a curve (n). Each crew of a boat "
-            "counts as a boat, and again after an alteration."
+            "What differences between boats, between seasons, of a boat between seasons, and "
+            "between runs add to the spread of Cw: standard deviation with 95 % interval, from "
+            "one model of all tows with a curve (n). Each crew of a boat counts as a boat, and "
+            "again after an alteration."
         ),
     ),
-    "predicted_cw": Section(
+    _charted(
+        "predicted_cw",
         "predicted",
         say("Predicted without towing"),
         say(
-            "Cw from length, weight, beam and type against Cw from the tow. On the line "
-            "they agree. Disagrees: by more than the uncertainty of both; under a method "
-            "that does not estimate the log's error, that is not in it."
+            "Cw from length, weight, beam and type against Cw from the tow. On the line they "
+            "agree. Disagrees: by more than the uncertainty of both; under a method that does "
+            "not estimate the log's error, that is not in it."
         ),
+        method="method",
     ),
-}
+)
 
 
 def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
@@ -404,7 +336,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
         "races",
         say("Races"),
         say("Every result computed again by the old and the new edition; choose a race."),
-        pages=[(race_path(race, day), f"{race} {day}") for race, day in days],
+        links=[(race_path(race, day), f"{race} {day}", "") for race, day in days],
     )
     if not days:
         races = Section(
@@ -414,7 +346,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
         empty = Section(
             "changes_list", say("Changed lines"), empty=say("There are no changed lines.")
         )
-        return Page("changes.html", CARDS["changes"][0], [empty, races])
+        return Page("changes.html", MENU["changes"], [empty, races])
     editions = changed["to_edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     table = Table(
@@ -428,7 +360,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
     drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
     return Page(
         "changes.html",
-        CARDS["changes"][0],
+        MENU["changes"],
         [
             Section(
                 "changes_list",
@@ -462,39 +394,21 @@ CHANGE_CARDS = (
 DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_in_two_hours_s")
 
 
-def _about(views: Views) -> Page:
-    """The method, what the words mean, how the data fared, and what the rebuild read."""
+def _about() -> Page:
+    """The method, what the words mean, and how the data fared."""
     links = [*guide_links(), *((f"{name}.html", *texts) for name, texts in ABOUT.items())]
-    seasons = views.table("seasons")
-    table = Table("seasons", seasons, seasons.columns, say("Seasons"))
-    sections = [
-        Section("about_pages", say("Where to find what"), links=links),
-        Section(
-            "seasons",
-            say("Seasons"),
-            say("Tows per season that the tow list holds and that were used."),
-            tables=[table],
-        ),
-    ]
-    return Page("about.html", CARDS["about"][0], sections)
+    where = say("Where to find what")
+    return Page("about.html", MENU["about"], [Section("about_pages", where, links=links)])
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
     statuses = views.ask("statuses").filter(method=default_method(methods))
-    flagged, runs, checks = (
-        views.ask("flagged_boats"),
-        views.ask("counts", "run"),
-        views.ask("checks"),
-    )
+    flagged, checks = views.ask("flagged_boats"), views.ask("checks")
+    left_out = Section("run_reasons", say("Runs that do not count"))
     flags = Section(
         "flags",
         say("Flags"),
         say("A flag says what a person should look at; it never changes a number."),
-    )
-    found = Section(
-        "checks",
-        say("What the checks found"),
-        say("On how many tows each check was made, and how often something lay beyond its limit."),
     )
     return Page(
         "quality.html",
@@ -503,13 +417,20 @@ def _quality(views: Views, methods: list[str]) -> Page:
             Section("statuses", say("Status of the curves"), headline=season.statuses(statuses)),
             _set_aside(views),
             *listed(flags, "flagged_boats", flagged, FLAG_COLUMNS),
+            *listed(left_out, "run_reasons", views.ask("counts", "run"), ("code", "number")),
             *listed(
-                Section("run_reasons", say("Runs that do not count")),
-                "run_reasons",
-                runs,
-                ("code", "number"),
+                Section(
+                    "checks",
+                    say("What the checks found"),
+                    say(
+                        "On how many tows each check was made, and how often something lay "
+                        "beyond its limit."
+                    ),
+                ),
+                "check_counts",
+                checks,
+                ("check", "severity", "tows", "beyond"),
             ),
-            *listed(found, "check_counts", checks, ("check", "severity", "tows", "beyond")),
         ],
         selects=[methods_select(methods)],
     )
@@ -553,8 +474,10 @@ def _set_aside(views: Views) -> Section:
     )
     if not views.has("quarantine"):
         return replace(section, empty=say("Nothing was set aside."))
-    columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"]
-    columns.append("first_seen")
+    columns = (
+        *("path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"),
+        "first_seen",
+    )
     faults = views.table("quarantine").with_columns(
         lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
     )

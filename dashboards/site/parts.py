@@ -30,8 +30,6 @@ class Table:
         search: whether it has a search box.
         linked: whether a selection in a chart filters it by boat.
         cards: on a narrow screen, the columns of a card: its name, then its numbers.
-        within: the rows of many pages, and at which of them `frame` begins: their cells are made
-            at once.
     """
 
     name: str
@@ -42,12 +40,11 @@ class Table:
     search: bool = False
     linked: bool = False
     cards: Sequence[str] = ()
-    within: tuple[pl.DataFrame, int] | None = None
 
     @cached_property
     def shown(self) -> list[str]:
-        """The columns in which some row says something; those of many pages are the same on all."""
-        if self.within or self.frame.is_empty():
+        """The columns in which some row says something."""
+        if self.frame.is_empty():
             return list(self.columns)
         return [name for name in self.columns if _says_something(self.frame[name])]
 
@@ -88,6 +85,23 @@ class Chart:
     says: Headline | None = None
 
 
+Text = str | Headline
+"""A sentence or a statement, or a text that is data."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table of what is said, not of numbers.
+
+    Attributes:
+        heads: of its columns, after that of the names of rows.
+        groups: the name of a group, and its rows: a name, then a text for each column.
+    """
+
+    heads: Sequence[Text]
+    groups: Sequence[tuple[str, Sequence[tuple[Text, Sequence[Text]]]]]
+
+
 def _as_it_is(option: str, _: Speech) -> str:
     return option
 
@@ -116,14 +130,15 @@ class Section:
 
     Attributes:
         name: by which links find it.
-        links: path of a page, its title and a sentence about it.
-        pages: path of a page and its name, which is data.
+        links: path of a page, its name, and what is said of it.
         files: path of a file to download, and its name, which is data.
         empty: what is said where there is nothing to show.
         folded: whether it opens only when asked for.
         headline: what it shows, in each language; see `dashboards.statements`.
+        state: `good` or `bad`, where that is what the headline says.
         terms: a word and its meaning.
         key_figures: what is counted, and the figure.
+        grid: a table of texts.
         prose: a text to read, as HTML.
     """
 
@@ -132,14 +147,15 @@ class Section:
     note: Sentence | None = None
     charts: Sequence[Chart] = ()
     tables: Sequence[Table] = ()
-    links: Sequence[tuple[str, Sentence, Sentence]] = ()
-    pages: Sequence[tuple[str, str]] = ()
+    links: Sequence[tuple[str, Text, Text]] = ()
     files: Sequence[tuple[str, str]] = ()
     empty: Sentence | None = None
     folded: bool = False
     headline: Headline | None = None
+    state: str = ""
     terms: Sequence[tuple[Sentence, Sentence]] = ()
-    key_figures: Sequence[tuple[Sentence, str | Headline]] = ()
+    key_figures: Sequence[tuple[Sentence, Text]] = ()
+    grid: Grid | None = None
     prose: Callable[[Speech], Markup] | None = None
 
 
@@ -154,7 +170,6 @@ class Page:
         subtitle: what tells a boat from one of the same name: its numbers and type.
         selects: selectors.
         data: frames that charts draw, by name; of several, the rows come one below the other.
-        json: the same as `site.columns` writes it, where it is made for many pages at once.
         site: the way to the site, of a page that lies outside it.
         answers: what an owner asks, of each crew of a boat.
         others: the same page in other languages, where it lies elsewhere.
@@ -166,7 +181,6 @@ class Page:
     name: str = ""
     selects: Sequence[Select] = ()
     data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
-    json: Mapping[str, str] = field(default_factory=dict)
     site: str = ""
     answers: Sequence[Answer] = ()
     others: Mapping[str, str] = field(default_factory=dict)

@@ -7,12 +7,14 @@ its charts, and the rows of its tables that are not shown at first, once, as a s
 import base64
 import datetime as dt
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache, partial
 from pathlib import Path
 from typing import Final
 
 import jinja2
+import polars as pl
+import polars.selectors as cs
 import vl_convert
 from markupsafe import Markup
 
@@ -21,13 +23,12 @@ from dashboards.addresses import boat_path, race_path, type_path
 from dashboards.html import as_json, environment
 from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
-from dashboards.site.columns import json_of
 from dashboards.site.downloads import copy_sheets
-from dashboards.site.pages import MENU, method_names, shared_pages
+from dashboards.site.pages import method_names, shared_pages
 from dashboards.site.parts import Page
 from dashboards.site.slides import slides_page
 from dashboards.site.specifications import chart_specifications
-from dashboards.site.start import TERMS
+from dashboards.site.start import MENU, TERMS
 from dashboards.site.still import first_chart, still
 from dashboards.speech import Speech
 from pipeline.messages import LANGUAGES, speaker
@@ -39,6 +40,8 @@ from warehouse.store.unforeseen import Border, border
 HERE: Final = Path(__file__).parent
 QUICK: Final = 4
 """How hard data are deflated: a tenth larger than by default, in half the time."""
+DRAWN: Final = 5
+"""Significant digits of what charts draw."""
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -90,7 +93,7 @@ def build_pages(
     bordered = bordered or partial(border, store.root)
     with folder_written_beside(target) as beside:
         with Views(store, as_of) as views:
-            _write_pages(bordered, views, beside)
+            _write_pages(bordered, views, beside, target.parent == store.root)
             _write_shared(views, beside)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
@@ -113,11 +116,11 @@ def _write_shared(views: Views, folder: Path) -> None:
         _put(folder / "static" / name, text)
 
 
-def _write_pages(border: Border, views: Views, folder: Path) -> None:
+def _write_pages(border: Border, views: Views, folder: Path, by_reports: bool) -> None:
     """Writes every page in both languages."""
     editions = [Edition(views, language) for language in LANGUAGES]
     methods = method_names(views)
-    makers = shared_pages(views) | {"slides": lambda: [slides_page(views)]}
+    makers = shared_pages(views, by_reports) | {"slides": lambda: [slides_page(views)]}
     for name, make in makers.items():
         with border(f"pages {name}"):
             for page in make():
@@ -131,7 +134,7 @@ def _write_pages(border: Border, views: Views, folder: Path) -> None:
 def _write_page(folder: Path, page: Page, editions: Sequence["Edition"]) -> None:
     for edition in editions:
         _put(folder / edition.address(page), edition.html(page))
-    if page.data or page.json:
+    if page.data:
         _put(folder / _data_path(page), _data_script(page))
 
 
@@ -192,7 +195,7 @@ class Edition:
             root=(site + FOLDERS[language]) if page.site else page.root,
             other=other,
             other_page=page.others.get(other) or f"{site}{FOLDERS[other]}{page.path}",
-            data_path=_data_path(page) if page.data or page.json else "",
+            data_path=_data_path(page) if page.data else "",
         )
 
     def names(self, page: Page) -> dict[str, object]:
@@ -219,16 +222,26 @@ def _data_path(page: Page) -> str:
 
 
 def _data_script(page: Page) -> str:
-    """A script and not JSON, as a page from disk may load nothing else."""
-    charts = {name: ",".join(map(json_of, frames)) for name, frames in page.data.items()}
-    return data_script({**charts, **page.json})
+    """What charts draw, by name, as a script: a page from disk may load no JSON.
 
-
-def data_script(charts: Mapping[str, str]) -> str:
-    """What charts draw, as JSON by name; deflated, a seventh of it."""
-    named = ",".join(f"{as_json(name)}:[{text}]" for name, text in charts.items())
-    packed = base64.b64encode(zlib.compress(f'{{"charts":{{{named}}}}}'.encode(), QUICK))
+    It is deflated to a seventh.
+    """
+    packed = base64.b64encode(zlib.compress(page_json(page).encode(), QUICK))
     return f'window.HERIJK_DATA = "{packed.decode("ascii")}";\n'
+
+
+def page_json(page: Page) -> str:
+    """What the charts of a page draw, column by column, by name."""
+    charts = (
+        f"{as_json(name)}:[{','.join(map(json_of, frames))}]" for name, frames in page.data.items()
+    )
+    return f'{{"charts":{{{",".join(charts)}}}}}'
+
+
+def json_of(frame: pl.DataFrame) -> str:
+    """A frame as lists by column."""
+    shown = frame.with_columns(cs.float().round_sig_figs(DRAWN))
+    return shown.select(pl.all().implode()).write_ndjson().rstrip("\n")
 
 
 def _search_script(views: Views) -> str:

@@ -4,49 +4,33 @@ from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
+from markupsafe import Markup
 
 from dashboards import labels
-from dashboards.report import in_short
+from dashboards.report import PAGES, in_short
 from dashboards.site.parts import (
     Chart,
     Page,
     Section,
+    default_method,
     draft_of,
 )
 from dashboards.speech import Headline, Speech
-from dashboards.statements import edition
+from dashboards.statements import edition, season
 from pipeline.messages import Sentence, pgettext, say
 from warehouse.queries.answers import newest_edition
 from warehouse.queries.change_report import last_changes
 from warehouse.queries.views import Views
 
-CARDS: Final = {
-    "register": (
-        say("Register"),
-        say("Every boat and crew with A, B and Cw; search, sort, download."),
-    ),
-    "boats": (
-        say("Boats"),
-        say("Your boat: its number, why it changed, and when it has to tow again."),
-    ),
-    "types": (
-        say("Types"),
-        say("Are equal boats equal? A, B and Cw against weight and tow speed, before and after."),
-    ),
-    "seasons": (
-        say("Seasons"),
-        say("What was wrong with the logs of each season, and how well repeat tows agree."),
-    ),
-    "changes": (
-        say("Changes and races"),
-        say("The vote: what changes between two editions, for whom, and who would win."),
-    ),
-    "about": (
-        say("About"),
-        say("The method, the words, what was set aside, the presentation of 2015."),
-    ),
+MENU: Final = {
+    "register": say("Register"),
+    "boats": say("Boats"),
+    "types": say("Types"),
+    "seasons": say("Seasons"),
+    "changes": say("Changes and races"),
+    "about": say("About"),
 }
-"""The menu: title of each page, and a sentence about it."""
+"""Title of each page that the menu leads to."""
 
 ABOUT: Final = {
     "words": (
@@ -65,11 +49,23 @@ ABOUT: Final = {
 """The same of the pages that `About` leads to."""
 
 DOORS: Final = (
-    ("boats", say("Your boat")),
-    ("changes", say("The vote")),
-    ("types", say("Are equal boats equal?")),
+    (
+        "boats.html",
+        say("Your boat"),
+        say("Your boat: its number, why it changed, and when it has to tow again."),
+    ),
+    (
+        "changes.html",
+        say("The vote"),
+        say("The vote: what changes between two editions, for whom, and who would win."),
+    ),
+    (
+        "types.html",
+        say("Are equal boats equal?"),
+        say("Are equal boats equal? A, B and Cw against weight and tow speed, before and after."),
+    ),
 )
-"""What people come for: the page of each, and its name on the start page."""
+"""What people come for: the page of each, its name on the start page, and what it says."""
 
 TERMS: Final = {
     "tow": (
@@ -161,11 +157,16 @@ TERMS: Final = {
 """Words with what they mean."""
 
 
-def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
-    """The edition in force, key figures, what changes, the years, and where to go."""
+def start_page(
+    views: Views, methods: Sequence[str], changes: pl.DataFrame, by_reports: bool
+) -> Page:
+    """The edition in force, key figures, what changes, the years, and where to go.
+
+    Args:
+        by_reports: whether the site lies beside the reports of rebuilds, so that it can lead there.
+    """
     editions = changes["to_edition"].unique().sort().to_list() if changes.height else []
     chosen = newest_edition(editions, draft_of(methods))
-    links = [(f"{name}.html", title, CARDS[name][1]) for name, title in DOORS]
     years = views.table("season_changes").filter(pl.col("method").is_in(methods))
     sections = [
         Section(
@@ -176,7 +177,7 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
                 "the results of all tests, recomputed with one method: the register, every "
                 "boat with its measurements, and what each step changes."
             ),
-            links=links,
+            links=DOORS,
         ),
         Section(
             "now",
@@ -190,16 +191,18 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
         note = say(
             "Cw by the method / Cw as published, of the same tow: median, and lowest to highest."
         )
-        sections.append(Section("years", say("Through the seasons"), note, [chart]))
+        most = season.changes(years, default_method(methods))
+        title = say("Through the seasons")
+        sections.append(Section("years", title, note, [chart], headline=most))
     return Page(
         "index.html",
         say("Start"),
-        [*sections, *_last_rebuild(views)],
+        [*sections, *_last_rebuild(views, by_reports)],
         data={"years": [years]} if years.height else {},
     )
 
 
-def _last_rebuild(views: Views) -> list[Section]:
+def _last_rebuild(views: Views, by_reports: bool) -> list[Section]:
     """What the rebuild that last changed something changed."""
     changes = last_changes(views.store)
     if changes is None:
@@ -208,19 +211,26 @@ def _last_rebuild(views: Views) -> list[Section]:
         Section(
             "last_rebuild",
             say("What the last rebuild changed"),
-            headline=lambda speech: in_short(changes, (), speech.say),
+            headline=lambda speech: in_short(changes, speech.say),
+            prose=_to_report if by_reports else None,
         )
     ]
+
+
+def _to_report(speech: Speech) -> Markup:
+    page = {"nl": "../report/", "en": "../../report/"}[speech.language] + PAGES[speech.language]
+    return Markup('<p><a href="{}">{}</a></p>').format(page, speech.say("Report of the rebuild"))
 
 
 def _figures(views: Views) -> list[tuple[Sentence, str | Headline]]:
     """Which edition counts, and how much there is."""
     editions = views.table("editions").sort("valid_from")
-    tows, season = views.table("tows"), pl.col("season")
-    first, last = views.table("seasons").select(first=season.min(), last=season.max()).row(0)
+    tows, year = views.table("tows"), pl.col("season")
+    first, last = views.table("seasons").select(first=year.min(), last=year.max()).row(0)
+    as_of = views.table("due_list").select(pl.col("as_of").max()).item()
     return [
         (say("Current edition"), _in_force(editions)),
-        (labels.column("as_of"), str(views.table("due_list")["as_of"].max())),
+        (labels.column("as_of"), lambda speech: speech.day(as_of)),
         (say("Boats"), str(views.table("boats").height)),
         (pgettext("number", "Tows"), f"{tows.height} ({first}\u2013{last})"),
     ]
@@ -231,7 +241,9 @@ def _in_force(editions: pl.DataFrame) -> Headline:
         if editions.is_empty():
             return speech.say("none yet: this is a draft")
         last = editions.row(-1, named=True)
-        return speech.say("{edition}, from {day}", edition=last["edition"], day=last["valid_from"])
+        return speech.say(
+            "{edition}, from {day}", edition=last["edition"], day=speech.day(last["valid_from"])
+        )
 
     return text
 

@@ -8,17 +8,17 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 
 import polars as pl
-from markupsafe import Markup
 
 from dashboards import labels
 from dashboards.addresses import type_path
-from dashboards.html import keep_units
 from dashboards.site.parts import (
     Chart,
+    Grid,
     Page,
     Section,
     Select,
     Table,
+    Text,
     default_method,
     listed,
     methods_select,
@@ -26,8 +26,8 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.slide_book import Book
-from dashboards.speech import Headline, Speech
-from dashboards.statements import Statement, together
+from dashboards.speech import Headline
+from dashboards.statements import together
 from dashboards.statements.boat_type import LINES, SPREAD, Slopes, homogeneity, level, slopes
 from pipeline.messages import Sentence, say
 from warehouse.queries.audit_types import WEIGHT_LINE
@@ -60,6 +60,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     if not views.has("compared_tows"):
         return Page("types.html", say("Types"), [])
     book = Book(views)
+    judge = _judged(views, default_method(methods))
     after = pl.col("method").alias("after")
     shown = pl.col("method").is_in(methods)
     tows = with_page(views.ask("type_tows")).filter("newest", shown).with_columns(after)
@@ -79,7 +80,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
                 "types_verdicts",
                 say("Are equal boats equal?"),
                 say("By the newest tow of each boat and crew; every type has a page."),
-                prose=_verdicts(_judged(views, default_method(methods)), views.type_names()),
+                links=[(type_path(name), name, judge(name)) for name in views.type_names()],
             ),
             Section(
                 "types_charts",
@@ -120,35 +121,17 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     )  # fmt: skip
 
 
-Judge = Callable[[str], tuple[Statement, Statement]]
-
-
-def _judged(views: Views, method: str) -> Judge:
+def _judged(views: Views, method: str) -> Callable[[str], Headline]:
     """Gives whether the boats of a type are equal in level and in bend, under a method."""
     tows = views.table("compared_tows").filter("newest", method=method)
     lines = views.table("type_lines").filter(method=method, tows=NEWEST, **WEIGHT_LINE)
     tests = views.table("type_homogeneity").filter(method=method)
 
-    def judge(name: str) -> tuple[Statement, Statement]:
-        of_level = level(tows.filter(boat_type=name), lines.filter(boat_type=name))
-        return of_level, homogeneity(tests.filter(boat_type=name))
+    def judge(name: str) -> Headline:
+        own = (frame.filter(boat_type=name) for frame in (tows, lines))
+        return together([level(*own), homogeneity(tests.filter(boat_type=name))], " ")
 
     return judge
-
-
-def _verdicts(judge: Judge, types: Sequence[str]) -> Callable[[Speech], Markup]:
-    """A line per type: its verdicts, and its page."""
-    line = Markup('<li><a href="{}">{}</a> {}</li>')
-    verdicts = {name: together(judge(name), " ") for name in types}
-
-    def prose(speech: Speech) -> Markup:
-        lines = [
-            line.format(type_path(name), name, keep_units(verdict(speech)))
-            for name, verdict in verdicts.items()
-        ]
-        return Markup("<ul>{}</ul>").format(Markup("").join(lines))
-
-    return prose
 
 
 def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
@@ -192,7 +175,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                     ),
                     charts,
                     [listed_tows],
-                    headline=together(judge(boat_type), " "),
+                    headline=judge(boat_type),
                 ),
                 _slopes_section(views, book, [boat_type]),
             ],
@@ -215,42 +198,23 @@ def _slopes_section(views: Views, book: Book, types: Sequence[str]) -> Section:
             "with its 95 % interval; spread about that line, and R², the share of the spread that "
             "it explains. Cw at the standard speed."
         ),
-        prose=_slopes_table(slopes(rows)),
+        grid=Grid([*LINES.values(), SPREAD], list(_groups(slopes(rows)))),
     )
 
 
-def _slopes_table(found: Sequence[Slopes]) -> Callable[[Speech], Markup]:
+def _groups(found: Sequence[Slopes]) -> Iterator[tuple[str, list[tuple[Text, list[Text]]]]]:
     """A group of rows per type, a row per quantity and method."""
-    cell, row = Markup("<td>{}</td>"), Markup('<tr><th scope="row">{}</th>{}</tr>')
-    group = Markup('<tr><th scope="rowgroup" colspan="{}">{}</th></tr>')
-    whole = Markup(
-        '<div class="scroll" tabindex="0" role="region" aria-label="{}"><table><thead><tr>{}</tr>'
-        "</thead><tbody>{}</tbody></table></div>"
+    for boat_type, of_type in groupby(found, key=lambda one: one.boat_type):
+        yield boat_type, [(_row_name(one), [*one.slopes, one.spread]) for one in of_type]
+
+
+def _row_name(one: Slopes) -> Sentence:
+    return say(
+        "{quantity}, {method} (n = {n})",
+        quantity=labels.code(one.quantity),
+        method=labels.method(one.method),
+        n=one.n,
     )
-    heads = ["", *LINES.values(), SPREAD]
-
-    def prose(speech: Speech) -> Markup:
-        head = Markup("").join(
-            Markup('<th scope="col">{}</th>').format(speech.say(text)) for text in heads
-        )
-        rows = []
-        for boat_type, of_type in groupby(found, key=lambda one: one.boat_type):
-            rows.append(group.format(len(heads), boat_type))
-            for one in of_type:
-                said = Markup("").join(
-                    cell.format(keep_units(text(speech))) for text in (*one.slopes, one.spread)
-                )
-                name = speech.say(
-                    "{quantity}, {method} (n = {n})",
-                    quantity=labels.code(one.quantity),
-                    method=labels.method(one.method),
-                    n=one.n,
-                )
-                rows.append(row.format(name, said))
-        title = speech.say("Does it follow weight or speed?")
-        return whole.format(title, head, Markup("").join(rows))
-
-    return prose
 
 
 def _said(sentences: Sequence[Sentence]) -> Headline:

@@ -28,6 +28,26 @@ def log_factors(rows: pl.DataFrame) -> Statement | None:
     )
 
 
+def changes(rows: pl.DataFrame, method: str) -> Statement | None:
+    """In which season a method changes Cw most."""
+    known = rows.filter(method=method).drop_nulls("median_ratio")
+    if known.is_empty():
+        return None
+    change = pl.col("median_ratio").log().abs()
+    most = known.sort(change, "season", descending=[True, False]).row(0, named=True)
+    return Statement(
+        "season_change",
+        say("By the method {method}, Cw changes most in {season}: {by} (median of {tows} tows)."),
+        {
+            "method": labels.method(method),
+            "season": most["season"],
+            "by": Change(most["median_ratio"]),
+            "tows": most["tows"],
+        },
+        rests_on=("season_changes",),
+    )
+
+
 def statuses(rows: pl.DataFrame) -> Statement:
     """How many curves are sound."""
     counts = dict(rows.group_by("status", maintain_order=True).agg(pl.col("number").sum()).rows())

@@ -19,7 +19,7 @@ from dashboards.workbench.texts import text
 from pipeline.errors import HerijkError
 from pipeline.method.definition import Method, SeasonSteps, Steps, shipped_methods
 from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
-from warehouse.queries.chosen_tows import ALL
+from warehouse.queries.chosen_tows import ALL, NEWEST
 from warehouse.queries.history import Draft, History
 from warehouse.queries.scenario import Scenario
 from warehouse.store.editions import edition_names, method_of_edition, read_edition
@@ -96,7 +96,7 @@ class Bench:
             base=base,
             against=query.get("against") or base,
             boat=boat if boat in boats else boats[0],
-            tows=query.get("tows") or ALL,
+            tows=NEWEST if query.get("tows") == NEWEST else ALL,
             at=query.get("at", ""),
             changes={name: value for name, value in query.items() if "." in name},
         )

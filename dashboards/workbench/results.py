@@ -17,7 +17,7 @@ from dashboards.speech import Headline, Speech
 from dashboards.workbench.bench import Asked, Bench
 from dashboards.workbench.texts import text
 from pipeline.messages import Sentence, say
-from warehouse.queries.chosen_tows import STATED, choices_of, spoken_range
+from warehouse.queries.chosen_tows import CHOICES
 from warehouse.queries.scenario import CURVE_COLUMNS, Scenario
 
 REGISTER_COLUMNS = (
@@ -253,7 +253,6 @@ def _selects(bench: Bench, scenario: Scenario, asked: Asked) -> Sequence[Select]
     names = dict(bench.boats.select("fsn_no", "name").iter_rows())
     tows = scenario.boat_curves(asked.boat)["tow_id"].unique().sort(descending=True).to_list()
     types = bench.boats["boat_type"].drop_nulls().unique().sort().to_list()
-    choices = list(dict.fromkeys([*choices_of(bench.seasons), asked.tows]))
     return [
         Select(
             "boat",
@@ -268,11 +267,9 @@ def _selects(bench: Bench, scenario: Scenario, asked: Asked) -> Sequence[Select]
         Select(
             "tows",
             say("Types judged by tows"),
-            choices,
+            CHOICES,
             asked.tows,
-            named=lambda tows, speech: (
-                speech.say(labels.code(tows)) if tows in STATED else spoken_range(tows)
-            ),
+            named=lambda tows, speech: speech.say(labels.code(tows)),
             asks=True,
         ),
     ]

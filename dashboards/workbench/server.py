@@ -21,16 +21,15 @@ from starlette.routing import Route
 
 from dashboards import labels
 from dashboards.guard import guarded
-from dashboards.html import as_json, environment
-from dashboards.site.columns import json_of
+from dashboards.html import environment
 from dashboards.site.parts import Page
-from dashboards.site.render import Edition, shared_files
+from dashboards.site.render import Edition, page_json, shared_files
 from dashboards.workbench.bench import Asked, Bench, Saving
 from dashboards.workbench.form import CONTROLS, Control
 from dashboards.workbench.results import BenchCells, results
 from dashboards.workbench.texts import range_in_words, text, value_in_words
 from pipeline.errors import HerijkError
-from pipeline.messages import LANGUAGES, Sentence, pgettext
+from pipeline.messages import LANGUAGES, pgettext, spoken
 from pipeline.method.definition import SeasonSteps, shipped_methods
 from pipeline.method.variant import Difference
 from warehouse.queries.views import Views
@@ -114,7 +113,7 @@ class BenchPage:
         except ValidationError as error:
             return {"refused": str(error.errors(include_url=False)[0]["msg"])}
         except HerijkError as error:
-            return {"refused": spoken(error, self.language)}
+            return {"refused": str(spoken(error, self.language))}
         base, data = self._bench.asked(wanted.address).base, self._bench.store.root
         return {"command": f"herijk compare {base} {path} --data {data}"}
 
@@ -127,7 +126,7 @@ class BenchPage:
             return self._html(asked, page, self._bench.changed(asked))
         except HerijkError as error:
             usual = self._bench.asked({"base": asked.base} if self._known(asked.base) else {})
-            return self._html(usual, refused=spoken(error, self.language))
+            return self._html(usual, refused=str(spoken(error, self.language)))
 
     def _known(self, method: str) -> bool:
         return method in (*shipped_methods(), *self._bench.known.own)
@@ -142,10 +141,7 @@ class BenchPage:
         ranges = self._bench.ranges(asked)
         other = next(name for name in LANGUAGES if name != self.language)
         shown = page or Page("index.html", text("workbench"), [])
-        data = ",".join(
-            f"{as_json(name)}:[{','.join(map(json_of, frames))}]"
-            for name, frames in shown.data.items()
-        ).replace("<", "\\u003c")
+        data = page_json(shown).replace("<", "\\u003c")
         return self._template.render(
             **self._edition.names(shown),
             stills={},
@@ -154,7 +150,7 @@ class BenchPage:
             asked=asked,
             changed=changed,
             refused=refused,
-            data=Markup(f'{{"charts":{{{data}}}}}'),  # noqa: S704 - no text in it closes the element
+            data=Markup(data),  # noqa: S704 - no text in it closes the element
             methods=list(shipped_methods()),
             saved=list(self._bench.known.own),
             editions=self._bench.editions(),
@@ -180,12 +176,6 @@ class BenchPage:
         for control in CONTROLS.values():
             steps.setdefault(control.step, []).append((control, control.held(shown)))
         return steps
-
-
-def spoken(error: HerijkError, language: str) -> str:
-    """What an error says, in a language."""
-    said = error.args[0]
-    return said.spoken(language) if isinstance(said, Sentence) else str(said)
 
 
 def address(listening: socket.socket) -> str:

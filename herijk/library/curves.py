@@ -130,8 +130,7 @@ class Fit:
         """
         value = float(self.curve.cw_kg_m(speed_m_s))
         scatter = hyperbola.own_scatter(self._fitted)
-        errors = hyperbola.covariance(self.points, self._fitted, scatter, speed_m_s)
-        bounds = hyperbola.cw_interval(self._fitted, errors, scatter.dof, speed_m_s)
+        bounds = hyperbola.cw_interval(self.points, self._fitted, scatter, speed_m_s)
         return Estimate(_finite(value), _finite(bounds.lo[0]), _finite(bounds.hi[0]))
 
 

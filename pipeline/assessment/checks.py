@@ -71,6 +71,7 @@ CHECKS: Final = (
     Check("unbalanced_runs", "unbalanced", say("unbalanced runs"), None, 1.0),
     Check("out_and_back_differ", "out_over_back - 1", say("out and back differ"), -0.04, 0.04),
     Check("unusual_calibration", "calibration_factor", say("unusual calibration"), 0.98, 1.02),
+    Check("log_not_linear", "log_slope", say("log not in proportion"), -0.015, 0.015),
     # The samples beside all other tows
     _told_by_all("force_not_plausible", say("force cannot be right")),
     _told_by_all("wind_not_plausible", say("wind cannot be right")),
@@ -109,27 +110,11 @@ CHECKS: Final = (
     Check("slow_tow", "power_w", say("slow tow"), SLOW_POWER_W, unit="W"),
     # The boat of the day
     Check(
-        "crew_weight",
-        "crew_weight_kg / rowers",
-        say("crew weight unusual"),
-        *ROWER_KG,
-        unit="kg",
+        "crew_weight", "crew_weight_kg / rowers", say("crew weight unusual"), *ROWER_KG, unit="kg"
     ),
-    Check(
-        "heavier_after",
-        "weight_after_kg / weight_kg - 1",
-        say("heavier after"),
-        None,
-        0.02,
-    ),
+    Check("heavier_after", "weight_after_kg / weight_kg - 1", say("heavier after"), None, 0.02),
     Check("water_differs", "water_off_c", say("water unlike its day's"), None, 3.0, unit="C"),
-    Check(
-        "boat_list_differs",
-        "off_boat_list",
-        say("differs from the boat list"),
-        None,
-        0.05,
-    ),
+    Check("boat_list_differs", "off_boat_list", say("differs from the boat list"), None, 0.05),
     Check("weight_changed", "weight_kg_change", say("weight changed"), -0.02, 0.02),
     Check("length_changed", "waterline_length_m_change", say("length changed"), -0.01, 0.01),
     Check("beam_changed", "beam_m_change", say("beam changed"), -0.02, 0.02),

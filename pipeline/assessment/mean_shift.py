@@ -7,7 +7,8 @@ Regression, 2.2.2). The clearest shift is taken out, which makes it a fixed effe
 judged again. What is observed and what may shift is decided by the caller.
 """
 
-from typing import Final, NamedTuple
+from collections.abc import Sequence
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 import scipy
@@ -27,30 +28,31 @@ AT_A_TIME: Final = 2048
 """Candidates that are weighed together: those of ten thousand tows would take gigabytes."""
 
 
-class Effects(NamedTuple):
-    """Random effects.
-
-    Attributes:
-        of: which each observation has, sparse, shape (n, effects).
-        variance: shape (effects,).
-    """
-
-    of: "scipy.sparse.csr_array"
-    variance: FloatArray
-
-
 class Observations(NamedTuple):
     """What is observed, and its prior scatter.
 
     Attributes:
         values: deviations from the expected mean, shape (n,).
         variance: of their independent noise, shape (n,).
-        effects: what observations share.
+        shared: which random effects each observation has, sparse, shape (n, effects).
+        shared_variance: of these, shape (effects,).
     """
 
     values: FloatArray
     variance: FloatArray
-    effects: Effects
+    shared: "scipy.sparse.csr_array"
+    shared_variance: FloatArray
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Observations of several kinds, which share nothing."""
+        values, variance, shared, shared_variance = zip(*parts, strict=True)
+        return cls(
+            np.concatenate(values),
+            np.concatenate(variance),
+            scipy.sparse.block_diag(shared, format="csr"),
+            np.concatenate(shared_variance),
+        )
 
 
 class Candidates(NamedTuple):
@@ -110,10 +112,10 @@ class _MeanShifts:
     """
 
     def __init__(self, seen: Observations, may: Candidates) -> None:
-        self._may, self._effects = may, seen.effects.of
+        self._may, self._effects = may, seen.shared
         self._noise = scipy.sparse.diags_array(1.0 / seen.variance)
         within = self._effects.T @ self._noise @ self._effects
-        prior = scipy.sparse.diags_array(1.0 / seen.effects.variance)
+        prior = scipy.sparse.diags_array(1.0 / seen.shared_variance)
         self._within = scipy.sparse.linalg.splu(
             (within + prior).tocsc(), permc_spec="MMD_AT_PLUS_A"
         )

@@ -18,14 +18,7 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
-from pipeline.assessment.likely_unit import Cause, instead_of, likely_causes
-from pipeline.assessment.mean_shift import (
-    Candidates,
-    Effects,
-    Found,
-    Observations,
-    find_shifts,
-)
+from pipeline.assessment.mean_shift import Candidates, Observations, find_shifts
 from pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
 from pipeline.blocks.batch import Batch
 from pipeline.messages import say
@@ -48,6 +41,36 @@ GROSS: Final = np.log(1.6)
 
 _WITH_UNITS: Final = ("force", "wind")
 """Quantities that a wrong unit shifts so far."""
+
+
+EXCHANGE_TOLERANCE: Final = 0.12
+"""How far a logarithm that is known exactly may lie from that of an exchange."""
+
+Cause = tuple[str, ...]
+"""A text, and what goes between its braces."""
+
+
+def _instead_of(unit: str, meant: str) -> Cause:
+    """A number in one unit that is read as in another."""
+    return say("{} instead of {}"), unit, meant
+
+
+_EXCHANGES: Final[dict[str, dict[Cause, float]]] = {
+    "force": {
+        _instead_of("kgf", "N"): 9.80665,
+        _instead_of("daN", "N"): 10.0,
+        _instead_of("lbf", "N"): 4.4482216,
+        _instead_of("kN", "N"): 1e3,
+        (say("a gain of two"),): 2.0,
+    },
+    "wind": {
+        _instead_of("km/h", "m/s"): 3.6,
+        _instead_of(say("knots"), "m/s"): 1.9438445,
+        _instead_of("mph", "m/s"): 2.2369363,
+        _instead_of("ft/s", "m/s"): 3.2808399,
+    },
+}
+"""Ratio of the two units. kgf and daN differ by 2 % and are named together."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +164,7 @@ def plausibility(batch: Batch) -> tuple[Shift, ...]:
     )
 
 
-_RADIANS: Final = (instead_of(say("radians"), say("degrees")),)
+_RADIANS: Final = (_instead_of(say("radians"), say("degrees")),)
 TURNED: Final = (("a vane that is turned",),)
 _TURNED_DEG: Final = {"season": 45.0, "tow": 90.0}
 """Where the wind out and back together comes from at least, for the vane to be turned (inferred):
@@ -246,30 +269,31 @@ def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
     yield from zip(names, np.split(order, ends[:-1]), strict=True)
 
 
-def _effects(tows: pl.DataFrame, spread: Spread) -> Effects:
-    """Random effects of tows: what those of a boat, season, day or type share."""
-    altered = pl.col("altered").cast(pl.Int32)
-    keyed = tows.with_columns(
-        pl.lit(0).alias("archive"),
-        altered.cum_sum().over(LINE, order_by=["tow_date", "tow_id"]).alias("state"),
+def _observed(
+    tows: pl.DataFrame, values: FloatArray, spread: Spread, more_variance: FloatArray | float = 0.0
+) -> Observations:
+    """A quantity of tows, with what those of a boat, season, day or type share."""
+    state = pl.col("altered").cast(pl.Int32).cum_sum().over(LINE, order_by=["tow_date", "tow_id"])
+    keyed = tows.with_columns(archive=pl.lit(0), state=state)
+    kinds = (
+        ((*LINE, "state"), spread.boat),
+        (("archive",), spread.archive),
+        (("season",), spread.season),
+        (("log_alone",), spread.log_alone),
+        (("tow_date",), spread.day),
+        (("boat_type",), spread.boat_type),
     )
-    kinds: dict[tuple[str, ...], float] = {
-        (*LINE, "state"): spread.boat,
-        ("archive",): spread.archive,
-        ("season",): spread.season,
-        ("log_alone",): spread.log_alone,
-        ("tow_date",): spread.day,
-        ("boat_type",): spread.boat_type,
-    }
     of, variance = [], []
-    for by, sd in kinds.items():
-        if sd == 0.0 or not set(by) <= set(keyed.columns):
-            continue
-        rank = keyed.select(pl.struct(by).rank("dense")).to_series().to_numpy() - 1
-        of_kind = scipy.sparse.csr_array((np.ones(tows.height), (np.arange(tows.height), rank)))
-        of.append(of_kind)
-        variance.append(np.full(of_kind.shape[1], sd**2))
-    return Effects(scipy.sparse.hstack(of, format="csr"), np.concatenate(variance))
+    for by, sd in kinds:
+        if sd > 0.0 and set(by) <= set(keyed.columns):
+            rank = keyed.select(pl.struct(by).rank("dense")).to_series().to_numpy() - 1
+            each = np.ones(tows.height), (np.arange(tows.height), rank)
+            of.append(scipy.sparse.csr_array(each))
+            variance.append(np.full(of[-1].shape[1], sd**2))
+    noise = np.full(tows.height, spread.tow**2) + more_variance
+    return Observations(
+        values, noise, scipy.sparse.hstack(of, format="csr"), np.concatenate(variance)
+    )
 
 
 def _of_one(
@@ -280,14 +304,12 @@ def _of_one(
     tows = seen.batch.tows.filter(pl.Series(there))
     if tows.is_empty():
         return []
-    noise = np.full(tows.height, spread.tow**2)
-    observed = Observations(values[there], noise, _effects(tows, spread))
     groups = _groups(tows, kinds)
     if quantity in _WITH_UNITS:
         ratio = np.maximum(1.0 + values[there], 0.01)
         groups += _grossly_off(tows, np.log(ratio))
     may = [(quantity, group, group[2], np.ones(len(group[2]))) for group in groups]
-    return _named(seen, there, may, _find(observed, may))
+    return _shifts(seen, there, _observed(tows, values[there], spread), may)
 
 
 def _of_force(seen: Seen) -> list[Shift]:
@@ -297,61 +319,51 @@ def _of_force(seen: Seen) -> list[Shift]:
     tows = seen.batch.tows.with_columns(alone).filter(pl.Series(known))
     if tows.is_empty():
         return []
-    of_level, of_bend = _effects(tows, LEVEL), _effects(tows, BEND)
-    observed = Observations(
-        np.append(seen.level[known], seen.bend[known]),
-        np.append(np.full(tows.height, LEVEL.tow**2), BEND.tow**2 + seen.bend_sd[known] ** 2),
-        Effects(
-            scipy.sparse.block_diag([of_level.of, of_bend.of], format="csr"),
-            np.append(of_level.variance, of_bend.variance),
-        ),
-    )
+    level = _observed(tows, seen.level[known], LEVEL)
+    bend = _observed(tows, seen.bend[known], BEND, seen.bend_sd[known] ** 2)
     # Of the force that the size lets expect: a force in kgf is a tenth of it.
     per_newton = np.exp(seen.level[known]) / seen.force_n[known]
-    columns: list[Candidate] = []
+    may: list[Candidate] = []
     for group in (*_groups(tows, _GROUPS), *_grossly_off(tows, seen.level[known])):
         mine = group[2]
-        columns.append(("force", group, mine, np.ones(len(mine))))
+        may.append(("force", group, mine, np.ones(len(mine))))
         if group[0] == "archive":  # a shape of hulls looks so; load cells are not off for ever
             continue
         zero = per_newton[mine]
         both = np.concatenate([mine, tows.height + mine])
-        columns.append(("zero", group, both, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
-    return _named(seen, known, columns, _find(observed, columns))
+        may.append(("zero", group, both, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
+    return _shifts(seen, known, Observations.joined([level, bend]), may)
 
 
-def _find(observed: Observations, columns: list[Candidate]) -> list[Found]:
-    """The candidates that have shifted."""
-    ends = np.cumsum([0, *(len(places) for *_, places, _ in columns)])
-    places, sizes = (np.concatenate([c[k] for c in columns]) for k in (2, 3))
-    shape = len(observed.values), len(columns)
-    may = Candidates(
-        scipy.sparse.csc_array((sizes, places, ends), shape=shape),
-        np.array([kind == "tow" for _, (kind, *_), *_ in columns]),
-        np.array([LEAST[quantity] for quantity, *_ in columns]),
-        np.array([GROSS if quantity in _WITH_UNITS else np.inf for quantity, *_ in columns]),
-    )
-    look = min(LOOK.get(quantity, np.inf) for quantity, *_ in columns)
-    return find_shifts(observed, may, LIMIT, look)
-
-
-def _named(
-    seen: Seen, there: BoolArray, columns: list[Candidate], shifted: list[Found]
+def _shifts(
+    seen: Seen, there: BoolArray, observed: Observations, may: list[Candidate]
 ) -> list[Shift]:
-    """The shifts among the tows that are there, and what may have caused them."""
+    """The candidates that have shifted among the tows that are there, and what may have done it."""
+    quantities = [quantity for quantity, *_ in may]
+    ends = np.cumsum([0, *(len(places) for *_, places, _ in may)])
+    places, sizes = (np.concatenate([one[k] for one in may]) for k in (2, 3))
+    candidates = Candidates(
+        scipy.sparse.csc_array((sizes, places, ends), shape=(len(observed.values), len(may))),
+        np.array([kind == "tow" for _, (kind, *_), *_ in may]),
+        np.array([LEAST[quantity] for quantity in quantities]),
+        np.array([GROSS if quantity in _WITH_UNITS else np.inf for quantity in quantities]),
+    )
+    look = min(LOOK.get(quantity, np.inf) for quantity in quantities)
     tow_ids = seen.batch.tows["tow_id"].filter(pl.Series(there))
     air_share, stands_still = seen.air_share[there], seen.wind_stands_still[there]
     shifts = []
-    for one in shifted:
-        quantity, (kind, key, places), *_ = columns[one.place]
-        size = one.size
+    for found in find_shifts(observed, candidates, LIMIT, look):
+        quantity, (kind, key, mine), *_ = may[found.place]
+        size, ln_size = found.size, found.size
         if quantity == "force":
-            size = _of_whole_force(size, air_share[places])
-        ids = tuple(tow_ids.gather(np.sort(places)))
-        causes = likely_causes(quantity, _ln_ratio(quantity, size), one.sd)
-        if quantity == "wind" and stands_still[places].any():
+            size = ln_size = _of_whole_force(size, air_share[mine])
+        if quantity == "wind":
+            ln_size = float(np.log(max(1.0 + size, 0.01)))
+        causes = _likely_causes(quantity, ln_size, found.sd)
+        if quantity == "wind" and stands_still[mine].any():
             causes = ()  # an anemometer that died on the way is in no other unit
-        shifts.append(Shift(kind, key, quantity, size, one.sd, ids, causes, one.clear))
+        ids = tuple(tow_ids.gather(np.sort(mine)))
+        shifts.append(Shift(kind, key, quantity, size, found.sd, ids, causes, found.clear))
     return shifts
 
 
@@ -361,5 +373,15 @@ def _of_whole_force(ln_size: float, air_share: FloatArray) -> float:
     return float(-np.log(np.median(water * np.exp(-ln_size) + air_share)))
 
 
-def _ln_ratio(quantity: str, size: float) -> float:
-    return float(np.log(max(1.0 + size, 0.01))) if quantity == "wind" else size
+def _likely_causes(quantity: str, ln_size: float, sd: float) -> tuple[Cause, ...]:
+    """The exchanges that explain a shift, likeliest first; several where they are too alike.
+
+    Args:
+        quantity: `force` or `wind`; nothing is known of others.
+        ln_size: logarithm of the number in the file / the number expected.
+        sd: its standard deviation.
+    """
+    known = _EXCHANGES.get(quantity, {})
+    far = {cause: abs(abs(ln_size) - np.log(ratio)) for cause, ratio in known.items()}
+    near = sorted((d, cause) for cause, d in far.items() if d <= EXCHANGE_TOLERANCE + 2.0 * sd)
+    return tuple(cause for d, cause in near if d <= near[0][0] + EXCHANGE_TOLERANCE)

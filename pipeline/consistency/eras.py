@@ -4,9 +4,8 @@ A worn log makes all tows of an era too high; so does nothing else that hits eve
 age. How boats age is seen in the last era, where instruments are alike.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from math import exp, hypot
-from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -14,42 +13,11 @@ import scipy
 
 from pipeline.arrays import FloatArray
 from pipeline.consistency.observed import ALL_TYPES, UNKNOWN_TYPE
+from pipeline.history import ERAS, Era
 from pipeline.tables.consistency import EraShifts
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.row import Row
-
-
-class Era(NamedTuple):
-    """Seasons with like instruments.
-
-    Attributes:
-        name: as it is in tables.
-        first, last: seasons, both included.
-    """
-
-    name: str
-    first: int
-    last: int
-
-
-ERAS: Final = (
-    Era("2009-2011", 2009, 2011),
-    Era("2012-2013", 2012, 2013),
-    Era("2014-", 2014, 9999),
-)
-"""Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017)."""
-
-
-def season_ranges(seasons: Iterable[int]) -> dict[str, tuple[int, int]]:
-    """First and last season of each era that has several of these seasons, but not all.
-
-    They are named as people ask for them: 2012:2013.
-    """
-    known = sorted(set(seasons))
-    parts = [[s for s in known if era.first <= s <= era.last] for era in ERAS]
-    ends = [(part[0], part[-1]) for part in parts if 1 < len(part) < len(known)]
-    return {f"{first}:{last}": (first, last) for first, last in ends}
 
 
 def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShifts]:

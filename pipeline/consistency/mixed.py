@@ -61,7 +61,8 @@ class Problem:
     Attributes:
         y, variance: (n,); x: (n, p).
         boat: (n,) which boat, 0 and up, without gaps.
-        others: (n, k) which other group each row is of, as columns of 0 and 1.
+        alike: (3, n, n) pairs of rows that share a boat, another group, a cell: what a component
+            adds to the covariance of the rows.
         plain: (p,) fixed effects by plain least squares.
         residual: (n,) what those leave of y: the likelihood sees nothing else of it.
         rows_beyond: rows beyond the number of fixed effects.
@@ -81,9 +82,9 @@ class Problem:
         self.variance = np.maximum(np.asarray(variance, dtype=np.float64), max(floor, 1e-300))
         self.x = np.asarray(x, dtype=np.float64).reshape(len(self.y), -1)
         self.boat = np.unique(np.asarray(boat), return_inverse=True)[1]
-        group = np.asarray([] if other is None else other)
-        others = (group[:, None] == np.unique(group)).astype(np.float64)
-        self.others = others.reshape(len(self.y), -1)
+        other = np.arange(len(self.y)) if other is None else np.asarray(other)
+        groups = (self.boat, other, np.arange(len(self.y)))
+        self.alike = np.stack([one[:, None] == one for one in groups])
         self.plain = np.asarray(np.linalg.lstsq(self.x, self.y)[0], dtype=np.float64)
         self.residual = self.y - self.x @ self.plain
         self.rows_beyond = len(self.y) - int(self.x.shape[1])
@@ -92,18 +93,18 @@ class Problem:
 
 
 class _At(NamedTuple):
-    """Problems at some variances; m problems of n rows with k unknowns.
+    """Problems at some variances; m problems of n rows with p fixed effects.
 
     Attributes:
         likelihood: as `most_likely` takes it.
-        unknowns: effects of the others and fixed effects where they are most likely, (m, k).
-        covariance: of them, (m, k, k).
-        precision: P, that of the rows less what the unknowns take up, (m, n, n).
+        effects: fixed effects, less those by plain least squares, (m, p).
+        covariance: of them, (m, p, p).
+        precision: P, that of the rows less what the fixed effects take up, (m, n, n).
         pull: P y, (m, n); misfit: y' P y, (m,): the weighted sum of squares about the line.
     """
 
     likelihood: Likelihood
-    unknowns: FloatArray
+    effects: FloatArray
     covariance: FloatArray
     precision: FloatArray
     pull: FloatArray
@@ -114,103 +115,63 @@ class _At(NamedTuple):
 class _SideBySide:
     """Problems side by side, as small arrays cost their calls and not their numbers.
 
-    All have as many rows and unknowns as the largest needs, first the others, then the fixed
-    effects. Rows that a problem does not have are without weight; columns are empty, with a prior
-    of 1, which adds nothing.
+    All have as many rows and fixed effects as the largest needs. Rows that a problem does not have
+    are 0 with a variance of 1; of columns it does not have the information is 1.
 
     Attributes:
-        real: (m, n) rows that there are; residual, variance: (m, n) of them.
-        design: (m, n, k) slope of the rows by the unknowns.
-        random: (m, k) which unknowns have a prior.
-        n_others: how many of them are others.
-        alike: (m, n, n) pairs of rows of one boat.
+        residual, variance: (m, n) of the rows.
+        x: (m, n, p) fixed effects; absent: (m, p, p) 1 for each that a problem does not have.
+        alike: (m, 3, n, n) as in `Problem`.
     """
 
-    real: BoolArray
     residual: FloatArray
     variance: FloatArray
-    design: FloatArray
-    random: BoolArray
-    n_others: int
+    x: FloatArray
+    absent: FloatArray
     alike: FloatArray
 
     @classmethod
     def of(cls, problems: Sequence[Problem]) -> Self:
         m, n = len(problems), max(len(one.y) for one in problems)
-        n_others = max(one.others.shape[1] for one in problems)
-        k = n_others + max(one.x.shape[1] for one in problems)
-        real, random = np.zeros((m, n), bool), np.ones((m, k), bool)
-        residual, variance = np.zeros((m, n)), np.ones((m, n))
-        design, alike = np.zeros((m, n, k)), np.zeros((m, n, n))
+        p = max(one.x.shape[1] for one in problems)
+        residual, variance, x = np.zeros((m, n)), np.ones((m, n)), np.zeros((m, n, p))
+        absent, alike = np.zeros((m, p, p)), np.zeros((m, len(COMPONENTS), n, n))
         for i, one in enumerate(problems):
-            rows, fixed = slice(len(one.y)), slice(n_others, n_others + one.x.shape[1])
-            real[i, rows], random[i, fixed] = True, False
-            residual[i, rows], variance[i, rows] = one.residual, one.variance
-            design[i, rows, : one.others.shape[1]], design[i, rows, fixed] = one.others, one.x
-            alike[i, rows, rows] = one.boat[:, None] == one.boat
-        return cls(real, residual, variance, design, random, n_others, alike)
-
-    def take(self, chosen: IntArray) -> "_SideBySide":
-        """Some of the problems, in their order."""
-        rows = (self.real[chosen], self.residual[chosen], self.variance[chosen])
-        unknowns = self.design[chosen], self.random[chosen]
-        return _SideBySide(*rows, *unknowns, self.n_others, self.alike[chosen])
+            rows, effects = one.x.shape
+            residual[i, :rows], variance[i, :rows] = one.residual, one.variance
+            x[i, :rows, :effects], alike[i, :, :rows, :rows] = one.x, one.alike
+            absent[i] = np.diag(np.arange(p) >= effects)
+        return cls(residual, variance, x, absent, alike)
 
     def likelihood(self, chosen: IntArray, variances: FloatArray) -> Likelihood:
         """The restricted likelihood of some of the problems, as `most_likely` takes it."""
-        of = self if len(chosen) == len(self.random) else self.take(chosen)
+        some = (values[chosen] for values in vars(self).values())
+        of = self if len(chosen) == len(self.x) else _SideBySide(*some)
         return of.at(variances).likelihood
 
     def at(self, variances: FloatArray) -> _At:
         """The problems at variances of boat, other and cell, (m, 3).
 
-        The covariance of the rows of a boat is diagonal but for the effect of the boat, so that its
-        inverse is known (Sherman & Morrison 1950). The slope of the deviance by a variance that
-        adds K to the covariance is tr(P K) - y' P K P y, its average information y' P K P K P y.
+        The slope of the deviance by a variance that adds K to the covariance is
+        tr(P K) - y' P K P y, its average information y' P K P K P y.
         """
-        between, other, cell = variances.T[:, :, None]
-        weight = np.where(self.real, 1.0 / (self.variance + cell), 0.0)[:, :, None]
-        stretch = 1.0 + between[:, :, None] * (self.alike @ weight)
-        shrink = between[:, :, None] / stretch
+        rows = np.einsum("mk,mkij->mij", variances, self.alike)
+        rows += self.variance[:, :, None] * np.eye(self.variance.shape[1])
+        inverse = np.linalg.inv(rows)
+        weighed = inverse @ self.x
+        known = np.swapaxes(self.x, 1, 2) @ weighed + self.absent
+        covariance: FloatArray = np.linalg.inv(known).astype(np.float64)
+        effects = covariance @ (np.swapaxes(weighed, 1, 2) @ self.residual[:, :, None])
+        precision = inverse - weighed @ covariance @ np.swapaxes(weighed, 1, 2)
+        pull = precision @ self.residual[:, :, None]
+        misfit = (self.residual * pull[:, :, 0]).sum(axis=1)
 
-        def solve(values: FloatArray) -> FloatArray:
-            """The precision of the rows, were the unknowns known, times values (m, n, any)."""
-            # What boats have in common is taken off first: large weights lose its digits.
-            return np.asarray(weight * (values - shrink * (self.alike @ (weight * values))))
-
-        k = np.arange(self.design.shape[2])
-        prior = np.where(k < self.n_others, other, 1.0)
-        weighed = solve(self.design)
-        known = np.swapaxes(self.design, 1, 2) @ weighed
-        known = self.random[:, None] * np.eye(len(k)) + prior[:, :, None] * known
-        covariance = np.linalg.inv(known).astype(np.float64) * prior[:, None]
-        score = np.swapaxes(weighed, 1, 2) @ self.residual[:, :, None]
-        unknowns = covariance @ score
-        pull = solve(self.residual[:, :, None] - self.design @ unknowns)
-        precision = solve(np.eye(weight.shape[1])[None] * self.real[:, None])
-        precision -= weighed @ covariance @ np.swapaxes(weighed, 1, 2)
-
-        others = self.design[:, :, : self.n_others]
-        traces = [
-            (precision * self.alike).sum(axis=(1, 2)),
-            ((precision @ others) * others).sum(axis=(1, 2)),
-            np.trace(precision, axis1=1, axis2=2),
-        ]
-        # K P y of each variance, and y' P K P y.
-        of_other = others @ (np.swapaxes(others, 1, 2) @ pull)
-        felt = np.concatenate([self.alike @ pull, of_other, pull], axis=2)
-        squares = (np.swapaxes(pull, 1, 2) @ felt)[:, 0]
-        gradient = np.stack(traces, axis=1) - squares
-        information = np.swapaxes(felt, 1, 2) @ precision @ felt
-
-        misfit = (pull[:, :, 0] ** 2 * self.variance).sum(axis=1)
-        misfit += (variances * squares).sum(axis=1)
-        rows_of_boat = np.maximum(self.alike.sum(axis=2), 1.0)
-        determinant = np.log(stretch[:, :, 0]) / rows_of_boat
-        determinant -= np.log(np.where(self.real, weight[:, :, 0], 1.0))
-        deviance = determinant.sum(axis=1) + np.linalg.slogdet(known)[1] + misfit
+        felt = (self.alike @ pull[:, None])[..., 0]
+        gradient = (precision[:, None] * self.alike).sum(axis=(2, 3)) - (felt @ pull)[:, :, 0]
+        information = felt @ precision @ np.swapaxes(felt, 1, 2)
+        deviance = np.linalg.slogdet(rows)[1] + np.linalg.slogdet(known)[1] + misfit
         likelihood = Likelihood(deviance, gradient, information)
-        return _At(likelihood, unknowns[:, :, 0], covariance, precision, pull[:, :, 0], misfit)
+        return _At(likelihood, effects[:, :, 0], covariance, precision, pull[:, :, 0], misfit)
 
 
 @dataclass(frozen=True)
@@ -342,13 +303,13 @@ def _fitted(problems: Sequence[Problem], free: BoolArray) -> Iterator[Fit | None
     variances, settled = _most_likely(problems, together, free)
     at = together.at(variances)
     for i, problem in enumerate(problems):
-        mine = slice(together.n_others, together.n_others + problem.x.shape[1])
+        mine = slice(problem.x.shape[1])
         boat, other, cell = np.sqrt(variances[i]).tolist()
         n = len(problem.y)
         fit = Fit(
             problem,
             (boat, other, cell),
-            problem.plain + at.unknowns[i, mine],
+            problem.plain + at.effects[i, mine],
             at.covariance[i, mine, mine],
             at.precision[i, :n, :n],
             at.pull[i, :n],
@@ -367,18 +328,13 @@ def _most_likely(
     left = [max(p.spread**2 - p.variance.mean(), 0.1 * p.unit) for p in problems]
     start = loose * np.array(left)[:, None] / max(free.sum(), 1)
     variances, there, settled = most_likely(together.likelihood, loose, start, unit)
-    least = there.deviance
     for place in np.flatnonzero(free):
         without = variances.copy()
         without[:, place] = 0.0
-        loss = together.at(without).likelihood.deviance - least
-        idle = (variances[:, place] > 0.0) & (loss <= NO_GAIN)
-        loose[idle, place] = False
-        if idle.any():
-            of_idle = together.take(np.flatnonzero(idle)).likelihood
-            variances[idle], there, still = most_likely(
-                of_idle, loose[idle], without[idle], unit[idle]
-            )
-            settled[idle] &= still
-            least[idle] = there.deviance
+        loss = together.at(without).likelihood.deviance - there.deviance
+        idle = ((variances[:, place] > 0.0) & (loss <= NO_GAIN))[:, None]
+        loose &= ~idle | (np.arange(len(free)) != place)
+        start = np.where(idle, without, variances)
+        variances, there, still = most_likely(together.likelihood, loose & idle, start, unit)
+        settled &= still
     return variances, settled

@@ -11,9 +11,9 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import FloatArray
-from pipeline.consistency.eras import ERAS
 from pipeline.consistency.observed import Observed
 from pipeline.curve import s_of_height
+from pipeline.history import ERAS
 from pipeline.quantiles import LEVEL
 from pipeline.tables.consistency import RepeatPairs, Reproducibility
 from pipeline.tables.frames import frame_of

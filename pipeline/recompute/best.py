@@ -10,6 +10,7 @@ curves would say what its log was, and no hull is an exact hyperbola.
 from typing import Final
 
 import polars as pl
+import polars.selectors as cs
 
 from pipeline.curve import LEAST_MARGIN
 from pipeline.quantiles import NORMAL
@@ -30,7 +31,7 @@ def with_best(
     curves: pl.DataFrame,
     estimated: SeasonFactors | None,
     budget: pl.DataFrame,
-    misfit: pl.DataFrame,
+    facts: pl.DataFrame,
 ) -> pl.DataFrame:
     """Curves with `BEST`: Cw at the declared speed by all tows together, with its 95 % interval.
 
@@ -40,7 +41,7 @@ def with_best(
         curves: rows of the table.
         estimated: what all tows say; None where the method does not ask it: the columns are null.
         budget: rows of the budget at the declared speed.
-        misfit: how far each hull lies from its curve there.
+        facts: of each tow there, with how far its hull lies from its curve.
     """
     if estimated is None:
         return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
@@ -49,25 +50,32 @@ def with_best(
         .group_by("tow_id", maintain_order=True)
         .agg((pl.col("u_ratio") ** 2).sum().alias("shared"))
     )
-    determined = estimated.instruments.drop_nulls("factor").select("tow_id", "others_ln_ratio")
-    known = estimated.best.join(determined, on="tow_id", maintain_order="left").join(
-        _to_declared(estimated), on="tow_id", maintain_order="left"
+    # A tow of a season that is not determined has no factor.
+    known = _to_declared(estimated.tows.drop_nulls("factor"))
+    joined = (
+        curves.join(known, on="tow_id", how="left", maintain_order="left")
+        .join(shared, on="tow_id", how="left", maintain_order="left")
+        .join(
+            facts.select("tow_id", "misfit", "misfit_variance"),
+            on="tow_id",
+            how="left",
+            maintain_order="left",
+        )
     )
-    joined = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
-        shared.join(misfit, on="tow_id", maintain_order="left"),
-        on="tow_id",
-        how="left",
-        maintain_order="left",
+    moved = (
+        pl.col("best_ln_cw")
+        - pl.col("measured_ln_cw")
+        + pl.col("by_bend")
+        + pl.col("misfit").log1p()
     )
-    moved = pl.col("ln_cw") - pl.col("as_measured") + pl.col("by_bend") + pl.col("misfit").log1p()
     best = pl.col("cw_kg_m") * moved.exp()
 
     def half(end: str) -> pl.Expr:
-        own = pl.col(end) - pl.col("ln_cw")
+        own = pl.col(end) - pl.col("best_ln_cw")
         beside = pl.col("shared") + pl.col("misfit_variance") + pl.col("bend_variance")
         return (own**2 + NORMAL**2 * beside).sqrt()
 
-    by_all = (best, best * (-half("lo")).exp(), best * half("hi").exp())
+    by_all = (best, best * (-half("best_lo")).exp(), best * half("best_hi").exp())
     measured = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
     return joined.select(
         *curves.columns,
@@ -79,11 +87,11 @@ def with_best(
     )
 
 
-def _to_declared(factors: SeasonFactors) -> pl.DataFrame:
+def _to_declared(tows: pl.DataFrame) -> pl.DataFrame:
     """From the line's usual speed to the declared one along the boat's bend, not the tow's own.
 
     Returns:
-        `tow_id, by_bend`, what that changes of ln Cw, and `bend_variance`, its uncertainty.
+        The estimates of tows with `by_bend`, what that changes of ln Cw, and `bend_variance`.
     """
     # q is that of the log's curve where it reads the usual speed over exp(reference_ln).
     off = pl.col("reference_ln").exp() / pl.col("factor")
@@ -92,12 +100,11 @@ def _to_declared(factors: SeasonFactors) -> pl.DataFrame:
     own, boat = (
         (1.0 - q * away).clip(lower_bound=LEAST_MARGIN) for q in (r / (1.0 - r), pl.col("bend"))
     )
-    return factors.tows.join(
-        factors.instruments.select("tow_id", "factor", "bend").drop_nulls(),
-        on="tow_id",
-        maintain_order="left",
-    ).select(
+    return tows.select(
         "tow_id",
-        (own.log() - boat.log()).alias("by_bend"),
-        ((BEND_SD * away / boat) ** 2).alias("bend_variance"),
+        "others_ln_ratio",
+        "measured_ln_cw",
+        cs.starts_with("best_"),
+        by_bend=own.log() - boat.log(),
+        bend_variance=(BEND_SD * away / boat) ** 2,
     )

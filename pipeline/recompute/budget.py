@@ -7,23 +7,18 @@ if its log factors are right.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Final
 
 import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.arrays import BoolArray, FloatArray
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
 from pipeline.uncertainty.misfit import Departure, departure_of_boats
-from pipeline.uncertainty.propagation import (
-    Assumed,
-    budget,
-    residual_scatter,
-    run_point_uncertainty,
-)
+from pipeline.uncertainty.propagation import Assumed, residual_scatter, run_point_uncertainty
 
 DECLARED: Final = 1.0
 """The declared speed among speed ratios."""
@@ -34,8 +29,6 @@ CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(85
 
 MOST_BENT: Final = 0.9
 """r beyond which a curve tells nothing."""
-
-DEPARTURE: Final = ("ratio", "variance")
 
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
@@ -49,14 +42,10 @@ def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     if not pooled:
         return curve.own_scatter(c.free)
     residual, used, on_curve = _residuals(c)
-    ratio, dof = residual_scatter(residual, used, _season(c))
+    ratio, dof = residual_scatter(residual, used, c.batch.of_tow("season"))
     known = np.isfinite(ratio) & used.any(axis=1)
     height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
     return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
-
-
-def _season(c: Computed) -> IntArray:
-    return c.batch.of_tow("season").astype(np.int64)
 
 
 def _residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
@@ -93,73 +82,13 @@ def files_log_sd(c: Computed) -> FloatArray:
 
 def run_point_ratio(c: Computed) -> FloatArray:
     """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
-    season = _season(c)[c.batch.tow]
-    return run_point_uncertainty(c.batch.blocks, c.windows.mask, season)
+    return run_point_uncertainty(c.batch.blocks, c.windows.mask, c.batch.of_run("season"))
 
 
-def misfit_of(
+def facts_of(
     computed: Sequence[Computed], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
-    """How far the hull of each tow lies from its curve, by all tows of the boat.
-
-    Returns:
-        `tow_id, speed_ratio, misfit` (as a ratio, hull over curve less 1) and `misfit_variance`; 0
-        where no season factors are estimated: such a method is taken at its word.
-    """
-    each = []
-    for c in computed:
-        batch, (ratio, used, _) = c.batch, _residuals(c)
-        towed = c.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None]
-        way = batch.by_tow(batch.direction.astype(np.float64))
-        counts, target = used & batch.trusted[:, None], batch.by_tow(batch.target_speed_ratio)
-        each.append(Departure.of(ratio, counts, towed, way, target, np.array(speed_ratios)))
-    tows = pl.concat([c.batch.tows.select("tow_id", "fsn_no") for c in computed])
-    boat = tows["fsn_no"].rank("dense").to_numpy().astype(np.int64) - 1
-    whole = Departure(*(np.concatenate([getattr(d, n) for d in each]) for n in DEPARTURE))
-    asked = 0.0 if estimated is None else 1.0
-    value, variance = (asked * part for part in departure_of_boats(whole, boat))
-    return pl.concat(
-        [
-            tows.select(
-                "tow_id",
-                speed_ratio=pl.lit(ratio),
-                misfit=pl.Series(value[:, place]),
-                misfit_variance=pl.Series(variance[:, place]),
-            )
-            for place, ratio in enumerate(speed_ratios)
-        ]
-    )
-
-
-def curve_points(computed: Sequence[Computed], bounds: pl.DataFrame) -> pl.DataFrame:
-    """Curves over the speeds at which they are valid, with the 95 % interval of Cw at each.
-
-    Args:
-        computed: all batches of a method.
-        bounds: of their budget, as `propagation.combine` gives them.
-
-    Returns:
-        `tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`: a row per tow and speed of
-        `CURVE_SPEED_RATIOS`, none at speeds from B on.
-    """
-    points = pl.concat([_at_speeds(c, CURVE_SPEED_RATIOS) for c in computed])
-    at = ["tow_id", "speed_ratio"]
-    return points.join(bounds, on=at, maintain_order="left").select(
-        "tow_id",
-        "speed_m_s",
-        "cw_kg_m",
-        (pl.col("cw_kg_m") * pl.col("lo_ratio")).alias("cw_lo_kg_m"),
-        (pl.col("cw_kg_m") * pl.col("hi_ratio")).alias("cw_hi_kg_m"),
-    )
-
-
-def budget_of(
-    computed: Sequence[Computed],
-    estimated: SeasonFactors | None,
-    speed_ratios: Sequence[float],
-    misfit: pl.DataFrame,
-) -> pl.DataFrame:
-    """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
+    """What the budget of every tow asks, at some speeds.
 
     Away from the declared speed the random part grows, and a speed error acts through the
     elasticity there.
@@ -168,48 +97,49 @@ def budget_of(
         computed: all batches of a method.
         estimated: its season factors, if it has estimated ones.
         speed_ratios: those speeds / declared speed.
-        misfit: as `misfit_of` gives it at these speeds.
 
     Returns:
-        Rows as `pipeline.uncertainty.propagation.budget` gives them.
+        A row per tow and speed with the columns of `propagation.budget`; `speed_m_s`, `cw_kg_m`,
+        NaN from B on; `misfit`, hull over curve less 1 by all tows of the boat, and
+        `misfit_variance`, 0 where no season factors are estimated: such a method is taken at its
+        word.
     """
-    cw, bend = pl.col("cw_kg_m"), pl.col("bend")
-    r = (bend / (1.0 + bend) * pl.col("speed_ratio") ** 2).clip(-1.0, MOST_BENT)
-    parts = []
-    for c in computed:
-        scatter = scatter_of(c, estimated is not None)
-        random = np.concatenate([_random_ratio(c, scatter, ratio) for ratio in speed_ratios])
-        rows = (
-            _at_speeds(c, speed_ratios)
-            .with_columns(random_ratio=pl.Series(random))
-            .filter(cw.is_finite())
-            .join(_terms_of_tows(c, estimated, scatter), on="tow_id", maintain_order="left")
-            .join(misfit, on=["tow_id", "speed_ratio"], maintain_order="left")
-            .with_columns(
-                kappa=2.0 / (1.0 - r),
-                misfit_ratio=(pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt(),
-                air_ratio=pl.col("net_air_kg_m") / cw,
-                air_per_coefficient=pl.col("air_per_coefficient_kg_m") / cw,
-                still_air_ratio=pl.col("still_air_kg_m") / cw,
-            )
-        )
-        parts.append(budget(rows, _assumed(c, estimated)))
-    return pl.concat(parts)
-
-
-def _at_speeds(c: Computed, speed_ratios: Sequence[float]) -> pl.DataFrame:
-    """Every tow at every speed: `tow_id, speed_ratio, speed_m_s, cw_kg_m`, NaN from B on."""
+    scatters = [scatter_of(c, estimated is not None) for c in computed]
+    each = list(zip(computed, scatters, strict=True))
+    tows = pl.concat([_terms_of_tows(c, estimated, scatter) for c, scatter in each])
+    boat = tows["fsn_no"].rank("dense").to_numpy().astype(np.int64) - 1
+    departures = zip(*(_departure(c, np.array(speed_ratios)) for c in computed), strict=True)
+    whole = Departure(*(np.concatenate(parts) for parts in departures))
+    asked = 0.0 if estimated is None else 1.0
+    misfit, variance = (asked * part for part in departure_of_boats(whole, boat))
+    cw, bend, ratio = pl.col("cw_kg_m"), pl.col("bend"), pl.col("speed_ratio")
+    r = (bend / (1.0 + bend) * ratio**2).clip(-1.0, MOST_BENT)
     return pl.concat(
-        [
-            c.batch.tows.select(
-                "tow_id",
-                pl.lit(ratio).alias("speed_ratio"),
-                (ratio * pl.col("declared_speed_m_s")).alias("speed_m_s"),
-                pl.Series("cw_kg_m", c.cw_at(ratio)),
-            )
-            for ratio in speed_ratios
-        ]
+        tows.with_columns(
+            speed_ratio=pl.lit(speed),
+            cw_kg_m=pl.Series(np.concatenate([c.cw_at(speed) for c in computed])),
+            random_ratio=pl.Series(np.concatenate([_random_ratio(*one, speed) for one in each])),
+            misfit=pl.Series(misfit[:, place]),
+            misfit_variance=pl.Series(variance[:, place]),
+        )
+        for place, speed in enumerate(speed_ratios)
+    ).with_columns(
+        speed_m_s=ratio * pl.col("declared_speed_m_s"),
+        kappa=2.0 / (1.0 - r),
+        misfit_ratio=(pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt(),
+        air_ratio=pl.col("net_air_kg_m") / cw,
+        air_per_coefficient=pl.col("air_per_coefficient_kg_m") / cw,
+        still_air_ratio=pl.col("still_air_kg_m") / cw,
     )
+
+
+def _departure(c: Computed, speed_ratios: FloatArray) -> Departure:
+    """How far the points of each tow of a batch lie from its curve."""
+    batch, (ratio, used, _) = c.batch, _residuals(c)
+    towed = c.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None]
+    way = batch.by_tow(batch.direction.astype(np.float64))
+    counts, target = used & batch.trusted[:, None], batch.by_tow(batch.target_speed_ratio)
+    return Departure.of(ratio, counts, towed, way, target, speed_ratios)
 
 
 def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
@@ -241,7 +171,9 @@ def _terms_of_tows(
     felt_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
     return batch.tows.select(
         "tow_id",
+        "fsn_no",
         "season",
+        "declared_speed_m_s",
         part="log1_part",
         random_dof=pl.Series(scatter.dof),
         bend=pl.Series(bend),
@@ -258,6 +190,7 @@ def _terms_of_tows(
         temperature_known=pl.Series(c.temperature_known),
         water_off_c=pl.Series(c.water_off_c),
         force_sd=force_uncertainty(batch.tows),
+        **{name: pl.lit(size) for name, size in asdict(_assumed(c, factors)).items()},
     )
 
 

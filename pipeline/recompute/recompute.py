@@ -86,7 +86,7 @@ def recompute(
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     cache = RunCache() if cache is None else cache
     estimated = season_factors(plans, cache) if method.estimates_logs else None
-    computed = evaluate(plans, cache, None if estimated is None else estimated.instruments)
+    computed = evaluate(plans, cache, None if estimated is None else estimated.tows)
     return as_tables(method, tows, computed, estimated, with_bands)
 
 

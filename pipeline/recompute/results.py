@@ -25,9 +25,7 @@ from pipeline.recompute.best import with_best
 from pipeline.recompute.budget import (
     CURVE_SPEED_RATIOS,
     DECLARED,
-    budget_of,
-    curve_points,
-    misfit_of,
+    facts_of,
     run_point_ratio,
     scatter_of,
 )
@@ -46,7 +44,7 @@ from pipeline.tables.season_log import (
     SeasonSteps,
     TowInstruments,
 )
-from pipeline.uncertainty.propagation import combine
+from pipeline.uncertainty.propagation import budget, combine
 
 OF_ALL_TOWS: Final = {
     "season_links": SeasonLinks,
@@ -97,11 +95,12 @@ def as_tables(
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
     run_points = with_run_choice(together([_run_points(c, pooled) for c in computed]))
     speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
-    misfit = misfit_of(computed, estimated, speed_ratios)
-    budget = budget_of(computed, estimated, speed_ratios, misfit)
-    bounds = combine(budget)
+    facts = facts_of(computed, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
+    components = budget(facts)
+    bounds = combine(components)
     curves = together([_curves(c, bounds.filter(at_declared), pooled) for c in computed])
-    curves = with_best(curves, estimated, budget.filter(at_declared), misfit.filter(at_declared))
+    at_v0 = components.filter(at_declared)
+    curves = with_best(curves, estimated, at_v0, facts.filter(at_declared))
     diagnosis = _diagnosis(estimated, computed)
     assessments = assess(curves, run_points, with_expected_water(tows), diagnosis)
     rejecting = [
@@ -116,12 +115,12 @@ def as_tables(
             "season", keep="first", maintain_order=True
         ),
         assessments=assessments,
-        uncertainty_budget=budget.filter(at_declared).select(
+        uncertainty_budget=at_v0.select(
             name,
             pl.exclude("speed_ratio", "dof"),
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
-        curve_points=together([curve_points(computed, bounds)]) if with_bands else pl.DataFrame(),
+        curve_points=together([_curve_points(facts, bounds)]) if with_bands else pl.DataFrame(),
         season_diagnosis=together([diagnosis]),
         **{table: together([rows]) for table, rows in _of_all_tows(estimated).items()},
         factors=estimated,
@@ -202,6 +201,18 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     )
 
 
+def _curve_points(facts: pl.DataFrame, bounds: pl.DataFrame) -> pl.DataFrame:
+    """Curves over the speeds at which they are valid, with the 95 % interval of Cw at each."""
+    cw = pl.col("cw_kg_m")
+    return facts.join(bounds, on=["tow_id", "speed_ratio"], maintain_order="left").select(
+        "tow_id",
+        "speed_m_s",
+        "cw_kg_m",
+        cw_lo_kg_m=cw * pl.col("lo_ratio"),
+        cw_hi_kg_m=cw * pl.col("hi_ratio"),
+    )
+
+
 def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
     """The factor of each season: from GPS, estimated, prescribed or none, in this order.
 
@@ -258,7 +269,7 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
         "season_links": estimated.factors.select(*of_links).cast(pl.Schema(of_links)),
         "retow_choice": retow_choice(estimated),
         "season_steps": estimated.steps,
-        "tow_instruments": estimated.instruments.select(*schemas["tow_instruments"]).sort("tow_id"),
+        "tow_instruments": estimated.tows.select(*schemas["tow_instruments"]).sort("tow_id"),
         "best_estimate_weights": estimated.weights,
     }
 

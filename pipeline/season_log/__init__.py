@@ -9,9 +9,9 @@ Belongs here:
 
 - what is assumed (`assumed`), and the unknowns with their effects (`effects`);
 - the tows and what ties them together (`archive_tows`), and the density of a boat's (`boats`);
-- the posterior of everything (`fit`), which faults there are (`faults`), which factors are refused
-  (`guard`);
-- what it says of logs (`factors`), tows (`tow_estimates`) and seasons (`diagnosis`);
+- the posterior of everything (`fit`), and which faults there are (`faults`);
+- what it says of logs, and which factors are refused (`factors`), of tows (`tow_estimates`) and of
+  seasons (`diagnosis`);
 - which boats to tow again (`retow_design`).
 
 Does not belong here: how Cw of a tow is computed, prescribed corrections (never data here), and

@@ -81,32 +81,40 @@ class Patterns:
         step = self.after[:, :, None] & self.after[:, None]
         return np.asarray(LEVEL_SD**2 + self.settings.changed_sd**2 * step)
 
-    def drift(self, state: FloatArray, variance: float) -> FloatArray:
-        """Part of the covariance of the numbers that is the boats' drift, (b, n, n).
+    def parts(self, own: FloatArray, state: FloatArray, drift_variance: float) -> FloatArray:
+        """What each variance adds to the covariance of the numbers, (variances, b, n, n).
 
         Args:
+            own: (all tows, variances but the last, 3, 3) to that of a tow.
             state: (all tows, 3, 2) slope of the numbers by the boat's level and bend.
-            variance: of the drift of a boat's level, per year.
+            drift_variance: the last: of the drift of a boat's level, per year.
         """
-        by_level = state[self.tow][..., 0].reshape(len(self.tow), -1)
-        years = np.repeat(np.repeat(variance * self.years, 3, axis=1), 3, axis=2)
-        return np.asarray(by_level[:, :, None] * by_level[:, None] * years)
+        count, tows = self.tow.shape
+        by_level = state[self.tow][..., 0].reshape(count, 3 * tows)
+        years = np.repeat(np.repeat(drift_variance * self.years, 3, axis=1), 3, axis=2)
+        parts = np.zeros((own.shape[1] + 1, count, 3 * tows, 3 * tows))
+        parts[:-1] = np.moveaxis(self._of_tows(np.moveaxis(own, 1, 0)), 1, 0)
+        parts[-1] = by_level[:, :, None] * by_level[:, None] * years
+        return parts
 
-    def covariance(self, own: FloatArray, state: FloatArray, drift: FloatArray) -> FloatArray:
+    def covariance(self, given: FloatArray, state: FloatArray, parts: FloatArray) -> FloatArray:
         """Covariance of the numbers of each boat that nothing changed, (b, n, n).
 
         Args:
-            own: (all tows, 3, 3) of what is a tow's own.
-            state, drift: as `drift` takes and gives them.
+            given: (all tows, 3, 3) random covariance of a tow.
+            state, parts: as `parts` takes and gives them.
         """
-        boats, tows = self.tow.shape
-        z = state[self.tow].reshape(boats, 3 * tows, 2)
-        whole = drift + (z * [LEVEL_SD**2, self.settings.bend_sd**2]) @ np.swapaxes(z, 1, 2)
-        each = np.arange(tows)
-        # Indexing twice with one array puts that axis first.
-        of_pairs = whole.reshape(boats, tows, 3, tows, 3)
-        of_pairs[:, each, :, each, :] += own[self.tow].swapaxes(0, 1)
-        return np.asarray(whole)
+        z = state[self.tow].reshape(len(self.tow), -1, 2)
+        prior = (z * [LEVEL_SD**2, self.settings.bend_sd**2]) @ np.swapaxes(z, 1, 2)
+        return np.asarray(prior + parts.sum(axis=0) + self._of_tows(given[None])[:, 0])
+
+    def _of_tows(self, own: FloatArray) -> FloatArray:
+        """Covariances of all tows, (some, tows, 3, 3), as those of boats, (b, some, n, n)."""
+        (count, tows), some = self.tow.shape, len(own)
+        whole = np.zeros((count, some, tows, 3, tows, 3))
+        for place in range(tows):
+            whole[:, :, place, :, place] = np.moveaxis(own[:, self.tow[:, place]], 1, 0)
+        return whole.reshape(count, some, 3 * tows, 3 * tows)
 
     def added(self, state: FloatArray) -> FloatArray:
         """What each pattern adds to the covariance, as its root, (b, patterns, n, 2)."""

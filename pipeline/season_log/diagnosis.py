@@ -51,8 +51,7 @@ def season_diagnosis(posterior: Posterior) -> pl.DataFrame:
     """
     tows = posterior.fit.problem.tows
     effects = posterior.fit.problem.effects.frame.with_row_index("place").drop_nulls("season")
-    boats = boats_elsewhere(tows)
-    rests_on = {season: _rests_on(tows, season, n) for season, n in boats.items()}
+    rests_on = dict(_rests_on(tows).select("season", "rests_on").rows())
     rows = [
         {"season": season, "part": part, "instrument": name, "rests_on": rests_on[season]}
         | _judged(posterior, of_one)
@@ -110,7 +109,7 @@ def _distance(posterior: Posterior, columns: IntArray) -> float | None:
     always = columns[~fitted.is_fault[columns]]
     if not len(always):
         return None
-    prior = fitted.problem.effects.prior[1][fitted.active[always[0]]]
+    prior = fitted.problem.effects.column("variance", fitted.active[always[0]])
     shown = prior - fitted.covariance[always[0], always[0]]
     return float(fitted.value[always[0]] / np.sqrt(max(shown, 1e-6 * prior)))
 
@@ -139,36 +138,34 @@ def _of_log(posterior: Posterior, columns: IntArray) -> str:
 def _confused_with(posterior: Posterior, columns: IntArray, faults: IntArray) -> str | None:
     """Other faults that would explain as much, likeliest first; then what would pass for them."""
     effects, active = posterior.fit.problem.effects, posterior.fit.active
+    label = effects.frame["label"].to_numpy()
     chance: dict[str, float] = {}
     for name, more in zip(
-        effects.label[effects.faults], posterior.instead[faults].sum(axis=0).tolist(), strict=True
+        label[effects.faults], posterior.instead[faults].sum(axis=0).tolist(), strict=True
     ):
         chance[name] = chance.get(name, 0.0) + more
     likely = sorted((n for n in chance if chance[n] >= POSSIBLE), key=lambda n: (-chance[n], n))
     hidden = ~posterior.shows
     passes = [active[posterior.hidden_by[faults[hidden[faults]]]]]
     passes.append(effects.faults[hidden & np.isin(posterior.hidden_by, columns)])
-    names = [*likely, *effects.label[np.concatenate(passes)]]
-    own = {*effects.label[effects.faults[faults]], *effects.label[active[columns]]}
+    names = [*likely, *label[np.concatenate(passes)]]
+    own = {*label[effects.faults[faults]], *label[active[columns]]}
     return ", ".join(name for name in dict.fromkeys(names) if name not in own) or None
 
 
-def boats_elsewhere(tows: ArchiveTows) -> dict[int, int]:
-    """Boats of each season that were towed in other seasons too."""
-    seasons = tows.frame.select("season", "boat").unique(maintain_order=True)
-    elsewhere = pl.len().over("boat") > 1
-    counted = seasons.with_columns(elsewhere.alias("n")).group_by("season", maintain_order=True)
-    return dict(counted.agg(pl.col("n").sum()).iter_rows())
-
-
-def _rests_on(tows: ArchiveTows, season: int, boats: int) -> str:
-    """What tells: repeat boats, plain GPS, dGPS."""
-    mine = tows.frame.filter(season=season)
-    with_gps = ~pl.col("anchored") & pl.col("gps_ln_ratio").is_not_null()
-    rests_on = [f"{boats} boats towed in other seasons too"]
-    rests_on += ["plain GPS"] if mine.select(with_gps.any()).item() else []
-    rests_on += ["dGPS"] if mine["anchored"].any() else []
-    return ", ".join(rests_on)
+def _rests_on(tows: ArchiveTows) -> pl.DataFrame:
+    """What tells of each season: `season`, `n_boats` towed in others too, and `rests_on`."""
+    elsewhere = pl.col("season").n_unique().over("boat") > 1
+    plain = ~pl.col("anchored") & pl.col("gps_ln_ratio").is_not_null()
+    named = {"plain GPS": plain, "dGPS": pl.col("anchored")}
+    seasons = tows.frame.with_columns(elsewhere=elsewhere).group_by("season", maintain_order=True)
+    told = seasons.agg(
+        pl.col("boat").filter("elsewhere").n_unique().alias("n_boats"),
+        *(pl.when(there.any()).then(pl.lit(name)).alias(name) for name, there in named.items()),
+    )
+    boats = pl.format("{} boats towed in other seasons too", "n_boats")
+    rests_on = pl.concat_str(boats, *named, separator=", ", ignore_nulls=True)
+    return told.select("season", "n_boats", rests_on=rests_on)
 
 
 def season_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
@@ -189,7 +186,7 @@ def season_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
     instruments = np.where(fitted.of_boats, 0.0, fitted.design[:, LEVEL])
     forces = np.where(np.isin(fitted.name, FORCES), instruments, 0.0)
     verdicts = {tuple(k): v for *k, v in diagnosis.select(*LOG, "instrument", "verdict").rows()}
-    boats, rows = boats_elsewhere(tows), []
+    boats, rows = dict(_rests_on(tows).select("season", "n_boats").rows()), []
     for (season, part), mine in tows.frame.with_row_index().group_by(LOG, maintain_order=True):
         step, step_sd = _mean_effect(posterior, instruments[mine["index"]])
         force, force_sd = _mean_effect(posterior, forces[mine["index"]])

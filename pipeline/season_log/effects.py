@@ -17,13 +17,12 @@ off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (meth
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Final, NamedTuple, Self
+from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 import polars as pl
 
-from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
+from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.curve import LEAST_MARGIN
 from pipeline.season_log.archive_tows import LOG, ArchiveTows
 from pipeline.season_log.assumed import Settings
@@ -85,65 +84,41 @@ class Effects:
     """All effects of an archive: first what there always is, then candidate faults; e effects.
 
     Attributes:
-        frame: a row each, as `Effect` without `share`; `kind`, a number that all places where one
-            log may have changed have in common.
+        frame: a row each, as `Effect` without `share`; `variance` of the prior; `way`; `label`, the
+            name with its season; `kind`, a number that all places where one log may have changed
+            have in common.
         share: (tows, e) how much of each a tow has.
+        always, faults: places of what there always is, and of faults that there may be.
     """
 
     frame: pl.DataFrame
     share: FloatArray
+    always: IntArray
+    faults: IntArray
 
     @classmethod
     def of(cls, tows: ArchiveTows, settings: Settings) -> Self:
         """The effects there may be in an archive."""
         listed = [*_always(tows, settings), *_faults(tows, settings)]
         rows = pl.DataFrame(listed, orient="row", schema_overrides={"first_tow": pl.String})
+        season, is_fault = pl.col("season").cast(pl.String), pl.col("chance") < 1.0
         frame = rows.drop("share").with_columns(
-            kind=pl.struct("name", "season", "part", pl.col("chance") < 1.0).rank("dense")
+            variance=pl.col("sd") ** 2,
+            way=pl.col("name").replace_strict(WAYS),
+            label=pl.concat_str("name", season, separator=" ", ignore_nulls=True),
+            kind=pl.struct("name", "season", "part", is_fault).rank("dense"),
         )
-        return cls(frame, np.stack([effect.share for effect in listed], axis=1))
+        faulty = frame.select(is_fault).to_series().to_numpy()
+        share = np.stack([effect.share for effect in listed], axis=1)
+        return cls(frame, share, np.flatnonzero(~faulty), np.flatnonzero(faulty))
 
-    @cached_property
-    def name(self) -> StrArray:
-        """What each is, (e,)."""
-        return self.frame["name"].to_numpy().astype(str)
-
-    @cached_property
-    def label(self) -> StrArray:
-        """The name of each with its season, (e,)."""
-        season = pl.col("season").cast(pl.String)
-        label = pl.concat_str("name", season, separator=" ", ignore_nulls=True)
-        return self.frame.select(label).to_series().to_numpy().astype(str)
-
-    @cached_property
-    def kind(self) -> IntArray:
-        """A number that all places where one log may have changed have in common, (e,)."""
-        return self.frame["kind"].to_numpy()
-
-    @cached_property
-    def way(self) -> StrArray:
-        """By which way each reaches the numbers of a tow, (e,)."""
-        return np.array([WAYS[name] for name in self.name.tolist()])
-
-    @cached_property
-    def prior(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Mean, variance and chance of each, (e,)."""
-        mean, sd, chance = (self.frame[name].to_numpy() for name in ("mean", "sd", "chance"))
-        return mean, sd**2, chance
-
-    @property
-    def always(self) -> IntArray:
-        """Places of what there always is."""
-        return np.flatnonzero(self.prior[2] == 1.0)
-
-    @property
-    def faults(self) -> IntArray:
-        """Places of faults that there may be."""
-        return np.flatnonzero(self.prior[2] < 1.0)
+    def column(self, name: str, chosen: IntArray) -> Any:
+        """A column of `frame` for some effects, as an array."""
+        return self.frame[name].to_numpy()[chosen]
 
     def design(self, slopes: "Slopes", chosen: IntArray) -> FloatArray:
         """Slopes of the numbers by some effects, (tows, 3, chosen)."""
-        by = np.stack([slopes.ways[way] for way in self.way[chosen].tolist()], axis=2)
+        by = np.stack([slopes.ways[way] for way in self.column("way", chosen)], axis=2)
         return np.asarray(by * self.share[:, None, chosen])
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
-from pipeline.errors import BrokenPromiseError
 from pipeline.quantiles import t_quantile
 from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.assumed import USUAL
@@ -20,7 +19,7 @@ from pipeline.season_log.factors import (
 )
 from pipeline.season_log.faults import Posterior, roughly, solve
 from pipeline.season_log.fit import OF_TOWS, Problem
-from pipeline.season_log.tow_estimates import best_estimates, instrument_errors
+from pipeline.season_log.tow_estimates import with_estimates
 
 
 @dataclass(frozen=True)
@@ -37,9 +36,8 @@ class SeasonFactors:
         tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
         ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
         drift_sd: standard deviation of what a boat drifts from that in a year.
-        tows: what it was estimated from.
-        instruments: per tow, what its instruments did, and `best`, what all tows together say of
-            its Cw; `weights`: what that rests on (`tow_estimates`).
+        tows: what it was estimated from, with what the instruments did to each and what all tows
+            say of its Cw; `weights`: what that rests on (`tow_estimates.with_estimates`).
         diagnosis: per season and instrument, what is wrong; `steps`: whether a season's step is the
             log's or the load cell's (`pipeline.season_log.diagnosis`).
     """
@@ -53,8 +51,6 @@ class SeasonFactors:
     ageing_sd: float
     drift_sd: float
     tows: pl.DataFrame
-    instruments: pl.DataFrame
-    best: pl.DataFrame
     weights: pl.DataFrame
     diagnosis: pl.DataFrame
     steps: pl.DataFrame
@@ -97,7 +93,6 @@ def first_estimate(tows: pl.DataFrame) -> Posterior:
     Raises:
         BrokenPromiseError: as there.
     """
-    _refuse_unknown(tows)
     return roughly(Problem.of(ArchiveTows.of(tows), USUAL))
 
 
@@ -126,7 +121,7 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
         GPS alone, `not determined` (numbers null) where neither ties it to an anchored season, and
         `not settled` where the search did not come to rest, and (numbers null) where the factor
-        contradicts what needs no model (`guard`). `ln_sd`, the standard deviation of
+        contradicts what needs no model (`factors.refused`). `ln_sd`, the standard deviation of
         ln factor, is made up of three parts: `repeat_tows_sd`, by the scatter of repeat tows;
         `gps_sd`, by plain GPS; `assumed_sd`, by what is assumed of log, load cell and boats.
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
@@ -136,12 +131,10 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
-    _refuse_unknown(tows)
     posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
     fitted, change = posterior.fit, without_each_boat(posterior.fit)
-    factors, covariance = factors_of(posterior, change)
-    instruments = instrument_errors(posterior, change)
-    best, weights = best_estimates(posterior, instruments)
+    factors, covariance = factors_of(fitted, posterior.determined, posterior.refused, change)
+    of_tows, weights = with_estimates(posterior, change)
     diagnosis = season_diagnosis(posterior)
     sd = np.exp(0.5 * fitted.ln_variance).tolist()
     *tow_log_sd, calibration_sd, drift_sd = sd[OF_TOWS:]
@@ -155,26 +148,8 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         ageing_per_year=float(fitted.value[ageing]),
         ageing_sd=float(np.sqrt(fitted.covariance[ageing, ageing])),
         drift_sd=drift_sd,
-        tows=tows,
-        instruments=instruments,
-        best=best,
+        tows=of_tows,
         weights=weights,
         diagnosis=diagnosis,
         steps=season_steps(posterior, diagnosis),
     )
-
-
-def _refuse_unknown(tows: pl.DataFrame) -> None:
-    for name in ("ln_cw", "kappa", "ln_cw_sd", "declared_speed_m_s"):
-        least = -np.inf if name == "ln_cw" else 0.0
-        sound = pl.col(name).is_finite() & (pl.col(name) > least)
-        faulty = tows.filter(~sound.fill_null(False))
-        if faulty.height:
-            raise BrokenPromiseError(
-                "season factors: {} of tow {} is {}, and {} more; give only tows "
-                "with a sound curve",
-                name,
-                faulty["tow_id"][0],
-                faulty[name][0],
-                faulty.height - 1,
-            )

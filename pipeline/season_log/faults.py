@@ -4,7 +4,7 @@ A fault enters by what one step from a fit promises, and stays by its own fit or
 """
 
 from dataclasses import dataclass, replace
-from typing import Final, NamedTuple, Self
+from typing import Final
 
 import numpy as np
 import scipy
@@ -12,42 +12,12 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.choice import first_largest
 from pipeline.model import Scores
+from pipeline.season_log.factors import refused
 from pipeline.season_log.fit import Fit, Problem, fit
-from pipeline.season_log.guard import refused
 
 MOST_FAULTS: Final = 12
 ROUGH: Final = 1e-4
 """Movement at which a fit is good enough to ask which faults there are."""
-
-
-class Candidates(NamedTuple):
-    """What each fault that there may be, by itself, would do to a normal posterior; k effects.
-
-    Attributes:
-        ln_odds: of it, (faults,).
-        shows: whether a fault of one standard deviation of its prior would be likelier than not.
-        shift: how much the effects of the fit fall per unit of the fault, (k, faults).
-    """
-
-    ln_odds: FloatArray
-    shows: BoolArray
-    shift: FloatArray
-
-    @classmethod
-    def of(
-        cls, problem: Problem, scores: Scores, covariance: FloatArray, away: FloatArray | float
-    ) -> Self:
-        """Each fault added by itself to a posterior whose mean is `away` from where scores are."""
-        _, prior, chance = (p[problem.effects.faults] for p in problem.effects.prior)
-        pull = scores.pull - scores.across.T @ np.broadcast_to(away, len(covariance))
-        known = prior * scores.information(covariance)
-        variance = prior / (1.0 + known)
-        ln_prior = scipy.special.logit(chance) - 0.5 * np.log1p(known)
-        return cls(
-            0.5 * pull**2 * variance + ln_prior,
-            0.5 * known**2 / (1.0 + known) + ln_prior > 0.0,
-            covariance @ scores.across,
-        )
 
 
 @dataclass(frozen=True)
@@ -62,7 +32,8 @@ class Posterior:
             was in the model.
         shows: (faults,) whether a fault of the usual size would be likelier than not.
         hidden_by: (faults,) effect of the fit that would move most, in standard deviations.
-        refused: (logs,) whether the factor of a log contradicts what needs no model (`guard`).
+        refused: (logs,) whether the factor of a log contradicts what needs no model
+            (`factors.refused`).
     """
 
     fit: Fit
@@ -135,7 +106,7 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
 def _kinds(fitted: Fit, also: int | None = None) -> tuple[int, ...]:
     """Kinds of the faults of a model, and of one more, sorted."""
     places = fitted.active[fitted.is_fault].tolist() + ([] if also is None else [also])
-    return tuple(sorted(fitted.problem.effects.kind[places].tolist()))
+    return tuple(sorted(fitted.problem.effects.column("kind", places).tolist()))
 
 
 def _better(fitted: Fit, fitted_before: set[tuple[int, ...]]) -> IntArray | None:
@@ -147,8 +118,8 @@ def _better(fitted: Fit, fitted_before: set[tuple[int, ...]]) -> IntArray | None
     places, ln_odds = _in_fit(fitted)
     if len(places) and ln_odds.min() < 0.0:
         return np.delete(fitted.active, places[int(ln_odds.argmin())])
-    problem, faults = fitted.problem, fitted.problem.effects.faults
-    more = Candidates.of(problem, _scores(fitted), fitted.covariance, 0.0).ln_odds
+    faults = fitted.problem.effects.faults
+    more, _ = _odds(fitted, _scores(fitted), fitted.covariance, 0.0 * fitted.value)
     there = [_kinds(fitted, also) in fitted_before for also in faults.tolist()]
     more[np.isin(faults, fitted.active) | there] = -np.inf
     best = int(first_largest(more))
@@ -162,10 +133,20 @@ def _scores(fitted: Fit) -> Scores:
     return Scores.of(fitted.boats, design.reshape(-1, design.shape[2]))
 
 
+def _odds(
+    fitted: Fit, scores: Scores, covariance: FloatArray, away: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """Ln odds of every fault beside a posterior, and whether it would show (`Scores.odds`)."""
+    effects = fitted.problem.effects
+    prior, chance = (effects.column(name, effects.faults) for name in ("variance", "chance"))
+    return scores.odds(covariance, away, prior, chance)
+
+
 def _in_fit(fitted: Fit) -> tuple[IntArray, FloatArray]:
     """Faults in the fit, as places among its effects, and their ln odds (Savage-Dickey)."""
     places = np.flatnonzero(fitted.is_fault)
-    _, prior, chance = (p[fitted.active[places]] for p in fitted.problem.effects.prior)
+    effects, active = fitted.problem.effects, fitted.active[places]
+    prior, chance = (effects.column(name, active) for name in ("variance", "chance"))
     variance = np.diag(fitted.covariance)[places]
     square = fitted.value[places] ** 2 / variance
     return places, 0.5 * (square + np.log(variance / prior)) + scipy.special.logit(chance)
@@ -173,25 +154,20 @@ def _in_fit(fitted: Fit) -> tuple[IntArray, FloatArray]:
 
 def _posterior(fitted: Fit) -> Posterior:
     """The fit, with how likely each fault is beside it or in place of one of its own."""
-    problem, faults = fitted.problem, fitted.problem.effects.faults
+    faults = fitted.problem.effects.faults
     scores, (places, ln_odds) = _scores(fitted), _in_fit(fitted)
     own = np.searchsorted(faults, fitted.active[places])
-    more = Candidates.of(problem, scores, fitted.covariance, 0.0)
+    more, shows = _odds(fitted, scores, fitted.covariance, 0.0 * fitted.value)
     # What the search has tried and rejected by its own fit has odds of one step still.
-    chance = np.where(more.ln_odds > 0.0, 0.0, scipy.special.expit(more.ln_odds))
+    chance = np.where(more > 0.0, 0.0, scipy.special.expit(more))
     chance[own] = scipy.special.expit(ln_odds)
     instead = np.zeros((len(faults), len(faults)))
     for place, fault, odds in zip(places.tolist(), own.tolist(), ln_odds.tolist(), strict=True):
         along = fitted.covariance[:, place] / fitted.covariance[place, place]
         without = fitted.covariance - np.outer(along, fitted.covariance[place])
-        others = Candidates.of(problem, scores, without, -along * fitted.value[place])
-        instead[fault] = scipy.special.expit(others.ln_odds - odds)
+        others, _ = _odds(fitted, scores, without, -along * fitted.value[place])
+        instead[fault] = scipy.special.expit(others - odds)
         instead[fault, own] = 0.0
-    return Posterior(
-        fitted,
-        chance,
-        instead,
-        more.shows,
-        first_largest(np.abs(more.shift) / np.sqrt(np.diag(fitted.covariance))[:, None]),
-        refused(fitted),
-    )
+    moved = np.abs(fitted.covariance @ scores.across)
+    hidden_by = first_largest(moved / np.sqrt(np.diag(fitted.covariance))[:, None])
+    return Posterior(fitted, chance, instead, shows, hidden_by, refused(fitted))

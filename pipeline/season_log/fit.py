@@ -101,17 +101,23 @@ class Problem:
         """The numbers of the tows and their slopes at ln factors of their logs, (n,)."""
         return slopes(self.q, self.force_n, ln_factor, self.reference_ln)
 
-    @cached_property
-    def scaled_by(self) -> FloatArray:
-        """Which variance, but that of drift, each direction of `directions` has, (n, 4, variances).
+    def own(self, tangent: Slopes, variance: FloatArray) -> FloatArray:
+        """What each variance but that of drift adds to a tow's covariance, (n, variances, 3, 3).
 
         A number between tows has one everywhere, the log one per era.
         """
-        eras = np.eye(len(self.settings.era_starts) + 1)[self.era]
-        of_numbers = np.broadcast_to(np.eye(OF_TOWS), (len(eras), OF_TOWS, OF_TOWS))
-        whole = np.zeros((len(eras), OF_TOWS + 1, OF_TOWS + eras.shape[1]))
-        whole[:, :OF_TOWS, :OF_TOWS], whole[:, OF_TOWS, OF_TOWS:] = of_numbers, eras
-        return whole
+        tow, numbers = np.arange(len(self.era)), np.arange(OF_TOWS)
+        own = np.zeros((len(self.era), len(variance) - 1, OF_TOWS, OF_TOWS))
+        own[:, numbers, numbers, numbers] = variance[:OF_TOWS]
+        of_log, by_log = OF_TOWS + self.era, tangent.ways["speed"]
+        squares = by_log[:, :, None] * by_log[:, None]
+        own[tow, of_log] = variance[of_log][:, None, None] * squares
+        return own
+
+    def parts(self, tangent: Slopes, variance: FloatArray) -> list[FloatArray]:
+        """What each variance adds to the covariance of each group's numbers."""
+        own = self.own(tangent, variance)
+        return [g.parts(own, tangent.state, float(variance[-1])) for g in self.groups]
 
     @property
     def variance_prior(self) -> FloatArray:
@@ -154,7 +160,7 @@ class Fit:
     @cached_property
     def name(self) -> StrArray:
         """What each effect in the model is, (k,)."""
-        return self.problem.effects.name[self.active]
+        return np.asarray(self.problem.effects.column("name", self.active), dtype=np.str_)
 
     @cached_property
     def design(self) -> FloatArray:
@@ -174,7 +180,7 @@ class Fit:
     @cached_property
     def of_log(self) -> BoolArray:
         """Effects that act as the scale of a log does, (k,)."""
-        return np.asarray(self.problem.effects.way[self.active] == "speed")
+        return np.asarray(self.problem.effects.column("way", self.active) == "speed")
 
     @property
     def is_fault(self) -> BoolArray:
@@ -222,17 +228,9 @@ class Fit:
     @cached_property
     def _moved(self) -> FloatArray:
         """Slope of the covariance of the scores by each ln variance, (variances, k, k)."""
-        along = directions(self.slopes) @ self.weighed
-        of_tows = np.exp(self.ln_variance[:-1]) * self.problem.scaled_by
-        by_parts = [
-            np.tensordot(along, part[..., None] * along, axes=([0, 1], [0, 1]))
-            for part in np.moveaxis(of_tows, 2, 0)
-        ]
-        by_drift = np.zeros_like(self.covariance)
-        for group, boats in zip(self.problem.groups, self.boats, strict=True):
-            drift = group.drift(self.slopes.state, self.drift_variance)
-            by_drift += (np.swapaxes(boats.weighed, 1, 2) @ drift @ boats.weighed).sum(axis=0)
-        return np.stack([*by_parts, by_drift])
+        parts = self.problem.parts(self.slopes, np.exp(self.ln_variance))
+        each = [b.moved_by(part) for b, part in zip(self.boats, parts, strict=True)]
+        return np.asarray(np.sum(each, axis=0))
 
 
 def fit(
@@ -250,7 +248,7 @@ def fit(
         tolerance: movement below which nothing moves any more.
         changes: boats may have been altered, and tows pulled askew.
     """
-    value, ln_variance = problem.effects.prior[0].copy(), problem.variance_prior
+    value, ln_variance = problem.effects.frame["mean"].to_numpy().copy(), problem.variance_prior
     shares = np.array([problem.settings.changed_share, problem.settings.askew_share])
     if start is not None:
         value[start.active], ln_variance, shares = start.value, start.ln_variance, start.shares
@@ -271,22 +269,21 @@ def _step(
     value, ln_variance, logit = np.split(place, [len(active), len(place) - 2])
     shares = scipy.special.expit(logit)
     effects = problem.effects
-    mean, variance = (prior[active] for prior in effects.prior[:2])
-    by_speed = effects.way[active] == "speed"
+    mean, variance = (effects.column(name, active) for name in ("mean", "variance"))
+    by_speed = effects.column("way", active) == "speed"
     tangent = problem.slopes(effects.share[:, active] @ np.where(by_speed, value, 0.0))
     design = effects.design(tangent, active)
     residual = problem.observed - tangent.predicted - design @ np.where(by_speed, 0.0, value)
-    own = _own(problem, tangent, ln_variance)
-    drifts = [g.drift(tangent.state, float(np.exp(ln_variance[-1]))) for g in problem.groups]
+    parts = problem.parts(tangent, np.exp(ln_variance))
     boats = [
         group.boats(
             residual,
-            group.covariance(own, tangent.state, drift),
+            group.covariance(problem.given, tangent.state, part),
             tangent,
             design,
             shares if changes else None,
         )
-        for group, drift in zip(problem.groups, drifts, strict=True)
+        for group, part in zip(problem.groups, parts, strict=True)
     ]
     full = np.sum([b.total(b.weighed) for b in boats], axis=0)
     seen = np.sum([b.total(b.observed) for b in boats], axis=0) if changes else full
@@ -294,10 +291,8 @@ def _step(
     covariance: FloatArray = np.linalg.inv(_positive(seen + prior, full + prior)).astype(np.float64)
     score = np.sum([b.score.sum(axis=0) for b in boats], axis=0)
     step = covariance @ (score - (value - mean) / variance)
-    of_tows = np.exp(ln_variance[:-1]) * problem.scaled_by
-    slope, fisher = _variance_slopes(
-        problem, boats, covariance, directions(tangent), of_tows, drifts
-    )
+    each = [b.by_variances(part, covariance) for b, part in zip(boats, parts, strict=True)]
+    slope, fisher = (np.sum(of_groups, axis=0) for of_groups in zip(*each, strict=True))
     known = problem.settings.spread**-2.0
     # A variance that shrinks takes its own slope with it: that bends the density of its logarithm.
     fisher += np.diag(known + np.maximum(-slope, 0.0))
@@ -316,82 +311,6 @@ def _positive(seen: FloatArray, full: FloatArray) -> FloatArray:
     except np.linalg.LinAlgError:
         return full
     return seen
-
-
-def directions(tangent: Slopes) -> FloatArray:
-    """In which directions the numbers of a tow scatter: each by itself, and by its log, (n, 4, 3).
-
-    What is a tow's own has a variance along each.
-    """
-    numbers = np.broadcast_to(np.eye(OF_TOWS), (len(tangent.predicted), OF_TOWS, OF_TOWS))
-    return np.concatenate([numbers, tangent.ways["speed"][:, None]], axis=1)
-
-
-def _own(problem: Problem, tangent: Slopes, ln_variance: FloatArray) -> FloatArray:
-    """Covariance of what is a tow's own, (n, 3, 3)."""
-    along = directions(tangent)
-    variance = problem.scaled_by @ np.exp(ln_variance[:-1])
-    return np.asarray(problem.given + np.swapaxes(along, 1, 2) @ (variance[..., None] * along))
-
-
-def _variance_slopes(
-    problem: Problem,
-    boats: list[Boats],
-    covariance: FloatArray,
-    along: FloatArray,
-    of_tows: FloatArray,
-    drifts: list[FloatArray],
-) -> tuple[FloatArray, FloatArray]:
-    """Slope of the restricted ln likelihood by the ln variances, and their information.
-
-    A variance adds to the covariance of a boat's numbers a sum of squares of directions, one or
-    none per tow: traces are sums over squares of what lies between directions.
-
-    Args:
-        along: as `directions` gives it.
-        of_tows: (n, 4, variances but that of drift) of each direction.
-        drifts: per group, what the drift adds to the covariance.
-    """
-    variances = of_tows.shape[2] + 1
-    slope, fisher = np.zeros(variances), np.zeros((variances, variances))
-    for group, some, drift in zip(problem.groups, boats, drifts, strict=True):
-        count, tows = group.tow.shape
-        by, size = along[group.tow], of_tows[group.tow].reshape(count, 4 * tows, -1)
-        excess, pd = some.excess(covariance[None]), some.precision @ drift
-        slope[:-1] += 0.5 * (_within(excess, by)[:, None] @ size)[:, 0].sum(axis=0)
-        slope[-1] += 0.5 * (excess * drift).sum()
-        squares = _between(some.precision, by) ** 2
-        fisher[:-1, :-1] += 0.5 * (np.swapaxes(size, 1, 2) @ squares @ size).sum(axis=0)
-        across = 0.5 * (_within(pd @ some.precision, by)[:, None] @ size)[:, 0].sum(axis=0)
-        fisher[:-1, -1] += across
-        fisher[-1, :-1] += across
-        fisher[-1, -1] += 0.5 * (pd * np.swapaxes(pd, 1, 2)).sum()
-    return slope, fisher
-
-
-def _between(matrix: FloatArray, along: FloatArray) -> FloatArray:
-    """Products of directions of the tows of a boat over a matrix of its numbers.
-
-    Args:
-        matrix: (b, n, n).
-        along: (b, tows, 4, 3).
-
-    Returns:
-        (b, 4 tows, 4 tows).
-    """
-    count, tows = along.shape[:2]
-    half = along @ matrix.reshape(count, tows, 3, 3 * tows)
-    turned = np.swapaxes(half.reshape(count, 4 * tows, 3 * tows), 1, 2)
-    whole = along @ turned.reshape(count, tows, 3, 4 * tows)
-    return np.asarray(whole.reshape(count, 4 * tows, 4 * tows))
-
-
-def _within(matrix: FloatArray, along: FloatArray) -> FloatArray:
-    """The same of each direction with itself, (b, 4 tows)."""
-    count, tows = along.shape[:2]
-    each = np.arange(tows)
-    blocks = matrix.reshape(count, tows, 3, tows, 3)[:, each, :, each].swapaxes(0, 1)
-    return np.asarray(((along @ blocks) * along).sum(axis=3).reshape(count, 4 * tows))
 
 
 def _share_step(problem: Problem, boats: list[Boats], logit: FloatArray) -> FloatArray:

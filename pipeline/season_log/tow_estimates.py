@@ -17,7 +17,7 @@ from pipeline.quantiles import LEVEL as INTERVAL_LEVEL
 from pipeline.season_log.boats import LEVEL, Patterns
 from pipeline.season_log.effects import FORCE, ZERO, ZERO_DRIFT
 from pipeline.season_log.faults import Posterior
-from pipeline.season_log.fit import Fit, Problem, level_of_boats
+from pipeline.season_log.fit import Fit, level_of_boats
 
 BISECTIONS: Final = 40
 LIKELY: Final = 0.05
@@ -27,8 +27,8 @@ LEAST_WEIGHT: Final = 0.005
 """A smaller share of what an estimate rests on is left out of the list."""
 
 
-def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
-    """What the instruments did to each tow.
+def with_estimates(posterior: Posterior, change: FloatArray) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """What the instruments did to each tow, and what all tows say of its ln Cw.
 
     A fault counts where it is likelier than not, and not at all where it is not.
 
@@ -36,12 +36,14 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
         change: of every effect of the fit without each boat, (boats, effects).
 
     Returns:
-        `tow_id`, `factor` of the log (null where the season is not determined; 1 with dGPS),
+        The tows with `factor` of the log (null where the season is not determined; 1 with dGPS),
         `force_factor` and `force_zero_n` of the load cell: read = true x factor + zero; `bend`, q
         of the boat; `askew_ratio`, what being pulled askew may have added to ln Cw (root mean
         square; not corrected, and 0 where it is unlikely); `ln_sd` and `dof` of what the
         instruments do to ln Cw, per unit of the elasticity 2 + 2 q; `others_ln_ratio`, change of ln
-        Cw with the instruments as the other boats alone show them. In the order of the tows.
+        Cw with the instruments as the other boats alone show them; `measured_ln_cw`, by the tow
+        alone with these corrections; and `best_ln_cw, best_sd, best_lo, best_hi` (95 %), by all.
+        And the shares `tow_id, rests_on, weight` of the boat's tows in that, which sum to 1.
     """
     fitted, problem, speed = posterior.fit, posterior.fit.problem, posterior.fit.of_log
     level = np.where(fitted.of_boats, 0.0, fitted.design[:, LEVEL])
@@ -55,17 +57,25 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     applied = np.where(speed | force | zero, level, 0.0)
     others = -(applied * change[problem.tows.frame["hull"].to_numpy()]).sum(axis=1)
     share, value, determined = fitted.share, fitted.value, posterior.log_known
-    return problem.tows.frame.select(
-        "tow_id",
-        pl.Series("factor", np.exp(posterior.ln_factor)).fill_nan(None),
-        pl.Series("force_factor", np.exp(share[:, force] @ value[force])),
-        pl.Series("force_zero_n", share[:, zero] @ value[zero]),
-        pl.Series("bend", problem.q),
-        pl.Series("askew_ratio", _askew(fitted)),
-        pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
-        pl.Series("dof", fitted.dof(level)),
-        others_ln_ratio=pl.Series(np.where(determined, others, np.nan)).fill_nan(None),
-    )
+    ln_factor = np.where(determined, posterior.ln_factor, 0.0)
+    ln_force, zero_n = share[:, force] @ value[force], share[:, zero] @ value[zero]
+    by_force = ln_force - np.log1p(-zero_n / problem.force_n)
+    measured = problem.tows.numbers("ln_cw") - problem.slopes(ln_factor).predicted[:, LEVEL]
+    best, weights = _best(posterior)
+    numbers = {
+        "factor": np.where(determined, np.exp(ln_factor), np.nan),
+        "force_factor": np.exp(ln_force),
+        "force_zero_n": zero_n,
+        "bend": problem.q,
+        "askew_ratio": _askew(fitted),
+        "ln_sd": np.where(determined, known, problem.settings.log_sd),
+        "dof": fitted.dof(level),
+        "others_ln_ratio": np.where(determined, others, np.nan),
+        "measured_ln_cw": measured - by_force,
+        **dict(zip(("best_ln_cw", "best_sd", "best_lo", "best_hi"), best.T, strict=True)),
+    }
+    columns = [pl.Series(name, values).fill_nan(None) for name, values in numbers.items()]
+    return problem.tows.frame.drop("boat", "hull", "log_place").with_columns(columns), weights
 
 
 def _askew(fitted: Fit) -> FloatArray:
@@ -84,19 +94,8 @@ def _askew(fitted: Fit) -> FloatArray:
     return np.sqrt(square)
 
 
-def best_estimates(
-    posterior: Posterior, instruments: pl.DataFrame
-) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """What all tows of a boat, and all boats, say of ln Cw at each tow.
-
-    Args:
-        instruments: as `instrument_errors` gives them.
-
-    Returns:
-        `tow_id, as_measured, ln_cw, sd, lo, hi` (95 %), in the order of the tows: ln Cw by the
-        tow alone with the corrections of `instrument_errors`, then by all; and the shares
-        `tow_id, rests_on, weight` that sum to 1 per tow.
-    """
+def _best(posterior: Posterior) -> tuple[FloatArray, pl.DataFrame]:
+    """Ln Cw of each tow by all, sd and bounds, (tows, 4), and the shares of the boat's tows."""
     fitted, problem = posterior.fit, posterior.fit.problem
     numbers = np.zeros((len(problem.q), 4))
     shares = []
@@ -104,46 +103,23 @@ def best_estimates(
         numbers[group.tow], weight = _of_boats(group, boats, fitted)
         tow, other = np.broadcast_arrays(group.tow[:, :, None], group.tow[:, None])
         shares.append(pl.DataFrame({"tow": tow.ravel(), "other": other.ravel(), "weight": weight}))
-    base = problem.boat_level + level_of_boats(fitted)
-    ln_cw, sd, lo, hi = numbers.T
-    best = problem.tows.frame.select(
-        "tow_id",
-        pl.Series("as_measured", _as_measured(problem, instruments)),
-        pl.Series("ln_cw", base + ln_cw),
-        pl.Series("sd", sd),
-        pl.Series("lo", base + lo),
-        pl.Series("hi", base + hi),
-    )
+    numbers[:, [0, 2, 3]] += (problem.boat_level + level_of_boats(fitted))[:, None]
+    names, known = problem.tows.frame["tow_id"], posterior.log_known
+    listed = pl.concat(shares)
     alone = (pl.col("tow") == pl.col("other")).cast(pl.Float64)
-    names = problem.tows.frame["tow_id"]
     weights = (
-        pl.concat(shares)
-        .join(
-            pl.DataFrame({"known": posterior.log_known}).with_row_index("tow").cast({"tow": int}),
-            on="tow",
-            maintain_order="left",
+        listed.with_columns(
+            pl.when(pl.Series(known[listed["tow"]])).then("weight").otherwise(alone).alias("weight")
         )
-        .with_columns(pl.when("known").then("weight").otherwise(alone).alias("weight"))
         .filter(pl.col("weight").abs() >= LEAST_WEIGHT)
         .sort("tow", "other")
         .with_columns(pl.col("weight") / pl.col("weight").sum().over("tow"))
     )
-    return best, weights.select(
+    return numbers, weights.select(
         tow_id=names.gather(weights["tow"]),
         rests_on=names.gather(weights["other"]),
         weight="weight",
     )
-
-
-def _as_measured(problem: Problem, errors: pl.DataFrame) -> FloatArray:
-    """Ln Cw of each tow alone, with its instruments corrected as `instrument_errors` says."""
-    factor, scale, zero = (
-        errors[name].fill_null(1.0).to_numpy()
-        for name in ("factor", "force_factor", "force_zero_n")
-    )
-    by_log = problem.slopes(np.log(factor)).predicted[:, LEVEL]
-    by_force = np.log(scale) - np.log1p(-zero / problem.force_n)
-    return np.asarray(problem.tows.numbers("ln_cw") - by_log - by_force)
 
 
 def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, FloatArray]:
@@ -169,15 +145,13 @@ def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, F
     return np.stack([average, np.sqrt(spread), *bounds], axis=2), shares.ravel()
 
 
-def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> list[FloatArray]:
-    """Bounds of the 95 % interval of normal mixtures over axis 1, by bisection."""
-    bounds = []
-    for level in (0.5 - INTERVAL_LEVEL / 2, 0.5 + INTERVAL_LEVEL / 2):
-        low = (mean - FARTHEST_SD * sd).min(axis=1)
-        high = (mean + FARTHEST_SD * sd).max(axis=1)
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            below = (weight * scipy.special.ndtr((middle[:, None] - mean) / sd)).sum(axis=1)
-            low, high = np.where(below < level, middle, low), np.where(below < level, high, middle)
-        bounds.append(0.5 * (low + high))
-    return bounds
+def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
+    """Both bounds of the 95 % interval of normal mixtures over axis 1, by bisection."""
+    level = 0.5 + 0.5 * INTERVAL_LEVEL * np.array([-1.0, 1.0])[:, None, None]
+    low = (mean - FARTHEST_SD * sd).min(axis=1) + np.zeros_like(level)
+    high = (mean + FARTHEST_SD * sd).max(axis=1) + np.zeros_like(level)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        below = (weight * scipy.special.ndtr((middle[:, :, None] - mean) / sd)).sum(axis=2) < level
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.asarray(0.5 * (low + high))

@@ -80,7 +80,7 @@ def ladder(
 def _instruments(plans: list[tuple[Batch, Steps]], cache: RunCache) -> pl.DataFrame | None:
     asked = any(is_estimated(steps) for _, steps in plans)
     estimated = season_factors(plans, cache) if asked else None
-    return None if estimated is None else estimated.instruments
+    return None if estimated is None else estimated.tows
 
 
 def _mixed(old: Steps, new: Steps, count: int) -> Steps:

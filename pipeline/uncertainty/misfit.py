@@ -7,8 +7,7 @@ tows, less what scatter alone makes of it, is how much hulls differ in that; a b
 how much of it is the boat's (empirical Bayes: Morris 1983).
 """
 
-from dataclasses import dataclass
-from typing import Final, Self
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 
@@ -30,8 +29,7 @@ Wind coefficients of each run can bring every point onto the curve: such points 
 """
 
 
-@dataclass(frozen=True)
-class Departure:
+class Departure(NamedTuple):
     """Departure of each tow's points from its hyperbola at some speeds, as a ratio.
 
     Attributes:

@@ -11,7 +11,7 @@ shares are kept apart from those of a single tow, because they do not average ou
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -30,29 +30,8 @@ ten times as sure as white noise would make it."""
 
 CURVE_PARAMETERS: Final = 2
 
-SINGLE: Final = "single"
-SEASON: Final = "season"
-ARCHIVE: Final = "archive"
 
-COMPONENTS: Final = (
-    "random",
-    "misfit",
-    "calibration",
-    "between_tows",
-    "force",
-    "wind",
-    "anemometer",
-    "mass",
-    "temperature",
-    "straightness",
-    "season_log",
-)
-
-
-# Run points
-
-
-def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: IntArray) -> FloatArray:
+def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: FloatArray) -> FloatArray:
     """Relative standard uncertainty of the mean F/v^2 over each run's window.
 
     50,000 samples are not 50,000 measurements: the variance of a mean is that of the noise at
@@ -110,7 +89,7 @@ def _taper(lag: IntArray, length: FloatArray) -> FloatArray:
 
 
 def residual_scatter(
-    residual_ratio: FloatArray, used: BoolArray, season: IntArray
+    residual_ratio: FloatArray, used: BoolArray, season: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
@@ -135,9 +114,6 @@ def residual_scatter(
     return np.where(known, np.sqrt(total / np.where(known, dof, 1.0)), np.inf), dof
 
 
-# The budget of a tow
-
-
 UNRECORDED_WATER_C: Final = 4.0
 """Standard deviation of a season's water about the reference where nobody wrote it down: boats are
 towed early in the year. The season log assumes the same (`season_log.assumed`)."""
@@ -145,42 +121,24 @@ towed early in the year. The season log assumes the same (`season_log.assumed`).
 
 @dataclass(frozen=True)
 class Assumed:
-    """Standard uncertainties that the archive itself cannot show (docs/method-details.md, 9).
+    """Standard uncertainties that the archive itself cannot show (docs/method-details.md, 9)."""
 
-    Attributes:
-        calibration_speed_ratio: dGPS calibration of the speed of a tow: 0.2 % by dGPS, 0.3 % by a
-            current that changes between the runs out and those back.
-        force_ratio: calibration of the load cell, as daily with a known weight.
-        wind_coefficient: of a prescribed air drag coefficient: 0.2 either way, all equally likely.
-        unmeasured_wind: where there was no anemometer, net wind correction / still-air part: wind
-            as fast as the boat, from ahead out and from behind back, makes it 1.
-        anemometer_ratio: wind speed by an anemometer that is taken as it reads.
-        mass_ratio: crew and gear, on Cw.
-        temperature_known_c, temperature_unknown_c: water temperature with and without a record,
-            this one where a method does not estimate the logs.
-        temperature_ratio_per_c: change of Cw with water temperature.
-        temperature_formula_ratio: wetted surface and friction formula.
-        straightness_ratio: tows that are pulled slightly askew.
-        force_standard_ratio: the part of `force_ratio` that all seasons share: what differs
-            between them is estimated with the log.
-        mass_standard_ratio: the part of `mass_ratio` that all tows of a boat share.
-        between_tows_ratio: what repeat tows show of all that differs from tow to tow.
-    """
-
-    calibration_speed_ratio: float = math.hypot(0.002, 0.003)
-    force_ratio: float = 0.003
-    wind_coefficient: float = 0.115
+    calibration_speed_ratio: float = math.hypot(0.002, 0.003)  # by dGPS, by current out and back
+    force_ratio: float = 0.003  # calibration of the load cell, as daily with a known weight
+    force_standard_ratio: float = 0.002  # of that what all seasons share: the rest is estimated
+    wind_coefficient: float = 0.115  # prescribed: 0.2 either way, all equally likely
+    # Without an anemometer, net wind correction / still-air part: wind as fast as the boat, from
+    # ahead out and from behind back, makes it 1.
     unmeasured_wind: float = 1.0
-    anemometer_ratio: float = 0.05
-    mass_ratio: float = 0.006
+    anemometer_ratio: float = 0.05  # wind speed by one that is taken as it reads
+    mass_ratio: float = 0.006  # crew and gear, on Cw
+    mass_standard_ratio: float = 0.002  # the part that all tows of a boat share
     temperature_known_c: float = 0.3
-    temperature_unknown_c: float = 2.0
+    temperature_unknown_c: float = 2.0  # without a record, where no logs are estimated
     temperature_ratio_per_c: float = 0.003
-    temperature_formula_ratio: float = 0.002
-    straightness_ratio: float = 0.002
-    force_standard_ratio: float = 0.002
-    mass_standard_ratio: float = 0.002
-    between_tows_ratio: float = 0.0
+    temperature_formula_ratio: float = 0.002  # wetted surface and friction formula
+    straightness_ratio: float = 0.002  # tows that are pulled slightly askew
+    between_tows_ratio: float = 0.0  # what repeat tows show of all that differs from tow to tow
 
     def beside_repeats(self, tow_sd: float, calibration_sd: float) -> "Assumed":
         """What remains assumed where repeat tows show how far tows scatter.
@@ -207,11 +165,54 @@ class Assumed:
         )
 
 
-def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
-    """Every component of the uncertainty of Cw at one speed, per tow.
+class Component(NamedTuple):
+    """A component of the uncertainty of Cw, in SQL over the facts of a tow and what is assumed.
 
-    A speed error acts through the elasticity kappa of the boat. A tow without dGPS has the wander
-    of its log in place of calibration: a log feels the water, not the current.
+    Attributes:
+        effect: change of ln Cw by one standard deviation of it, signed.
+        shared: what has one error in common: 'single' (tow), 'season' or 'archive'.
+        dof: degrees of freedom of the standard deviation; infinite for an assumed one.
+    """
+
+    effect: str
+    shared: str = "'single'"
+    dof: str = "CAST('inf' AS DOUBLE)"
+
+
+RULES: Final = {
+    "random": Component("random_ratio", dof="random_dof"),
+    "misfit": Component("misfit_ratio"),
+    "calibration": Component(
+        "kappa * CASE WHEN calibrated THEN calibration_speed_ratio ELSE tow_log_sd END"
+    ),
+    "between_tows": Component("between_tows_ratio"),
+    "force": Component("COALESCE(force_sd, force_ratio)", "'season'"),
+    "wind": Component(
+        "CASE WHEN wind_measured THEN air_per_coefficient * wind_coefficient "
+        "ELSE still_air_ratio * unmeasured_wind END",
+        "CASE WHEN wind_measured THEN 'archive' ELSE 'single' END",
+    ),
+    "anemometer": Component("2 * COALESCE(wind_ln_sd, anemometer_ratio) * air_ratio", "'season'"),
+    "mass": Component("mass_ratio"),
+    "temperature": Component(
+        "SQRT(POW(temperature_formula_ratio, 2) + POW(temperature_ratio_per_c * CASE "
+        "WHEN temperature_known THEN GREATEST(temperature_known_c, water_off_c) "
+        "ELSE temperature_unknown_c END, 2))",
+        "CASE WHEN temperature_known THEN 'single' ELSE 'season' END",
+    ),
+    "straightness": Component("COALESCE(askew_ratio, straightness_ratio)"),
+    "season_log": Component("kappa * log_sd", "'season'", "log_dof"),
+}
+"""Every component by its name, in the order in which they are shown.
+
+A speed error acts through the elasticity kappa of the boat. A tow without dGPS has the wander of
+its log in place of calibration: a log feels the water, not the current."""
+
+COMPONENTS: Final = tuple(RULES)
+
+
+def budget(tows: pl.DataFrame) -> pl.DataFrame:
+    """Every component of the uncertainty of Cw at one speed, per tow.
 
     Args:
         tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
@@ -225,81 +226,34 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             part / Cw;
             `temperature_known`; `water_off_c`, of the water from its day's; `askew_ratio`, by being
             pulled askew, null where repeat tows do not tell; `force_sd`, of the load cell by its
-            record, null without one.
-        assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
-            came to where that was used.
+            record, null without one; and every number of `Assumed`, with for `wind_coefficient`
+            what the archive-wide search came to where that was used.
 
     Returns:
-        One row per tow, speed and component: `tow_id, speed_ratio, component`, `shared` (single,
-        season or archive), `key` (rows with one key share one error), `effect_ratio` (change of
-        ln Cw by one standard deviation of it, signed), `u_ratio` (its size), `dof` (infinite for
-        assumed numbers).
+        One row per tow, speed and component: `tow_id, speed_ratio, component, shared`, `key` (rows
+        with one key share one error), `effect_ratio`, `u_ratio` (its size) and `dof`.
     """
-    kappa, calibrated = pl.col("kappa"), pl.col("calibrated")
-    known = pl.col("temperature_known")
-    recorded_c = pl.max_horizontal(assumed.temperature_known_c, "water_off_c")
-    temperature_c = pl.when(known).then(recorded_c).otherwise(assumed.temperature_unknown_c)
-    speed_ratio = (
-        pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("tow_log_sd"))
-    )
-    coefficient = pl.col("air_per_coefficient") * assumed.wind_coefficient
-    wind_speed = pl.col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
-    no_wind = pl.col("still_air_ratio") * assumed.unmeasured_wind
-    single, season, archive = map(pl.lit, (SINGLE, SEASON, ARCHIVE))
-    per_c, formula = assumed.temperature_ratio_per_c, assumed.temperature_formula_ratio
-    effects = {
-        "random": pl.col("random_ratio"),
-        "misfit": pl.col("misfit_ratio"),
-        "calibration": kappa * speed_ratio,
-        "between_tows": pl.lit(assumed.between_tows_ratio),
-        "force": pl.col("force_sd").fill_null(assumed.force_ratio),
-        "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
-        "anemometer": 2.0 * wind_speed * pl.col("air_ratio"),
-        "mass": pl.lit(assumed.mass_ratio),
-        "temperature": ((per_c * temperature_c) ** 2 + formula**2).sqrt(),
-        "straightness": pl.col("askew_ratio").fill_null(assumed.straightness_ratio),
-        "season_log": kappa * pl.col("log_sd"),
-    }
-    shared = dict.fromkeys(COMPONENTS, single) | {
-        "force": season,
-        "wind": pl.when("wind_measured").then(archive).otherwise(single),
-        "anemometer": season,
-        "temperature": pl.when(known).then(single).otherwise(season),
-        "season_log": season,
-    }
-    dof = dict.fromkeys(COMPONENTS, pl.lit(np.inf)) | {
-        "random": pl.col("random_dof"),
-        "season_log": pl.col("log_dof"),
-    }
     return pl.concat(
-        [
-            tows.select(
-                "tow_id",
-                "speed_ratio",
-                component=pl.lit(name),
-                shared=shared[name],
-                key=_key(name, shared[name]),
-                effect_ratio=effects[name].cast(pl.Float64),
-                u_ratio=effects[name].cast(pl.Float64).abs(),
-                dof=dof[name].cast(pl.Float64),
-            )
-            for name in COMPONENTS
-        ]
+        tows.select(
+            "tow_id",
+            "speed_ratio",
+            component=pl.lit(name),
+            shared=pl.sql_expr(rule.shared),
+            key=_key(name, pl.sql_expr(rule.shared)),
+            effect_ratio=pl.sql_expr(rule.effect).cast(pl.Float64),
+            u_ratio=pl.sql_expr(rule.effect).cast(pl.Float64).abs(),
+            dof=pl.sql_expr(rule.dof).cast(pl.Float64),
+        )
+        for name, rule in RULES.items()
     )
 
 
 def _key(component: str, shared: pl.Expr) -> pl.Expr:
     """What has this error in common: the tow alone, its season (and log), or all."""
-    season = pl.col("season").cast(pl.String)
     if component == "season_log":
         return log_key(pl.col("season"), pl.col("part"))
-    whose = (
-        pl.when(shared == SINGLE)
-        .then(pl.col("tow_id"))
-        .when(shared == SEASON)
-        .then(season)
-        .otherwise(pl.lit(""))
-    )
+    season = pl.when(shared == "season").then(pl.col("season").cast(pl.String))
+    whose = pl.when(shared == "single").then("tow_id").otherwise(season).fill_null("")
     return pl.concat_str(pl.lit(component), whose, separator="/")
 
 

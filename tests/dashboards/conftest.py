@@ -55,13 +55,7 @@ def _attack(built, root):
                 "? AS part, ? AS source, 4 AS n_tows, 3 AS n_links, 1.0 AS factor",
                 [METHODS[-1], part, source],
             )
-        db.execute(
-            "INSERT INTO study.season_steps BY NAME SELECT ? AS method, 2009 AS season, 0 AS part, "
-            "3 AS n_boats, 'not told' AS cause",
-            [METHODS[-1]],
-        )
         db.execute("UPDATE contents SET rows = 3 WHERE \"table\" = 'season_links'")
-        db.execute("UPDATE contents SET rows = 1 WHERE \"table\" = 'season_steps'")
     build_site(store)
 
 

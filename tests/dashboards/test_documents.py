@@ -14,7 +14,8 @@ from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import draft_name
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
-from warehouse.queries.answers import compared, replayed
+from warehouse.editions.compare import causes_of
+from warehouse.queries.answers import compared, line_changes, replayed
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
 
@@ -146,6 +147,15 @@ def test_a_proposal_counts_every_line_that_changes(views, contents):
     moved = lines.drop_nulls("gain_in_two_hours_s").filter(change="changed")
     named = len(parts.get("Who gains most", {"rows": ()})["rows"])
     assert named == min(10, moved.filter(pl.col("gain_in_two_hours_s") > 0).height)
+
+
+def test_a_proposal_names_the_causes_that_pages_name(views):
+    old, new = map(draft_name, METHODS)
+    proposed = causes_of(compared(views, old, new))
+    shown = causes_of(line_changes(views).filter(from_edition=old, to_edition=new))
+    assert {"temperature", "wind"} & {cause["step"] for cause in proposed}
+    for mine, theirs in zip(proposed, shown, strict=True):
+        assert mine == pytest.approx(theirs)
 
 
 def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, contents, monkeypatch):

@@ -40,6 +40,5 @@ def test_b_has_no_upper_bound(points, interval_of):
 def test_height_is_determined_all_the_same(points):
     fitted = curve.fit(points)
     scatter = curve.own_scatter(fitted)
-    errors = curve.covariance(points, fitted, scatter, 0.8)
-    interval = curve.cw_interval(fitted, errors, scatter.dof, 0.8)
+    interval = curve.cw_interval(points, fitted, scatter, 0.8)
     assert interval.hi[0] / interval.lo[0] < 1.1

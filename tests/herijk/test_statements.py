@@ -47,7 +47,7 @@ def surfaces(store, herijk, kept):
     shown = {}
     with Views(store) as views:
         line = views.register().filter(edition=DRAFT).drop_nulls("cw_kg_m").row(0, named=True)
-        site, made = Edition(views, "en"), shared_pages(views)
+        site, made = Edition(views, "en"), shared_pages(views, by_reports=False)
         pages = [
             page for name in ("start", "register", "changes", "quality") for page in made[name]()
         ]

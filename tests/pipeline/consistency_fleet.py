@@ -108,9 +108,7 @@ def _fitted(speed, cw, v0):
     fitted = curve.fit(points)
     scatter = curve.own_scatter(fitted)
     at = fitted.cw_at(v0)
-    interval = curve.cw_interval(
-        fitted, curve.covariance(points, fitted, scatter, v0), scatter.dof, v0
-    )
+    interval = curve.cw_interval(points, fitted, scatter, v0)
     b = np.where(fitted.b_determined, fitted.b_m_s, np.nan)
     yield pl.Series("a_kg_m", fitted.a_kg_m)
     yield pl.Series("b_m_s", b).fill_nan(None)

@@ -4,7 +4,7 @@ Fast enough for hundreds of worlds; what a tow's samples look like is left to `h
 The set-ups are clean, and hard: logs that vary, boats that are altered and age.
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 import polars as pl
@@ -219,7 +219,8 @@ def register(world):
     )
     last = world.tows.sort("season", "tow_id").unique("fsn_no", keep="last", maintain_order=True)
     lines = last.select("fsn_no", "tow_id", pl.col("ln_cw").exp().alias("cw_kg_m"))
-    return found, lines, uncertainty.budget(tows)
+    assumed = {n: pl.lit(x) for n, x in asdict(uncertainty.Assumed()).items()}
+    return found, lines, uncertainty.budget(tows.with_columns(**assumed))
 
 
 def run_noise(rng, runs, seconds):

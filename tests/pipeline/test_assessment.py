@@ -1,6 +1,6 @@
 """Every check fires when it should and keeps quiet when not; statuses follow from them.
 
-The world here: five like boats, towed in 2012 and again in 2014, all of it sound.
+The world here: six like boats, towed in 2012 and again in 2014, all of it sound.
 """
 
 import datetime as dt
@@ -20,7 +20,7 @@ METHOD = "some-method"
 V0 = 2.5
 A, B = 30.0, 5.0
 CW = A / (1 - (V0 / B) ** 2)
-BOATS = range(1, 6)
+BOATS = range(1, 7)
 SUBJECT = "boat1-2012"
 LATER = "boat1-2014"
 
@@ -38,6 +38,8 @@ class World:
         mine = pl.col("tow_id") == tow_id
         if table == "diagnosis":
             mine = pl.col("season") == int(tow_id[-4:])
+        if "gps_ratio" in columns:  # a season has one log
+            mine = pl.col("tow_id").str.ends_with(tow_id[-4:])
         values = {
             name: pl.when(mine)
             .then(value if isinstance(value, pl.Expr) else pl.lit(value, frame.schema[name]))
@@ -118,6 +120,7 @@ def _run_points(tow_id: str) -> list[dict[str, Any]]:
             "cw_kg_m": 40.0 + 0.1 * run,
             "fitted_cw_kg_m": 40.2,
             "log2_ratio": 0.997,
+            "gps_ratio": 1.005,
             "used": True,
         }
         for run, ratio in enumerate([0.9, 1.0, 1.1] * 2, start=1)
@@ -180,6 +183,9 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
         40.2 / (40.5 * 0.95) - 1, 0.04, set(),
     ),
     "unusual_calibration": ("curves", SUBJECT, {"calibration_factor": 0.975}, 0.975, 0.98, set()),
+    "log_not_linear": (
+        "run_points", SUBJECT, {"gps_ratio": pl.col("speed_m_s") ** 0.03}, 0.03, 0.015, set(),
+    ),
     "log2_differs": (
         "run_points", SUBJECT, {"log2_ratio": pl.when(run1).then(0.99).otherwise(1.0)},
         0.01 * 1.01 * 0.9 * V0 / 1.005, 0.01, set(),

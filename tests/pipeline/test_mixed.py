@@ -32,16 +32,13 @@ def likelihood(problem, sd):
 def fit_at(problem, sd):
     """The model with these standard deviations."""
     at = mixed._SideBySide.of([problem]).at(np.square([sd]))
-    k = problem.others.shape[1]
-    beta, covariance = problem.plain + at.unknowns[0, k:], at.covariance[0, k:, k:]
-    of_rows = at.precision[0], at.pull[0], at.misfit[0]
-    return mixed.Fit(problem, sd, beta, covariance, *of_rows, at.likelihood.information[0])
+    parts = at.covariance[0], at.precision[0], at.pull[0], at.misfit[0]
+    beta = problem.plain + at.effects[0]
+    return mixed.Fit(problem, sd, beta, *parts, at.likelihood.information[0])
 
 
 def covariance_of(problem, sd):
-    v = np.diag(problem.variance + sd[2] ** 2)
-    v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
-    return v + sd[1] ** 2 * problem.others @ problem.others.T
+    return np.diag(problem.variance) + np.tensordot(np.square(sd), problem.alike, axes=1)
 
 
 def dense_deviance(problem, sd):
@@ -133,7 +130,7 @@ def test_variance_components_are_those_of_another_search():
 def test_problems_side_by_side_are_fitted_as_each_alone():
     rng = np.random.default_rng(4)
     first = grouped_data()
-    other = first.others.argmax(axis=1)
+    other = np.arange(60) % 5
     problems = [
         Problem(first.y + s * rng.normal(size=60), first.variance, first.x, first.boat, other)
         for s in (0.0, 0.5, 20)

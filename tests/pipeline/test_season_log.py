@@ -16,7 +16,7 @@ from pipeline.season_log import estimate_season_factors, faults, fit, retow_choi
 from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.assumed import USUAL
 from pipeline.season_log.effects import slopes
-from pipeline.season_log.guard import refused
+from pipeline.season_log.factors import refused
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 
@@ -137,8 +137,7 @@ def test_a_factor_over_ten_per_cent_is_not_used():
     row = found.factors.row(by_predicate=pl.col("season") == 2009, named=True)
     assert (row["source"], row["factor"]) == ("not settled", None)
     assert (found.is_refused(2009), found.is_refused(2010)) == (True, False)
-    of_tows = found.instruments.join(world.tows.select("tow_id", "season"), on="tow_id")
-    assert of_tows.filter(season=2009)["factor"].is_null().all()
+    assert found.tows.filter(season=2009)["factor"].is_null().all()
     doubted = found.diagnosis.filter(season=2009, instrument="log_scale")
     assert doubted.select("verdict", "alarm").rows() == [("not settled", True)]
 
@@ -160,8 +159,8 @@ def test_boats_that_age_apart_are_seen_to_drift_and_their_best_estimates_hold():
         world = simulate(replace(CLEAN, ageing_per_year=0.01, ageing_apart_per_year=0.01), seed)
         found = estimate_season_factors(world.tows)
         assert found.drift_sd > 0.01
-        best = found.best.join(world.tows.select("tow_id", "true_ln_cw"), on="tow_id")
-        held.append(best.select(pl.col("true_ln_cw").is_between("lo", "hi")).to_series().mean())
+        within = pl.col("true_ln_cw").is_between("best_lo", "best_hi")
+        held.append(found.tows.select(within).to_series().mean())
     assert np.mean(held) > 0.9  # no normal drift: 92 % in eight worlds
 
 
@@ -303,7 +302,7 @@ def test_a_fault_of_the_load_cell_is_found_beside_dgps_and_corrected():
     assert dict(steps.select("season", "cause").rows()) == (
         dict.fromkeys(steps["season"], "none") | {2016: "force"}
     )
-    corrected = found.instruments.filter(pl.col("force_factor") != 1.0)
+    corrected = found.tows.filter(pl.col("force_factor") != 1.0)
     assert corrected["tow_id"].str.starts_with("2016").all()
     assert corrected.height == found.tows.filter(pl.col("season") == 2016).height
 
@@ -335,10 +334,8 @@ def test_a_tow_pulled_askew_is_told_from_an_altered_boat():
     found = estimate_season_factors(
         world.tows.with_columns(pl.col("ln_cw") + pl.when(hit).then(0.08).otherwise(0.0))
     )
-    tows = found.best.join(whole.best, on="tow_id", suffix="_straight").join(
-        found.instruments, on="tow_id"
-    )
-    moved = (pl.col("ln_cw") - pl.col("ln_cw_straight")).abs().median()
+    tows = found.tows.join(whole.tows, on="tow_id", suffix="_straight")
+    moved = (pl.col("best_ln_cw") - pl.col("best_ln_cw_straight")).abs().median()
     assert tows.filter(hit).select(moved).item() < 0.01
     assert tows.filter(hit)["askew_ratio"].median() == pytest.approx(0.08, abs=0.02)
     assert (tows.filter(~hit)["askew_ratio"] == 0.0).mean() > 0.8
@@ -363,11 +360,10 @@ def test_a_boat_left_out_moves_its_own_tows_as_leaving_it_out_does():
     predicted, true = [], []
     for boat in world.tows.filter(IN_2010)["fsn_no"].unique().sort()[:4]:
         others = estimate_season_factors(world.tows.filter(pl.col("fsn_no") != boat)).factors
-        mine = world.tows.filter(fsn_no=boat).select("tow_id", "season")
-        rows = found.instruments.join(mine, on="tow_id").join(
+        rows = found.tows.filter(fsn_no=boat).join(
             others.select("season", others="factor"), on="season"
         )
-        rows = rows.drop_nulls()
+        rows = rows.drop_nulls(["others", "factor", "others_ln_ratio"])
         predicted += rows["others_ln_ratio"].to_list()
         true += (-(2 + 2 * rows["bend"]) * (rows["others"] / rows["factor"]).log()).to_list()
     assert len(predicted) > 4

@@ -1,5 +1,7 @@
 """Uncertainty of run points and the budget of a tow."""
 
+from dataclasses import asdict
+
 import numpy as np
 import polars as pl
 import pytest
@@ -17,8 +19,8 @@ from pipeline.uncertainty.propagation import (
 from tests.pipeline.season_worlds import as_blocks, run_point_ratios
 
 
-def tows(**changed):
-    usual = {
+def tows(assumed=None, **changed):
+    usual = asdict(assumed or Assumed()) | {
         "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0,
         "kappa": 2.86,
         "misfit_ratio": 0.0, "wind_ln_sd": None,
@@ -96,14 +98,7 @@ def test_keys_say_what_tows_have_in_common():
     rows = [tows(), tows(tow_id="2014-002"), tows(tow_id="2015-001", season=2015)]
     held = budget(pl.concat(rows))
     keys = dict(held.group_by("component").agg(pl.col("key").n_unique()).iter_rows())
-    one_each = {
-        "between_tows",
-        "misfit",
-        "random",
-        "calibration",
-        "mass",
-        "straightness",
-    }
+    one_each = {"between_tows", "misfit", "random", "calibration", "mass", "straightness"}
     assert {name for name, count in keys.items() if count == 3} == one_each
     assert {name for name, count in keys.items() if count == 1} == {"wind"}
     season = {"force", "anemometer", "temperature", "season_log"}
@@ -124,7 +119,7 @@ def test_interval_takes_few_degrees_of_freedom_into_account():
 def test_repeat_tows_show_what_differs_between_tows_and_shrink_nothing_else():
     """What repeats share cancels in their difference (ISO 5725-1; GUM, type B)."""
     few, many = (Assumed().beside_repeats(sd, 0.5 * sd) for sd in (0.0001, 0.02))
-    held, other = (budget(tows(temperature_known=True), assumed) for assumed in (few, many))
+    held, other = (budget(tows(assumed, temperature_known=True)) for assumed in (few, many))
     shared = pl.col("component").is_in(["force", "wind", "anemometer", "mass", "temperature"])
     assert (held.filter(shared)["u_ratio"] > 0.001).all()
     assert held.filter(shared)["u_ratio"].to_list() == other.filter(shared)["u_ratio"].to_list()

@@ -35,10 +35,9 @@ def in_s(b_interval):
 
 
 def bounds_of_everything(points, fitted, scatter, v0):
-    reach = curve.covariance(points, fitted, scatter, v0)
     return [
-        curve.cw_interval(fitted, reach, scatter.dof, v0),
-        curve.cw_interval(fitted, reach, scatter.dof, 1.15 * v0),
+        curve.cw_interval(points, fitted, scatter, v0),
+        curve.cw_interval(points, fitted, scatter, 1.15 * v0),
         in_s(curve.b_interval(points, fitted, scatter)),
         in_s(b_interval_fieller(points, fitted, scatter)),
     ]

@@ -1,39 +1,23 @@
-"""A folder is put in place of another at once."""
+"""A folder takes the place of another, whole or not at all."""
 
-import threading
+import pytest
 
-from warehouse.store.files import put_in_place
-
-
-def filled(folder, text):
-    folder.mkdir()
-    (folder / "page.html").write_text(text, encoding="utf-8")
-    return folder
+from warehouse.store.files import folder_written_beside
 
 
-def test_the_older_folder_is_beside_after(tmp_path):
-    target = filled(tmp_path / "site", "old")
-    put_in_place(filled(tmp_path / "beside", "new"), target)
+def write(target, text, error=None):
+    with folder_written_beside(target) as beside:
+        (beside / "page.html").write_text(text, encoding="utf-8")
+        if error:
+            raise error
+
+
+def test_a_folder_is_replaced_whole_and_after_an_error_the_older_one_is_there(tmp_path):
+    target = tmp_path / "site"
+    write(target, "old")
+    with pytest.raises(OSError, match="full"):
+        write(target, "half", OSError("full"))
+    assert (target / "page.html").read_text("utf-8") == "old"
+    write(target, "new")
     assert (target / "page.html").read_text("utf-8") == "new"
-    assert (tmp_path / "beside" / "page.html").read_text("utf-8") == "old"
-
-
-def test_a_reader_always_finds_a_whole_folder(tmp_path):
-    target, beside = filled(tmp_path / "site", "0"), filled(tmp_path / "beside", "1")
-    missed, reads, stop = [], [0], threading.Event()
-
-    def read():
-        while not stop.is_set():
-            reads[0] += 1
-            if not (target / "page.html").exists():
-                missed.append(reads[0])
-
-    reader = threading.Thread(target=read)
-    reader.start()
-    exchanges = 0
-    while exchanges < 50 or reads[0] < 50:  # on a quick machine the reader has few turns
-        put_in_place(beside, target)
-        exchanges += 1
-    stop.set()
-    reader.join()
-    assert missed == []
+    assert list(tmp_path.iterdir()) == [target]

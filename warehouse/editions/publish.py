@@ -79,11 +79,16 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
             store.root,
             method.name,
         )
+    edition = as_decided(store, method, terms, carry)
+    return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
+
+
+def as_decided(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Edition:
+    """The edition that publishing would freeze; raises and takes arguments as `publish`."""
     decisions = decided.decision_table(decisions_up_to(store, terms.published_on))
     _check_decided_tows(decisions, store.read("tows"))
     manifest = _manifest(store, terms, method, carry)
-    edition = recomputed(store, manifest, method, decisions, store.read("listed_boats"))
-    return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
+    return recomputed(store, manifest, method, decisions, store.read("listed_boats"))
 
 
 def publish_printed(store: Store, season: int, terms: Terms) -> Path:

@@ -156,16 +156,28 @@ def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], manifest: Manifest)
             book,
             REGISTER_SHEET,
             column_formats={field.header: _number_format(field) for field in fields},
-            autofit=True,
+            column_widths=_widths(frame, fields),
+            header_format={"text_wrap": True, "valign": "top"},
+            row_heights={0: 40},
             freeze_panes=(1, 1),
         ).get_worksheet_by_name(REGISTER_SHEET)
         sheet.repeat_rows(0)
         sheet.set_landscape()
         sheet.set_paper(A4)
-        sheet.fit_to_pages(1, 0)
+        sheet.repeat_columns(0, 2)
+        sheet.fit_to_pages(2, 0)
         about = pl.DataFrame(list(_about(manifest).items()), ["editie", "waarde"], orient="row")
         about.write_excel(book, "editie", include_header=False, autofit=True)
     return target.getvalue()
+
+
+def _widths(frame: pl.DataFrame, fields: Sequence[Field]) -> dict[Any, int]:
+    """Width of each column in pixels, by header: of its cells, and of the words of its header."""
+    cells = printed(frame, fields)
+    return {
+        name: 12 + 7 * max(7, *map(len, name.split()), *map(len, cells[name]))
+        for name in cells.columns
+    }
 
 
 def _number_format(field: Field) -> str:

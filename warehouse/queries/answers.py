@@ -3,6 +3,7 @@
 Joins the tables and `pipeline.register.changes`; computes nothing else. Words are in `dashboards`.
 """
 
+import datetime as dt
 from collections.abc import Callable
 from typing import Final
 
@@ -20,9 +21,12 @@ from pipeline.register.replay import (
 from pipeline.tables.row import Row
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.studies import STUDIED_METHOD
+from warehouse.editions.compare import compare
+from warehouse.editions.publish import Terms, as_decided
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import no_such_edition
-from warehouse.store.editions import read_edition
+from warehouse.store.editions import Edition, read_edition
+from warehouse.store.methods import KnownMethods
 
 PAIR: Final = ("from_edition", "to_edition")
 
@@ -55,20 +59,33 @@ def line_changes(views: Views) -> pl.DataFrame:
     return _named(views, pl.concat([compare_lines(nothing, nothing), *lines]))
 
 
-def compared(views: Views, old: str, new: str) -> pl.DataFrame:
-    """Any two editions or drafts side by side, as `line_changes` has those that are kept.
+def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None) -> pl.DataFrame:
+    """Any two editions or drafts, compared as on publication; columns as of `line_changes`.
+
+    Args:
+        valid_from: the day on which drafts would begin to count; theirs of today when left out.
 
     Raises:
         MissingKnowledgeError: there is no such edition or draft.
     """
-    known = views.table("register")["edition"].unique()
-    for edition in (old, new):
-        if edition not in known:
-            raise no_such_edition(edition, known)
-    return _named(views, _lines(views, old, new))
+    before, after = (_edition(views, name, valid_from) for name in (old, new))
+    lines = compare(views.store, before, after).lines
+    return _named(views, lines.drop("name", "old_status", "new_status"))
 
 
-def _lines(views: Views, old: str, new: str, kept: pl.DataFrame | None = None) -> pl.DataFrame:
+def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
+    """A published edition, or what publishing a draft would give."""
+    lines = views.table("register").filter(edition=name)
+    if lines.is_empty():
+        raise no_such_edition(name, views.table("register")["edition"].unique())
+    if not name.startswith(DRAFT):
+        return read_edition(views.store, name)
+    method = KnownMethods.of(views.store).get(name.removeprefix(DRAFT))
+    terms = Terms(name, valid_from or lines["as_of"][0], "", dt.date.today())
+    return as_decided(views.store, method, terms)
+
+
+def _lines(views: Views, old: str, new: str, kept: pl.DataFrame) -> pl.DataFrame:
     """The changes between two editions with both sides, and causes by step.
 
     Args:
@@ -76,7 +93,7 @@ def _lines(views: Views, old: str, new: str, kept: pl.DataFrame | None = None) -
     """
     register = views.table("register")
     before, after = (register.filter(edition=edition) for edition in (old, new))
-    if kept is None or new.startswith(DRAFT):
+    if new.startswith(DRAFT):
         return compare_lines(before, after, steps_of_lines(after, _steps(views, before, after)))
     lines = compare_lines(before, after)
     changes = kept.filter(from_edition=old, to_edition=new)
@@ -114,9 +131,7 @@ def _steps(views: Views, old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """What each step does to a tow, from the method of one register to that of the other."""
     first, last = (side.sort("tow_id", nulls_last=True)["method"][0] for side in (old, new))
     methods = {"from_method": first, "to_method": last}
-    same = old.join(new, on=[*LINE, "tow_id"], how="semi").select("tow_id")
-    steps = views.table("correction_steps").filter(**methods).join(same, on="tow_id", how="semi")
-    return steps.filter(pl.col("position") > 0)
+    return views.table("correction_steps").filter(pl.col("position") > 0, **methods)
 
 
 def answers(views: Views, edition: str) -> pl.DataFrame:

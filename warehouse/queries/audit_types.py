@@ -10,8 +10,8 @@ from typing import Final
 
 import duckdb
 
-from pipeline.consistency.eras import ERAS
 from pipeline.consistency.observed import UNKNOWN_TYPE
+from pipeline.history import ERAS
 from pipeline.tables.row import Row
 from warehouse.store.database import is_simulated, rows
 

@@ -187,12 +187,6 @@ FROM run_points AS p JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run
 """,
     "season_diagnosis": SIZED_FAULTS,
     # Steps of seasons in per cent instead of logarithms.
-    "season_steps": """
-SELECT *, 100 * (exp(level_step) - 1) AS level_step_percent, 100 * level_step_sd
-       AS level_sd_percent, 100 * (exp(force_step) - 1) AS force_step_percent,
-       100 * force_step_sd AS force_sd_percent
-FROM season_steps
-""",
     # Curves per method, season and status.
     "statuses": """
 SELECT method, CAST(scope AS INTEGER) AS season, code AS status, number

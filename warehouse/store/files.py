@@ -1,6 +1,5 @@
 """Writing files so that nothing half-written is ever visible: beside, sync, rename; and hashes."""
 
-import ctypes
 import hashlib
 import os
 import shutil
@@ -11,9 +10,6 @@ from pathlib import Path
 
 TEMPORARY_PREFIX = ".herijk-"
 """Begins the name of every file that is still being written."""
-
-AT_FDCWD, RENAME_EXCHANGE = -100, 2
-"""Arguments of `renameat2(2)`: paths are relative to where we are; exchange the two."""
 
 
 @contextmanager
@@ -39,15 +35,26 @@ def written_beside(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def folder_written_beside(target: Path) -> Iterator[Path]:
-    """Gives a temporary folder and, if all went well, puts it in the place of `target` at once."""
+    """Gives a temporary folder and, if all went well, puts it in the place of `target`.
+
+    All files are synced first. The older folder is renamed before, so for a moment there is none.
+    """
     target.parent.mkdir(parents=True, exist_ok=True)
     beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=target.parent))
+    old = beside.with_name(f"{beside.name}-old")
     try:
         yield beside
         beside.chmod(0o755)
-        put_in_place(beside, target)
+        for path in (beside, *beside.rglob("*")):
+            sync(path)
+        if target.exists():
+            target.rename(old)
+        beside.rename(target)
+        sync(target.parent)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
+        if target.exists():
+            shutil.rmtree(old, ignore_errors=True)
 
 
 def file_sha256(path: Path) -> str:
@@ -61,34 +68,6 @@ def write_new(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("xb") as file:
         file.write(text.encode())
-
-
-def put_in_place(beside: Path, target: Path) -> None:
-    """Puts a folder under the name of another at once; the older one is `beside` after that.
-
-    All files are synced first. Linux exchanges two names in one step, so that a reader finds the
-    old folder or the new one, never none. Elsewhere the older folder is renamed first, and for a
-    moment there is none.
-    """
-    for path in (beside, *beside.rglob("*")):
-        sync(path)
-    if not target.exists():
-        beside.rename(target)
-    elif not _exchange(beside, target):
-        old = beside.with_name(f"{beside.name}-old")
-        target.rename(old)
-        beside.rename(target)
-        old.rename(beside)
-    sync(target.parent)
-
-
-def _exchange(one: Path, other: Path) -> bool:
-    """Exchanges two names in one step; False where system or file system cannot."""
-    renameat2 = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
-    if renameat2 is None:
-        return False
-    failed = renameat2(AT_FDCWD, os.fsencode(one), AT_FDCWD, os.fsencode(other), RENAME_EXCHANGE)
-    return not failed
 
 
 def sync(path: Path) -> None:
