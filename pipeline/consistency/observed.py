@@ -72,13 +72,6 @@ def of_trusted(frame: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     return frame.join(trusted, on="tow_id", how="semi", maintain_order="left")
 
 
-def observe_trusted(
-    curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
-) -> Observed:
-    """What `observe` gives of the tows that nothing is doubted about."""
-    return observe(of_trusted(curves, tows), tows, boats, of_trusted(run_points, tows))
-
-
 def observe(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> Observed:

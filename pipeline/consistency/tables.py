@@ -3,7 +3,6 @@
 import polars as pl
 
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
-from pipeline.consistency.components import variance_components
 from pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
 from pipeline.consistency.lines import type_lines
 from pipeline.consistency.observed import Observed
@@ -30,5 +29,4 @@ def type_tables(observed: Observed) -> dict[str, pl.DataFrame]:
         "speed_trend": speed_trend(observed),
         "predicted_cw": predicted,
         "prediction_error": prediction_error(predicted),
-        "variance_components": variance_components(observed),
     }

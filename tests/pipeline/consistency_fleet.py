@@ -6,6 +6,7 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
+from pipeline.consistency.components import variance_components
 from pipeline.consistency.eras import era_shifts
 from pipeline.consistency.lines import type_lines
 from pipeline.consistency.observed import observe
@@ -132,6 +133,7 @@ def consistency_tables(curves, tows, boats, run_points):
     """All tables of the analysis but the lines, without races."""
     observed, pairs = observe(curves, tows, boats, run_points), repeat_pairs(curves, tows)
     return type_tables(observed) | {
+        "variance_components": variance_components(observed),
         "slow_tows": slow_tows(observed, NO_RACES),
         "repeat_pairs": pairs,
         "era_shifts": era_shifts(pairs, boats),

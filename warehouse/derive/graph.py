@@ -11,6 +11,7 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import PLACE
 from pipeline.consistency import repeats
+from pipeline.consistency.components import variance_components
 from pipeline.consistency.eras import era_shifts
 from pipeline.consistency.observed import of_trusted
 from pipeline.consistency.tables import line_tables, type_tables
@@ -26,7 +27,7 @@ from pipeline.studies.summaries import SUMS, season_changes, second_means
 from pipeline.tables.register import RaceChanges
 from pipeline.tables.views import VIEWS
 from pipeline.uncertainty.ensemble import tow_ensemble
-from warehouse.derive import database, registers
+from warehouse.derive import database
 from warehouse.derive.archive_tables import archive_tables
 from warehouse.derive.inputs import (
     ARCHIVE_TABLES,
@@ -36,6 +37,7 @@ from warehouse.derive.inputs import (
     TYPE_TABLES,
     Blocks,
 )
+from warehouse.derive.registers import register_tables
 from warehouse.derive.step import Step
 from warehouse.derive.studies import study_tables
 from warehouse.intake import seasons as intake
@@ -106,8 +108,11 @@ LINES: Final = Step("lines", line_tables, LINE_TABLES)
 TYPES: Final = Step("consistency", type_tables, TYPE_TABLES)
 REGISTERS: Final = Step(
     "register",
-    registers.register_tables,
-    ("register", "register_history", "editions", "register_changes", "lineage", "methods"),
+    register_tables,
+    (
+        *("register", "register_history", "editions", "register_changes", "lineage", "methods"),
+        "due_list",
+    ),
 )
 DATABASE: Final = Step(
     "database",
@@ -122,9 +127,9 @@ STEPS: Final = (
     ARCHIVE,
     Step("recordings", recording_tables, ("trace_seconds", "run_statistics")),
     *(METHOD, STUDIES, LINES, TYPES),
-    *_alone("consistency", slow_tows, repeat_pairs, era_shifts, repeats.reproducibility),
+    *_alone("consistency", variance_components, slow_tows, repeat_pairs, era_shifts),
+    *_alone("consistency", repeats.reproducibility),
     REGISTERS,
-    *_alone("register", registers.due_list),
     *_alone("summaries", race_changes, season_changes, claims.print_reproduction),
     DATABASE,
 )
