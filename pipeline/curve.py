@@ -67,17 +67,15 @@ class Points:
             raise BrokenPromiseError(
                 "Points need three arrays of one shape (n_fits, n_points), not {}.", shapes
             )
-        for name, values in (("speed_m_s", self.speed_m_s), ("cw_kg_m", self.cw_kg_m)):
-            unsound = self.used & ~(np.isfinite(values) & (values > 0))
-            if unsound.any():
-                faulty = np.flatnonzero(unsound.any(axis=1))
-                raise BrokenPromiseError(
-                    "{}: {} curves use a point that is not a positive number, the first is curve "
-                    "{}. Set such points to unused beforehand.",
-                    name,
-                    faulty.size,
-                    faulty[0],
-                )
+        both = np.stack([self.speed_m_s, self.cw_kg_m])
+        unsound = (self.used & ~(np.isfinite(both) & (both > 0))).any(axis=(0, 2))
+        if unsound.any():
+            raise BrokenPromiseError(
+                "{} curves use a point that is not a positive number, the first is curve {}. Set "
+                "such points to unused beforehand.",
+                unsound.sum(),
+                unsound.argmax(),
+            )
 
     @classmethod
     def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:

@@ -239,33 +239,27 @@ def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
     large against the spread between boats. Without this the difference between boats, times a log
     error of 5 %, passes for scatter of the log between tows.
     """
-    anchored = rows.filter("anchored")
+    anchored, q = rows.filter("anchored"), pl.col("q")
     trusted = anchored if anchored.height else rows
     by_type = trusted.group_by("boat_type", maintain_order=True).agg(
-        pl.col("q").median().alias("q_type"), pl.len()
+        q.median().alias("q_type"), pl.len()
     )
     usual = by_type.filter(pl.col("len") >= FEWEST_OF_TYPE).select("boat_type", "q_type")
-    fleet = trusted["q"].median()
-
-    def typed(frame: pl.DataFrame) -> pl.DataFrame:
-        return frame.join(
-            usual, on="boat_type", how="left", nulls_equal=True, maintain_order="left"
-        ).with_columns(pl.col("q_type").fill_null(pl.lit(fleet, pl.Float64)))
-
-    deviation = (pl.col("q") - pl.col("q_type")).alias("deviation")
-    seen = typed(anchored).with_columns(deviation)
+    fleet, deviation = trusted["q"].median(), q - pl.col("q_type")
+    typed = rows.join(
+        usual, on="boat_type", how="left", nulls_equal=True, maintain_order="left"
+    ).with_columns(pl.col("q_type").fill_null(pl.lit(fleet, pl.Float64)))
+    seen = typed.filter("anchored")
     # The median of a squared standard normal number is 0.455.
     spread = seen.select((deviation**2).median() / 0.455 - (pl.col("q_sd") ** 2).median()).item()
     own = seen.group_by(LINE, maintain_order=True).agg(
-        (pl.col("deviation") / pl.col("q_sd") ** 2).sum().alias("pull"),
+        (deviation / pl.col("q_sd") ** 2).sum().alias("pull"),
         (pl.col("q_sd") ** -2.0).sum().alias("weight"),
     )
     between = max(spread or 0.0, LEAST_SPREAD)
     shift = pl.col("pull") / (pl.col("weight") + 1.0 / between)
-    q = pl.col("q_type") + shift.fill_null(0.0)
     return (
-        typed(rows)
-        .join(own, on=LINE, how="left", maintain_order="left")
-        .with_columns((2.0 + 2.0 * q).alias("kappa"))
+        typed.join(own, on=LINE, how="left", maintain_order="left")
+        .with_columns(kappa=2.0 + 2.0 * (pl.col("q_type") + shift.fill_null(0.0)))
         .drop("q_type", "pull", "weight")
     )

@@ -11,6 +11,7 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.errors import BrokenPromiseError
 from pipeline.tables.keys import LINE
 
 LOG: Final = ("season", "part")
@@ -44,7 +45,12 @@ class ArchiveTows:
 
     @classmethod
     def of(cls, tows: pl.DataFrame) -> Self:
-        """The tows that `estimate_season_factors` is given."""
+        """The tows that `estimate_season_factors` is given.
+
+        Raises:
+            BrokenPromiseError: a number that every tow must have is missing or not positive.
+        """
+        _refuse_unknown(tows)
         frame = with_state(tows).with_columns(
             boat=_place(*LINE, "state"), hull=_place("fsn_no"), is_loose=~pl.col("anchored")
         )
@@ -93,6 +99,22 @@ class ArchiveTows:
         """Mean over the boat's tows, for each tow."""
         count = np.bincount(self.boat)
         return np.asarray((np.bincount(self.boat, values) / np.maximum(count, 1))[self.boat])
+
+
+def _refuse_unknown(tows: pl.DataFrame) -> None:
+    for name in ("ln_cw", "kappa", "ln_cw_sd", "declared_speed_m_s"):
+        least = -np.inf if name == "ln_cw" else 0.0
+        sound = pl.col(name).is_finite() & (pl.col(name) > least)
+        faulty = tows.filter(~sound.fill_null(False))
+        if faulty.height:
+            raise BrokenPromiseError(
+                "season factors: {} of tow {} is {}, and {} more; give only tows "
+                "with a sound curve",
+                name,
+                faulty["tow_id"][0],
+                faulty[name][0],
+                faulty.height - 1,
+            )
 
 
 def _place(*columns: str) -> pl.Expr:

@@ -6,7 +6,6 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
-from pipeline.errors import BrokenPromiseError
 from pipeline.quantiles import t_quantile
 from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.assumed import USUAL
@@ -94,7 +93,6 @@ def first_estimate(tows: pl.DataFrame) -> Posterior:
     Raises:
         BrokenPromiseError: as there.
     """
-    _refuse_unknown(tows)
     return roughly(Problem.of(ArchiveTows.of(tows), USUAL))
 
 
@@ -133,7 +131,6 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
-    _refuse_unknown(tows)
     posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
     fitted, change = posterior.fit, without_each_boat(posterior.fit)
     factors, covariance = factors_of(fitted, posterior.determined, posterior.refused, change)
@@ -156,19 +153,3 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         diagnosis=diagnosis,
         steps=season_steps(posterior, diagnosis),
     )
-
-
-def _refuse_unknown(tows: pl.DataFrame) -> None:
-    for name in ("ln_cw", "kappa", "ln_cw_sd", "declared_speed_m_s"):
-        least = -np.inf if name == "ln_cw" else 0.0
-        sound = pl.col(name).is_finite() & (pl.col(name) > least)
-        faulty = tows.filter(~sound.fill_null(False))
-        if faulty.height:
-            raise BrokenPromiseError(
-                "season factors: {} of tow {} is {}, and {} more; give only tows "
-                "with a sound curve",
-                name,
-                faulty["tow_id"][0],
-                faulty[name][0],
-                faulty.height - 1,
-            )
