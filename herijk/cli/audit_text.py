@@ -284,8 +284,8 @@ def _slopes(report: TypesAudit, methods: Sequence[str]) -> str:
         cells = dict(zip(names, (statement(speech()) for statement in one.slopes), strict=True))
         rows.append(one._asdict() | cells | {"spread": one.spread(speech())})
     title = tell(
-        "Do B, A and Cw follow weight or tow speed? Cw at the standard speed; tows: {}.",
-        report.statistics_over,
+        "Do B, A and Cw follow weight or tow speed? Cw at the standard speed, of the newest tow of "
+        "each crew."
     )
     columns = f"boat_type quantity method n {' '.join(names)} spread"
     return section(title, table(rows, columns, names | {"spread": tell(SPREAD)}))

@@ -12,7 +12,7 @@ import xlsxwriter
 
 from pipeline.errors import MissingKnowledgeError
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
-from tests.warehouse.archive.test_formats import assert_same, cells_of, lvm
+from tests.warehouse.archive.test_formats import assert_same, cells_of, instead, lvm
 from warehouse.archive.check.check import check_archive
 from warehouse.archive.profile.reading import parse_profiles, read_profiles
 from warehouse.archive.spelling.columns import find_columns
@@ -334,6 +334,19 @@ def test_a_fault_of_a_tow_of_several_files_names_its_file(archive: Archive) -> N
     assert (fault.path, fault.line) == (path, line_of(archive, path, "mist"))
 
 
+def test_a_labview_file_may_number_its_runs_itself(archive: Archive, good_scan: Scan) -> None:
+    """One segment, a column of runs, and no times."""
+    header, *rows = (archive.root / FIRST).read_text("utf-8").split("\n")
+    lines = ["LabVIEW Measurement\t", "Separator\tTab", "Decimal_Separator\t,"]
+    lines += ["***End_of_Header***", "", "Channels\t7", "***End_of_Header***"]
+    lines += ["\t".join(["X_Value", *header.split(";"), "Comment"])]
+    lines += ["\t" + row.replace(";", "\t") for row in rows]
+    instead(archive, ".lvm", "\n".join(lines).encode())
+    scan = archive.scan()
+    assert scan.faults == []
+    assert_same(scan, good_scan)
+
+
 def test_lines_of_labview_text_are_counted_over_its_headers(archive: Archive) -> None:
     """One cell that is no number, and one run of which the log was stuck."""
     lvm(archive)
@@ -378,6 +391,19 @@ def test_beaufort_is_no_speed(archive: Archive) -> None:
     (archive.root / "archief.toml").write_text('[[profile]]\nseasons = "2014"\nabsent = ["wind"]\n')
     assert check_archive(archive.root).causes == []
     assert not archive.scan().index.tows["wind_measured"].any()
+
+
+def test_a_unit_that_is_told_goes_before_a_label_that_nobody_knows(
+    archive: Archive, good_scan: Scan
+) -> None:
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        archive.replace(path.relative_to(archive.root).as_posix(), "kracht [N]", "kracht [Volt]")
+    (cause,) = check_archive(archive.root).causes
+    assert cause.settings == ['[[profile]] seasons = "2014": units.force = "?"  # kgf, kn, lbf, n']
+    (archive.root / "archief.toml").write_text('[[profile]]\nseasons = "2014"\nunits.force = "N"\n')
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.good["2014-001"].equals(good_scan.good["2014-001"])
 
 
 def test_a_mark_that_is_told_settles_what_1_140_means(archive: Archive) -> None:

@@ -22,9 +22,8 @@ Values = Mapping[str, Any]
 """What is filled in in the sentence of a fault."""
 
 _SAMPLES: Final = {column.key: column for column in SAMPLE_COLUMNS}
-_STANDS_FOR: Final = ", ".join(
-    [BOATS.name, *(f"{kind.name}_<jaar>" for kind in LIST_KINDS if kind != BOATS), SAMPLES]
-)
+_DATED: Final = [kind.name for kind in LIST_KINDS if kind != BOATS]
+_STANDS_FOR: Final = ", ".join([BOATS.name, *(f"{name}_<jaar>" for name in (*_DATED, SAMPLES))])
 _LONGEST_WORD: Final = 30
 """A cell longer than that is no word that stands for something."""
 
@@ -134,9 +133,12 @@ def _of_times(_: str, values: Values, in_profile: str) -> Iterator[str]:
 
 def _of_unit(path: str, values: Values, in_profile: str) -> Iterator[str]:
     keys = set(values.get("keys", ()))
-    for name, channels in MAY_BE_ABSENT.items():
-        if in_profile and keys.intersection(channels):
-            yield f'{in_profile}absent = ["{name}"]'
+    absent = [name for name, channels in MAY_BE_ABSENT.items() if keys.intersection(channels)]
+    if in_profile and absent:
+        yield f"{in_profile}absent = {json.dumps(absent)}"
+    elif in_profile and len(keys) == 1 and "known" in values:
+        known = values["known"].replace("[", "").replace("]", "")
+        yield f'{in_profile}units.{keys.pop()} = "?"  # {known}'
     if "can_be" in values:
         yield _in_lines(path, in_profile)
 

@@ -270,6 +270,7 @@ class Profiles(_Strict):
                 header=table.columns.get(column.key, column.header),  # type: ignore[call-overload]
                 also=(*column.also, column.header),
                 unit=table.units.get(column.key, column.unit),  # type: ignore[call-overload]
+                unit_given=column.key in table.units,
                 reversed=column.key in table.reversed,
             )
             for column in self.wording.with_names(SAMPLE_COLUMNS)

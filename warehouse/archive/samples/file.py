@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-import numpy as np
 import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
@@ -101,7 +100,7 @@ def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
             frame = read_text(replace(body, data=body.data[: body.data.rfind(b"\n") + 1]))
     except DefectiveInputError:
         return None
-    if "time" not in frame.columns or frame.height < 2:
+    if "time" not in frame.columns:
         return None
-    step = float(np.nanmedian(np.diff(frame["time"].to_numpy()[:_FOR_A_RATE])))
-    return 1.0 / step if step > 0 else None
+    step = frame["time"][:_FOR_A_RATE].fill_nan(None).diff().median()
+    return 1.0 / step if isinstance(step, float) and step > 0 else None

@@ -6,6 +6,7 @@ channels and what they mean are the business of the modules that read such table
 
 import logging
 import re
+from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
@@ -59,15 +60,21 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
     of_units = next((c for c in cells[: starts[1]] if c[0].strip() == "Y_Unit_Label"), [])
     units = {place: unit.strip() for place, unit in enumerate(of_units)}
     header = [_with_unit(names[i], units.get(i, "")) for i in kept]
-    rows, places = [separator.join(["run", *header])], [starts[1] + 2]
+    counts = not _names_runs(names)
+    rows, places = [separator.join(["run"] * counts + header)], [starts[1] + 2]
     for run, (start, end) in enumerate(pairwise([*starts[1:], len(lines)]), start=1):
         for number in range(start + 2, end):
             fields = dict(enumerate(cells[number]))
             if not lines[number].strip() or not _is_number(fields.get(kept[0], "")):
                 break
-            rows.append(separator.join([str(run), *(fields.get(i, "") for i in kept)]))
+            rows.append(separator.join([str(run)] * counts + [fields.get(i, "") for i in kept]))
             places.append(number + 1)
     return "\n".join(rows), places
+
+
+def _names_runs(names: Iterable[str]) -> bool:
+    """Whether a recording has a column of its own that says which run a sample is of."""
+    return any(name.casefold().strip() == "run" for name in names)
 
 
 def _with_unit(name: str, unit: str) -> str:
@@ -128,7 +135,7 @@ def _group(group: Any, place: int, most_rows: int | None) -> pl.DataFrame:
     step = next((channel.properties.get("wf_increment", 0.0) for channel in group.channels()), 0.0)
     if step > 0 and not any(name.startswith("tijd") for name in map(str.casefold, columns)):
         frame = frame.with_columns((pl.int_range(pl.len()) * step).alias("tijd [s]"))
-    if any(name.casefold().strip() == "run" for name in columns):
+    if _names_runs(columns):
         return frame
     number = _NUMBER_IN_NAME.search(group.name)
     run = int(number[1]) if number else place

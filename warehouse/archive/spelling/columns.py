@@ -35,6 +35,7 @@ class Column:
         header: its name in the file, without the unit.
         dimension: key of `units.UNITS`.
         unit: unit of a header that names none; empty for dimension `none`.
+        unit_given: whether a person gave that unit; then it is also that of a unit nobody knows.
         required: whether a file without it is defective.
         also: other names for it.
         reversed: what is in it has the other sign.
@@ -45,6 +46,7 @@ class Column:
     header: str
     dimension: str = "none"
     unit: str = ""
+    unit_given: bool = False
     required: bool = True
     also: tuple[str, ...] = ()
     reversed: bool = False
@@ -94,7 +96,7 @@ def find_columns(
     """
     wanted = tuple(columns)
     places: dict[str, FoundColumn] = {}
-    cells = [split_header(cell) for cell in header]
+    cells = [_name_and_unit(cell, wanted) for cell in header]
     own_names = {fold(column.header) for column in wanted}
     own_first = sorted(range(len(cells)), key=lambda i: cells[i][0] not in own_names)
     for is_clear in (True, False):
@@ -133,6 +135,14 @@ def nearest_columns(cell: str, columns: Iterable[Column], least_alike: float = 0
     names = {fold(name): column for column in columns for name in (column.header, *column.also)}
     near = difflib.get_close_matches(split_header(cell)[0], names, n=9, cutoff=least_alike)
     return list(dict.fromkeys(names[name] for name in near))[:3]
+
+
+def _name_and_unit(cell: str, columns: Iterable[Column]) -> tuple[str, str | None]:
+    """Of a header cell; a unit that nobody knows gives way to the one that a person gave."""
+    name, unit = split_header(cell)
+    of_name = (column for column in columns if column.unit_given and column.answers_to(name))
+    gives_way = unit and any(find_scale(column.dimension, unit) is None for column in of_name)
+    return name, None if gives_way else unit
 
 
 def _choose(
