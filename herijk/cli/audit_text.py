@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import polars as pl
 
-from dashboards.labels import candidate, code_in_words
+from dashboards.labels import code_in_words
 from dashboards.statements.boat import Answer, answers_by_boat
 from dashboards.statements.boat_type import LINES, SPREAD, homogeneity, level, slopes
 from dashboards.statements.tow import statements as tow_statements
@@ -151,8 +151,6 @@ def _shown(row: Row) -> Row:
     shown = dict(row)
     if "ln_ratio" in row:
         shown["shift_ratio"] = None if row["ln_ratio"] is None else exp(row["ln_ratio"])
-    if "candidates" in row:
-        shown["candidates"] = ", ".join(tell(candidate(name)) for name in row["candidates"])
     return shown
 
 
