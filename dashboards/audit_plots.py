@@ -19,7 +19,6 @@ from dashboards.site.parts import default_method
 from pipeline.messages import speaker
 from warehouse.queries.audit import BoatAudit
 from warehouse.queries.audit_types import TypesAudit
-from warehouse.queries.chosen_tows import rows_of
 from warehouse.queries.views import Views
 from warehouse.store.files import written_beside
 from warehouse.store.store import Store
@@ -76,7 +75,7 @@ def _of_types(views: Views, report: TypesAudit) -> Iterator[Plot]:
     shifts = views.table("era_shifts").filter(own, pl.col("shift_ratio").is_not_null())
     for boat_type in types:
         yield Plot("eras", shifts.filter(boat_type=boat_type), boat_type)
-    boats = views.ask("type_tows").filter(own, rows_of(report.statistics_over))
+    boats = views.ask("type_tows").filter(own, "newest")
     yield Plot(
         "repeats",
         boats.select("method", "fsn_no")
@@ -97,9 +96,7 @@ def _of_boat(views: Views, report: BoatAudit) -> Iterator[Plot]:
     tow = pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     yield Plot("history", views.ask("curves").filter(own).with_columns(tow=tow))
     yield Plot("repeats", views.ask("repeat_pairs").filter(own))
-    like = views.ask("type_tows").filter(
-        rows_of(report.statistics_over), pl.col("boat_type") == (boat["boat_type"] or "")
-    )
+    like = views.ask("type_tows").filter("newest", pl.col("boat_type") == (boat["boat_type"] or ""))
     for name in SCATTERS:
         yield Plot(name, like.filter(method=default_method(methods)))
 

@@ -9,6 +9,7 @@ from typing import Final
 
 from pipeline.assessment.checks import CHECKS
 from pipeline.messages import Sentence, pgettext, say, tell
+from pipeline.tables.row import Row
 
 _PLAIN_COLUMNS: Final = (
     say("Altered"), say("As of"), say("Cause"), say("Causes"), say("Change"), say("Check"),
@@ -405,6 +406,11 @@ def code_in_words(name: str) -> str:
 def candidate(name: str) -> Sentence:
     """What could explain a place outside the type."""
     return _text(CANDIDATES, name)
+
+
+def cause(found: Row) -> Sentence:
+    """What a change comes from: a step of the method by its name, or another cause."""
+    return code(found.get("step") or found["cause"])
 
 
 def method(name: str) -> Sentence:

@@ -1,4 +1,4 @@
-"""Documents for paper: certificates and proposals, as PDF; a certificate also as a page.
+"""Documents for paper: certificates and proposals, as PDF.
 
 Python gathers texts and numbers; the templates lay them out and hold no words. Typst sets them with
 the font of the pages, so that a document is the same on every machine.
@@ -10,10 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import typst
-from markupsafe import Markup
 
 from dashboards import fonts
-from dashboards.html import environment
 
 TEMPLATES: Final = Path(__file__).parent / "templates"
 EPOCH: Final = 0
@@ -36,9 +34,3 @@ def pdf(template: str, content: dict[str, Any]) -> bytes:
     made = _compiler(template).compile(format="pdf", sys_inputs=inputs, timestamp=EPOCH)
     assert isinstance(made, bytes), "a PDF is one file"  # noqa: S101 - Typst's type is wider
     return made
-
-
-def page(template: str, content: dict[str, Any]) -> bytes:
-    """A document of this content as one HTML file, with the font in it."""
-    made = environment(TEMPLATES).get_template(template)
-    return made.render(content, font=Markup(fonts.style_sheet())).encode()  # noqa: S704 - our own

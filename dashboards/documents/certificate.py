@@ -9,7 +9,7 @@ import segno
 
 from dashboards import labels
 from dashboards.addresses import boat_path
-from dashboards.documents import page, pdf
+from dashboards.documents import pdf
 from dashboards.pictures import curve_picture
 from dashboards.speech import Speech
 from dashboards.statements.boat import crew_name, interval
@@ -49,10 +49,9 @@ def certificates(
     fsn_no: str | None,
     language: str,
     issued: Issued,
-    as_page: bool = False,
     border: Border = nullcontext,
 ) -> bytes | None:
-    """The certificates of a boat in an edition, or of all boats, as PDF or as an HTML page.
+    """The certificates of a boat in an edition, or of all boats, as PDF.
 
     Each is made within a border; nothing is given where none could be made.
 
@@ -87,7 +86,7 @@ def certificates(
         "footing": f"{say('Made by code')} {made_by}",
         "certificates": made,
     }
-    return page("certificate.html.j2", content) if as_page else pdf("certificate.typ", content)
+    return pdf("certificate.typ", content)
 
 
 def _one(line: Row, issued: Issued, speech: Speech) -> dict[str, object]:

@@ -12,7 +12,7 @@ from dashboards.figures import FIGURES
 from dashboards.guides import guide_file
 from dashboards.markdown import to_blocks
 from dashboards.speech import Speech
-from dashboards.statements.edition import Effect, cause_name, changes, effects, undecided
+from dashboards.statements.edition import Effect, changes, effects, undecided
 from dashboards.statements.race import stretched_fatigue
 from pipeline.messages import in_per_cent, pgettext, say
 from pipeline.register.register import draft_name
@@ -172,7 +172,7 @@ def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
     causes = sorted(causes_of(lines), key=lambda cause: -abs(cause["median_factor"] - 1))
     return [
         [
-            speech.say(cause_name(cause)),
+            speech.say(labels.cause(cause)),
             speech.per_cent(cause["median_factor"]),
             str(cause["lines"]),
         ]

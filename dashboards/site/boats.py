@@ -60,7 +60,8 @@ def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Call
     frames = _frames(views)
     editions = frames["register"]["edition"].unique().sort().to_list()
     crews = answers_by_boat(views, newest_edition(editions, draft_of(methods)))
-    frames = _of_methods(frames, {methods[0], default_method(methods), *_of_editions(views)})
+    published = views.table("editions")["method"].drop_nulls()
+    frames = _of_methods(frames, {methods[0], default_method(methods), *published})
     frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
     parts = {
         name: frame.partition_by("fsn_no", as_dict=True, maintain_order=True)
@@ -69,11 +70,6 @@ def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Call
     for fsn_no in frames["boats"]["fsn_no"]:
         own = {name: parts[name].get((fsn_no,), frame.clear()) for name, frame in frames.items()}
         yield fsn_no, partial(_page, fsn_no, own, methods, crews.get(fsn_no, ()))
-
-
-def _of_editions(views: Views) -> list[str]:
-    """Methods of published editions."""
-    return views.table("editions")["method"].drop_nulls().to_list()
 
 
 def _of_methods(

@@ -1,6 +1,5 @@
 """Cells of tables in one language: numbers, codes in words, links and hashes."""
 
-import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,27 +11,10 @@ from markupsafe import Markup, escape
 
 from dashboards import labels
 from dashboards.addresses import boat_path, type_path
+from dashboards.columns import digits, written
 from dashboards.site.parts import Page, Table, is_chosen
 from dashboards.speech import Speech, duration
-from dashboards.statements.edition import cause_name
 from pipeline.messages import LANGUAGES
-
-DIGITS: Final = (
-    ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
-    ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_percent", 3), ("after_percent", 3),
-    ("_percent", 1), ("size", 1), ("size_lo", 1),
-    ("size_hi", 1), ("_1pct", 2), ("_2pct", 2), ("cw_ratio", 3),
-)  # fmt: skip
-"""Decimals shown by the ending of a column's name; 4 otherwise."""
-
-CODES: Final = {
-    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
-    *("quantity", "explaining", "within", "severity", "check", "shared", "kind", "scope"),
-    *("old_remark", "new_remark", "choice"),
-    *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
-    *("instrument", "verdict", "confused_with"),
-}
-"""Columns that hold codes of the warehouse, shown as words."""
 
 LONG: Final = {
     *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "messages", "decision"),
@@ -101,9 +83,8 @@ class Cells:
         if name == "rowing_time_s":
             return [f"<td class=t>{'' if v is None else duration(v)}</td>" for v in column]
         if column.dtype.is_float():
-            digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
             values = [math.nan if v is None else v for v in column.to_list()]
-            return [f"<td>{text}</td>" for text in self.speech.numbers(values, digits)]
+            return [f"<td>{text}</td>" for text in self.speech.numbers(values, digits(name))]
         if column.dtype.is_integer() and name != "direction":
             return [f"<td>{'' if v is None else v}</td>" for v in column.to_list()]
         empty = "<td class=t></td>"
@@ -120,18 +101,13 @@ class Cells:
         named = {
             "messages": self._message,
             "direction": lambda value: self.text(labels.code(f"direction.{value}")),
-            "causes": self._causes,
-            "candidates": lambda names: Markup(", ").join(
-                self.text(labels.candidate(name)) for name in names
-            ),
             "tows": lambda value: self.text(labels.code(value)),
-            "unit": lambda value: self._plain("" if value == "1" else value),
+            "unit": lambda value: escape("" if value == "1" else value),
             **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
             **dict.fromkeys(METHODS, lambda value: self.text(labels.method(value))),
             **dict.fromkeys(EDITIONS, self._edition),
-            **dict.fromkeys(CODES, self._code),
         }
-        return named.get(name, self._plain)
+        return named.get(name, lambda value: escape(written(name, value, self.speech)))
 
     def _edition(self, value: str) -> Markup:
         return escape(self.speech.edition(value))
@@ -140,24 +116,6 @@ class Cells:
         if value in ("unknown", "all"):
             return self.text(labels.code(value))
         return Markup('<a href="{}{}">{}</a>').format(root, type_path(value), value)
-
-    def _plain(self, value: object) -> Markup:
-        if isinstance(value, bool):
-            return self.text("yes" if value else "no")
-        return escape(value)
-
-    def _code(self, value: Any) -> Markup:
-        """A code, or several with commas or as a list, in words."""
-        codes = value.split(",") if isinstance(value, str) else list(value)
-        return Markup(", ").join(self.text(labels.code(code)) for code in codes if code)
-
-    def _causes(self, value: str) -> Markup:
-        """What a change is attributed to (a method's step by its name), each in per cent."""
-        parts = [
-            self.text(cause_name(cause)) + f" {self.speech.per_cent(cause['factor'])}"
-            for cause in json.loads(value)
-        ]
-        return Markup("; ").join(parts)
 
     def _message(self, value: Any) -> Markup:
         """The message in this language, of one in Dutch and one in English."""

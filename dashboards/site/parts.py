@@ -102,10 +102,6 @@ class Grid:
     groups: Sequence[tuple[str, Sequence[tuple[Text, Sequence[Text]]]]]
 
 
-def _as_it_is(option: str, _: Speech) -> str:
-    return option
-
-
 @dataclass(frozen=True)
 class Select:
     """A selector: what is chosen filters the charts and tables that follow it.
@@ -120,7 +116,7 @@ class Select:
     options: Sequence[str]
     chosen: str
     with_all: bool = False
-    named: Callable[[str, Speech], str] = _as_it_is
+    named: Callable[[str, Speech], str] = lambda option, _: option
     asks: bool = False
 
 

@@ -1,6 +1,6 @@
 """Pages that are read: the method, how to read an audit, and what goes with an edition."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
@@ -14,13 +14,7 @@ from dashboards.site.parts import Page, Section
 from dashboards.speech import Speech
 from pipeline.messages import LANGUAGES, Sentence, say
 from warehouse.queries.views import Views
-from warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, edition_path
-
-_TEXTS: Final = {
-    "notice": (say("Notice to the members"), NOTICE, NOTICE_EN),
-    "release_notes": (say("Release notes"), NOTES, NOTES_EN),
-}
-
+from warehouse.store.editions import NOTICE, NOTICE_EN, edition_path
 
 TITLES: Final = {
     "method": (
@@ -56,26 +50,23 @@ def guide_links() -> list[tuple[str, Sentence, Sentence]]:
 
 
 def edition_pages(views: Views) -> Iterator[Page]:
-    """Per published edition its notice and release notes, in the language of the page."""
+    """Per published edition its notice, in the language of the page."""
     for edition in views.table("editions")["edition"]:
         folder = edition_path(views.store, edition)
+        dutch, english = (_below_title(folder / file) for file in (NOTICE, NOTICE_EN))
         yield Page(
             edition_page(edition),
             say("Edition"),
             [
-                *(
-                    Section(name, title, prose=_in_language(_texts(folder, files), {}))
-                    for name, (title, *files) in _TEXTS.items()
+                Section(
+                    "notice",
+                    say("Notice to the members"),
+                    prose=_in_language((dutch, english), {}),
                 ),
                 Section("downloads", say("Downloads"), files=files_of(edition)),
             ],
             name=edition,
         )
-
-
-def _texts(folder: Path, files: Sequence[str]) -> tuple[str, str]:
-    dutch, english = (_below_title(folder / file) for file in files)
-    return dutch, english
 
 
 def _in_language(in_each: tuple[str, str], links: Mapping[str, str]) -> Callable[[Speech], Markup]:

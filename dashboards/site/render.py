@@ -13,9 +13,6 @@ from pathlib import Path
 from typing import Final
 
 import jinja2
-import polars as pl
-import polars.selectors as cs
-import vl_convert
 from markupsafe import Markup
 
 from dashboards import fonts, labels
@@ -23,15 +20,14 @@ from dashboards.addresses import boat_path, race_path, type_path
 from dashboards.html import as_json, environment
 from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
+from dashboards.site.charts import charts_script, first_chart, page_json, still, vega_bundle
 from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import method_names, shared_pages
 from dashboards.site.parts import Page
 from dashboards.site.slides import slides_page
-from dashboards.site.specifications import chart_specifications
 from dashboards.site.start import MENU, TERMS
-from dashboards.site.still import first_chart, still
 from dashboards.speech import Speech
-from pipeline.messages import LANGUAGES, speaker
+from pipeline.messages import LANGUAGES
 from warehouse.queries.views import Views
 from warehouse.store.files import folder_written_beside
 from warehouse.store.store import Store
@@ -40,8 +36,6 @@ from warehouse.store.unforeseen import Border, border
 HERE: Final = Path(__file__).parent
 QUICK: Final = 4
 """How hard data are deflated: a tenth larger than by default, in half the time."""
-DRAWN: Final = 5
-"""Significant digits of what charts draw."""
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -230,20 +224,6 @@ def _data_script(page: Page) -> str:
     return f'window.HERIJK_DATA = "{packed.decode("ascii")}";\n'
 
 
-def page_json(page: Page) -> str:
-    """What the charts of a page draw, column by column, by name."""
-    charts = (
-        f"{as_json(name)}:[{','.join(map(json_of, frames))}]" for name, frames in page.data.items()
-    )
-    return f'{{"charts":{{{",".join(charts)}}}}}'
-
-
-def json_of(frame: pl.DataFrame) -> str:
-    """A frame as lists by column."""
-    shown = frame.with_columns(cs.float().round_sig_figs(DRAWN))
-    return shown.select(pl.all().implode()).write_ndjson().rstrip("\n")
-
-
 def _search_script(views: Views) -> str:
     """What the search on every page looks through: boats, types and races, with their pages."""
     return f"window.HERIJK_FIND = {as_json(list(_findable(views)))};\n"
@@ -267,22 +247,3 @@ def _by_column(comments: dict[str, str]) -> dict[str, str]:
     for name, text in comments.items():
         meanings.setdefault(name.split(".", 1)[1], set()).add(text)
     return comments | {name: min(texts) for name, texts in meanings.items() if len(texts) == 1}
-
-
-@cache
-def vega_bundle() -> str:
-    """Vega, Vega-Lite and Vega-Embed in one script, as Altair's own converter ships them."""
-    return str(vl_convert.javascript_bundle())  # type: ignore[call-arg]  # its stub lacks the default
-
-
-def charts_script(language: str) -> str:
-    """A script with the figures and their words in one language."""
-    say = speaker(language)
-    words = {name: say(text) for name, text in labels.named().items()} | {
-        "yes": say("yes"),
-        "no": say("no"),
-        "no_values": say("no values"),
-        "picture": say("Save as a picture"),
-    }
-    figures = as_json(chart_specifications(language))
-    return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"

@@ -32,11 +32,6 @@ def register(lines: pl.DataFrame) -> Statement:
     )
 
 
-def cause_name(cause: Row) -> Sentence:
-    """What a change comes from: a step of the method by its name, or another cause."""
-    return labels.code(cause.get("step") or cause["cause"])
-
-
 def causes_of_line(line: Row) -> list[tuple[Sentence, float]]:
     """Name and factor of what made a line change, the largest first; small ones as one."""
     causes = json.loads(line["causes"] or "[]")
@@ -44,7 +39,7 @@ def causes_of_line(line: Row) -> list[tuple[Sentence, float]]:
     rest = prod(one["factor"] for one in causes if one not in large)
     large.sort(key=lambda one: -abs(one["factor"] - 1))
     others = [{"cause": "rest", "factor": rest}] if abs(rest - 1) >= NEGLIGIBLE else []
-    return [(cause_name(one), float(one["factor"])) for one in (*large, *others)]
+    return [(labels.cause(one), float(one["factor"])) for one in (*large, *others)]
 
 
 def changes(lines: pl.DataFrame) -> Headline:
@@ -95,7 +90,7 @@ def _beyond_interval(changed: pl.DataFrame) -> Iterator[Statement]:
 def _main_cause(changed: pl.DataFrame) -> Iterator[Statement]:
     """What most lines change by most."""
     most = Counter(
-        cause_name(max(causes, key=lambda one: abs(one["factor"] - 1)))
+        labels.cause(max(causes, key=lambda one: abs(one["factor"] - 1)))
         for causes in map(json.loads, changed["causes"])
         if causes
     ).most_common(1)

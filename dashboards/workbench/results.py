@@ -42,7 +42,9 @@ class BenchCells(Cells):
     def _shower(self, name: str, root: str) -> Show:
         if name == "fsn_no":
             return lambda boat: Markup('<a href="?boat={0}">{0}</a>').format(boat)
-        return self._code if name == "boat_type" else super()._shower(name, root)
+        if name == "boat_type":
+            return lambda boat_type: self.text(labels.code(boat_type))
+        return super()._shower(name, root)
 
 
 Part = tuple[list[Section], dict[str, pl.DataFrame]]
@@ -210,7 +212,7 @@ def _boat(scenario: Scenario, asked: Asked) -> Part:
 
 def _types(scenario: Scenario, asked: Asked) -> Part:
     title = say("Types: are equal boats equal?")
-    tests = scenario.type_homogeneity(asked.tows)
+    tests = scenario.type_homogeneity()
     return [
         Section(
             "types",

@@ -22,8 +22,9 @@ from starlette.routing import Route
 from dashboards import labels
 from dashboards.guard import guarded
 from dashboards.html import environment
+from dashboards.site.charts import page_json
 from dashboards.site.parts import Page
-from dashboards.site.render import Edition, page_json, shared_files
+from dashboards.site.render import Edition, shared_files
 from dashboards.workbench.bench import Asked, Bench, Saving
 from dashboards.workbench.form import CONTROLS, Control
 from dashboards.workbench.results import BenchCells, results

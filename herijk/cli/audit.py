@@ -37,12 +37,6 @@ if TYPE_CHECKING:
 @option("--edition", help="Edition or draft that a boat's answer is about; else the newest.")
 @flag("--steps", help="Also show the methods, tows, runs and statistics behind the answer.")
 @option("--method", help="Show this method only.")
-@option(
-    "--tows",
-    default="newest",
-    type=click.Choice(["all", "newest"]),
-    help="Which tows a type's statistics rest on.",
-)
 @option("--plots", type=PATH, help="Draw the plots in this folder.")
 @json_option
 def audit(
@@ -51,7 +45,6 @@ def audit(
     edition: str | None,
     steps: bool,
     method: str | None,
-    tows: str,
     plots: Path | None,
     as_json: bool,
 ) -> None:
@@ -79,7 +72,7 @@ def audit(
             return
     if method is not None:
         KnownMethods.of(store).text(method)
-    report = audit_report(store, names, method, tows)
+    report = audit_report(store, names, method)
     drawn = [] if plots is None else _plots(store, report, plots)
     if as_json:
         click.echo(as_json_text(report))

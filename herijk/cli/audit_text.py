@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import polars as pl
 
-from dashboards.labels import candidate, code_in_words
+from dashboards.labels import code_in_words
 from dashboards.statements.boat import Answer, answers_by_boat
 from dashboards.statements.boat_type import LINES, SPREAD, homogeneity, level, slopes
 from dashboards.statements.tow import statements as tow_statements
@@ -151,8 +151,6 @@ def _shown(row: Row) -> Row:
     shown = dict(row)
     if "ln_ratio" in row:
         shown["shift_ratio"] = None if row["ln_ratio"] is None else exp(row["ln_ratio"])
-    if "candidates" in row:
-        shown["candidates"] = ", ".join(tell(candidate(name)) for name in row["candidates"])
     return shown
 
 
@@ -286,8 +284,8 @@ def _slopes(report: TypesAudit, methods: Sequence[str]) -> str:
         cells = dict(zip(names, (statement(speech()) for statement in one.slopes), strict=True))
         rows.append(one._asdict() | cells | {"spread": one.spread(speech())})
     title = tell(
-        "Do B, A and Cw follow weight or tow speed? Cw at the standard speed; tows: {}.",
-        report.statistics_over,
+        "Do B, A and Cw follow weight or tow speed? Cw at the standard speed, of the newest tow of "
+        "each crew."
     )
     columns = f"boat_type quantity method n {' '.join(names)} spread"
     return section(title, table(rows, columns, names | {"spread": tell(SPREAD)}))

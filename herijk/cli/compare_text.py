@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from dashboards import labels
 from dashboards.labels import code_in_words
-from dashboards.statements.edition import cause_name
 from herijk.cli.methods_text import options_text
 from herijk.cli.render import cell, codes, interval_of_runs_alone, page, section, speech, table
 from pipeline.messages import in_per_cent, say, tell
@@ -120,7 +120,7 @@ def editions(report: DiffReport) -> str:
     """Two editions side by side."""
     counts = ", ".join(f"{n} {codes(change)}" for change, n in report.changes.items())
     known = report.changes.get("changed", 0) > report.interval_unknown
-    causes = [cause | {"cause": tell(cause_name(cause))} for cause in report.causes]
+    causes = [cause | {"cause": tell(labels.cause(cause))} for cause in report.causes]
     parts = [
         f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.",
         tell(
@@ -154,13 +154,11 @@ LINE: Final = (
 
 
 def _line(row: Row) -> Row:
-    named = ((tell(cause_name(cause)), cause["factor"]) for cause in row["causes"])
-    causes = "; ".join(f"{name} {speech().per_cent(factor)}" for name, factor in named)
     change = code_in_words(row["change"])
     if row["change"] == "removed":
         change += f": {code_in_words(row['new_status'] or 'gone')}"
     in_2_h = seconds(row["gain_in_two_hours_s"])
-    return row | {"causes": causes, "change": change, "in_2_h": in_2_h}
+    return row | {"change": change, "in_2_h": in_2_h}
 
 
 def _group(group: Group) -> str:

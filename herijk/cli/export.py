@@ -22,7 +22,7 @@ def export() -> None:
 )
 @data_option
 @option("--edition", help="Edition; the newest when left out.")
-@option("--out", type=PATH, help="File to write: a PDF, or .html for a page.")
+@option("--out", type=PATH, help="File to write, a PDF.")
 @json_option
 def certificate(
     boat: str | None, data: Path, edition: str | None, out: Path | None, as_json: bool
@@ -40,10 +40,9 @@ def certificate(
     with documents(store.root, "certificate") as border, Views(store) as views:
         chosen = edition or current_edition(views)
         fsn_no = boat and the_boat(views.table("boats"), boat)
-        as_page = out is not None and out.suffix == ".html"
         settings = read_settings(data)
         issued = Issued(issuer=settings.issuer, site=settings.site)
-        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), issued, as_page, border)
+        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), issued, border)
         name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
         _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
 

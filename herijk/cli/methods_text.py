@@ -84,7 +84,7 @@ def options_text(options: Sequence[Difference], old: str, new: str) -> str:
     """Options, one a line, as a method's file has them and in words, with what they were."""
     rows = [
         {
-            "option": f"{one.step}.{one.option}",
+            "name": f"{one.step}.{one.option}",
             "seasons": range_text(one.first, one.last),
             "before": ", ".join(map(json.dumps, one.before)),
             "after": json.dumps(one.after),
@@ -93,5 +93,5 @@ def options_text(options: Sequence[Difference], old: str, new: str) -> str:
         }
         for one in options
     ]
-    heads = {"option": say("option"), "seasons": say("seasons"), "before": old, "after": new}
-    return table(rows, f"option seasons {'before ' if old else ''}after in_words status", heads)
+    heads = {"name": say("option"), "seasons": say("seasons"), "before": old, "after": new}
+    return table(rows, f"name seasons {'before ' if old else ''}after in_words status", heads)

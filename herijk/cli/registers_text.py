@@ -190,8 +190,7 @@ def published(report: "Published") -> str:
         tell("Seal, to be kept in the minutes: {}", about.seal),
         tell("Folder: {}", report.folder),
         tell("  register.xlsx, register.csv        the register"),
-        tell("  bericht.md, notice.md              one page for the members, Dutch and English"),
-        tell("  toelichting.md, release_notes.md   release notes, Dutch and English"),
+        tell("  bericht.md, notice.md              what changes and why, Dutch and English"),
         tell("It is never changed. To see that it stays so: herijk verify"),
     ]
     return page(["\n".join(parts)], about.simulated)

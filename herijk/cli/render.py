@@ -14,42 +14,22 @@ from rich.console import Console
 from rich.table import Table
 
 from dashboards import labels
+from dashboards.columns import written
 from dashboards.speech import Speech
-from pipeline.messages import LANGUAGE, say, spoken, tell
+from pipeline.messages import LANGUAGE, say, tell
 from pipeline.tables.row import Row
 
 UNLIMITED: Final = 1000
 """Characters on a line of a table that is not for a terminal."""
 
-DIGITS: Final = {
-    "_kg_m": 2, "_m_s": 2, "_kg": 0, "_w": 0, "_m": 2, "_s": 0, "_sd": 1, "e_n": 2, "factor": 4,
-    "lo": 4, "hi": 4, "slope": 4, "p_value": 3,
-}  # fmt: skip
-"""Decimals by the ending of a column's name; 3 otherwise."""
-
 CHANGES: Final = {
-    *(
-        "cw_ratio",
-        "power_ratio",
-        "total",
-        "median_factor",
-        "lowest_factor",
-        "highest_factor",
-        "cw_effect_ratio",
-        "shift_ratio",
-    ),
+    *("cw_ratio", "power_ratio", "total", "median_factor", "lowest_factor", "highest_factor"),
+    *("cw_effect_ratio", "shift_ratio"),
 }
 """Columns with new over old, shown as a change in per cent."""
 
 SHARES: Final = re.compile("share|_sd_ratio|^sd_|u_ratio|rmse|most_|r2|at_10pct|p_fault")
 """Columns with a part of a whole, shown in per cent."""
-
-CODES: Final = {
-    *("status", "reason", "change", "source", "step", "component", "kind", "scope", "cause"),
-    *("quantity", "explaining", "within", "speed_reason", "instrument", "verdict", "log"),
-    *("reason_code", "lost", "pooling", "shared", "flags", "cut_reason", "check"),
-}
-"""Columns that hold codes, shown in words."""
 
 HEADS: Final = {
     "gross_cw_kg_m": say("gross kg/m"),
@@ -158,30 +138,16 @@ def cell(name: str, value: Any) -> str:
     """A value as it is shown in the column of this name."""
     if value is None:
         return "-"
-    if isinstance(value, bool):
-        return tell("yes" if value else "no")
-    if isinstance(value, float):
-        return _number(name, value)
-    if name in CODES:
-        return codes(value)
-    if isinstance(value, list | tuple):
-        return ", ".join(map(str, value))
-    return str(spoken(value, LANGUAGE.get()))
-
-
-def _number(name: str, value: float) -> str:
-    if name in CHANGES:
+    if isinstance(value, float) and name in CHANGES:
         return speech().per_cent(value)
-    if SHARES.search(name):
+    if isinstance(value, float) and SHARES.search(name):
         return f"{speech().number(100 * value, 1)}\u00a0%"
-    digits = next((d for ending, d in DIGITS.items() if name.endswith(ending)), 3)
-    return speech().number(value, digits)
+    return written(name, value, speech())
 
 
 def codes(value: str | Iterable[str]) -> str:
     """A code, or several with commas or as a list, in words."""
-    names = value.split(",") if isinstance(value, str) else value
-    return ", ".join(labels.code_in_words(name) for name in names if name)
+    return written("flags", value, speech())
 
 
 def with_crew(row: Row) -> Row:

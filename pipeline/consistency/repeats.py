@@ -77,7 +77,7 @@ def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
     return np.where(left > 0, a / np.where(left > 0, left, 1.0), 0.0)
 
 
-def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
+def reproducibility(repeat_pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
     """Standard deviation of one tow from repeat pairs, per method and era of the older tow.
 
     A pair differs by sqrt(2) times the deviation of one tow, so s^2 = sum(d^2) / (2 n), with a
@@ -86,7 +86,7 @@ def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
     (Satterthwaite 1946). Beside it s_r: what the scatter of a tow's own runs does to its Cw.
 
     Args:
-        pairs: rows of `repeat_pairs`.
+        repeat_pairs: rows of that table.
         observed: all tows, for the scatter within a tow.
 
     Returns:
@@ -95,7 +95,7 @@ def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
     scopes = [(ALL_PAIRS, -9999, 9999), *((era.name, era.first, era.last) for era in ERAS)]
     rows = []
     for method in observed.table["method"].unique().sort():
-        own = pairs.filter(pl.col("method") == method)
+        own = repeat_pairs.filter(pl.col("method") == method)
         runs = observed.table.filter(pl.col("method") == method)
         rows += [
             {"method": method, "scope": name}

@@ -128,7 +128,7 @@ def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
+def slow_tows(observed: Observed, listed_races: pl.DataFrame) -> pl.DataFrame:
     """Tows whose curve is used where it was not measured, and what that does to race power.
 
     Towed with little power, or raced at speeds at which the curve does not count. The tow's own
@@ -137,13 +137,13 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
 
     Args:
         observed: all tows.
-        results: as `raced` takes them.
+        listed_races: results as `raced` takes them.
 
     Returns:
         Rows of the table `slow_tows`; the ratio is empty where the type has no other boats.
     """
     table = observed.table.join(
-        raced(observed, results), on=["method", "tow_id"], how="left", maintain_order="left"
+        raced(observed, listed_races), on=["method", "tow_id"], how="left", maintain_order="left"
     )
     tows, slow = Observed(table, observed.points), is_slow(table)
     raced_speed = table["raced_speed_m_s"].to_numpy().astype(np.float64)

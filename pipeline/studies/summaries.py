@@ -9,23 +9,23 @@ from typing import Final
 
 import polars as pl
 
+from pipeline.method.definition import Method
 
-def season_changes(curves: pl.DataFrame, first: str) -> pl.DataFrame:
+
+def season_changes(curves: pl.DataFrame, first_method: Method) -> pl.DataFrame:
     """Cw of each method / Cw of the first method, of the same tow: median and range per season.
 
-    Args:
-        curves: rows of the table `curves` of several methods.
-        first: name of the method that the others are compared with.
-
-    Returns:
-        `method, from_method, season, tows, median_ratio, lowest_ratio, highest_ratio`.
+    Takes rows of `curves` of several methods; gives rows of the table `season_changes`.
     """
-    known = curves.drop_nulls("cw_kg_m")
-    old = known.filter(pl.col("method") == first).select("tow_id", old="cw_kg_m")
+    first, known = first_method.name, curves.drop_nulls("cw_kg_m")
     ratio = pl.col("cw_kg_m") / pl.col("old")
     return (
         known.filter(pl.col("method") != first)
-        .join(old, on="tow_id", maintain_order="left")
+        .join(
+            known.filter(method=first).select("tow_id", old="cw_kg_m"),
+            on="tow_id",
+            maintain_order="left",
+        )
         .group_by("method", "season", maintain_order=True)
         .agg(
             pl.lit(first).alias("from_method"),

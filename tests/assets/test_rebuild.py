@@ -197,7 +197,7 @@ def test_the_old_database_stays_when_a_step_fails(bench, built, monkeypatch):
     spoil(samples_files(bench, 2009)[3])
     for place, error in (
         (
-            "warehouse.derive.method_tables.recompute",
+            "warehouse.derive.graph.recompute",
             BrokenPromiseError("a promise was broken"),
         ),
         ("warehouse.derive.database._add_table", OSError("disk full")),

@@ -86,12 +86,6 @@ def test_the_place_in_a_race_is_not_the_place_at_equal_power():
     assert f"Spiegelrace 4\N{NO-BREAK SPACE}juni\N{NO-BREAK SPACE}2018: {moved}" in text
 
 
-def test_places_that_swap_on_the_podium_are_told():
-    text = said(races=[RACE | {"old_rank": 3, "new_rank": 2}])
-    assert "plaats 2 van de 35 ploegen" in text
-    assert "dat was 3" in text
-
-
 def test_a_race_in_which_only_one_edition_has_a_line_is_not_compared():
     editions = {"from_edition": "2015-1", "to_edition": "2026-1"}
     remarks = {"old_remark": "no_line_that_day", "new_remark": ""}

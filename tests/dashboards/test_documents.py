@@ -81,17 +81,6 @@ def test_a_certificate_of_an_edition_stays_when_the_warehouse_makes_other_method
     assert contents[0] == contents[1]
 
 
-def test_a_certificate_is_a_page_too(views):
-    line = lines_of(views, EDITIONS[-1]).row(0, named=True)
-    text = certificate.certificates(
-        views, EDITIONS[-1], line["fsn_no"], "en", ISSUED, True
-    ).decode()
-    assert line["verification_code"] in text
-    assert f"Cw {line['cw_kg_m']:.2f} kg/m" in text
-    assert text.count("<svg") >= 2
-    assert "<8 mei>" not in text
-
-
 def test_all_certificates_of_an_edition_are_in_one_file(views, contents):
     certificate.certificates(views, EDITIONS[-1], None, "nl", ISSUED)
     assert len(contents[0]["certificates"]) == lines_of(views, EDITIONS[-1]).height

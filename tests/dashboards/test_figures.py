@@ -10,7 +10,7 @@ import pytest
 from dashboards import drawn
 from dashboards.figures import FIGURES
 from dashboards.labels import code
-from dashboards.site.specifications import specification
+from dashboards.site.charts import specification
 from pipeline.messages import speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})

@@ -26,10 +26,8 @@ def shown(store):
             [*(one(english) for one in answer.statements), answer.waterfall(english)]
             for answer in answers
         ]
-        paper = certificate.certificates(
-            views, EDITION, None, "en", certificate.Issued(DAY), as_page=True
-        )
-    return pages, register_report(store, EDITION), paper.decode()
+        paper = certificate.certificates(views, EDITION, None, "en", certificate.Issued(DAY))
+    return pages, register_report(store, EDITION), paper
 
 
 def change_lists(archive):

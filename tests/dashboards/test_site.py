@@ -11,14 +11,15 @@ import pytest
 
 from dashboards import labels
 from dashboards.addresses import boat_path, edition_page, race_path, type_path
+from dashboards.columns import CODES
 from dashboards.guides import GUIDES
 from dashboards.html import as_json, keep_units
 from dashboards.site.boats import boat_pages
-from dashboards.site.cells import CODES
+from dashboards.site.charts import DRAWN
 from dashboards.site.downloads import SHEETS
 from dashboards.site.pages import MENU, method_names, shared_pages
 from dashboards.site.parts import Table, default_method
-from dashboards.site.render import DRAWN, build_pages, build_site
+from dashboards.site.render import build_pages, build_site
 from dashboards.site.slides import slides_page
 from dashboards.site.start import ABOUT
 from dashboards.speech import Speech

@@ -3,6 +3,8 @@
 import json
 import shutil
 
+from pypdf import PdfReader
+
 from tests.conftest import METHODS, Workbench
 
 DECISION = ("--decision", "ALV 12-5-2014")
@@ -57,9 +59,9 @@ def test_an_edition_counts_at_once(herijk, built, tmp_path):
     assert "2014-9" in herijk("register", "2014-9", "--data", copy.data)[1]
     assert "2014-10" in herijk("register", "--data", copy.data)[1]
     assert "2014-10" in herijk("register", "--as-of", "2012-06-01", "--data", copy.data)[1]
-    page = tmp_path / "certificate.html"
-    assert herijk("export", "certificate", "--out", page, "--data", copy.data)[0] == 0
-    assert "2014-10" in page.read_text(encoding="utf-8")
+    paper = tmp_path / "certificate.pdf"
+    assert herijk("export", "certificate", "--out", paper, "--data", copy.data)[0] == 0
+    assert "2014-10" in PdfReader(paper).pages[0].extract_text()
 
 
 def test_editions_are_compared_with_causes_and_races(herijk, published):

@@ -132,11 +132,10 @@ def newest_lines(observed):
 def consistency_tables(curves, tows, boats, run_points):
     """All tables of the analysis but the lines, without races."""
     observed, pairs = observe(curves, tows, boats, run_points), repeat_pairs(curves, tows)
-    components = variance_components(observed)
     return type_tables(observed) | {
+        "variance_components": variance_components(observed),
         "slow_tows": slow_tows(observed, NO_RACES),
         "repeat_pairs": pairs,
         "era_shifts": era_shifts(pairs, boats),
         "reproducibility": reproducibility(pairs, observed),
-        "variance_components": components,
     }

@@ -1,5 +1,7 @@
 """Medians over many tows, on frames small enough to do by hand."""
 
+from types import SimpleNamespace
+
 import polars as pl
 import pytest
 
@@ -20,7 +22,7 @@ CURVES = pl.DataFrame(
 
 
 def test_a_season_s_change_counts_tows_with_both_curves():
-    found = summaries.season_changes(CURVES, "a")
+    found = summaries.season_changes(CURVES, SimpleNamespace(name="a"))
     assert found.height == 1
     row = found.row(0, named=True)
     assert (row["method"], row["from_method"], row["season"], row["tows"]) == ("b", "a", 2010, 2)

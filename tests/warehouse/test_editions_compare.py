@@ -1,6 +1,5 @@
 """Causes of a change: one file, one option, the code, another tow, each under its own name."""
 
-import dataclasses
 import datetime as dt
 import json
 import math
@@ -169,7 +168,6 @@ def test_the_summary_names_gainers_losers_and_the_largest(published):
     assert row["gain_in_two_hours_s"] == pytest.approx(7200 * (row["time_ratio"] - 1))
     exceeding = [r for r in moved if r["exceeds_interval"]]
     assert found.exceeds_interval == len(exceeding)
-    json.dumps(dataclasses.asdict(found), default=str)
 
 
 def test_races_are_replayed_under_both(bench_of_editions):

@@ -42,8 +42,6 @@ FILES = {
     "decisions.json",
     "bericht.md",
     "notice.md",
-    "toelichting.md",
-    "release_notes.md",
     *(f"{name}.parquet" for name in TABLES),
 }
 """Files of the first edition."""
@@ -300,8 +298,8 @@ def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(wit
     published = folder(with_printed, "2014-1")
     sheet = (published / "register.csv").read_text("utf-8")
     assert "gedrukt, niet herijkt" in next(row for row in sheet.splitlines() if "FSN902" in row)
-    notes = (published / "toelichting.md").read_text("utf-8")
-    assert "Niet herijkt: 1 regel van gedrukt-2012" in notes
+    notes = (published / "bericht.md").read_text("utf-8")
+    assert "**Niet herijkt**: 1 regel van gedrukt-2012" in notes
     measured = line_of(with_printed, with_printed.tow(2014), "2014-1")
     assert measured["basis"] == "measured"
     lines = diff(with_printed.store, "gedrukt-2012", "2014-1").lines

@@ -220,8 +220,6 @@ TABLES = {
 TEXTS = {
     "bericht.md": ("een", "geen"),
     "notice.md": ("the", "no"),
-    "release_notes.md": ("the", "no"),
-    "toelichting.md": ("e", "a"),
     "inputs.csv": (";meetdata;", ";lijst;"),
     "decisions.json": ("[]", "[ ]"),
     "register.csv": ("controlecode\r\n", "controlecode \r\n"),

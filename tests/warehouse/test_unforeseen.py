@@ -162,10 +162,10 @@ def test_a_failing_method_costs_its_rows_alone(tiny, tmp_path):
             raise ZeroDivisionError("planted")
         return real(method, *arguments, **named)
 
-    from warehouse.derive import method_tables  # noqa: PLC0415
+    from warehouse.derive import graph  # noqa: PLC0415
 
-    real = method_tables.recompute
-    with mock.patch.object(method_tables, "recompute", fails):
+    real = graph.recompute
+    with mock.patch.object(graph, "recompute", fails):
         report = bench.rebuild()
     assert set(bench.table("curves")["method"]) == {METHODS[0]}
     assert_frame_equal(

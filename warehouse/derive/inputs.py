@@ -40,9 +40,11 @@ STUDY_TABLES: Final = ("correction_steps", "option_effects", "option_curves")
 LINE_TABLES: Final = ("type_lines", "type_line_points")
 TYPE_TABLES: Final = (
     *("compared_tows", "hull_speed", "type_outliers", "type_homogeneity", "pooled_curves"),
-    *("speed_trend", "predicted_cw", "prediction_error", "variance_components"),
+    *("speed_trend", "predicted_cw", "prediction_error"),
 )
-PER_METHOD: Final = frozenset((*METHOD_TABLES, *STUDY_TABLES, *LINE_TABLES, *TYPE_TABLES))
+PER_METHOD: Final = frozenset(
+    (*METHOD_TABLES, *STUDY_TABLES, *LINE_TABLES, *TYPE_TABLES, "variance_components")
+)
 """Tables of which each method's rows are made, and kept, apart."""
 
 OF_FIRST: Final = ("tow_instruments",)
@@ -176,9 +178,10 @@ def state(scope: Scope, name: str) -> object:
     return own, {table: state_of_table(scope, table) for table in tables_behind(name)}
 
 
-def _observed(scope: Scope) -> Observed:
-    """What statistics of boats look at: tows that nothing is doubted about."""
-    curves, tows, boats, run_points = (read_table(scope, name) for name in OBSERVED)
+def observe_trusted(
+    curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
+) -> Observed:
+    """What statistics look at: the tows that nothing is doubted about."""
     return observe(of_trusted(curves, tows), tows, boats, of_trusted(run_points, tows))
 
 
@@ -232,7 +235,10 @@ OTHERS: Final[Mapping[str, Other]] = {
     ),
     "methods": Other(lambda scope: scope.methods, _rules),
     "blocks": Other(Blocks, tables=("blocks",)),
-    "observed": Other(_observed, tables=OBSERVED),
+    "observed": Other(
+        lambda scope: observe_trusted(*(read_table(scope, name) for name in OBSERVED)),
+        tables=OBSERVED,
+    ),
     "decisions": Other(_decisions, lambda scope: table_digest(_decisions(scope))),
     "failed_tows": Other(_failed_tows, lambda scope: table_digest(_failed_tows(scope))),
     "published": Other(

@@ -25,18 +25,20 @@ from warehouse.store.code import code_version
 def register_tables(
     curves: pl.DataFrame,
     tows: pl.DataFrame,
+    boats: pl.DataFrame,
     listed_boats: pl.DataFrame,
     listed_races: pl.DataFrame,
     decisions: pl.DataFrame,
     published: Mapping[str, pl.DataFrame],
     methods: Sequence[Method],
 ) -> dict[str, pl.DataFrame]:
-    """Draft registers, what changes between registers, and lineage.
+    """Draft registers, what changes between registers, lineage, and who is due to be towed.
 
     Drafts are compared with the first method's. The published editions stand beside the drafts.
     """
     as_of, known = reference_day(tows, listed_races), (curves, tows, listed_boats, decisions)
-    drafts = [_draft(method, lines_on(method, *known, as_of), tows) for method in methods]
+    lines = {method.name: lines_on(method, *known, as_of) for method in methods}
+    drafts = [_draft(method, own, tows) for method, own in lines.items()]
     histories = [_history(method, curves, tows, decisions) for method in methods]
     register = pl.concat(drafts)
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
@@ -51,23 +53,10 @@ def register_tables(
     with_editions = {
         name: pl.concat([conform(name, frame), published[name]]) for name, frame in made.items()
     }
-    return with_editions | {"methods": _methods(methods)}
-
-
-def due_list(
-    curves: pl.DataFrame,
-    tows: pl.DataFrame,
-    boats: pl.DataFrame,
-    listed_boats: pl.DataFrame,
-    listed_races: pl.DataFrame,
-    decisions: pl.DataFrame,
-    methods: Sequence[Method],
-) -> pl.DataFrame:
-    """Who is due to be towed, under every method."""
-    as_of = reference_day(tows, listed_races)
-    known = (curves, tows, listed_boats, decisions, as_of)
-    lines = {method.name: lines_on(method, *known) for method in methods}
-    return due_of_lines(lines, boats, listed_races, as_of)
+    return with_editions | {
+        "methods": _methods(methods),
+        "due_list": due_of_lines(lines, boats, listed_races, as_of),
+    }
 
 
 def due_of_lines(
@@ -94,8 +83,8 @@ def lines_on(
     return draft_register(own, tows, crews, on_date, method.validity, decisions)
 
 
-def _draft(method: Method, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
+def _draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    edition, name = pl.lit(draft_name(method)), pl.lit(method)
     code = pl.lit(None, pl.String).alias("verification_code")
     measured = lines.join(
         tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left"
@@ -112,13 +101,7 @@ def _history(
 
 
 def _methods(methods: Sequence[Method]) -> pl.DataFrame:
+    facts = ("title", "title_en", "interval", "content_hash", "definition")
     return pl.DataFrame(
-        {
-            "method": [m.name for m in methods],
-            "title": [m.title for m in methods],
-            "title_en": [m.title_en for m in methods],
-            "interval": [m.interval for m in methods],
-            "content_hash": [m.content_hash for m in methods],
-            "definition": [m.definition for m in methods],
-        }
+        [{"method": m.name} | {name: getattr(m, name) for name in facts} for m in methods]
     )

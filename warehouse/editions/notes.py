@@ -1,7 +1,7 @@
-"""The texts that go with an edition: a notice of one page and release notes, in Dutch and English.
+"""The text that goes with an edition: a notice to the members, in Dutch and English.
 
 Filled in from the edition and its comparison with the one before; no number is computed here. What
-the texts say is in the templates beside this module, the words in `warehouse.editions.words`.
+it says is in the templates beside this module, the words in `warehouse.editions.words`.
 """
 
 from functools import cache
@@ -28,14 +28,11 @@ from warehouse.editions.words import (
     Language,
     table,
 )
-from warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
+from warehouse.store.editions import NOTICE, NOTICE_EN, Edition
 
 TEMPLATES: Final = Path(__file__).parent / "templates"
-TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}
+TEXTS: Final = {NOTICE: DUTCH, NOTICE_EN: ENGLISH}
 """The texts of an edition, each with its language; a template has the name of its text."""
-
-MOST_CAUSES: Final = 5
-"""Causes that a notice names; the release notes name all."""
 
 CAUSE_HEAD: Final = (
     ("oorzaak", "cause"),
@@ -53,7 +50,6 @@ LARGEST_HEAD: Final = (
     ("verschil", "change"),
     ("in twee uur", "in two hours"),
 )
-WHY_HEAD: Final = ("oorzaken", "causes")
 UNKNOWN_METHOD: Final = (
     "zoals destijds gedrukt; welke methode is niet vastgelegd",
     "as printed at the time; which one is not recorded",
@@ -87,7 +83,6 @@ def _facts(edition: Edition, language: Language) -> dict[str, object]:
     carried, as_it_was = (
         edition.register.filter(basis=basis).height for basis in (REBASED, NOT_REBASED)
     )
-    ensemble = edition.tables.get("ensemble")
     return {
         "edition": manifest.edition,
         "simulated": manifest.simulated,
@@ -102,7 +97,7 @@ def _facts(edition: Edition, language: Language) -> dict[str, object]:
         "carried": language.count(carried) if carried else None,
         "not_rebased": language.count(as_it_was) if as_it_was else None,
         "carried_from": manifest.carried_from,
-        "members": None if ensemble is None else ensemble["member"].n_unique(),
+        "members": "ensemble" in edition.tables,
         "complete": edition.method is not None and edition.method.interval == COMPLETE,
     }
 
@@ -117,21 +112,12 @@ def _method(edition: Edition, language: Language) -> str:
 def _changes(difference: DiffReport | None, language: Language) -> dict[str, object]:
     if difference is None:
         return {"changes": False}
-    cause_head, largest_head, with_causes_head = (
-        tuple(map(language.one_of, head))
-        for head in (CAUSE_HEAD, LARGEST_HEAD, (*LARGEST_HEAD, WHY_HEAD))
+    cause_head, largest_head = (
+        tuple(map(language.one_of, head)) for head in (CAUSE_HEAD, LARGEST_HEAD)
     )
     unknown = difference.interval_unknown
     largest = [_largest(line, language) for line in difference.largest]
     named = [_cause(cause, language) for cause in difference.causes]
-    whys = [
-        "; ".join(
-            f"{language.cause(c['cause'], c.get('step'))} {language.per_cent(c['factor'])}"
-            for c in line["causes"]
-        )
-        for line in difference.largest
-    ]
-    with_causes = [(*row, why) for row, why in zip(largest, whys, strict=True)]
     return {
         "changes": True,
         "previous": difference.from_edition,
@@ -139,11 +125,7 @@ def _changes(difference: DiffReport | None, language: Language) -> dict[str, obj
             f"{language.count(number)} {language.word(CHANGES, change)}"
             for change, number in difference.changes.items()
         ),
-        "causes": "; ".join(
-            f"{cause[0]} ({language.count(int(cause[1]))}, {cause[2]})"
-            for cause in named[:MOST_CAUSES]
-        ),
-        "cause_table": table(cause_head, named) if named else "",
+        "causes": table(cause_head, named) if named else "",
         "gain": _group(difference.gain, language),
         "loss": _group(difference.loss, language),
         "known": unknown < difference.changes.get("changed", 0),
@@ -152,7 +134,6 @@ def _changes(difference: DiffReport | None, language: Language) -> dict[str, obj
         "runs_alone": difference.runs_alone,
         "largest": table(largest_head, largest) if largest else "",
         "largest_count": len(largest),
-        "largest_with_causes": table(with_causes_head, with_causes) if largest else "",
     }
 
 

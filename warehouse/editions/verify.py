@@ -305,18 +305,19 @@ def differing(store: Store, checked: CheckedEdition) -> tuple[CheckedEdition, li
     name = checked.edition
     try:
         edition = read_edition(store, name)
+        method = edition.method
+        if method is not None and method.content_hash != edition.manifest.method_hash:
+            raise MissingKnowledgeError("its method has options that there are no longer")
     except MissingKnowledgeError as error:
-        return checked, [_by_other_code(name, error)]
+        message = say("it was made by other code: {}", _first_line(error))
+        return checked, [Finding(name, "differs", METHOD, message)]
     except CANNOT as error:
         return checked, [_not_made(name, error)]
-    if edition.method is not None and edition.method.content_hash != edition.manifest.method_hash:
-        gone = say("its method has options that there are no longer")
-        return checked, [_by_other_code(name, gone)]
     height = edition.register.height
     try:
         again = made_again(store, edition)
-        inputs = [f for table in INPUT_TABLES for f in _inputs(edition, again, table)]
-        lines = list(_lines(edition, again))
+        inputs = [f for table in INPUT_TABLES for f in _rows(edition, again, table)]
+        lines = list(_rows(edition, again, "register"))
         others: list[Finding] = []
         if not inputs and not lines:  # else they follow from these
             for table, frame in sorted(again.tables.items()):
@@ -328,11 +329,6 @@ def differing(store: Store, checked: CheckedEdition) -> tuple[CheckedEdition, li
     return counted, [*inputs, *lines, *others]
 
 
-def _by_other_code(name: str, reason: object) -> Finding:
-    message = say("it was made by other code: {}", _first_line(reason))
-    return Finding(name, "differs", METHOD, message)
-
-
 def _not_made(name: str, reason: object) -> Finding:
     message = say("it cannot be made again: {}", _first_line(reason))
     return Finding(name, "unchecked", "register", message)
@@ -342,37 +338,31 @@ def _first_line(reason: object) -> str:
     return str(reason).splitlines()[0]
 
 
-def _inputs(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
-    """Tows and runs of which the lists say something else now."""
+def _rows(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
+    """Tows, runs or lines that come out otherwise, each with what it was and is, and why."""
     if table not in edition.tables:
         return
     was, now = edition.tables[table], again.tables[table]
-    facts = [
-        name
-        for name in was.columns
-        if name in now.columns and name not in NOT_INPUT and not name.endswith("_sha256")
-    ]
-    why = say("the lists of the archive say so now")
-    yield from _rows(edition, table, was.select(facts), now.select(facts), "swapped", why)
-
-
-def _lines(edition: Edition, again: Edition) -> Iterator[Finding]:
-    """Lines of the register that come out otherwise."""
-    why = say("either the code changed since, or the edition did")
-    was, now = edition.tables, again.tables
-    if "tows" in was and len(same_tows(was, now)) < was["tows"].height:
+    kind, why = "differs", say("either the code changed since, or the edition did")
+    if table in INPUT_TABLES:
+        facts = [
+            name
+            for name in was.columns
+            if name in now.columns and name not in NOT_INPUT and not name.endswith("_sha256")
+        ]
+        was, now = was.select(facts), now.select(facts)
+        kind, why = "swapped", say("the lists of the archive say so now")
+    elif _has_other_tows(edition, again):
         why = say("tows that went into it changed")
-    yield from _rows(edition, "register", edition.register, again.register, "differs", why)
-
-
-def _rows(
-    edition: Edition, table: str, was: pl.DataFrame, now: pl.DataFrame, kind: str, why: str
-) -> Iterator[Finding]:
-    """Rows that come out otherwise, each with what it was and is, and why."""
     for row in differences(was, now, TABLES[table].primary_key()).iter_rows(named=True):
         what = ", ".join(f"{n} {_text(row[n])} > {_text(row[f'{n} now'])}" for n in row["columns"])
         message = say("made again, {}: {}", what, why)
         yield Finding(edition.manifest.edition, kind, ROWS[table].format(**row), message)
+
+
+def _has_other_tows(edition: Edition, again: Edition) -> bool:
+    tows = edition.tables.get("tows")
+    return tows is not None and len(same_tows(edition.tables, again.tables)) < tows.height
 
 
 def _table(edition: Edition, table: str, now: pl.DataFrame) -> Iterator[Finding]:

@@ -14,7 +14,6 @@ import duckdb
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.row import Row
 from warehouse.queries.audit_types import TYPE, Audit, TypesAudit, types_audit
-from warehouse.queries.chosen_tows import NEWEST, choose
 from warehouse.store.boats import boats_named, plain, the_boat
 from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
@@ -52,9 +51,7 @@ class BoatAudit(Audit):
     set_aside: list[Row]
 
 
-def audit(
-    store: Store, names: Sequence[str], method: str | None = None, tows: str = NEWEST
-) -> BoatAudit | TypesAudit:
+def audit(store: Store, names: Sequence[str], method: str | None = None) -> BoatAudit | TypesAudit:
     """The page of a boat, or of one or two types.
 
     Args:
@@ -62,7 +59,6 @@ def audit(
         names: an FSN number or name of a boat, or one or two names of types; case, blanks and
             accents do not matter.
         method: show this method only.
-        tows: over which tows a type's statistics are: see `chosen_tows`.
 
     Raises:
         MissingKnowledgeError: there is no such boat, type or method, or no database.
@@ -74,14 +70,12 @@ def audit(
         types = {plain(row["boat_type"]): row for row in rows(db, _TYPES)}
         asked = {name: types.get(plain(name)) for name in names}
         if len(names) == 1 and asked[names[0]] is None and (boat := _boat(db, names[0])):
-            choose(db, tows, methods)
-            return _boat_audit(db, boat, methods, tows)
+            return _boat_audit(db, boat, methods)
         for name, found in asked.items():
             if found is None:
                 raise _no_such_type(db, name, list(types.values()))
-        choose(db, tows, of_types)
         known = dict.fromkeys(row["boat_type"] for row in asked.values() if row)
-        return types_audit(db, list(known), of_types, tows)
+        return types_audit(db, list(known), of_types)
 
 
 def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
@@ -126,9 +120,7 @@ _TYPES = f"SELECT {TYPE} AS boat_type, count(*) AS n FROM boats AS b GROUP BY AL
 # A boat
 
 
-def _boat_audit(
-    db: duckdb.DuckDBPyConnection, boat: Row, methods: list[str], tows: str
-) -> BoatAudit:
+def _boat_audit(db: duckdb.DuckDBPyConnection, boat: Row, methods: list[str]) -> BoatAudit:
     fsn_no = boat["fsn_no"]
 
     def of_boat(table: str) -> list[Row]:
@@ -136,7 +128,6 @@ def _boat_audit(
 
     return BoatAudit(
         simulated=is_simulated(db),
-        statistics_over=tows,
         methods=methods,
         boat=boat,
         tows=rows(db, _TOWS, fsn_no, methods),

@@ -13,7 +13,6 @@ import duckdb
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.history import ERAS
 from pipeline.tables.row import Row
-from warehouse.queries.chosen_tows import ALL, NEWEST
 from warehouse.store.database import is_simulated, rows
 
 WEIGHT_LINE: Final = {"quantity": "cw_standard_kg_m", "explaining": "weight_kg", "within": "all"}
@@ -29,12 +28,10 @@ class Audit:
 
     Attributes:
         simulated: whether the archive is.
-        statistics_over: the tows that statistics of types are over; see `chosen_tows`.
         methods: the methods shown.
     """
 
     simulated: bool
-    statistics_over: str
     methods: list[str]
 
 
@@ -103,20 +100,17 @@ class TypesAudit(Audit):
     reproducibility: list[Row]
 
 
-def types_audit(
-    db: duckdb.DuckDBPyConnection, types: list[str], methods: list[str], tows: str
-) -> TypesAudit:
+def types_audit(db: duckdb.DuckDBPyConnection, types: list[str], methods: list[str]) -> TypesAudit:
     """Facts and figures of the types under each method, what holds for all, and what differs."""
     audited = [
         OneType(
             **rows(db, _FACTS, name)[0],
-            under={m: _type_under(db, name, m, tows) for m in methods},
+            under={m: _type_under(db, name, m) for m in methods},
         )
         for name in types
     ]
     return TypesAudit(
         simulated=is_simulated(db),
-        statistics_over=tows,
         methods=methods,
         types=audited,
         differences={m: differences(*(one.under[m] for one in audited)) for m in methods},
@@ -124,10 +118,8 @@ def types_audit(
     )
 
 
-def _type_under(
-    db: duckdb.DuckDBPyConnection, boat_type: str, method: str, tows: str
-) -> TypeStatistics:
-    """All statistics of a type under one method; lines are of all tows, or of the newest chosen."""
+def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> TypeStatistics:
+    """All statistics of a type under one method."""
     found = {name: rows(db, query, method, boat_type) for name, query in _STATISTICS.items()}
     reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
     absent = {"n": 0, "reason": reason, "equal_possible": None, "follows": None}
@@ -137,10 +129,8 @@ def _type_under(
         (found.pop(name) or [absent])[0]
         for name in ("bends", "speed_trend", "repeats", "prediction")
     )
-    newest = rows(db, _LINES, method, boat_type, NEWEST)
     return TypeStatistics(
-        lines=rows(db, _LINES, method, boat_type, ALL) if tows == ALL else newest,
-        weight_line=[row for row in newest if row.items() >= WEIGHT_LINE.items()],
+        weight_line=[row for row in found["lines"] if row.items() >= WEIGHT_LINE.items()],
         bends=bends,
         speed_trend=trend,
         repeats=repeats,
@@ -204,7 +194,7 @@ _FOLLOWS = "CASE WHEN slope IS NOT NULL THEN slope_lo > 0 OR slope_hi < 0 END AS
 
 _LINES = f"""
 SELECT * EXCLUDE tows, {_FOLLOWS} FROM type_lines
-WHERE method = ? AND boat_type = ? AND tows = ?
+WHERE method = ? AND boat_type = ? AND tows = 'newest'
 ORDER BY quantity, explaining, within
 """  # noqa: S608
 
@@ -243,6 +233,7 @@ WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
 """Rows of tows for which a column says yes, with the boat's name."""
 
 _STATISTICS: Final = {
+    "lines": _LINES,
     "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ?",
     "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),

@@ -13,17 +13,16 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.consistency.homogeneity import type_homogeneity
-from pipeline.consistency.observed import Observed, observe, of_trusted
+from pipeline.consistency.observed import Observed, of_trusted
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
-from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import Method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register.register import draft_name, draft_register, reference_day
+from warehouse.derive.inputs import observe_trusted
 from warehouse.intake.seasons import run_blocks, typed_tows
-from warehouse.queries.chosen_tows import chosen
-from warehouse.store.store import Store
+from warehouse.store.store import Store, no_warehouse
 
 MOST_CACHED: Final = 200
 """Entries of the cache, of 0.4 MB each for a thousand tows."""
@@ -59,11 +58,7 @@ class History:
             MissingKnowledgeError: nothing was rebuilt in this data folder.
         """
         if store.made_from("tows") is None:
-            raise MissingKnowledgeError(
-                "{} holds no tows; make it with: herijk rebuild --archive DIR --data {}",
-                store.root,
-                store.root,
-            )
+            raise no_warehouse(store)
         tows = typed_tows(store)
         return cls(
             tows=tows,
@@ -104,16 +99,12 @@ class Draft:
     method: Method
     made: Recomputed
     register: pl.DataFrame
-    _tested: dict[str, pl.DataFrame] = field(default_factory=dict)
 
     @cached_property
     def observed(self) -> Observed:
         """Tows with their curves, boats and measuring errors."""
-        tows = self.history.tows
-        curves, run_points = (
-            of_trusted(frame, tows) for frame in (self.made.curves, self.made.run_points)
-        )
-        return observe(curves, tows, self.history.boats, run_points)
+        known, made = self.history, self.made
+        return observe_trusted(made.curves, known.tows, known.boats, made.run_points)
 
     @cached_property
     def repeat_pairs(self) -> pl.DataFrame:
@@ -125,8 +116,7 @@ class Draft:
         """Rows of the table `reproducibility`."""
         return reproducibility(self.repeat_pairs, self.observed)
 
-    def type_homogeneity(self, tows: str) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity`, of the newest of these tows."""
-        if tows not in self._tested:
-            self._tested[tows] = type_homogeneity(chosen(self.observed, tows))
-        return self._tested[tows]
+    @cached_property
+    def type_homogeneity(self) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity`."""
+        return type_homogeneity(self.observed)

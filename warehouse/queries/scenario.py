@@ -21,6 +21,7 @@ from pipeline.method.definition import Method
 from pipeline.register.changes import compare_lines, largest_first
 from pipeline.register.register import LINE
 from pipeline.studies.ladder import START, ladder
+from pipeline.studies.summaries import season_changes
 from pipeline.tables.row import Row
 from warehouse.editions.compare import NO_STEPS
 from warehouse.queries.chosen_tows import ALL, chosen
@@ -79,20 +80,8 @@ class Scenario:
 
     def season_change(self) -> pl.DataFrame:
         """Cw after / Cw before of all tows: median and range per season."""
-        old = self.before.made.curves.select("tow_id", old="cw_kg_m")
-        ratio = pl.col("cw_kg_m") / pl.col("old")
-        return (
-            self.after.made.curves.join(old, on="tow_id", maintain_order="left")
-            .drop_nulls(["cw_kg_m", "old"])
-            .group_by("method", "season", maintain_order=True)
-            .agg(
-                pl.len().alias("tows"),
-                ratio.median().alias("median_ratio"),
-                ratio.min().alias("lowest_ratio"),
-                ratio.max().alias("highest_ratio"),
-            )
-            .sort("season")
-        )
+        curves = self._both(lambda draft: draft.made.curves)
+        return season_changes(curves, self.before.method).sort("season")
 
     def type_tows(self, tows: str = ALL) -> pl.DataFrame:
         """Tows of boats of a known type under both methods, as `compared_tows` has them.
@@ -106,9 +95,9 @@ class Scenario:
         )
         return named.select(TYPE_COLUMNS)
 
-    def type_homogeneity(self, tows: str = ALL) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity` under both methods, of the newest of these tows."""
-        return self._both(lambda draft: draft.type_homogeneity(tows))
+    def type_homogeneity(self) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity` under both methods."""
+        return self._both(lambda draft: draft.type_homogeneity)
 
     def reproducibility(self) -> pl.DataFrame:
         """Rows of the table `reproducibility` under both methods."""

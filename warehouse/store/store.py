@@ -138,13 +138,18 @@ def archive_root(store: Store) -> Path | None:
         MissingKnowledgeError: nothing was ever rebuilt in this data folder.
     """
     if store.made_from("about_archive") is None:
-        raise MissingKnowledgeError(
-            "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
-            store.root,
-            store.root,
-        )
+        raise no_warehouse(store)
     root = Path(store.read("about_archive")["root"][0])
     return root if root.is_dir() else None
+
+
+def no_warehouse(store: Store) -> MissingKnowledgeError:
+    """What to say of a data folder in which nothing was ever rebuilt."""
+    return MissingKnowledgeError(
+        "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
+        store.root,
+        store.root,
+    )
 
 
 class DamagedFileError(BrokenPromiseError):
