@@ -212,7 +212,7 @@ def _boat(scenario: Scenario, asked: Asked) -> Part:
 
 def _types(scenario: Scenario, asked: Asked) -> Part:
     title = say("Types: are equal boats equal?")
-    tests = scenario.type_homogeneity(asked.tows)
+    tests = scenario.type_homogeneity()
     return [
         Section(
             "types",

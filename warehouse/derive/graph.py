@@ -19,6 +19,7 @@ from pipeline.consistency.tow_speed import slow_tows
 from pipeline.method.definition import Method
 from pipeline.recompute.facts import with_boats, with_hand_windows
 from pipeline.recompute.recompute import recompute
+from pipeline.recompute.results import Recomputed
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register import replay
 from pipeline.register.register import as_ruled
@@ -66,9 +67,13 @@ def method_tables(
     """Run points, curves, log factors, assessments and members of all tows under one method."""
     runs = blocks.of_runs(with_hand_windows(tow_runs, hand_windows))
     made = recompute(method, with_boats(tows, boats), runs, run_cache)
+    return {**vars(made), "ensemble": members_of(method, made)}
+
+
+def members_of(method: Method, made: Recomputed) -> pl.DataFrame:
+    """Equally likely numbers of every tow: rows of the table `ensemble`."""
     ruled = as_ruled(made.curves, method.validity)
-    members = tow_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
-    return {**vars(made), "ensemble": members}
+    return tow_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
 
 
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:

@@ -45,36 +45,24 @@ def study_tables(
 ) -> dict[str, pl.DataFrame]:
     """The ladder from the first method to this one, and the studies of its options."""
     runs = blocks.of_runs(with_hand_windows(tow_runs, hand_windows))
-    links, known = _of(method, tow_instruments), (tows, runs)
-    effects, ticked = [], []
+    known, own = (tows, runs), pl.lit(method.name).alias("method")
+    links = tow_instruments.filter(method=method.name)
+    effects, ticked, ladders = [], [], []
     if method.name in TICKED:
-        ticked = [option_curves(method, *known, links, run_cache)]
-        effects = [(TOOL, tick_effects(ticked[0]))]
+        ticked = [option_curves(method, *known, links, run_cache).with_columns(own)]
+        effects = [tick_effects(ticked[0]).with_columns(own, study=pl.lit(TOOL))]
     if method.name in JUDGED:
-        effects.append((JUDGEMENT, option_effects(method, *known, links, run_cache)))
-    ladders = []
+        judged = option_effects(method, *known, links, run_cache)
+        effects.append(judged.with_columns(own, study=pl.lit(JUDGEMENT)))
     if method != first_method:
         old, new = _in_order(first_method, method)
-        both = _of(old, tow_instruments), _of(new, tow_instruments)
-        ladders = [
-            ladder(old, new, *known, both, run_cache).with_columns(
-                pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
-            )
-        ]
+        before, after = (tow_instruments.filter(method=end.name) for end in (old, new))
+        steps = ladder(old, new, *known, (before, after), run_cache)
+        ladders = [steps.with_columns(from_method=pl.lit(old.name), to_method=pl.lit(new.name))]
     return {
         "correction_steps": _together(CorrectionSteps, ladders),
-        "option_effects": _together(
-            OptionEffects,
-            [
-                frame.with_columns(
-                    pl.lit(method.name).alias("method"), pl.lit(study).alias("study")
-                )
-                for study, frame in effects
-            ],
-        ),
-        "option_curves": _together(
-            OptionCurves, [c.with_columns(pl.lit(method.name).alias("method")) for c in ticked]
-        ),
+        "option_effects": _together(OptionEffects, effects),
+        "option_curves": _together(OptionCurves, ticked),
     }
 
 
@@ -85,10 +73,6 @@ def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.Dat
 def _in_order(first: Method, other: Method) -> tuple[Method, Method]:
     """The two ends of a ladder: what came first in history is its beginning."""
     return (other, first) if other.name == FIRST_PUBLISHED else (first, other)
-
-
-def _of(method: Method, frame: pl.DataFrame) -> pl.DataFrame:
-    return frame.filter(pl.col("method") == method.name)
 
 
 def ladders_that_do_not_multiply(correction_steps: pl.DataFrame) -> list[str]:

@@ -13,13 +13,13 @@ from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
 from pipeline.recompute.recompute import recompute
-from pipeline.register.register import LINE, as_ruled, draft_register
+from pipeline.register.register import LINE, draft_register
 from pipeline.tables.archive import Boats
 from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import Register
 from pipeline.tables.schemas import conform
-from pipeline.uncertainty.ensemble import tow_ensemble
+from warehouse.derive.graph import members_of
 from warehouse.derive.published import decisions_of
 from warehouse.editions import sheets
 from warehouse.editions.inputs import INPUTS_HASH, JUDGED, tables_of_today
@@ -81,24 +81,17 @@ def recomputed(
         tows = tows.drop(JUDGED, strict=False).join(judged, on="tow_id", maintain_order="left")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     made = recompute(method, tows, blocks, with_bands=False)
-    rule = method.validity
-    lines = _with_facts(
-        draft_register(made.curves, tows, never_towed, manifest.valid_from, rule, decisions), tows
+    draft = draft_register(
+        made.curves, tows, never_towed, manifest.valid_from, method.validity, decisions
     )
+    lines = _with_facts(draft, tows)
     if manifest.carried_from is not None:
         printed = read_edition(store, manifest.carried_from)
         lines = with_carried(lines, printed, made.log_factors, manifest.valid_from, method)
-    members = tow_ensemble(
-        method.name,
-        made.curves,
-        as_ruled(made.curves, rule),
-        made.uncertainty_budget,
-        made.factors,
-    )
     tables = {
         **today,
         **{name: conform(name, getattr(made, name)) for name in MADE},
-        "ensemble": conform("ensemble", members).join(
+        "ensemble": conform("ensemble", members_of(method, made)).join(
             lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
         ),
         "register": _completed(store, lines, manifest, method),

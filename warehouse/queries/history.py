@@ -22,7 +22,6 @@ from pipeline.recompute.run_cache import RunCache
 from pipeline.register.register import draft_name, draft_register, reference_day
 from warehouse.derive.inputs import observe_trusted
 from warehouse.intake.seasons import run_blocks, typed_tows
-from warehouse.queries.chosen_tows import chosen
 from warehouse.store.store import Store, no_warehouse
 
 MOST_CACHED: Final = 200
@@ -100,7 +99,6 @@ class Draft:
     method: Method
     made: Recomputed
     register: pl.DataFrame
-    _tested: dict[str, pl.DataFrame] = field(default_factory=dict)
 
     @cached_property
     def observed(self) -> Observed:
@@ -118,8 +116,7 @@ class Draft:
         """Rows of the table `reproducibility`."""
         return reproducibility(self.repeat_pairs, self.observed)
 
-    def type_homogeneity(self, tows: str) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity`, of the newest of these tows."""
-        if tows not in self._tested:
-            self._tested[tows] = type_homogeneity(chosen(self.observed, tows))
-        return self._tested[tows]
+    @cached_property
+    def type_homogeneity(self) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity`."""
+        return type_homogeneity(self.observed)

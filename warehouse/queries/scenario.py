@@ -95,9 +95,9 @@ class Scenario:
         )
         return named.select(TYPE_COLUMNS)
 
-    def type_homogeneity(self, tows: str = ALL) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity` under both methods, of the newest of these tows."""
-        return self._both(lambda draft: draft.type_homogeneity(tows))
+    def type_homogeneity(self) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity` under both methods."""
+        return self._both(lambda draft: draft.type_homogeneity)
 
     def reproducibility(self) -> pl.DataFrame:
         """Rows of the table `reproducibility` under both methods."""

@@ -51,7 +51,8 @@ def test_one_round_finds_every_cause_and_asks_what_only_a_person_knows(archive: 
         '[words] "hrn" = "?"  # H, D',
         '[words] "dms" = "?"  # H, D',
         '[headers] "Bemaning (kg)" = "?"  # bemanning, ignore = ["Bemaning (kg)"]',
-        '[headers] "Weer" = "?"  # ignore = ["Weer"]',
+        '[headers] "Weer" = "?"  # sloep, bemanning, lege doft, vrijboord laagst, vrijboord boeg, '
+        'vrijboord achter, opmerking, ignore = ["Weer"]',
         f'[dates] "{TOWS}" = "?"  # dmy, mdy',
         *(f'[[profile]] seasons = "2014": {setting}' for setting in OF_SAMPLES),
     }

@@ -58,8 +58,8 @@ def _in_lines(path: str, in_profile: str = "") -> str:
 
 def _of_headers(path: str, values: Values, in_profile: str) -> Iterator[str]:
     for header, near in values.get("near", ()):
-        ignored = f"ignore = [{_quoted(header)}]"
-        yield f'[headers] {_quoted(header)} = "?"  # {", ".join([*near, ignored])}'
+        choices = [*(near or values["lacking"]), f"ignore = [{_quoted(header)}]"]
+        yield f'[headers] {_quoted(header)} = "?"  # {", ".join(choices)}'
     if "number" in values:
         yield _in_lines(path)
     if "name" in values and in_profile:

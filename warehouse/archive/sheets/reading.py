@@ -213,6 +213,7 @@ def _about_unknown(unknown: Iterable[str], free: Sequence[Column]) -> str:
             for header, names in near.items()
         ),
         near=tuple((header, tuple(names)) for header, names in near.items()),
+        lacking=tuple(c.header for c in sorted(free, key=lambda c: not c.required)),
     )
 
 
