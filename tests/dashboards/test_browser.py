@@ -125,9 +125,10 @@ def scrolled(page, boxes):
 
 NOT_SIDEWAYS = {
     "desktop": ".chart, [data-table]:not([data-table=register], .values *) > .scroll",
-    "phone": ".chart",
+    "phone": ".chart.drawn",
 }
-"""What fits its box: not the register, whose lines may have long words, nor tables on a phone."""
+"""What fits its box: not the register, whose lines may have long words, nor, on a phone, tables and
+the picture that stands in for a chart."""
 
 KINDS = ["index", *MENU, *ABOUT, GUIDES[0], "boat", "type", "race", "edition"]
 """A page of each kind."""
