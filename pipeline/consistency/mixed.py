@@ -155,8 +155,10 @@ class _SideBySide:
         The slope of the deviance by a variance that adds K to the covariance is
         tr(P K) - y' P K P y, its average information y' P K P K P y.
         """
-        rows = np.einsum("mk,mkij->mij", variances, self.alike)
-        rows += self.variance[:, :, None] * np.eye(self.variance.shape[1])
+        count, size = self.variance.shape
+        flat = self.alike.reshape(count, len(COMPONENTS), -1)
+        rows = (variances[:, None] @ flat).reshape(count, size, size)
+        rows += self.variance[:, :, None] * np.eye(size)
         inverse = np.linalg.inv(rows)
         weighed = inverse @ self.x
         known = np.swapaxes(self.x, 1, 2) @ weighed + self.absent
@@ -167,7 +169,7 @@ class _SideBySide:
         misfit = (self.residual * pull[:, :, 0]).sum(axis=1)
 
         felt = (self.alike @ pull[:, None])[..., 0]
-        gradient = (precision[:, None] * self.alike).sum(axis=(2, 3)) - (felt @ pull)[:, :, 0]
+        gradient = (flat @ precision.reshape(count, -1, 1) - felt @ pull)[:, :, 0]
         information = felt @ precision @ np.swapaxes(felt, 1, 2)
         deviance = np.linalg.slogdet(rows)[1] + np.linalg.slogdet(known)[1] + misfit
         likelihood = Likelihood(deviance, gradient, information)
@@ -333,6 +335,8 @@ def _most_likely(
         without[:, place] = 0.0
         loss = together.at(without).likelihood.deviance - there.deviance
         idle = ((variances[:, place] > 0.0) & (loss <= NO_GAIN))[:, None]
+        if not idle.any():
+            continue
         loose &= ~idle | (np.arange(len(free)) != place)
         start = np.where(idle, without, variances)
         variances, there, still = most_likely(together.likelihood, loose & idle, start, unit)
