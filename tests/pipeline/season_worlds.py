@@ -4,15 +4,10 @@ Fast enough for hundreds of worlds; what a tow's samples look like is left to `h
 The set-ups are clean, and hard: logs that vary, boats that are altered and age.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
-from scipy.signal import lfilter
-
-from pipeline import season_log
-from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.uncertainty import propagation as uncertainty
 
 SEASONS = range(2009, 2019)
 ANCHORED_FROM = 2014
@@ -190,68 +185,3 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "q_sd": 2.5 * setup.run_noise,
         "ln_cw_q_cov": 0.0,
     }
-
-
-def register(world):
-    """Season factors, the last tow of every line, and the budget of every tow."""
-    found = season_log.estimate_season_factors(world.tows)
-    logs = found.factors.select("season", "part", log_sd="ln_sd", log_dof="dof")
-    era = pl.when(pl.col("season") < 2012).then(2009).otherwise(2012)
-    wander = era.replace_strict(found.tow_log_sd, return_dtype=pl.Float64)
-    anchored = pl.col("anchored")
-    tows = world.tows.join(logs, on=["season", "part"], how="left").with_columns(
-        pl.col("log_sd").fill_null(0.0),
-        pl.col("log_dof").fill_null(np.inf),
-        pl.when(anchored).then(0.0).otherwise(wander).alias("tow_log_sd"),
-        anchored.alias("calibrated"),
-        pl.col("ln_cw_sd").alias("random_ratio"),
-        pl.lit(200.0).alias("random_dof"),
-        pl.lit(0.0).alias("misfit_ratio"),
-        pl.lit(None, pl.Float64).alias("wind_ln_sd"),
-        pl.lit(None, pl.Float64).alias("askew_ratio"),
-        pl.lit(1.0).alias("speed_ratio"),
-        pl.lit(0.025).alias("air_ratio"),
-        pl.lit(0.05).alias("air_per_coefficient"),
-        pl.lit(True).alias("wind_measured"),
-        pl.lit(0.025).alias("still_air_ratio"),
-        (pl.col("season") >= 2018).alias("temperature_known"),
-        pl.lit(0.0).alias("water_off_c"),
-    )
-    last = world.tows.sort("season", "tow_id").unique("fsn_no", keep="last", maintain_order=True)
-    lines = last.select("fsn_no", "tow_id", pl.col("ln_cw").exp().alias("cw_kg_m"))
-    assumed = {n: pl.lit(x) for n, x in asdict(uncertainty.Assumed()).items()}
-    return found, lines, uncertainty.budget(tows.with_columns(**assumed))
-
-
-def run_noise(rng, runs, seconds):
-    """Relative noise of 1-s blocks: surge of the tow line, wander, fast noise."""
-    steps_s = 10
-    time_s = np.arange(seconds * steps_s) / steps_s
-
-    def coloured(memory_s):
-        keep = np.exp(-1 / (steps_s * memory_s))
-        drive = np.sqrt(1 - keep**2) * rng.standard_normal((runs, time_s.size))
-        drive[:, 0] /= np.sqrt(1 - keep**2)
-        return lfilter([1.0], [1.0, -keep], drive, axis=1)
-
-    turn = 2 * np.pi * time_s
-    surge = coloured(5.0) * np.cos(turn) + coloured(5.0) * np.sin(turn)
-    noise = 0.06 * surge + 0.02 * coloured(3.0) + 0.05 * coloured(0.05)
-    return noise.reshape(runs, seconds, steps_s).mean(axis=2)
-
-
-def as_blocks(noise, samples=50):
-    """Blocks of runs whose F/v^2 is 40 kg/m but for the noise."""
-    n = np.full(noise.shape, float(samples))
-    runs = pl.DataFrame({"run": np.arange(len(noise))})
-    return RunBlocks(runs, n, {"log1_cw": n * 40.0 * (1.0 + noise)})
-
-
-def run_point_ratios(runs, seconds, total=3600):
-    """Estimated / true sd of a run mean, for each season of `runs` runs."""
-    noise = run_noise(np.random.default_rng(6), total, seconds)
-    truth = noise.mean(axis=1).std()
-    season = np.arange(total) // runs
-    blocks = as_blocks(noise)
-    sd = uncertainty.run_point_uncertainty(blocks, blocks.n > 0, season)
-    return sd[::runs] / truth
