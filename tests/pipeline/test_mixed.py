@@ -127,23 +127,6 @@ def test_variance_components_are_those_of_another_search():
     assert likelihood(problem, found.sd).deviance[0] == pytest.approx(other.fun, abs=1e-6)
 
 
-def test_problems_side_by_side_are_fitted_as_each_alone():
-    rng = np.random.default_rng(4)
-    first = grouped_data()
-    other = np.arange(60) % 5
-    problems = [
-        Problem(first.y + s * rng.normal(size=60), first.variance, first.x, first.boat, other)
-        for s in (0.0, 0.5, 20)
-    ]
-    problems += [
-        Problem(first.y, first.variance, first.x[:, :1], first.boat),
-        grouped_data(2, 30),
-    ]
-    free = (mixed.BOAT, mixed.CELL)
-    for problem, found in zip(problems, mixed.fit_all(problems, free), strict=True):
-        assert found.sd == pytest.approx(fit(problem, free).sd, rel=1e-9)
-
-
 def test_intervals_of_components_cover_the_truth():
     rng, trials, true = np.random.default_rng(5), 60, (0.05, 0.03, 0.015)
     boat, other = np.repeat(np.arange(20), 4), np.arange(80) % 8
