@@ -216,9 +216,7 @@ def _cells_of(grid: Any) -> list[list[str]]:
     return rows
 
 
-def _sheet(
-    grid: Grid, columns: Sequence[Column], header_lines: tuple[int, int] | None
-) -> Sheet:
+def _sheet(grid: Grid, columns: Sequence[Column], header_lines: tuple[int, int] | None) -> Sheet:
     above, rows = grid.above, grid.rows
     if not rows:
         return Sheet([], above + 1, [])
