@@ -180,10 +180,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
 PART = pl.col("part") + 1
 """Parts of a season as people count them."""
 
-LINK_COLUMNS = (
-    *("season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),
-    *("influence", "influence_boat"),
-)
+LINK_COLUMNS = (*("season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi"),)
 
 
 def _seasons(views: Views, methods: list[str]) -> Page:
@@ -234,8 +231,7 @@ LINKS = Section(
     say("What a log factor rests on"),
     say(
         "Where a log was replaced within a season each part has its own factor; "
-        "the chart above shows their mean. Largest influence: how far the factor "
-        "moves at most when one boat is left out."
+        "the chart above shows their mean."
     ),
 )
 
