@@ -6,9 +6,7 @@ import numpy as np
 import polars as pl
 import pytest
 from scipy import stats
-from scipy.signal import lfilter
 
-from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.quantiles import LEVEL, MAD_TO_SD, NORMAL
 from pipeline.uncertainty.propagation import (
     COMPONENTS,
@@ -16,7 +14,6 @@ from pipeline.uncertainty.propagation import (
     budget,
     combine,
     residual_scatter,
-    run_point_uncertainty,
 )
 
 
@@ -45,49 +42,6 @@ def test_what_is_said_of_a_normal_number_is_so():
     assert stats.median_abs_deviation([-1, 0, 1], scale="normal") == pytest.approx(
         MAD_TO_SD, rel=1e-4
     )
-
-
-def run_noise(runs, steps_s=10):
-    """Relative noise of the 50 s of runs: surge of the tow line, wander, fast noise."""
-    rng, time_s = np.random.default_rng(6), np.arange(50 * steps_s) / steps_s
-
-    def coloured(memory_s):
-        keep = np.exp(-1 / (steps_s * memory_s))
-        drive = np.sqrt(1 - keep**2) * rng.standard_normal((runs, time_s.size))
-        drive[:, 0] /= np.sqrt(1 - keep**2)
-        return lfilter([1.0], [1.0, -keep], drive, axis=1)
-
-    turn = 2 * np.pi * time_s
-    surge = coloured(5.0) * np.cos(turn) + coloured(5.0) * np.sin(turn)
-    noise = 0.06 * surge + 0.02 * coloured(3.0) + 0.05 * coloured(0.05)
-    return noise.reshape(runs, 50, steps_s).mean(axis=2)
-
-
-def blocks_of(noise):
-    """Blocks of runs whose F/v^2 is 40 kg/m but for the noise."""
-    n = np.full(noise.shape, 50.0)
-    runs = pl.DataFrame({"run": np.arange(len(noise))})
-    return RunBlocks(runs, n, {"log1_cw": n * 40.0 * (1.0 + noise)})
-
-
-def test_pooled_over_36_runs_the_estimate_is_near_the_truth():
-    noise = run_noise(3600)
-    blocks, season = blocks_of(noise), np.arange(3600) // 36
-    sd = run_point_uncertainty(blocks, blocks.n > 0, season)
-    ratio = sd[::36] / noise.mean(axis=1).std()
-    assert ratio.mean() == pytest.approx(1.0, abs=0.06)
-    assert ratio.std() < 0.12
-    assert ratio.min() > 0.7
-
-
-def test_white_noise_gives_the_error_of_a_mean():
-    noise = 0.03 * np.random.default_rng(2).standard_normal((600, 50))
-    blocks = blocks_of(noise)
-    window = blocks.n > 0
-    window[:300, 40:] = False
-    sd = run_point_uncertainty(blocks, window, np.zeros(600, int))
-    assert sd[0] == pytest.approx(0.03 / np.sqrt(40), rel=0.08)
-    assert sd[-1] == pytest.approx(0.03 / np.sqrt(50), rel=0.08)
 
 
 def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():
