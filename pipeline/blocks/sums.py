@@ -3,7 +3,7 @@
 What the sums are is in `pipeline.blocks.run_blocks`. The loop is compiled by Numba, second by
 second, so that what it works on stays in the processor's cache. Numba may add the samples of a
 second in the order that suits the processor: another one leaves other last bits
-(docs/decisions/0001). Importing this module compiles the loop, or finds it compiled: import it
+(docs/decisions.md). Importing this module compiles the loop, or finds it compiled: import it
 late.
 """
 
