@@ -146,7 +146,7 @@ def read_text(world: World, tows: pl.DataFrame, folder: Path) -> None:
             for name in ("season_tows", "season_runs")
         )
         profile = profiles.for_season(season)
-        index = lake.read_season(store, world.archive, listed, runs, profile, lambda *_: None)
+        index = lake.read_season(store, world.archive, listed, runs, profile)
         assert index["reason_code"].null_count() == index.height
 
 

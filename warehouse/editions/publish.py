@@ -17,9 +17,15 @@ from pipeline.register.register import DOUBTED, LINE
 from pipeline.tables.row import Row
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
-from warehouse.editions.contents import contents_of, decisions_up_to
 from warehouse.editions.inputs import REGISTER, input_files, listed_inputs
-from warehouse.editions.making import as_printed, recomputed
+from warehouse.editions.making import (
+    as_printed,
+    contents_of,
+    decisions_up_to,
+    recomputed,
+    with_changes,
+)
+from warehouse.editions.notes import VERSION
 from warehouse.editions.printed import printed_path
 from warehouse.editions.verify import chain_head
 from warehouse.store import decisions as decided
@@ -178,17 +184,19 @@ def _manifest(store: Store, terms: Terms, method: Method | None, carry: str | No
         simulated=bool(store.read("about_archive")["simulated"][0]),
         carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
+        texts_version=VERSION,
     )
 
 
 def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
     """Writes an edition's folder as the next of the chain."""
+    compared = with_changes(store, edition)
 
     def contents() -> dict[str, bytes]:
         head = chain_head(store)
         number, seal = (0, None) if head is None else (head.number or 0, head.seal)
         place = {"number": number + 1, "after_seal": seal}
         manifest = edition.manifest.model_copy(update=place)
-        return contents_of(store, replace(edition, manifest=manifest), files)
+        return contents_of(store, replace(compared, manifest=manifest), files)
 
     return write_folder(store, edition.manifest.edition, contents)
