@@ -1,7 +1,7 @@
 """What changed since the last report: tows, what is set aside, log factors, lines of the drafts.
 
-The tables that were reported on are kept beside the reports, so a rebuild that was killed before its
-report is reported on by the next. Where and how a report is shown is not decided here.
+The tables that were reported on are kept beside the reports, so a rebuild that was killed before
+its report is reported on by the next. Where and how a report is shown is not decided here.
 """
 
 import json
