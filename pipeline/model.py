@@ -6,7 +6,7 @@ The numbers e of different boats are independent; those of one have any covarian
 on which of a few patterns the boat follows (a normal mixture). The unknowns u are fixed (a flat
 prior) or random (a normal one). So no matrix is larger than a boat's numbers or than the unknowns,
 however many tows there are (Woodbury). Where the boat's effect is the only covariance, as in
-`consistency.mixed`, sums over a boat are enough, and many problems are searched side by side.
+`consistency.mixed`, sums over a boat are enough.
 
 Belongs here: the likelihood of boats, the posterior of the unknowns, the maximum of a restricted
 likelihood over its variances, scores of candidates. Does not: what the numbers, unknowns and
@@ -225,31 +225,26 @@ class Scores(NamedTuple):
 
 
 class Likelihood(NamedTuple):
-    """The restricted likelihood of m problems at some variances, v of each.
+    """A restricted likelihood at some variances, v of them.
 
     Attributes:
-        deviance: (m,) -2 ln of it but for a constant.
-        gradient: (m, v) slope of the deviance by each variance.
-        information: (m, v, v) average of observed and expected second derivative of the deviance.
+        deviance: -2 ln of it but for a constant.
+        gradient: (v,) slope of the deviance by each variance.
+        information: (v, v) average of observed and expected second derivative of the deviance.
     """
 
-    deviance: FloatArray
+    deviance: float
     gradient: FloatArray
     information: FloatArray
 
 
-LikelihoodOf = Callable[[IntArray, FloatArray], Likelihood]
-"""Of some problems, by their places, the restricted likelihood at variances, (some, v)."""
-
-
 def most_likely(
-    likelihood: LikelihoodOf,
+    likelihood: Callable[[FloatArray], Likelihood],
     free: BoolArray,
     start: FloatArray,
-    unit: FloatArray,
-    tolerance: float = TOLERANCE,
-) -> tuple[FloatArray, Likelihood, BoolArray]:
-    """Least deviance of each problem over some of its variances, the others fixed.
+    unit: float,
+) -> tuple[FloatArray, float]:
+    """Least deviance over some of its variances, the others fixed.
 
     Newton's method with the average information, on variances that are not negative: one that is 0
     and would fall stays 0. A step is halved until the deviance does not rise. The slope, not the
@@ -257,61 +252,42 @@ def most_likely(
     rounding, its slope crosses 0 there.
 
     Args:
-        free: (m, v) which variances are searched.
-        start: (m, v) where to begin; those that are not free stay so.
-        unit: (m,) size of a variance.
-        tolerance: share of its size by which the last step may change a variance.
+        likelihood: at given variances, (v,).
+        free: (v,) which variances are searched.
+        start: (v,) where to begin; those that are not free stay so.
+        unit: size of a variance.
 
     Returns:
-        The variances, (m, v), the likelihood there, and whether each search came to rest, (m,).
+        The variances, (v,), and the deviance there; that is infinite where the search did not come
+        to rest.
     """
-    at, now = start.copy(), likelihood(np.arange(len(start)), start)
-    busy, settled = np.arange(len(at)), np.ones(len(at), bool)
+    at, now = start, likelihood(start)
     for _ in range(MAX_ITERATIONS):
         loose = free & ((at > 0.0) | (now.gradient < 0.0))
-        busy = busy[loose[busy].any(axis=1)]
-        if not len(busy):
+        if not loose.any():
+            return at, now.deviance
+        step = _newton(now, loose, unit)
+        highest = now.deviance + ROUNDING * max(1.0, abs(now.deviance))
+        for _ in range(MAX_HALVINGS):
+            there = np.maximum(at + step, 0.0)
+            now = likelihood(there)
+            if now.deviance <= highest:
+                break
+            step = 0.5 * step
+        else:
             break
-        last = at[busy]
-        step = _newton(now.gradient[busy], now.information[busy], loose[busy], unit[busy])
-        settled[_descend(likelihood, busy, step, at, now)] = False
-        size = np.maximum(at[busy], NEGLIGIBLE * unit[busy, None])
-        busy = busy[(np.abs(at[busy] - last) > tolerance * size).any(axis=1)]
-    settled[busy] = False
-    return at, now, settled
+        moved, at = np.abs(there - at), there
+        if (moved <= TOLERANCE * np.maximum(at, NEGLIGIBLE * unit)).all():
+            return at, now.deviance
+    return at, np.inf
 
 
-def _newton(
-    gradient: FloatArray, information: FloatArray, loose: BoolArray, unit: FloatArray
-) -> FloatArray:
-    """Steps of the loose variances, (m, v); one that the data do not feel goes nowhere."""
-    size = np.diagonal(information, axis1=-2, axis2=-1)
-    felt = loose & (size > UNFELT / unit[:, None] ** 2)
+def _newton(now: Likelihood, loose: BoolArray, unit: float) -> FloatArray:
+    """Step of the loose variances, (v,); one that the data do not feel goes nowhere."""
+    size = np.diagonal(now.information)
+    felt = loose & (size > UNFELT / unit**2)
     size = np.sqrt(np.where(felt, size, 1.0))
-    both = felt[:, :, None] & felt[:, None, :]
-    scaled = np.where(both, information / (size[:, :, None] * size[:, None, :]), 0.0)
-    slope = np.where(felt, gradient, 0.0) / size
-    inverse = np.linalg.pinv(scaled, rcond=UNFELT, hermitian=True)
-    return np.where(felt, -(inverse @ slope[..., None])[..., 0] / size, 0.0)
-
-
-def _descend(
-    likelihood: LikelihoodOf, rows: IntArray, step: FloatArray, at: FloatArray, now: Likelihood
-) -> IntArray:
-    """Steps some rows of `at`, cut off at 0; each is halved until the deviance does not rise.
-
-    Returns:
-        The rows that stay where they were, as it rises however short the step is.
-    """
-    limit = now.deviance[rows] + ROUNDING * np.maximum(1.0, np.abs(now.deviance[rows]))
-    for _ in range(MAX_HALVINGS):
-        trial = np.maximum(at[rows] + step, 0.0)
-        there = likelihood(rows, trial)
-        lower = there.deviance <= limit
-        at[rows[lower]] = trial[lower]
-        for mine, other in zip(now, there, strict=True):
-            mine[rows[lower]] = other[lower]
-        rows, step, limit = rows[~lower], 0.5 * step[~lower], limit[~lower]
-        if not len(rows):
-            break
-    return rows
+    scaled = np.where(felt[:, None] & felt, now.information / np.outer(size, size), 0.0)
+    slope = np.where(felt, now.gradient, 0.0) / size
+    step = np.linalg.pinv(scaled, rcond=UNFELT, hermitian=True) @ slope
+    return np.where(felt, -step / size, 0.0)

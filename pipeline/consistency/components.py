@@ -65,8 +65,7 @@ def _components(tows: Observed, scope: str) -> list[Row]:
     few = len(y) - n_boats < FEWEST_REPEATS or len(np.unique(season)) < 2
     if few or n_boats < x.shape[1] + 2:
         return _nothing(counts, "too_few_repeats")
-    problem = mixed.Problem(y, variance, x, boat, season)
-    fit = mixed.fit_all([problem], mixed.COMPONENTS)[0]
+    fit = mixed.fit(mixed.Problem(y, variance, x, boat, season), *mixed.COMPONENTS)
     if fit is None:
         return _nothing(counts, "not_settled")
     return [counts | row for row in _shares(fit, float(np.sqrt(variance.mean())))]

@@ -7,7 +7,6 @@ method caps it. The load cell's zero differs by `ZERO_N` from tow to tow; it loo
 tests and power take points of a tow as correlated by it.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Self
 
@@ -283,22 +282,17 @@ def _middle_speed(boats: Observed) -> float:
     return float(np.median(boats.column("declared_speed_m_s")))
 
 
-def _bend_priors(types: Sequence[tuple[Observed, float]]) -> list[tuple[float, float] | None]:
-    """Mean of q at the middle speed of each type, and its true sd between boats (REML).
+def _bend_prior(boats: Observed) -> tuple[float, float] | None:
+    """Mean of q at the middle speed of a type, and its true sd between boats (REML).
 
     None where the search for that did not come to rest.
-
-    Args:
-        types: boats of a type, and the scatter of a run.
     """
-    problems = []
-    for boats, sigma in types:
-        q, unit = q_at(boats, _middle_speed(boats))
-        known = np.isfinite(q)
-        hull = boats.table["hull"].to_numpy()[known]
-        problems.append(mixed.Problem(q[known], unit[known] * sigma**2, np.ones(len(hull)), hull))
-    fits = mixed.fit_all(problems, (mixed.BOAT,))
-    return [(float(fit.beta[0]), fit.sd[0]) if fit else None for fit in fits]
+    q, unit = q_at(boats, _middle_speed(boats))
+    known = np.isfinite(q)
+    variance = (unit * boats.column("run_sd_ratio") ** 2)[known]
+    hull = boats.table["hull"].to_numpy()[known]
+    fit = mixed.fit(mixed.Problem(q[known], variance, np.ones(len(hull)), hull), mixed.BOAT)
+    return None if fit is None else (float(fit.beta[0]), fit.sd[0])
 
 
 def pooled_curves(observed: Observed) -> pl.DataFrame:
@@ -313,19 +307,13 @@ def pooled_curves(observed: Observed) -> pl.DataFrame:
         bends did not come to rest, none is shared in part.
     """
     boats = newest(observed)
-    groups = boats.groups("method", "boat_type")
-    alike = {
-        key: (own, float(own.column("run_sd_ratio")[0]))
-        for key, own in groups
-        if key[1] != UNKNOWN_TYPE and own.table["fsn_no"].n_unique() >= FEWEST_BOATS
-    }
-    priors = dict(zip(alike, _bend_priors(list(alike.values())), strict=True))
     speed, partial, shared = np.full((3, boats.table.height), np.nan)
-    for (key, own), (_, rows) in zip(groups, boats.rows_by("method", "boat_type"), strict=True):
+    for (_, boat_type), rows in boats.rows_by("method", "boat_type"):
+        own = boats.take(rows)
         speed[rows] = _middle_speed(own)
-        if key in priors:
+        if boat_type != UNKNOWN_TYPE and own.table["fsn_no"].n_unique() >= FEWEST_BOATS:
             shared[rows] = shared_bend(own)
-            if (prior := priors[key]) is not None:
+            if (prior := _bend_prior(own)) is not None:
                 partial[rows] = _drawn(own, *prior)
     parts = [
         _pooled(boats.take(rows), pooling, s[rows], speed[rows])

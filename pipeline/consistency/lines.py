@@ -124,16 +124,15 @@ def type_lines(observed: Observed) -> tuple[dy.DataFrame[TypeLines], dy.DataFram
     points: list[Row] = []
     for tows, components in COMPONENTS.items():
         of = newest(observed) if tows == "newest" else observed
-        described = list(_described(tows, of))
-        rows += [row for row, _ in described]
-        lines = [line for _, line in described if line is not None]
-        fits = mixed.fit_all([line.problem for line in lines], components)
-        for line, fit in zip(lines, fits, strict=True):
-            if fit is None:
-                line.row["reason"] = "not_settled"
+        for row, line in _described(tows, of):
+            rows.append(row)
+            if line is None:
                 continue
-            line.row.update(_numbers(line, fit))
-            if line.row["within"] == ALL_CREWS:
+            if (fit := mixed.fit(line.problem, *components)) is None:
+                row["reason"] = "not_settled"
+                continue
+            row.update(_numbers(line, fit))
+            if row["within"] == ALL_CREWS:
                 points += _points(line, fit)
     return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 

@@ -7,17 +7,20 @@ of that; a cell is the single row. The error's variance is known per row, the ot
 estimated by restricted maximum likelihood (Patterson & Thompson 1971) with the search of
 `pipeline.model`. With a single row per boat this is the random-effects model of meta-analysis. What
 y and X are is decided elsewhere.
+
+Rows are split into the mean of each boat and the deviations from it, which are independent. The few
+effects of `other` are unknowns beside beta, with a prior. So no matrix grows with the rows.
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final, NamedTuple, Self
+from functools import cached_property
+from typing import Final, NamedTuple
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.arrays import FloatArray
 from pipeline.model import Likelihood, most_likely
 from pipeline.quantiles import LEVEL, t_quantile
 
@@ -28,7 +31,6 @@ SMALLEST_SHARE: Final = 1e-4
 """Least measuring error, as a share of the size of y.
 
 Points that happen to lie exactly on a curve seem to have no error, and would have all the weight.
-Beside the spread of boats as many digits are lost as (boat's sd / error)^2 has: 1e-4 leaves eight.
 """
 
 LEAST_MISFIT: Final = 0.05
@@ -36,9 +38,6 @@ LEAST_MISFIT: Final = 0.05
 
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
-
-MOST_NUMBERS: Final = 1_000_000
-"""In one array of problems that are fitted side by side."""
 
 
 class Coefficients(NamedTuple):
@@ -61,8 +60,7 @@ class Problem:
     Attributes:
         y, variance: (n,); x: (n, p).
         boat: (n,) which boat, 0 and up, without gaps.
-        alike: (3, n, n) pairs of rows that share a boat, another group, a cell: what a component
-            adds to the covariance of the rows.
+        other: (n, groups) 1 for the other group of each row; no columns without one.
         plain: (p,) fixed effects by plain least squares.
         residual: (n,) what those leave of y: the likelihood sees nothing else of it.
         rows_beyond: rows beyond the number of fixed effects.
@@ -82,121 +80,141 @@ class Problem:
         self.variance = np.maximum(np.asarray(variance, dtype=np.float64), max(floor, 1e-300))
         self.x = np.asarray(x, dtype=np.float64).reshape(len(self.y), -1)
         self.boat = np.unique(np.asarray(boat), return_inverse=True)[1]
-        other = np.arange(len(self.y)) if other is None else np.asarray(other)
-        groups = (self.boat, other, np.arange(len(self.y)))
-        self.alike = np.stack([one[:, None] == one for one in groups])
+        names = np.zeros((len(self.y), 0)) if other is None else np.asarray(other)[:, None]
+        self.other = np.asarray(names == np.unique(names), dtype=np.float64)
         self.plain = np.asarray(np.linalg.lstsq(self.x, self.y)[0], dtype=np.float64)
         self.residual = self.y - self.x @ self.plain
         self.rows_beyond = len(self.y) - int(self.x.shape[1])
         self.spread = float(np.sqrt((self.residual**2).sum() / max(self.rows_beyond, 1)))
         self.unit = max(self.spread**2, float(self.variance.min()))
+        self._order = np.argsort(self.boat, kind="stable")
+        self._first = np.searchsorted(self.boat[self._order], np.arange(self.boat.max() + 1))
 
-
-class _At(NamedTuple):
-    """Problems at some variances; m problems of n rows with p fixed effects.
-
-    Attributes:
-        likelihood: as `most_likely` takes it.
-        effects: fixed effects, less those by plain least squares, (m, p).
-        covariance: of them, (m, p, p).
-        precision: P, that of the rows less what the fixed effects take up, (m, n, n).
-        pull: P y, (m, n); misfit: y' P y, (m,): the weighted sum of squares about the line.
-    """
-
-    likelihood: Likelihood
-    effects: FloatArray
-    covariance: FloatArray
-    precision: FloatArray
-    pull: FloatArray
-    misfit: FloatArray
-
-
-@dataclass(frozen=True)
-class _SideBySide:
-    """Problems side by side, as small arrays cost their calls and not their numbers.
-
-    All have as many rows and fixed effects as the largest needs. Rows that a problem does not have
-    are 0 with a variance of 1; of columns it does not have the information is 1.
-
-    Attributes:
-        residual, variance: (m, n) of the rows.
-        x: (m, n, p) fixed effects; absent: (m, p, p) 1 for each that a problem does not have.
-        alike: (m, 3, n, n) as in `Problem`.
-    """
-
-    residual: FloatArray
-    variance: FloatArray
-    x: FloatArray
-    absent: FloatArray
-    alike: FloatArray
-
-    @classmethod
-    def of(cls, problems: Sequence[Problem]) -> Self:
-        m, n = len(problems), max(len(one.y) for one in problems)
-        p = max(one.x.shape[1] for one in problems)
-        residual, variance, x = np.zeros((m, n)), np.ones((m, n)), np.zeros((m, n, p))
-        absent, alike = np.zeros((m, p, p)), np.zeros((m, len(COMPONENTS), n, n))
-        for i, one in enumerate(problems):
-            rows, effects = one.x.shape
-            residual[i, :rows], variance[i, :rows] = one.residual, one.variance
-            x[i, :rows, :effects], alike[i, :, :rows, :rows] = one.x, one.alike
-            absent[i] = np.diag(np.arange(p) >= effects)
-        return cls(residual, variance, x, absent, alike)
-
-    def likelihood(self, chosen: IntArray, variances: FloatArray) -> Likelihood:
-        """The restricted likelihood of some of the problems, as `most_likely` takes it."""
-        some = (values[chosen] for values in vars(self).values())
-        of = self if len(chosen) == len(self.x) else _SideBySide(*some)
-        return of.at(variances).likelihood
-
-    def at(self, variances: FloatArray) -> _At:
-        """The problems at variances of boat, other and cell, (m, 3).
-
-        The slope of the deviance by a variance that adds K to the covariance is
-        tr(P K) - y' P K P y, its average information y' P K P K P y.
-        """
-        count, size = self.variance.shape
-        flat = self.alike.reshape(count, len(COMPONENTS), -1)
-        rows = (variances[:, None] @ flat).reshape(count, size, size)
-        rows += self.variance[:, :, None] * np.eye(size)
-        inverse = np.linalg.inv(rows)
-        weighed = inverse @ self.x
-        known = np.swapaxes(self.x, 1, 2) @ weighed + self.absent
-        covariance: FloatArray = np.linalg.inv(known).astype(np.float64)
-        effects = covariance @ (np.swapaxes(weighed, 1, 2) @ self.residual[:, :, None])
-        precision = inverse - weighed @ covariance @ np.swapaxes(weighed, 1, 2)
-        pull = precision @ self.residual[:, :, None]
-        misfit = (self.residual * pull[:, :, 0]).sum(axis=1)
-
-        felt = (self.alike @ pull[:, None])[..., 0]
-        gradient = (flat @ precision.reshape(count, -1, 1) - felt @ pull)[:, :, 0]
-        information = felt @ precision @ np.swapaxes(felt, 1, 2)
-        deviance = np.linalg.slogdet(rows)[1] + np.linalg.slogdet(known)[1] + misfit
-        likelihood = Likelihood(deviance, gradient, information)
-        return _At(likelihood, effects[:, :, 0], covariance, precision, pull[:, :, 0], misfit)
+    def of_boats(self, values: FloatArray) -> FloatArray:
+        """Sum over the rows of each boat, (boats, ...)."""
+        return np.asarray(np.add.reduceat(values[self._order], self._first, axis=0))
 
 
 @dataclass(frozen=True)
 class Fit:
-    """A fitted mixed model.
+    """A mixed model at given variances of boat, other and cell, (3,); 0 where there is none.
 
-    Attributes:
-        problem: what was fitted.
-        sd: standard deviations of boat, other and cell; 0 where none was estimated.
-        beta: fixed effects, (p,); covariance: of them, (p, p), at a scale of 1.
-        precision: P, of the rows less what the unknowns take up, (n, n); pull: P y, (n,).
-        misfit: y' P y: the weighted sum of squares about the fixed effects.
-        information: (3, 3) second derivative of the deviance by the variances.
+    What is independent has n + boats rows: deviations from the boat's mean and those means, scaled
+    to a variance of 1. The fixed effects and those of `other` are its unknowns.
     """
 
     problem: Problem
-    sd: tuple[float, float, float]
-    beta: FloatArray
-    covariance: FloatArray
-    precision: FloatArray
-    pull: FloatArray
-    misfit: float
-    information: FloatArray
+    variances: FloatArray
+
+    @property
+    def sd(self) -> tuple[float, float, float]:
+        """Standard deviations of boat, other and cell."""
+        boat, other, cell = np.sqrt(self.variances).tolist()
+        return boat, other, cell
+
+    @cached_property
+    def _weight(self) -> FloatArray:
+        """Precision of each row within its boat, (n, 1)."""
+        return np.asarray(1.0 / (self.problem.variance + self.variances[2])[:, None])
+
+    @cached_property
+    def _total(self) -> FloatArray:
+        """The same of the mean of each boat, (boats, 1)."""
+        return self.problem.of_boats(self._weight)
+
+    @cached_property
+    def _of_mean(self) -> FloatArray:
+        """Precision of a boat's mean with the spread of boats in it, (boats, 1)."""
+        return np.asarray(self._total / (1.0 + self.variances[0] * self._total))
+
+    def _independent(self, values: FloatArray) -> FloatArray:
+        """Rows, (n, k), as independent ones of a variance of 1, (n + boats, k)."""
+        mean = self.problem.of_boats(self._weight * values) / self._total
+        within = np.sqrt(self._weight) * (values - mean[self.problem.boat])
+        return np.concatenate([within, np.sqrt(self._of_mean) * mean])
+
+    def _as_rows(self, independent: FloatArray) -> FloatArray:
+        """The transpose of `_independent`, (n + boats, k) to (n, k)."""
+        rows = len(self._weight)
+        means = np.sqrt(self._of_mean) * independent[rows:] / self._total
+        weighed = self._weight * means[self.problem.boat]
+        return np.asarray(np.sqrt(self._weight) * independent[:rows] + weighed)
+
+    @cached_property
+    def _unknowns(self) -> FloatArray:
+        """What moves with each unknown, those of `other` in their sd, (n + boats, k)."""
+        others = np.sqrt(self.variances[1]) * self.problem.other
+        return self._independent(np.column_stack([self.problem.x, others]))
+
+    @cached_property
+    def _information(self) -> FloatArray:
+        """On the unknowns, with the prior of those of `other`, (k, k)."""
+        fixed, k = self.problem.x.shape[1], self._unknowns.shape[1]
+        return np.asarray(self._unknowns.T @ self._unknowns + np.diag(np.arange(k) >= fixed))
+
+    @cached_property
+    def _covariance(self) -> FloatArray:
+        """Of the unknowns, (k, k)."""
+        return np.linalg.inv(self._information).astype(np.float64)
+
+    def _rest(self, values: FloatArray) -> FloatArray:
+        """What the unknowns leave of rows, (n, k), as independent ones, (n + boats, k)."""
+        independent = self._independent(values)
+        taken = self._covariance @ (self._unknowns.T @ independent)
+        return np.asarray(independent - self._unknowns @ taken)
+
+    @cached_property
+    def pull(self) -> FloatArray:
+        """P y, with P the precision of the rows less what the unknowns take up, (n,)."""
+        return self._as_rows(self._rest(self.problem.residual[:, None]))[:, 0]
+
+    @cached_property
+    def misfit(self) -> float:
+        """Y' P y: the weighted sum of squares about the fixed effects."""
+        return float(self.problem.residual @ self.pull)
+
+    @cached_property
+    def beta(self) -> FloatArray:
+        """Fixed effects, (p,)."""
+        seen = self._unknowns.T @ self._independent(self.problem.residual[:, None])
+        return self.problem.plain + (self._covariance @ seen)[: len(self.problem.plain), 0]
+
+    @property
+    def covariance(self) -> FloatArray:
+        """Of the fixed effects, at a scale of 1, (p, p)."""
+        fixed = len(self.problem.plain)
+        return self._covariance[:fixed, :fixed]
+
+    @cached_property
+    def likelihood(self) -> Likelihood:
+        """The restricted likelihood as `most_likely` takes it.
+
+        The slope of the deviance by a variance that adds K to the covariance is
+        tr(P K) - y' P K P y, its average information y' P K P K P y.
+        """
+        problem, rows = self.problem, len(self._weight)
+        boat, other = problem.boat[:, None], problem.other
+        pull = self.pull[:, None]
+        taken = self._unknowns @ np.linalg.cholesky(self._covariance)
+        of_means = self._of_mean * (1.0 - (taken[rows:] ** 2).sum(axis=1, keepdims=True))
+        share = self._weight / self._total[problem.boat]
+        of_rows = self._weight * (1.0 - share) + share**2 * self._of_mean[problem.boat]
+        trace = np.array(
+            [
+                of_means.sum(),
+                (self._rest(other) * self._independent(other)).sum(),
+                of_rows.sum() - (self._as_rows(taken) ** 2).sum(),
+            ]
+        )
+        felt = np.column_stack([problem.of_boats(pull)[boat[:, 0]], other @ (other.T @ pull), pull])
+        spread = 1.0 + self.variances[0] * self._total
+        return Likelihood(
+            float(np.log(spread).sum() - np.log(self._weight).sum())
+            + float(np.linalg.slogdet(self._information)[1])
+            + self.misfit,
+            trace - (felt * pull).sum(axis=0),
+            felt.T @ self._as_rows(self._rest(felt)),
+        )
 
     @property
     def dof(self) -> int:
@@ -237,11 +255,15 @@ class Fit:
             scale: misfit per row of the other boats, as in externally studentised residuals.
         """
         problem, n = self.problem, len(self.problem.y)
-        smallest = 1.0 / (np.square(self.sd).sum() + problem.variance)
+        smallest = 1.0 / (self.variances.sum() + problem.variance)
+        taken = self._as_rows(self._unknowns)
         error, variance, scale = np.zeros(n), np.full(n, np.inf), np.ones(n)
         for one in range(int(problem.boat.max()) + 1):
             rows = np.flatnonzero(problem.boat == one)
-            block = self.precision[np.ix_(rows, rows)]
+            weight, total = self._weight[rows], self._total[one]
+            by_mean = (self._of_mean[one] / total - 1.0) / total
+            block = np.diag(weight[:, 0]) + weight @ weight.T * by_mean
+            block -= taken[rows] @ self._covariance @ taken[rows].T
             if np.linalg.eigvalsh(block)[0] <= 1e-9 * smallest[rows].max():
                 continue
             inverse = np.linalg.inv(block)
@@ -257,12 +279,11 @@ class Fit:
         A variance is taken as chi-squared with as many degrees of freedom as its information says
         (Satterthwaite 1946). One that is 0, or has less than one degree of freedom, has no bound.
         """
-        variance = np.square(self.sd)
-        there = variance > 0.0
-        uncertain = np.full(len(variance), np.inf)
-        inverse = np.linalg.inv(self.information[np.ix_(there, there)])
+        there = self.variances > 0.0
+        uncertain = np.full(len(there), np.inf)
+        inverse = np.linalg.inv(self.likelihood.information[np.ix_(there, there)])
         uncertain[there] = np.diagonal(inverse)
-        dof = variance**2 / uncertain
+        dof = self.variances**2 / uncertain
         return {
             name: _chi_interval(sd, float(own)) if own >= 1.0 else (0.0, None)
             for name, sd, own in zip(COMPONENTS, self.sd, dof, strict=True)
@@ -274,71 +295,21 @@ def _chi_interval(sd: float, dof: float) -> tuple[float, float | None]:
     return sd * float(np.sqrt(dof / low)), sd * float(np.sqrt(dof / high))
 
 
-def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit | None]:
-    """Restricted maximum likelihood of the components named in `free`, of each problem.
+def fit(problem: Problem, *components: str) -> Fit | None:
+    """Restricted maximum likelihood of some components; None where the search does not settle."""
+    free, spread = np.isin(COMPONENTS, components), problem.spread**2
 
-    Returns:
-        None where the search did not come to rest.
-    """
-    fits: list[Fit | None] = [None] * len(problems)
-    for places in _batches([len(one.y) for one in problems]):
-        batch = [problems[place] for place in places]
-        for place, fit in zip(places, _fitted(batch, np.isin(COMPONENTS, free)), strict=True):
-            fits[place] = fit
-    return fits
+    def likelihood(variances: FloatArray) -> Likelihood:
+        return Fit(problem, variances).likelihood
 
-
-def _batches(rows: Sequence[int]) -> Iterator[list[int]]:
-    """Problems that are fitted side by side, by their places: of about equal size."""
-    batch: list[int] = []
-    for place in sorted(range(len(rows)), key=lambda one: rows[one]):
-        if batch and (len(batch) + 1) * rows[place] ** 2 > MOST_NUMBERS:
-            yield batch
-            batch = []
-        batch.append(place)
-    if batch:
-        yield batch
-
-
-def _fitted(problems: Sequence[Problem], free: BoolArray) -> Iterator[Fit | None]:
-    together = _SideBySide.of(problems)
-    variances, settled = _most_likely(problems, together, free)
-    at = together.at(variances)
-    for i, problem in enumerate(problems):
-        mine = slice(problem.x.shape[1])
-        boat, other, cell = np.sqrt(variances[i]).tolist()
-        n = len(problem.y)
-        fit = Fit(
-            problem,
-            (boat, other, cell),
-            problem.plain + at.effects[i, mine],
-            at.covariance[i, mine, mine],
-            at.precision[i, :n, :n],
-            at.pull[i, :n],
-            float(at.misfit[i]),
-            at.likelihood.information[i],
-        )
-        yield fit if settled[i] else None
-
-
-def _most_likely(
-    problems: Sequence[Problem], together: _SideBySide, free: BoolArray
-) -> tuple[FloatArray, BoolArray]:
-    """Variances of boat, other and cell of each problem, (problems, 3); whether they settled."""
-    unit, loose = np.array([one.unit for one in problems]), np.tile(free, (len(problems), 1))
     # What the errors leave of the spread, in equal parts.
-    left = [max(p.spread**2 - p.variance.mean(), 0.1 * p.unit) for p in problems]
-    start = loose * np.array(left)[:, None] / max(free.sum(), 1)
-    variances, there, settled = most_likely(together.likelihood, loose, start, unit)
+    left = max(spread - problem.variance.mean(), 0.1 * problem.unit)
+    start = free * left / max(free.sum(), 1)
+    variances, deviance = most_likely(likelihood, free, start, problem.unit)
     for place in np.flatnonzero(free):
-        without = variances.copy()
-        without[:, place] = 0.0
-        loss = together.at(without).likelihood.deviance - there.deviance
-        idle = ((variances[:, place] > 0.0) & (loss <= NO_GAIN))[:, None]
-        if not idle.any():
-            continue
-        loose &= ~idle | (np.arange(len(free)) != place)
-        start = np.where(idle, without, variances)
-        variances, there, still = most_likely(together.likelihood, loose & idle, start, unit)
-        settled &= still
-    return variances, settled
+        without = np.where(np.arange(len(free)) == place, 0.0, variances)
+        gain = likelihood(without).deviance - deviance
+        if variances[place] > 0.0 and np.isfinite(deviance) and gain <= NO_GAIN:
+            free[place] = False
+            variances, deviance = most_likely(likelihood, free, without, problem.unit)
+    return Fit(problem, variances) if np.isfinite(deviance) else None

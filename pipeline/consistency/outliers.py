@@ -61,18 +61,13 @@ def tow_outliers(observed: Observed) -> pl.DataFrame:
 
 
 def _outliers(tows: Observed, components: tuple[str, ...], names: tuple[str, ...]) -> pl.DataFrame:
-    compared = [
-        (boats, quantity, problem)
+    parts = [
+        _deviations(boats, quantity, fit)
         for (_, boat_type), group in tows.groups("method", "boat_type")
         if boat_type != UNKNOWN_TYPE
         for quantity in names
         for boats, problem in _compared(group, components, quantity)
-    ]
-    fits = mixed.fit_all([problem for *_, problem in compared], components)
-    parts = [
-        _deviations(boats, quantity, fit)
-        for (boats, quantity, _), fit in zip(compared, fits, strict=True)
-        if fit is not None
+        if (fit := mixed.fit(problem, *components)) is not None
     ]
     return _with_season(pl.concat([TypeOutliers.create_empty(), *parts]))
 

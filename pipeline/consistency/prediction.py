@@ -71,7 +71,7 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     alone = pl.when(boat_type=UNKNOWN_TYPE).then("fsn_no").otherwise("boat_type").alias("type")
     hull, types = fleet.table.select("hull", alone).to_numpy().T
     problem = mixed.Problem(np.log(cw), variance, x, hull, types)
-    fit = mixed.fit_all([problem], (mixed.BOAT, mixed.OTHER))[0]
+    fit = mixed.fit(problem, mixed.BOAT, mixed.OTHER)
     if fit is None:
         return rows.with_columns(reason=pl.lit("not_settled"))
     error, error_variance, _ = fit.leave_boats_out()

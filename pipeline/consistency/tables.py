@@ -12,7 +12,7 @@ from pipeline.consistency.tow_speed import speed_trend
 
 
 def line_tables(observed: Observed) -> dict[str, pl.DataFrame]:
-    """The lines through boats of a type, for all methods: half of the work."""
+    """The lines through boats of a type, for all methods."""
     lines, points = type_lines(observed)
     return {"type_lines": lines, "type_line_points": points}
 

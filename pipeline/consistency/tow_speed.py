@@ -13,7 +13,6 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.homogeneity import height_given_bend, shared_bend
-from pipeline.consistency.mixed import Problem
 from pipeline.consistency.observed import (
     ALL_TYPES,
     UNKNOWN_TYPE,
@@ -63,27 +62,16 @@ def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
     """
     boats = newest(observed)
     rows: list[Row] = []
-    to_fit: list[tuple[Row, Problem]] = []
     for (method,), fleet in boats.groups("method"):
         typed = {t: own for (t,), own in fleet.rows_by("boat_type") if t != UNKNOWN_TYPE}
         every = np.concatenate([np.zeros(0, np.int64), *typed.values()])
         for boat_type, own in [*typed.items(), (ALL_TYPES, every)]:
-            facts, problem = _trend(fleet.take(own))
-            rows.append({"method": method, "boat_type": boat_type} | facts)
-            if problem is not None:
-                to_fit.append((rows[-1], problem))
-    fits = mixed.fit_all([problem for _, problem in to_fit], (mixed.BOAT,))
-    for (row, _), fit in zip(to_fit, fits, strict=True):
-        if fit is None:
-            row["reason"] = "not_settled"
-            continue
-        slope, lo, hi = (float(e[-1]) for e in fit.coefficients())
-        row |= {"slope": slope, "slope_lo": lo, "slope_hi": hi}
+            rows.append({"method": method, "boat_type": boat_type} | _trend(fleet.take(own)))
     return frame_of(SpeedTrend, rows)
 
 
-def _trend(boats: Observed) -> tuple[Row, Problem | None]:
-    """How many tows a trend is of, and its problem; without one, why."""
+def _trend(boats: Observed) -> Row:
+    """The trend, and how many tows it is of; without one, why."""
     median = pl.col("declared_speed_m_s").median().over("boat_type")
     speed = boats.table.select(median).to_series().to_numpy()
     q, unit = q_at(boats, speed)
@@ -93,14 +81,18 @@ def _trend(boats: Observed) -> tuple[Row, Problem | None]:
     n_boats = boats.table["fsn_no"].to_frame().filter(pl.Series(known)).n_unique()
     counts = {"n": len(hull), "n_boats": n_boats}
     if n_boats < max(FEWEST_BOATS, types.shape[1] + 2):
-        return counts | {"reason": "few_boats"}, None
+        return counts | {"reason": "few_boats"}
     x = np.log(boats.column("declared_speed_m_s") / speed)[known]
     centred = x - types @ np.linalg.lstsq(types, x)[0]
     if np.abs(centred).max() < 1e-9:
-        return counts | {"reason": "equal_values"}, None
+        return counts | {"reason": "equal_values"}
     variance = unit * boats.column("run_sd_ratio") ** 2
     columns = np.column_stack([types, centred])
-    return counts | {"reason": ""}, Problem(q[known], variance[known], columns, hull)
+    fit = mixed.fit(mixed.Problem(q[known], variance[known], columns, hull), mixed.BOAT)
+    if fit is None:
+        return counts | {"reason": "not_settled"}
+    slope, lo, hi = (float(end[-1]) for end in fit.coefficients())
+    return counts | {"slope": slope, "slope_lo": lo, "slope_hi": hi, "reason": ""}
 
 
 def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:

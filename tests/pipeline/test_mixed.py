@@ -7,8 +7,6 @@ from scipy import optimize, stats
 from pipeline.consistency import mixed
 from pipeline.consistency.mixed import Problem
 
-ONE = np.zeros(1, np.int64)
-
 
 def grouped_data(seed=1, n=60, boats=20, others=5, known=None):
     rng = np.random.default_rng(seed)
@@ -21,24 +19,15 @@ def grouped_data(seed=1, n=60, boats=20, others=5, known=None):
     return Problem(y, error if known is None else np.full(n, known), x, boat, other)
 
 
-def fit(problem, free):
-    return mixed.fit_all([problem], free)[0]
-
-
 def likelihood(problem, sd):
-    return mixed._SideBySide.of([problem]).likelihood(ONE, np.square([sd]))
-
-
-def fit_at(problem, sd):
-    """The model with these standard deviations."""
-    at = mixed._SideBySide.of([problem]).at(np.square([sd]))
-    parts = at.covariance[0], at.precision[0], at.pull[0], at.misfit[0]
-    beta = problem.plain + at.effects[0]
-    return mixed.Fit(problem, sd, beta, *parts, at.likelihood.information[0])
+    return mixed.Fit(problem, np.square(sd)).likelihood
 
 
 def covariance_of(problem, sd):
-    return np.diag(problem.variance) + np.tensordot(np.square(sd), problem.alike, axes=1)
+    boat, other, cell = np.square(sd)
+    of_boat = boat * (problem.boat[:, None] == problem.boat)
+    of_other = other * problem.other @ problem.other.T
+    return np.diag(problem.variance + cell) + of_boat + of_other
 
 
 def dense_deviance(problem, sd):
@@ -54,12 +43,12 @@ def dense_deviance(problem, sd):
 def test_deviance_and_its_slope_equal_the_dense_formula(sd):
     problem = grouped_data()
     found = likelihood(problem, sd)
-    assert found.deviance[0] == pytest.approx(dense_deviance(problem, sd), rel=1e-10)
+    assert found.deviance == pytest.approx(dense_deviance(problem, sd), rel=1e-10)
     slope = optimize.approx_fprime(
         np.square(sd) + 1e-3, lambda v: dense_deviance(problem, np.sqrt(v)), 1e-6
     )
     at = likelihood(problem, np.sqrt(np.square(sd) + 1e-3))
-    assert at.gradient[0] == pytest.approx(slope, rel=1e-3, abs=1e-3)
+    assert at.gradient == pytest.approx(slope, rel=1e-3, abs=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -72,7 +61,7 @@ def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd
     y += np.sqrt(error) * rng.normal(size=n)
     x = np.column_stack([np.ones(n), rng.normal(size=n)])
     fits = [
-        fit(Problem(y * noise, np.full(n, error**2), x, boat, other), mixed.COMPONENTS)
+        mixed.fit(Problem(y * noise, np.full(n, error**2), x, boat, other), *mixed.COMPONENTS)
         for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
     ]
     sds, intervals = (
@@ -110,7 +99,7 @@ def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
         (equal, (mixed.BOAT,), np.ones(12)),
         (known, (), 1.0 / known.variance),
     ):
-        found = fit(problem, free).coefficients()
+        found = mixed.fit(problem, *free).coefficients()
         beta, interval = least_squares(problem, weights)
         assert found.value == pytest.approx(beta, rel=1e-9)
         assert np.column_stack([found.lo, found.hi]) == pytest.approx(interval, rel=1e-9)
@@ -118,43 +107,26 @@ def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
 
 def test_variance_components_are_those_of_another_search():
     problem = grouped_data(known=1e-9)
-    found = fit(problem, mixed.COMPONENTS)
+    found = mixed.fit(problem, *mixed.COMPONENTS)
     other = optimize.minimize(
         lambda ln_sd: dense_deviance(problem, np.exp(ln_sd)), np.zeros(3), method="Nelder-Mead"
     )
     assert found.sd == pytest.approx(np.exp(other.x), rel=1e-3)
     # The deviance is flat at its least, so its height agrees more closely than the components.
-    assert likelihood(problem, found.sd).deviance[0] == pytest.approx(other.fun, abs=1e-6)
-
-
-def test_problems_side_by_side_are_fitted_as_each_alone():
-    rng = np.random.default_rng(4)
-    first = grouped_data()
-    other = np.arange(60) % 5
-    problems = [
-        Problem(first.y + s * rng.normal(size=60), first.variance, first.x, first.boat, other)
-        for s in (0.0, 0.5, 20)
-    ]
-    problems += [
-        Problem(first.y, first.variance, first.x[:, :1], first.boat),
-        grouped_data(2, 30),
-    ]
-    free = (mixed.BOAT, mixed.CELL)
-    for problem, found in zip(problems, mixed.fit_all(problems, free), strict=True):
-        assert found.sd == pytest.approx(fit(problem, free).sd, rel=1e-9)
+    assert likelihood(problem, found.sd).deviance == pytest.approx(other.fun, abs=1e-6)
 
 
 def test_intervals_of_components_cover_the_truth():
     rng, trials, true = np.random.default_rng(5), 60, (0.05, 0.03, 0.015)
     boat, other = np.repeat(np.arange(20), 4), np.arange(80) % 8
-    problems = []
+    found = []
     for _ in range(trials):
         of_boat, of_other, cell = (
             sd * rng.normal(size=n) for sd, n in zip(true, (20, 8, 80), strict=True)
         )
         y = 3.5 + of_boat[boat] + of_other[other] + cell + 0.01 * rng.normal(size=80)
-        problems.append(Problem(y, np.full(80, 1e-4), np.ones((80, 1)), boat, other))
-    found = [one.intervals() for one in mixed.fit_all(problems, mixed.COMPONENTS)]
+        problem = Problem(y, np.full(80, 1e-4), np.ones((80, 1)), boat, other)
+        found.append(mixed.fit(problem, *mixed.COMPONENTS).intervals())
     for name, sd in zip(mixed.COMPONENTS, true, strict=True):
         inside = [lo <= sd <= (np.inf if hi is None else hi) for lo, hi in (f[name] for f in found)]
         # Four standard errors of a share of 0.95.
@@ -163,7 +135,7 @@ def test_intervals_of_components_cover_the_truth():
 
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem, sd = grouped_data(), (2.0, 1.0, 0.5)
-    fit = fit_at(problem, sd)
+    fit = mixed.Fit(problem, np.square(sd))
     error, variances, scales = fit.leave_boats_out()
     v, out = covariance_of(problem, sd), problem.boat == 3
     inverse, x = np.linalg.inv(v[np.ix_(~out, ~out)]), problem.x[~out]

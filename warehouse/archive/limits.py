@@ -19,6 +19,9 @@ MOST_ROWS: Final = 3_000_000
 MOST_LISTED_ROWS: Final = 100_000
 """Rows of a list; a spreadsheet that claims more is not a list."""
 
+MOST_ROWS_OF_A_SHEET: Final = 1_048_576
+"""Of samples: as many as a spreadsheet has."""
+
 MOST_CELLS: Final = 5_000_000
 """Rows times columns of a sheet: a reader makes room for all of them."""
 
@@ -62,36 +65,36 @@ def check_header(line: str, columns: int) -> None:
         )
 
 
-def check_unpacked(size: int) -> None:
-    """Refuses a workbook that unpacks to so many bytes.
+def check_unpacked(size: int, most: int = WORKBOOK_MAX_BYTES) -> None:
+    """Refuses a workbook of which so many bytes have to be unpacked.
 
     Raises:
         DefectiveInputError: `too_large`.
     """
-    if size > WORKBOOK_MAX_BYTES:
+    if size > most:
         said = say(
-            "The workbook holds {:.0f} MB, unpacked; at most {:.0f} MB can be a list. Copy the "
-            "list alone into a new workbook.",
+            "The workbook holds {:.0f} MB, unpacked; at most {:.0f} MB can be right. Copy the "
+            "sheet alone into a new workbook.",
             size / 1e6,
-            WORKBOOK_MAX_BYTES / 1e6,
+            most / 1e6,
         )
         raise DefectiveInputError("too_large", said)
 
 
-def check_extent(rows: int, columns: int) -> None:
+def check_extent(rows: int, columns: int, most_rows: int = MOST_LISTED_ROWS) -> None:
     """Refuses a sheet that reaches so far.
 
     Raises:
         DefectiveInputError: `too_large`.
     """
-    if rows > MOST_LISTED_ROWS or columns > MOST_COLUMNS or rows * columns > MOST_CELLS:
+    if rows > most_rows or columns > MOST_COLUMNS or rows * columns > MOST_CELLS:
         said = say(
-            "A sheet of the workbook reaches to row {} and column {}; a list has at most {} rows, "
-            "{} columns and {} cells. Delete what is far below or beside the list, or copy the "
-            "list alone into a new workbook.",
+            "A sheet of the workbook reaches to row {} and column {}; a table has at most {} rows, "
+            "{} columns and {} cells. Delete what is far below or beside the table, or copy it "
+            "alone into a new workbook.",
             rows,
             columns,
-            MOST_LISTED_ROWS,
+            most_rows,
             MOST_COLUMNS,
             MOST_CELLS,
         )

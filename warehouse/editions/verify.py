@@ -23,7 +23,7 @@ from pipeline.messages import say
 from pipeline.register.register import LINE
 from pipeline.tables.schemas import TABLES
 from warehouse.archive import FileHashes
-from warehouse.archive.files.names import PARTS
+from warehouse.archive.files.names import PARTS, split_sheet
 from warehouse.derive.graph import ARCHIVE
 from warehouse.derive.inputs import Scope
 from warehouse.editions import sheets
@@ -245,7 +245,8 @@ def _swapped(path: Path, archive: Path | None, hashes: FileHashes) -> Iterator[F
         yield Finding(path.name, "unchecked", "archive", message)
         return
     for file, kind, sha256 in sheets.read_inputs(path).rows():
-        gone = PARTS.join(part for part in file.split(PARTS) if not (archive / part).is_file())
+        parts = file.split(PARTS)
+        gone = PARTS.join(p for p in parts if not (archive / split_sheet(p)[0]).is_file())
         if gone:
             message = say("{} is gone from the archive; put it back", gone)
             yield Finding(path.name, "missing", gone, message)

@@ -7,15 +7,19 @@ import zipfile
 
 import pytest
 import xlsxwriter
+from xlsxwriter.worksheet import Worksheet
 
 from pipeline.errors import DefectiveInputError
-from tests.warehouse.archive.conftest import TOWS, Archive
+from tests.warehouse.archive.conftest import TOWS, Archive, Scan
+from tests.warehouse.archive.test_formats import assert_same
+from warehouse.archive import FileHashes
+from warehouse.archive.check import check_archive
 from warehouse.archive.sheets.extent import check_workbook
-from warehouse.archive.sheets.sheet import sheets_of_workbook
+from warehouse.archive.sheets.sheet import grids_of_workbook
 
 LAST = 1_048_575, 16_383
 READ = (
-    "import sys; from warehouse.archive.sheets.sheet import sheets_of_workbook as read;"
+    "import sys; from warehouse.archive.sheets.sheet import grids_of_workbook as read;"
     "list(read(sys.stdin.buffer.read(), ()))"
 )
 
@@ -46,8 +50,8 @@ def test_the_file_is_set_aside_by_name(archive: Archive) -> None:
 
 
 def test_a_colour_far_outside_is_no_cell_of_a_list() -> None:
-    (sheet,) = sheets_of_workbook(workbook(None), ())
-    assert sheet.header == ["sleep_id"]
+    (grid,) = grids_of_workbook(workbook(None), ())
+    assert grid.rows == [["sleep_id"]]
 
 
 def packed(name: str, *parts: bytes) -> bytes:
@@ -117,5 +121,66 @@ def test_a_workbook_that_unpacks_to_too_much_is_not_read() -> None:
     with zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as book:
         book.writestr("xl/sharedStrings.xml.more", bytes(100_000_001))
     with pytest.raises(DefectiveInputError, match="unpacked") as told:
-        list(sheets_of_workbook(file.getvalue(), ()))
+        grids_of_workbook(file.getvalue(), ())
     assert told.value.reason_code == "too_large"
+
+
+def test_samples_in_a_sheet_per_tow_and_in_a_sheet_per_run(
+    archive: Archive, good_scan: Scan
+) -> None:
+    """One workbook of two tows, named by sheet; one of a tow with its runs in sheets."""
+    names = ("eerste boot 8h 2014", "tweede boot 6d 2014", "derde boot 12h 2014")
+    with xlsxwriter.Workbook(str(archive.root / "meetdata_2014/Proeven.xlsx")) as book:
+        for name in names[:2]:
+            write_samples(book.add_worksheet(name), typed_rows(archive, name))
+            archive.replace(TOWS, f";{name};", f";Proeven.xlsx#{name};")
+        book.add_worksheet("Blad3")
+    header, *rows = typed_rows(archive, names[2])
+    with xlsxwriter.Workbook(str(archive.root / f"meetdata_2014/{names[2]}.xlsx")) as book:
+        for run in range(1, 7):
+            own = [row[1:] for row in rows if row[0] == run]
+            write_samples(book.add_worksheet(f"run {run}"), [header[1:], *own])
+        book.add_worksheet("Blad7")
+    for name in names:
+        (archive.root / f"meetdata_2014/{name}.csv").unlink()
+    scan = archive.scan()
+    assert_same(scan, good_scan)
+    assert check_archive(archive.root).causes == []
+    first = scan.index.tows.row(0, named=True)
+    assert first["samples_path"] == f"meetdata_2014/Proeven.xlsx#{names[0]}"
+    assert first["samples_sha256"] == FileHashes().hash_samples(archive.root, first["samples_path"])
+
+
+def test_faults_of_samples_in_a_workbook_are_named_with_sheet_and_line(archive: Archive) -> None:
+    header, *rows = typed_rows(archive, "eerste boot 8h 2014")
+    for row in rows[:60]:
+        row[4] = "kapot"
+    with xlsxwriter.Workbook(str(archive.root / "meetdata_2014/Proeven.xlsx")) as book:
+        write_samples(book.add_worksheet("snol"), [["titel"], [], header, *rows])
+        write_samples(book.add_worksheet("anders"), [["run", "log1 [m/s]", "log2 [m/s]"], [1, 2]])
+    archive.replace(TOWS, ";eerste boot 8h 2014;", ";Proeven.xlsx#snol;")
+    archive.replace(TOWS, ";tweede boot 6d 2014;", ";Proeven.xlsx#anders;")
+    archive.replace(TOWS, ";derde boot 12h 2014;", ";Proeven.xlsx#weg;")
+    for path in (archive.root / "meetdata_2014").glob("*.csv"):
+        path.unlink()
+    told = {
+        (place.path, place.line, cause.reason_code)
+        for cause in check_archive(archive.root).causes
+        for place in cause.places
+    }
+    assert told == {
+        ("meetdata_2014/Proeven.xlsx#snol", 4, "bad_number"),
+        ("meetdata_2014/Proeven.xlsx#anders", 1, "missing_column"),
+        ("meetdata_2014/Proeven.xlsx#weg", None, "unreadable_file"),
+    }
+
+
+def typed_rows(archive: Archive, name: str) -> list[list[str | float]]:
+    header, *lines = (archive.root / f"meetdata_2014/{name}.csv").read_text("utf-8").splitlines()
+    cells = (line.replace(",", ".").split(";") for line in lines)
+    return [list(header.split(";")), *([float(cell) for cell in row] for row in cells)]
+
+
+def write_samples(sheet: Worksheet, rows: list[list[str | float]]) -> None:
+    for place, row in enumerate(rows):
+        sheet.write_row(place, 0, row)

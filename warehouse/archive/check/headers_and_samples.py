@@ -11,7 +11,7 @@ from pipeline.messages import say
 from pipeline.tables.row import Row
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, list_sample_files, path_inside
-from warehouse.archive.files.names import PARTS, as_one_run, kind_of
+from warehouse.archive.files.names import PARTS, as_one_run, kind_of, split_sheet
 from warehouse.archive.index.index import ArchiveIndex
 from warehouse.archive.plausibility.judge import judge_in_files
 from warehouse.archive.profile.definition import Profiles
@@ -31,11 +31,13 @@ def faults_in_headers(root: Path, index: ArchiveIndex, unused: Collection[str]) 
     for file in list_sample_files(root, index.profiles.wording.files):
         if file.path in unused:
             continue
-        season = index.seasons.get(file.path, file.season)
-        try:
-            check_header(path_inside(root, file.path), index.profiles.for_season(season))
-        except DefectiveInputError as error:
-            yield fault_from(error, file.path)
+        sheets = [path for path in index.seasons if split_sheet(path)[0] == file.path]
+        for path in sheets or [file.path]:
+            season = index.seasons.get(path, file.season)
+            try:
+                check_header(path_inside(root, path), index.profiles.for_season(season))
+            except DefectiveInputError as error:
+                yield fault_from(error, path)
 
 
 def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fault]:

@@ -93,7 +93,9 @@ def list_sample_files(root: Path, named: Mapping[str, str]) -> list[ArchiveFile]
         _archive_file(root, entry, season)
         for season, folder in _sample_folders(root, named)
         for entry in _files_of_tows(folder)
-        if sample_suffix(entry.name) and _path_in(root, entry) not in named
+        if sample_suffix(entry.name)
+        and _path_in(root, entry) not in named
+        and not _NOT_OURS.fullmatch(entry.name)
     ]
 
 
@@ -196,16 +198,15 @@ def _archive_file(root: Path, entry: Path, season: int) -> ArchiveFile:
 
 
 def path_inside(root: Path, relative: str) -> Path:
-    """The full path of a file of the archive.
+    """The full path of a file of the archive, with its sheet where it has one.
 
     Raises:
         DefectiveInputError: `path_outside_archive`.
     """
     pure = PurePosixPath(split_sheet(relative)[0])
-    full = root / pure
-    if pure.is_absolute() or ".." in pure.parts or not _is_inside(root, full):
+    if pure.is_absolute() or ".." in pure.parts or not _is_inside(root, root / pure):
         raise outside_archive(relative)
-    return full
+    return root / relative
 
 
 def _is_inside(root: Path, full: Path) -> bool:

@@ -6,11 +6,12 @@ A cache and no more: losing it costs time, never a result.
 import hashlib
 import json
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from warehouse.archive.files.names import PARTS
+from warehouse.archive.files.names import PARTS, split_sheet
 from warehouse.store.files import file_sha256, written_beside
 
 RACY_SECONDS: Final = 2.0
@@ -57,7 +58,8 @@ class FileHashes:
         Raises:
             OSError: a file cannot be read.
         """
-        return hash_of_parts([self.hash_file(root / part) for part in path.split(PARTS)])
+        parts = path.split(PARTS)
+        return hash_of_parts([hash_of_sheet(self.hash_file, root / part) for part in parts])
 
     def hash_file(self, path: Path) -> str:
         """The SHA-256 of a file's content, as hexadecimal text.
@@ -79,6 +81,13 @@ class FileHashes:
         else:
             self.entries.pop(key, None)
         return sha256
+
+
+def hash_of_sheet(hash_file: Callable[[Path], str], path: Path) -> str:
+    """The hash of a file; of a sheet that of its workbook with the name of the sheet."""
+    file, sheet = split_sheet(str(path))
+    sha256 = hash_file(Path(file))
+    return hashlib.sha256(f"{sha256}#{sheet}".encode()).hexdigest() if sheet else sha256
 
 
 def hash_of_parts(hashes: list[str]) -> str:

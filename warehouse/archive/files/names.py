@@ -22,7 +22,7 @@ PACKED: Final = (".zip", ".7z", ".rar")
 COMPRESSION: Final = {".gz": "gzip", ".zst": "zstd"}
 SAMPLE_SUFFIXES: Final = (
     *(text + packed for packed in (".gz", ".zst") for text in TEXT_SUFFIXES),
-    *(*TEXT_SUFFIXES, ".parquet", ".tdms"),
+    *(*TEXT_SUFFIXES, ".parquet", ".tdms", *SPREADSHEETS),
 )
 PARTS: Final = " | "
 """Between the paths of files that are a run each; no file's name can hold it in Windows."""
@@ -30,16 +30,18 @@ STANDS_FOR: Final = re.compile(
     rf"({'|'.join(kind.name for kind in LIST_KINDS)}|{SAMPLES})(?:_([0-9]{{4}}))?"
 )
 """What a file or folder can be said to be under `[files]`: `sleeplijst_2014`, `meetdata_2014`."""
+_SHEET_OF: Final = re.compile(r"(.*?\.(?:xlsx|xlsm|xls|ods))#(.+)", re.IGNORECASE)
 _ONE_RUN: Final = re.compile(
     r"(.*?[^0-9])[ _.-]*(?:run|vaart|lauf|r)?[ _.-]*([0-9]{1,2})", re.IGNORECASE
 )
 _RUN_ALONE: Final = re.compile(r"(?:run|vaart|lauf|r|no|nr)?[ _.-]*([0-9]{1,2})", re.IGNORECASE)
 
 
+@lru_cache(10_000)
 def split_sheet(path: str) -> tuple[str, str]:
     """File and sheet of `Lijsten.xlsx#Proeven`; an empty sheet where none is named."""
-    file, mark, sheet = path.rpartition("#")
-    return (file, sheet) if mark and file.casefold().endswith(SPREADSHEETS) else (path, "")
+    match = _SHEET_OF.fullmatch(path)
+    return (match[1], match[2]) if match else (path, "")
 
 
 @lru_cache(10_000)
@@ -51,7 +53,7 @@ def sample_suffix(name: str) -> str:
 
 def kind_of(path: Path) -> str:
     """The suffix of a file as it is unpacked, in lower case: `.csv` of `x.csv.gz`."""
-    name = path.name.casefold()
+    name = split_sheet(path.name)[0].casefold()
     for packed in COMPRESSION:
         name = name.removesuffix(packed)
     return name[name.rfind(".") :]
@@ -59,8 +61,8 @@ def kind_of(path: Path) -> str:
 
 @lru_cache(10_000)
 def match_key(name: str) -> str:
-    """The name of a samples file for comparing: folded, without suffix."""
-    folded = fold_word(name)
+    """The name of a samples file for comparing: folded, without suffix or sheet."""
+    folded = fold_word(split_sheet(name)[0])
     return folded.removesuffix(sample_suffix(folded)).strip()
 
 
@@ -70,7 +72,8 @@ def as_one_run(name: str) -> tuple[str, int] | None:
     `snol 8h 2014 run 3.csv`, `snol 8h 2014_3.lvm` and `snol 8h 2014 r03.txt` are run 3 of
     `snol 8h 2014`.
     """
-    key = match_key(name)
+    _, sheet = split_sheet(name)
+    key = fold_word(sheet) or match_key(name)
     number = _RUN_ALONE.fullmatch(key)
     if number:
         return "", int(number[1])

@@ -10,9 +10,9 @@ from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedFiles
 from warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, list_files
-from warehouse.archive.files.hashes import hash_of_parts
+from warehouse.archive.files.hashes import hash_of_parts, hash_of_sheet
 from warehouse.archive.files.list_kinds import LIST_KINDS
-from warehouse.archive.files.names import PROFILE_FILE
+from warehouse.archive.files.names import PROFILE_FILE, split_sheet
 from warehouse.archive.index.tow_rows import SamplesFile
 
 
@@ -31,7 +31,8 @@ class Hashes:
         """
         if path not in self.rows:
             try:
-                self.rows[path] = (self._hash_file(full_path), full_path.stat().st_size)
+                size = Path(split_sheet(str(full_path))[0]).stat().st_size
+                self.rows[path] = (hash_of_sheet(self._hash_file, full_path), size)
             except OSError as error:
                 raise DefectiveFileError(
                     "unreadable_file",

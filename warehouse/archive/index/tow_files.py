@@ -2,11 +2,12 @@
 
 from collections import defaultdict
 from collections.abc import Iterable
+from dataclasses import replace
 
 from pipeline.messages import say
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, outside_archive
-from warehouse.archive.files.names import SAMPLES, as_one_run, match_key
+from warehouse.archive.files.names import SAMPLES, as_one_run, match_key, split_sheet
 from warehouse.archive.index.hashed_files import Hashes
 from warehouse.archive.index.tow_rows import Entry, SamplesFile
 from warehouse.archive.spelling.text import fold, fold_word, shorten
@@ -53,11 +54,20 @@ def files_by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[Entry])
 
 
 def files_meant(name: str, season: int, by_name: FilesByName) -> list[SamplesFile]:
-    """The files a name in a list can mean; a name with its extension is more precise."""
-    key = match_key(name)
+    """The files a name in a list can mean; a name with its extension is more precise.
+
+    Of a workbook it can name a sheet: `proeven.xlsx#snol 8h`.
+    """
+    key, (own, sheet) = match_key(name), split_sheet(name)
     alike = by_name.get((season, key)) or by_name.get((0, key), [])
-    exact = [file for file in alike if fold_word(file.parts[0].full_path.name) == fold_word(name)]
-    return exact if len(exact) == 1 else alike
+    exact = [file for file in alike if fold_word(file.parts[0].full_path.name) == fold_word(own)]
+    meant = exact if len(exact) == 1 or sheet else alike
+    return [_sheet_in(file.parts[0], sheet) for file in meant] if sheet else meant
+
+
+def _sheet_in(book: ArchiveFile, sheet: str) -> SamplesFile:
+    full = book.full_path.with_name(f"{book.full_path.name}#{sheet}")
+    return SamplesFile((replace(book, path=f"{book.path}#{sheet}", full_path=full),))
 
 
 def not_listed(

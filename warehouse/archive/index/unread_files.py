@@ -14,8 +14,6 @@ from warehouse.archive.files.list_kinds import BOATS, TOWS
 from warehouse.archive.files.names import (
     BOATS_FILE,
     PACKED,
-    SAMPLES,
-    SPREADSHEETS,
 )
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.spelling.text import fold
@@ -65,9 +63,6 @@ def _about_stranger(root: Path, path: str) -> str:
     kind = Path(path)
     if kind.suffix.lower() in PACKED:
         return say("'{path}' is not read: it is packed. Unpack it in its folder.", path=path)
-    if kind.suffix.lower() in SPREADSHEETS and kind.parts[0].casefold().startswith(SAMPLES):
-        message = say("'{path}' is not read: samples are read from text. Save the sheet as CSV.")
-        return say(message, path=path)
     return say(
         "'{path}' is not read: it has another name than the archive's files. Say what it is under "
         "[files] in archief.toml, or put it under ignore.",

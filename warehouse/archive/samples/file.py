@@ -10,9 +10,8 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from pipeline.errors import DefectiveInputError
-from warehouse.archive.files.contents import not_whole, read_bytes, read_start
+from warehouse.archive.files.contents import not_whole
 from warehouse.archive.files.names import kind_of
-from warehouse.archive.limits import SAMPLES_MAX_BYTES
 from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.samples.binary_files import BINARY, next_line, read_binary
 from warehouse.archive.samples.columns import check_nothing_misspelt
@@ -23,7 +22,7 @@ from warehouse.archive.samples.frame import (
     with_runs,
 )
 from warehouse.archive.samples.labview import read_tdms
-from warehouse.archive.samples.text_files import HEAD_BYTES, find_body, read_text
+from warehouse.archive.samples.text_files import HEAD_BYTES, body_of, read_text
 from warehouse.archive.spelling.columns import find_columns
 
 _FOR_A_RATE: Final = 500
@@ -39,7 +38,7 @@ def read_samples(
     """Reads one samples file.
 
     Args:
-        path: text, also LabVIEW's, packed or not; `.parquet`; `.tdms`.
+        path: text, also LabVIEW's, packed or not; a sheet; `.parquet`; `.tdms`.
         profile: names and units of the columns in that season.
         sample_rate_hz: rate the time column must agree with; not checked when None.
         run: the run that the file is, where it is one of several.
@@ -56,7 +55,7 @@ def read_samples(
     if kind_of(path) in BINARY:
         raw, line_of = read_binary(path, profile), next_line
     else:
-        body = find_body(read_bytes(path, SAMPLES_MAX_BYTES), profile)
+        body = body_of(path, profile)
         raw, line_of = read_text(body), body.line
     samples = to_schema(with_runs(raw, run), line_of, profile.wind_zero_deg)
     check_runs(samples["run"], line_of)
@@ -85,7 +84,7 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
             raise not_whole(path, "Parquet", error) from error
     if kind == ".tdms":
         return read_tdms(path, most_rows=0).columns
-    return find_body(read_start(path, HEAD_BYTES), profile).header
+    return body_of(path, profile, HEAD_BYTES).header
 
 
 def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
@@ -94,7 +93,7 @@ def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
         if kind_of(path) in BINARY:
             frame = read_binary(path, profile, _FOR_A_RATE)
         else:
-            body = find_body(read_start(path, HEAD_BYTES), profile)
+            body = body_of(path, profile, HEAD_BYTES)
             if "time" not in body.columns:
                 return None
             frame = read_text(replace(body, data=body.data[: body.data.rfind(b"\n") + 1]))

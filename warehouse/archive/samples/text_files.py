@@ -8,6 +8,7 @@ import re
 import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -15,9 +16,13 @@ import polars as pl
 
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
+from warehouse.archive.files.contents import read_bytes, read_start
+from warehouse.archive.files.names import SPREADSHEETS, kind_of, split_sheet
+from warehouse.archive.limits import MOST_ROWS_OF_A_SHEET, SAMPLES_MAX_BYTES
 from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.samples.columns import check_nothing_misspelt, seconds_of_clock, to_si
 from warehouse.archive.samples.labview import is_labview, labview_as_table
+from warehouse.archive.sheets.sheet import Grid, grids_of_workbook
 from warehouse.archive.spelling.columns import (
     FoundColumn,
     find_columns,
@@ -73,6 +78,37 @@ class Body:
         if row < 0:
             return self.header_line
         return self.places[row] if row < len(self.places) else self.first_line + row
+
+
+def body_of(path: Path, profile: SeasonProfile, start: int | None = None) -> Body:
+    """The body of a file of text or of a sheet, or of so many bytes at its start.
+
+    Raises:
+        DefectiveInputError: the file cannot be read, or a fault of its header.
+    """
+    if kind_of(path) in SPREADSHEETS:
+        return find_body(_sheet_as_text(path, profile), profile)
+    data = read_bytes(path, SAMPLES_MAX_BYTES) if start is None else read_start(path, start)
+    return find_body(data, profile)
+
+
+def sheets_with_samples(path: Path, profile: SeasonProfile) -> list[str]:
+    """The names of the sheets of a workbook that hold samples, where it has several."""
+    return [grid.name for grid in _grids(path, profile) if grid.name]
+
+
+def _grids(path: Path, profile: SeasonProfile) -> list[Grid]:
+    file, sheet = split_sheet(str(path))
+    data = read_bytes(Path(file), SAMPLES_MAX_BYTES)
+    lines = profile.header_lines
+    return grids_of_workbook(data, profile.columns, sheet, lines, MOST_ROWS_OF_A_SHEET)
+
+
+def _sheet_as_text(path: Path, profile: SeasonProfile) -> bytes:
+    """A sheet as lines with tabs, each with the number of its row."""
+    grid = _grids(path, profile)[0]
+    rows = ("\t".join(" ".join(cell.split()) for cell in row) for row in grid.rows)
+    return "\n".join([*[""] * grid.above, *rows, ""]).encode()
 
 
 def read_text(body: Body) -> pl.DataFrame:

@@ -1,4 +1,4 @@
-"""Reading the samples of a tow: one file, two, or one for every run."""
+"""Reading the samples of a tow: one file or sheet, two, or one for every run."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,15 +10,13 @@ from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
 from pipeline.tables.row import Row
 from warehouse.archive.faults import DefectiveFileError
-from warehouse.archive.files.contents import read_bytes
 from warehouse.archive.files.finding import path_inside
-from warehouse.archive.files.names import PARTS, as_one_run, kind_of
-from warehouse.archive.limits import SAMPLES_MAX_BYTES
+from warehouse.archive.files.names import PARTS, SPREADSHEETS, as_one_run, kind_of, split_sheet
 from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.samples.binary_files import BINARY, next_line
 from warehouse.archive.samples.file import read_samples
 from warehouse.archive.samples.frame import run_starts
-from warehouse.archive.samples.text_files import find_body
+from warehouse.archive.samples.text_files import body_of, sheets_with_samples
 
 
 def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> pl.DataFrame:
@@ -45,12 +43,24 @@ def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> pl.DataFra
 
 def _read_parts(root: Path, tow: Row, paths: str, profile: SeasonProfile) -> list[pl.DataFrame]:
     """Reads a file, or the files that are a run each."""
-    several = paths.split(PARTS)
+    several = _files(root, paths, profile)
     if len(several) == 1:
-        return [_read_part(root, tow, paths, profile, None)]
+        return [_read_part(root, tow, several[0], profile, None)]
     runs = runs_of_parts([Path(path).name for path in several])
     parts = zip(several, runs, strict=True)
     return [_read_part(root, tow, path, profile, run) for path, run in parts]
+
+
+def _files(root: Path, paths: str, profile: SeasonProfile) -> list[str]:
+    """The files or sheets that samples are in: of a workbook each sheet with samples is a run."""
+    files = paths.split(PARTS)
+    if len(files) > 1 or split_sheet(paths)[1] or kind_of(Path(paths)) not in SPREADSHEETS:
+        return files
+    try:
+        sheets = sheets_with_samples(path_inside(root, paths), profile)
+    except DefectiveInputError as error:
+        raise DefectiveFileError(error.reason_code, error.message, error.line, paths) from error
+    return [f"{paths}#{sheet}" for sheet in sheets] or files
 
 
 def runs_of_parts(names: Sequence[str]) -> list[int]:
@@ -87,7 +97,7 @@ def place_in_file(
     numbers = runs.to_numpy()
     begins = int((numbers <= SECOND_FILE_OFFSET).sum())
     in_second = tow["second_path"] is not None and row >= begins
-    files = tow["second_path" if in_second else "samples_path"].split(PARTS)
+    files = _files(root, tow["second_path" if in_second else "samples_path"], profile)
     own = numbers[begins:] if in_second else numbers
     row -= begins if in_second else 0
     starts = run_starts(own)
@@ -97,4 +107,4 @@ def place_in_file(
     full = path_inside(root, file)
     if kind_of(full) in BINARY:
         return file, next_line(row)
-    return file, find_body(read_bytes(full, SAMPLES_MAX_BYTES), profile).line(row)
+    return file, body_of(full, profile).line(row)

@@ -1,15 +1,26 @@
 """How far a workbook reaches, seen before a reader makes room for all of it."""
 
+import html
 import io
 import re
 import zipfile
 import zlib
 from typing import Final
 
-from warehouse.archive.limits import check_extent, check_unpacked
+from warehouse.archive.limits import (
+    MOST_LISTED_ROWS,
+    SAMPLES_MAX_BYTES,
+    WORKBOOK_MAX_BYTES,
+    check_extent,
+    check_unpacked,
+)
+from warehouse.archive.spelling.text import fold
 
-_READ: Final = ("xl/worksheets/", "xl/sharedStrings.xml", "content.xml")
+_SHEETS: Final = "xl/worksheets/"
+_READ: Final = (_SHEETS, "xl/sharedStrings.xml", "content.xml")
 """The parts that grow with what a workbook holds; damage in another is the reader's business."""
+_NAMED: Final = re.compile(rb"<(?:\w+:)?(?:sheet|Relationship)\s[^<>]*>")
+_ATTRIBUTE: Final = re.compile(rb"""([\w:]+)\s*=\s*["']([^"']*)["']""")
 _MARK: Final = re.compile(
     rb"<(?:\w+:)?(table|row|c|table-row|(?:covered-)?table-cell)((?:[\s/][^<>]*)?)>(?=(\s*<[^/])?)"
 )
@@ -18,7 +29,7 @@ _PLACE: Final = re.compile(rb"""\sr\s*=\s*["']([A-Za-z]{0,9})([0-9]{1,30})["']""
 _REPEATED: Final = re.compile(rb"""number-(?:rows|columns)-repeated\s*=\s*["']([0-9]{1,30})["']""")
 
 
-def check_workbook(data: bytes) -> None:
+def check_workbook(data: bytes, only: str = "", most_rows: int = MOST_LISTED_ROWS) -> None:
     """Refuses a workbook whose cells lie too far apart, or that unpacks to too much.
 
     One cell in the last row makes a reader ask for the memory of every cell above it. What a sheet
@@ -26,6 +37,8 @@ def check_workbook(data: bytes) -> None:
 
     Args:
         data: content of the file; what is no zip file has no more cells than bytes.
+        only: name of the sheet that is read; empty for all.
+        most_rows: of a sheet.
 
     Raises:
         DefectiveInputError: `too_large`.
@@ -35,10 +48,38 @@ def check_workbook(data: bytes) -> None:
         return
     with zipfile.ZipFile(io.BytesIO(data)) as book:
         members = book.infolist()
-        check_unpacked(sum(member.file_size for member in members))
+        if only and (own := _part_of(book, only)):
+            members = [m for m in members if m.filename == own or not _is_sheet(m.filename)]
+        check_unpacked(
+            sum(member.file_size for member in members),
+            WORKBOOK_MAX_BYTES if most_rows == MOST_LISTED_ROWS else SAMPLES_MAX_BYTES,
+        )
         for member in members:
             if member.filename.startswith(_READ):
-                _check_sheet(_content(book, member))
+                _check_sheet(_content(book, member), most_rows)
+
+
+def _is_sheet(part: str) -> bool:
+    return part.startswith(_SHEETS)
+
+
+def _part_of(book: zipfile.ZipFile, sheet: str) -> str:
+    """The part of an XLSX that holds a sheet; empty where that is not said."""
+    names = ("xl/workbook.xml", "xl/_rels/workbook.xml.rels")
+    if not {*names} <= {*book.namelist()} or sum(book.getinfo(n).file_size for n in names) > 1e7:
+        return ""
+    said = [
+        {name.rpartition(b":")[2]: value.decode() for name, value in _ATTRIBUTE.findall(tag)}
+        for name in names
+        for tag in _NAMED.findall(_content(book, book.getinfo(name)))
+    ]
+    targets = {one[b"Id"]: one.get(b"Target", "") for one in said if b"Id" in one}
+    parts = [
+        targets.get(one.get(b"id", ""), "")
+        for one in said
+        if fold(html.unescape(one.get(b"name", ""))) == fold(sheet)
+    ]
+    return f"xl/{parts[0].removeprefix('/xl/')}" if parts else ""
 
 
 def _content(book: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
@@ -49,7 +90,7 @@ def _content(book: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
         raise zipfile.BadZipFile(str(error)) from error
 
 
-def _check_sheet(xml: bytes) -> None:
+def _check_sheet(xml: bytes, most_rows: int) -> None:
     """Follows the cells of a sheet; empty ones do not count, as people format them by the million.
 
     A row or cell that does not say its place follows the one before it.
@@ -70,7 +111,7 @@ def _check_sheet(xml: bytes) -> None:
             row, column = int(place[2]), _column(place[1])
         if (child and not attributes.endswith(b"/")) or b"value=" in attributes:
             rows, columns = max(rows, row), max(columns, column)
-            check_extent(rows, columns)
+            check_extent(rows, columns, most_rows)
 
 
 def _column(letters: bytes) -> int:

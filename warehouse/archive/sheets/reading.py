@@ -53,9 +53,9 @@ def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[L
         DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
             it can be a misspelt one, and left out in silence would change numbers.
     """
-    data = read_bytes(path_inside(root, path), LIST_MAX_BYTES)
-    wanted = wording.with_names(kind.columns)
     file, sheet = split_sheet(path)
+    data = read_bytes(path_inside(root, file), LIST_MAX_BYTES)
+    wanted = wording.with_names(kind.columns)
     suffix = file[file.rfind(".") :].casefold()
     sheets = read_sheets(data, wanted, suffix, sheet, wording.header_lines.get(path))
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]

@@ -7,7 +7,7 @@ read faster, in `samples`.
 
 import datetime as dt
 import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 from zipfile import BadZipFile
@@ -15,7 +15,7 @@ from zipfile import BadZipFile
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from warehouse.archive.files.names import SPREADSHEETS
-from warehouse.archive.limits import check_extent
+from warehouse.archive.limits import MOST_LISTED_ROWS, check_extent
 from warehouse.archive.sheets.extent import check_workbook
 from warehouse.archive.spelling.columns import (
     HEADER_WITHIN,
@@ -37,6 +37,8 @@ from warehouse.archive.spelling.text import (
     split_or_nothing,
 )
 
+_HEAD: Final = 100
+"""Rows of a sheet in which its header is."""
 FEWEST_OF_A_LIST: Final = 4
 """Columns: in a list of that many, a row of one cell is not one of its rows."""
 
@@ -60,6 +62,15 @@ class Sheet:
     name: str = ""
 
 
+@dataclass(frozen=True)
+class Grid:
+    """The cells of a sheet as text, its name, and how many empty rows are above them."""
+
+    name: str
+    above: int
+    rows: list[list[str]]
+
+
 def read_sheets(
     data: bytes,
     columns: Sequence[Column],
@@ -68,9 +79,6 @@ def read_sheets(
     header_lines: tuple[int, int] | None = None,
 ) -> list[Sheet]:
     """The tables in a file: of a workbook the sheets that name the columns.
-
-    A sheet that names less than half as many columns as the best is about something else. Only
-    where there are several tables has each its name.
 
     Args:
         data: content of the file.
@@ -84,8 +92,8 @@ def read_sheets(
             its header is open.
     """
     if suffix in SPREADSHEETS:
-        sheets = list(sheets_of_workbook(data, columns, header_lines))
-        return _named(sheets, only) if only else _alike(sheets, columns)
+        grids = grids_of_workbook(data, columns, only, header_lines)
+        return [_sheet(grid, columns, header_lines) for grid in grids]
     lines = decode(data).removeprefix("\ufeff").split("\n")
     lines = [line.rstrip("\r") for line in lines]
     place = header_lines[1] - 1 if header_lines else find_header(lines, columns)
@@ -97,22 +105,6 @@ def read_sheets(
         for number, line in enumerate(lines[place + 1 :], start=place + 2)
     ]
     return [Sheet(header, place + 1, _only_rows(rows, header))]
-
-
-def _named(sheets: Sequence[Sheet], name: str) -> list[Sheet]:
-    named = [replace(sheet, name="") for sheet in sheets if fold(sheet.name) == fold(name)]
-    if not named:
-        names = ", ".join(f"'{sheet.name}'" for sheet in sheets)
-        said = say("The workbook has no sheet '{name}'; it has {names}.", name=name, names=names)
-        raise DefectiveInputError("unreadable_file", said)
-    return named
-
-
-def _alike(sheets: Sequence[Sheet], columns: Sequence[Column]) -> list[Sheet]:
-    scores = [score_of(sheet.header, columns) for sheet in sheets]
-    most = max(scores)
-    kept = [s for s, score in zip(sheets, scores, strict=True) if 2 * score >= max(most, 1)]
-    return kept if len(kept) > 1 else [replace(s, name="") for s in kept or sheets[:1]]
 
 
 def _whole_header(
@@ -165,23 +157,49 @@ def _text_row(number: int, line: str, delimiter: str, width: int) -> Row:
     return Row(number, fields)
 
 
-def sheets_of_workbook(
-    data: bytes, columns: Sequence[Column], header_lines: tuple[int, int] | None = None
-) -> Iterator[Sheet]:
-    """Gives the sheets of a workbook, each from its header on."""
+def grids_of_workbook(
+    data: bytes,
+    columns: Sequence[Column],
+    only: str = "",
+    header_lines: tuple[int, int] | None = None,
+    most_rows: int = MOST_LISTED_ROWS,
+) -> list[Grid]:
+    """The cells of the sheets of a workbook that name the columns, or of one of them.
+
+    A sheet that names less than half as many columns as the best is about something else. Only
+    where there are several has each its name.
+
+    Args:
+        data: content of the file.
+        columns: the columns that are looked for.
+        only: name of the sheet to read; empty for all.
+        header_lines: the first and the last line of the header; found when None.
+        most_rows: of a sheet.
+
+    Raises:
+        DefectiveInputError: the file cannot be read, or it has no such sheet.
+    """
     import python_calamine  # noqa: PLC0415 - only where there is a spreadsheet
 
     try:
-        check_workbook(data)
+        check_workbook(data, only, most_rows)
         book = python_calamine.load_workbook(io.BytesIO(data))
-        grids = [book.get_sheet_by_name(name) for name in book.sheet_names]
+        names = [name for name in book.sheet_names if not only or fold(name) == fold(only)]
+        sheets = [book.get_sheet_by_name(name) for name in names]
     except (python_calamine.CalamineError, BadZipFile, OSError, ValueError) as error:
         said = say("The file is not a spreadsheet that can be read: {error}.", error=error)
         raise DefectiveInputError("unreadable_file", said) from error
-    for grid in grids:
-        check_extent(grid.total_height, grid.total_width)
-    for grid in grids:
-        yield replace(_sheet(_cells_of(grid), columns, grid.start, header_lines), name=grid.name)
+    if only and not sheets:
+        known = ", ".join(f"'{name}'" for name in book.sheet_names)
+        said = say("The workbook has no sheet '{name}'; it has {names}.", name=only, names=known)
+        raise DefectiveInputError("unreadable_file", said)
+    for sheet in sheets:
+        check_extent(sheet.total_height, sheet.total_width, most_rows)
+    grids = [Grid(s.name, s.start[0] if s.start else 0, _cells_of(s)) for s in sheets]
+    heads = [_sheet(replace(g, rows=g.rows[:_HEAD]), columns, header_lines) for g in grids]
+    scores = [score_of(head.header, columns) for head in heads]
+    kept = [g for g, score in zip(grids, scores, strict=True) if 2 * score >= max(*scores, 1)]
+    return kept if len(kept) > 1 else [replace(grid, name="") for grid in kept or grids[:1]]
 
 
 def _cells_of(grid: Any) -> list[list[str]]:
@@ -198,20 +216,15 @@ def _cells_of(grid: Any) -> list[list[str]]:
     return rows
 
 
-def _sheet(
-    rows: list[list[str]],
-    columns: Sequence[Column],
-    start: tuple[int, int] | None,
-    header_lines: tuple[int, int] | None,
-) -> Sheet:
-    above = start[0] if start else 0
+def _sheet(grid: Grid, columns: Sequence[Column], header_lines: tuple[int, int] | None) -> Sheet:
+    above, rows = grid.above, grid.rows
     if not rows:
         return Sheet([], above + 1, [])
     lines = (max(1, header_lines[0] - above), header_lines[1] - above) if header_lines else None
     place = lines[1] - 1 if lines else header_among(rows[:HEADER_WITHIN], columns)
     header, place = _whole_header(rows, place, lines)
     below = (Row(above + i + 1, row) for i, row in enumerate(rows) if i > place)
-    return Sheet(header, above + place + 1, _only_rows(below, header))
+    return Sheet(header, above + place + 1, _only_rows(below, header), grid.name)
 
 
 def _as_text(cell: object) -> str:
