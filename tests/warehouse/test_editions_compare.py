@@ -13,8 +13,8 @@ import pipeline.studies.ladder
 from pipeline.method.definition import parse_method, shipped_method
 from pipeline.register.replay import RaceRules
 from pipeline.tables.keys import LINE
-from tests.warehouse.edition_bench import terms
-from warehouse.editions.compare import diff, report, report_with_races
+from tests.warehouse.edition_bench import diff, terms
+from warehouse.editions.compare import report, report_with_races
 from warehouse.editions.publish import publish_printed
 from warehouse.intake import seasons as intake
 from warehouse.store.decisions import FILE_NAME

@@ -8,8 +8,9 @@ from pathlib import Path
 import polars as pl
 import pytest
 
+from tests.warehouse.edition_bench import diff
 from warehouse.editions import notes
-from warehouse.editions.compare import diff, report
+from warehouse.editions.compare import report
 from warehouse.editions.lineage import lineage
 from warehouse.editions.sheets import verification_codes
 from warehouse.editions.verify import verify

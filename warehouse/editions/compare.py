@@ -31,7 +31,7 @@ from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.published import lines_in_time
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
-from warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
+from warehouse.store.editions import CHANGES, MEASURED, Edition
 from warehouse.store.store import Store, archive_root
 
 STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
@@ -55,23 +55,13 @@ class Comparison:
     lines: pl.DataFrame
 
 
-def diff(store: Store, old: str, new: str) -> Comparison:
-    """Compares two published editions.
+def compare(store: Store, old: Edition, new: Edition) -> Comparison:
+    """Compares two editions line by line, with causes whose factors multiply to the change.
 
     With the edition before it an edition was compared when it was published; that is part of it.
-
-    Raises:
-        MissingKnowledgeError: there is no such edition.
-        BrokenPromiseError: a file of it is missing or damaged.
     """
-    before, after = read_edition(store, old), read_edition(store, new)
-    if after.manifest.previous == old:
-        return Comparison(before, after, after.tables[CHANGES])
-    return compare(store, before, after)
-
-
-def compare(store: Store, old: Edition, new: Edition) -> Comparison:
-    """Compares two editions line by line, with causes whose factors multiply to the change."""
+    if CHANGES in new.tables and new.manifest.previous == old.manifest.edition:
+        return Comparison(old, new, new.tables[CHANGES])
     steps = _steps(store, old, new)
     printed = _printed_parts(old, new)
     parts = pl.concat([printed, steps_of_lines(new.register, steps)], how="diagonal_relaxed")

@@ -13,7 +13,7 @@ import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import Method
-from pipeline.register.register import DOUBTED, LINE
+from pipeline.register.register import DOUBTED, LINE, draft_name, reference_day
 from pipeline.tables.row import Row
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
@@ -95,6 +95,19 @@ def as_decided(store: Store, method: Method, terms: Terms, carry: str | None = N
     _check_decided_tows(decisions, store.read("tows"))
     manifest = _manifest(store, terms, method, carry)
     return recomputed(store, manifest, method, decisions, store.read("listed_boats"))
+
+
+def drafted(store: Store, method: Method, valid_from: dt.date | None = None) -> Edition:
+    """The draft of a method as an edition: what publishing it would freeze.
+
+    Args:
+        store: the data folder.
+        method: any method, also one that no rebuild applied.
+        valid_from: the day on which it would begin to count; that on which drafts are judged when
+            left out.
+    """
+    day = valid_from or reference_day(store.read("tows"), store.read("listed_races"))
+    return as_decided(store, method, Terms(draft_name(method.name), day, "", dt.date.today()))
 
 
 def publish_printed(store: Store, season: int, terms: Terms) -> Path:
