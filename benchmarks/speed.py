@@ -37,8 +37,7 @@ from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from warehouse.archive.files.contents import read_bytes
 from warehouse.archive.profile.reading import read_profiles
-from warehouse.editions.compare import compare
-from warehouse.editions.publish import drafted
+from warehouse.editions import compare, publish
 from warehouse.intake import lake
 from warehouse.intake import seasons as intake
 from warehouse.store.store import Store, write_parquet
@@ -177,8 +176,8 @@ def tasks(world: World, compared: int) -> dict[str, Callable[[], object]]:
         "decode Parquet, polars": partial(both, by_polars, files),
         "blocks from Parquet": partial(both, lambda f: block_sums(by_pyarrow(f), RATE_HZ), files),
         "rebased, all tows, from blocks": partial(recompute, methods[0], all_tows, blocks),
-        "herijk compare, all tows": lambda: compare(
-            world.store, *(drafted(world.store, method) for method in methods)
+        "herijk compare, all tows": lambda: compare.compare(
+            world.store, *(publish.drafted(world.store, method) for method in methods)
         ),
     } | {
         f"herijk {command}": partial(
