@@ -132,8 +132,6 @@ COLUMNS: Final[dict[str, Sentence]] = {
     "end_s": say("to [s]"),
     "n_tows": say("Tows"),
     "n_links": say("Boats also elsewhere"),
-    "influence": say("Largest influence"),
-    "influence_boat": say("of boat"),
     "verification_code": pgettext("column", "Verification code"),
     "previous": say("Compared with"),
     "race_date": say("Date"),

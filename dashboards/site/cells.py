@@ -92,7 +92,7 @@ class Cells:
 
     def _shower(self, name: str, root: str) -> Show:
         """How values of a column are shown."""
-        if name in ("fsn_no", "influence_boat"):
+        if name == "fsn_no":
             return lambda value: Markup('<a href="{}{}">{}</a>').format(
                 root, boat_path(value), value
             )

@@ -11,11 +11,11 @@ from markupsafe import Markup
 
 from dashboards import labels
 from dashboards.figures.style import SCENARIO
+from dashboards.option_labels import text
 from dashboards.site.cells import Cells, Show
 from dashboards.site.parts import Chart, Page, Section, Select, Table
 from dashboards.speech import Headline, Speech
 from dashboards.workbench.bench import Asked, Bench
-from dashboards.workbench.texts import text
 from pipeline.messages import Sentence, say
 from warehouse.queries.chosen_tows import CHOICES
 from warehouse.queries.scenario import CURVE_COLUMNS, Scenario

@@ -170,7 +170,7 @@ class Fit:
 
     @cached_property
     def misfit(self) -> float:
-        """Y' P y: the weighted sum of squares about the fixed effects."""
+        """Weighted sum of squares about the fixed effects, y' P y."""
         return float(self.problem.residual @ self.pull)
 
     @cached_property

@@ -18,7 +18,7 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
 from pipeline.uncertainty.misfit import Departure, departure_of_boats
-from pipeline.uncertainty.propagation import Assumed, residual_scatter, run_point_uncertainty
+from pipeline.uncertainty.propagation import Assumed, residual_scatter
 
 DECLARED: Final = 1.0
 """The declared speed among speed ratios."""
@@ -78,11 +78,6 @@ def files_log_sd(c: Computed) -> FloatArray:
     season = np.unique(c.batch.of_tow("season"), return_inverse=True)[1]
     square = np.bincount(season, apart**2) / np.maximum(np.bincount(season, combined), 1)
     return np.where(combined, 0.5 * np.sqrt(square[season]), 0.0)
-
-
-def run_point_ratio(c: Computed) -> FloatArray:
-    """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
-    return run_point_uncertainty(c.batch.blocks, c.windows.mask, c.batch.of_run("season"))
 
 
 def facts_of(

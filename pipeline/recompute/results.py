@@ -26,7 +26,6 @@ from pipeline.recompute.budget import (
     CURVE_SPEED_RATIOS,
     DECLARED,
     facts_of,
-    run_point_ratio,
     scatter_of,
 )
 from pipeline.recompute.computed import Computed
@@ -93,7 +92,7 @@ def as_tables(
         return pl.concat(frames).select(name, pl.all())
 
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
-    run_points = with_run_choice(together([_run_points(c, pooled) for c in computed]))
+    run_points = with_run_choice(together([_run_points(c) for c in computed]))
     speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
     facts = facts_of(computed, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
     components = budget(facts)
@@ -127,7 +126,7 @@ def as_tables(
     )
 
 
-def _run_points(c: Computed, pooled: bool) -> pl.DataFrame:
+def _run_points(c: Computed) -> pl.DataFrame:
     means, has_window, tow = c.means, c.windows.exists, c.batch.tow
     on_curve = curve.cw(c.curves.a_kg_m[tow], c.curves.s_s2_m2[tow], c.speed_m_s)
     log1 = np.where(has_window, means.speed_m_s, 1.0)
@@ -149,7 +148,6 @@ def _run_points(c: Computed, pooled: bool) -> pl.DataFrame:
         "wind_coefficient_behind": c.air.behind,
         "cw_kg_m": c.cw_kg_m,
         "cw_sd": c.by_true_speed(means.sd_kg_m),
-        "u_ratio": run_point_ratio(c) if pooled else np.nan,
         "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
         "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
         "log2_ratio": np.where(log2, log2_ratio, np.nan),

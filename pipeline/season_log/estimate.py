@@ -11,12 +11,7 @@ from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.assumed import USUAL
 from pipeline.season_log.diagnosis import season_diagnosis, season_steps
 from pipeline.season_log.effects import AGEING
-from pipeline.season_log.factors import (
-    GPS,
-    NOT_SETTLED,
-    factors_of,
-    without_each_boat,
-)
+from pipeline.season_log.factors import GPS, NOT_SETTLED, factors_of
 from pipeline.season_log.faults import Posterior, roughly, solve
 from pipeline.season_log.fit import OF_TOWS, Problem
 from pipeline.season_log.tow_estimates import with_estimates
@@ -125,16 +120,15 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         ln factor, is made up of three parts: `repeat_tows_sd`, by the scatter of repeat tows;
         `gps_sd`, by plain GPS; `assumed_sd`, by what is assumed of log, load cell and boats.
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
-        network (0 has the anchor). `influence` is the largest change of the factor when one boat
-        (`influence_boat`) is left out.
+        network (0 has the anchor).
 
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
     posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
-    fitted, change = posterior.fit, without_each_boat(posterior.fit)
-    factors, covariance = factors_of(fitted, posterior.determined, posterior.refused, change)
-    of_tows, weights = with_estimates(posterior, change)
+    fitted = posterior.fit
+    factors, covariance = factors_of(fitted, posterior.determined, posterior.refused)
+    of_tows, weights = with_estimates(posterior)
     diagnosis = season_diagnosis(posterior)
     sd = np.exp(0.5 * fitted.ln_variance).tolist()
     *tow_log_sd, calibration_sd, drift_sd = sd[OF_TOWS:]

@@ -11,7 +11,6 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.choice import first_largest
 from pipeline.quantiles import MAD_TO_SD, t_quantile
 from pipeline.season_log.boats import GPS as GPS_NUMBER
 from pipeline.season_log.boats import LEVEL
@@ -41,28 +40,14 @@ def means(fitted: Fit) -> FloatArray:
     return np.asarray((total / np.bincount(log)[:, None].clip(1))[1:])
 
 
-def without_each_boat(fitted: Fit) -> FloatArray:
-    """Change of every effect of the fit when a boat is left out, (boats by number, k)."""
-    hull = fitted.problem.tows.frame["hull"].to_numpy()
-    k = len(fitted.active)
-    information, score = np.zeros((hull.max() + 1, k, k)), np.zeros((hull.max() + 1, k))
-    for boats in fitted.boats:
-        whose = hull[boats.rows[:, 0] // 3]
-        np.add.at(information, whose, boats.information)
-        np.add.at(score, whose, boats.score)
-    left = np.linalg.inv(fitted.covariance) - information
-    return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
-
-
 def factors_of(
-    fitted: Fit, known: BoolArray, contradicted: BoolArray, change: FloatArray
+    fitted: Fit, known: BoolArray, contradicted: BoolArray
 ) -> tuple[pl.DataFrame, FloatArray]:
     """The factor of each log, and the covariance between those that are determined.
 
     Args:
         known: logs that are determined, (logs,).
         contradicted: those that are `refused`.
-        change: of every effect of the fit without each boat, as `without_each_boat` gives it.
 
     Returns:
         Rows of `SeasonFactors.factors`, and (determined, determined) covariance of ln factor.
@@ -73,8 +58,6 @@ def factors_of(
     variance = np.diag(covariance)
     mean, dof = along @ fitted.value, fitted.dof(along)
     half = np.sqrt(variance) * t_quantile(np.maximum(dof, 1.0))
-    move = np.abs(np.expm1(change @ along.T)) * np.exp(mean)
-    names = tows.frame.unique("hull").sort("hull")["fsn_no"]
     found = (
         tows.logs.select("log_place")
         .filter(pl.Series(known))
@@ -87,8 +70,6 @@ def factors_of(
             repeat_tows_sd=np.sqrt(np.maximum(variance - by_gps - assumed, 0.0)),
             gps_sd=np.sqrt(by_gps),
             assumed_sd=np.sqrt(assumed),
-            influence=move.max(axis=0),
-            influence_boat=names.gather(first_largest(move)),
         )
     )
     tied_by_gps = pl.col("has_gps") | pl.col("calibrated")

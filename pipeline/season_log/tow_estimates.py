@@ -27,13 +27,10 @@ LEAST_WEIGHT: Final = 0.005
 """A smaller share of what an estimate rests on is left out of the list."""
 
 
-def with_estimates(posterior: Posterior, change: FloatArray) -> tuple[pl.DataFrame, pl.DataFrame]:
+def with_estimates(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
     """What the instruments did to each tow, and what all tows say of its ln Cw.
 
     A fault counts where it is likelier than not, and not at all where it is not.
-
-    Args:
-        change: of every effect of the fit without each boat, (boats, effects).
 
     Returns:
         The tows with `factor` of the log (null where the season is not determined; 1 with dGPS),
@@ -55,7 +52,8 @@ def with_estimates(posterior: Posterior, change: FloatArray) -> tuple[pl.DataFra
     variance += own * (2.0 * variance / problem.settings.log_sd**2 - by_log)
     known = np.sqrt(np.maximum(variance, 0.0)) / (2.0 + 2.0 * problem.q)
     applied = np.where(speed | force | zero, level, 0.0)
-    others = -(applied * change[problem.tows.frame["hull"].to_numpy()]).sum(axis=1)
+    change = _without_each_boat(fitted)[problem.tows.frame["hull"].to_numpy()]
+    others = -(applied * change).sum(axis=1)
     share, value, determined = fitted.share, fitted.value, posterior.log_known
     ln_factor = np.where(determined, posterior.ln_factor, 0.0)
     ln_force, zero_n = share[:, force] @ value[force], share[:, zero] @ value[zero]
@@ -76,6 +74,19 @@ def with_estimates(posterior: Posterior, change: FloatArray) -> tuple[pl.DataFra
     }
     columns = [pl.Series(name, values).fill_nan(None) for name, values in numbers.items()]
     return problem.tows.frame.drop("boat", "hull", "log_place").with_columns(columns), weights
+
+
+def _without_each_boat(fitted: Fit) -> FloatArray:
+    """Change of every effect of the fit when a boat is left out, (boats by number, k)."""
+    hull = fitted.problem.tows.frame["hull"].to_numpy()
+    k = len(fitted.active)
+    information, score = np.zeros((hull.max() + 1, k, k)), np.zeros((hull.max() + 1, k))
+    for boats in fitted.boats:
+        whose = hull[boats.rows[:, 0] // 3]
+        np.add.at(information, whose, boats.information)
+        np.add.at(score, whose, boats.score)
+    left = np.linalg.inv(fitted.covariance) - information
+    return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
 
 
 def _askew(fitted: Fit) -> FloatArray:

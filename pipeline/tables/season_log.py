@@ -36,8 +36,6 @@ class SeasonLinks(PerPart):
     assumed_sd = column.optional(
         "1", "part of ln_sd by what is assumed of log, load cell and boats"
     )
-    influence = column.optional("1", "largest change when one boat is left out")
-    influence_boat = column.text("that boat", nullable=True)
 
 
 class SeasonSteps(PerPart):

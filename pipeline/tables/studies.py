@@ -1,7 +1,7 @@
 """What the steps and options of a method change, and counts over many tows."""
 
 from pipeline.tables import column
-from pipeline.tables.bases import PerMethod, PerRun, PerTow
+from pipeline.tables.bases import PerMethod, PerTow
 from pipeline.tables.declare import dy
 
 
@@ -76,15 +76,3 @@ class PrintReproduction(PerTow):
     printed_cw_kg_m = column.optional("kg/m", "Cw as printed")
     cw_kg_m = column.optional("kg/m", "Cw by the method at the printed speed")
     cw_ratio = column.optional("1", "printed / recomputed Cw")
-
-
-class RunStatistics(PerRun):
-    """What the tool of 2014 showed of a run, per channel, over means of a second."""
-
-    channel = column.text("log1, log2, gps, force, wind or cw", primary_key=True)
-    mean = column.number("as channel", "mean")
-    sd = column.number("as channel", "standard deviation of the means of a second", min=0)
-    median = column.number("as channel", "their median")
-    sd_ratio = column.optional("1", "sd / mean")
-    median_ratio = column.optional("1", "median / mean")
-    log1_ratio = column.optional("1", "speed / that of log 1; speeds only")

@@ -1,7 +1,7 @@
-"""The uncertainty of a run point and of Cw of a tow, component by component.
+"""The uncertainty of Cw of a tow, component by component.
 
-Belongs here: what the unrest of force and speed within runs says about a run mean, the budget of a
-tow with what its components share with other tows, and the interval that follows. Does not: the
+Belongs here: how far run points scatter about their curves, the budget of a tow with what its
+components share with other tows, and the interval that follows. Does not: the
 covariance of a curve's parameters (`curve`), the season log factors (`season_log`) and drawing
 from the budget (`ensemble`).
 
@@ -16,76 +16,11 @@ from typing import Final, NamedTuple
 import numpy as np
 import polars as pl
 
-from pipeline.arrays import BoolArray, FloatArray, IntArray
-from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.arrays import BoolArray, FloatArray
 from pipeline.quantiles import t_quantile
 from pipeline.steps.speed import LOG
 
-LONGEST_LAG_S: Final = 10
-"""Lags up to here count: surge and wander of the force have died away, and a window is 30-50 s."""
-
-LEAST_OF_WHITE: Final = 0.1
-"""Swinging noise averages out better than white noise, but a mean is never taken to be more than
-ten times as sure as white noise would make it."""
-
 CURVE_PARAMETERS: Final = 2
-
-
-def run_point_uncertainty(blocks: RunBlocks, window: BoolArray, season: FloatArray) -> FloatArray:
-    """Relative standard uncertainty of the mean F/v^2 over each run's window.
-
-    50,000 samples are not 50,000 measurements: the variance of a mean is that of the noise at
-    frequency zero over its length. One run is too short for its own autocovariance, so that of
-    its 1-s blocks is pooled over the season's runs, with the bias by each run's own mean taken
-    out (docs/method-details.md, 9).
-
-    Args:
-        blocks: the runs.
-        window: blocks that count, shape (runs, seconds); one stretch per run.
-        season: season of each run, shape (runs,).
-
-    Returns:
-        Shape (runs,); infinite where a window, or all windows of a season, are too short to tell.
-    """
-    present = window & (blocks.n > 0)
-    length = present.sum(axis=1).astype(np.float64)
-    level = np.where(present, blocks.block_means("log1_cw"), 0.0)
-    mean = level.sum(axis=1) / np.maximum(length, 1.0)
-    deviation = np.where(present, level / np.where(mean > 0, mean, 1.0)[:, None] - 1.0, 0.0)
-    _, group = np.unique(season, return_inverse=True)
-    lags = min(LONGEST_LAG_S, blocks.seconds - 1)
-    raw = np.stack([_pooled_product(deviation, present, group, lag) for lag in range(lags + 1)])
-    runs = np.bincount(group, length > 0)
-    mean_length = np.bincount(group, length) / np.maximum(runs, 1.0)
-    # The mean of a run lowers every autocovariance by the variance of that mean.
-    lag = np.arange(lags + 1)
-    taper = _taper(lag, mean_length)
-    room = 1.0 - taper.sum(axis=0) / np.maximum(mean_length, 1.0)
-    known = (mean_length > 2 * lags) & (room > 0)
-    lost = (taper * raw).sum(axis=0) / (np.maximum(mean_length, 1.0) * np.where(known, room, 1.0))
-    covariance = raw + lost
-    at_zero = (_taper(lag, length) * covariance[:, group]).sum(axis=0)
-    at_zero = np.maximum(at_zero, LEAST_OF_WHITE * covariance[0, group])
-    sure = known[group] & (length > lags)
-    variance = np.maximum(at_zero, 0.0) / np.maximum(length, 1.0)
-    return np.where(sure, np.sqrt(variance), np.inf)
-
-
-def _pooled_product(
-    deviation: FloatArray, present: BoolArray, group: IntArray, lag: int
-) -> FloatArray:
-    """Mean product of blocks a lag apart, over all runs of each group, shape (groups,)."""
-    end = deviation.shape[1] - lag
-    product = (deviation[:, :end] * deviation[:, lag:]).sum(axis=1)
-    pairs = (present[:, :end] & present[:, lag:]).sum(axis=1)
-    total = np.bincount(group, product)
-    return np.asarray(total / np.maximum(np.bincount(group, pairs), 1.0), dtype=np.float64)
-
-
-def _taper(lag: IntArray, length: FloatArray) -> FloatArray:
-    """How often each lag, to both sides, occurs in a mean over `length`; shape (lags, lengths)."""
-    weight = 1.0 - lag[:, None] / np.maximum(length, 1.0)[None, :]
-    return np.asarray(np.where(lag[:, None] > 0, 2.0, 1.0) * np.maximum(weight, 0.0))
 
 
 def residual_scatter(
@@ -93,8 +28,7 @@ def residual_scatter(
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
-    Four degrees of freedom per tow are too few for its own (docs/method-details.md, 9). This is the
-    check on `run_point_uncertainty`: it also has in it what differs from run to run.
+    Four degrees of freedom per tow are too few for its own (docs/method-details.md, 9).
 
     Args:
         residual_ratio: (point - curve) / curve, shape (tows, points).

@@ -11,9 +11,9 @@ from urllib.parse import urlencode
 import pytest
 from polars.testing import assert_frame_equal
 
+from dashboards import option_labels as texts
 from dashboards.figures.style import SCENARIO
 from dashboards.guard import listen
-from dashboards.workbench import texts
 from dashboards.workbench.bench import Bench, Saving
 from dashboards.workbench.form import CONTROLS, control, write
 from dashboards.workbench.results import results

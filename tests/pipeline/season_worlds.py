@@ -8,10 +8,8 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 import polars as pl
-from scipy.signal import lfilter
 
 from pipeline import season_log
-from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.uncertainty import propagation as uncertainty
 
 SEASONS = range(2009, 2019)
@@ -221,37 +219,3 @@ def register(world):
     lines = last.select("fsn_no", "tow_id", pl.col("ln_cw").exp().alias("cw_kg_m"))
     assumed = {n: pl.lit(x) for n, x in asdict(uncertainty.Assumed()).items()}
     return found, lines, uncertainty.budget(tows.with_columns(**assumed))
-
-
-def run_noise(rng, runs, seconds):
-    """Relative noise of 1-s blocks: surge of the tow line, wander, fast noise."""
-    steps_s = 10
-    time_s = np.arange(seconds * steps_s) / steps_s
-
-    def coloured(memory_s):
-        keep = np.exp(-1 / (steps_s * memory_s))
-        drive = np.sqrt(1 - keep**2) * rng.standard_normal((runs, time_s.size))
-        drive[:, 0] /= np.sqrt(1 - keep**2)
-        return lfilter([1.0], [1.0, -keep], drive, axis=1)
-
-    turn = 2 * np.pi * time_s
-    surge = coloured(5.0) * np.cos(turn) + coloured(5.0) * np.sin(turn)
-    noise = 0.06 * surge + 0.02 * coloured(3.0) + 0.05 * coloured(0.05)
-    return noise.reshape(runs, seconds, steps_s).mean(axis=2)
-
-
-def as_blocks(noise, samples=50):
-    """Blocks of runs whose F/v^2 is 40 kg/m but for the noise."""
-    n = np.full(noise.shape, float(samples))
-    runs = pl.DataFrame({"run": np.arange(len(noise))})
-    return RunBlocks(runs, n, {"log1_cw": n * 40.0 * (1.0 + noise)})
-
-
-def run_point_ratios(runs, seconds, total=3600):
-    """Estimated / true sd of a run mean, for each season of `runs` runs."""
-    noise = run_noise(np.random.default_rng(6), total, seconds)
-    truth = noise.mean(axis=1).std()
-    season = np.arange(total) // runs
-    blocks = as_blocks(noise)
-    sd = uncertainty.run_point_uncertainty(blocks, blocks.n > 0, season)
-    return sd[::runs] / truth

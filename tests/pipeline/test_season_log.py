@@ -231,8 +231,7 @@ def test_a_season_that_hangs_on_one_boat_says_so():
         renamed(world.tows, IN_2010 & (pl.col("fsn_no") != boat))
     ).factors
     row = found.row(by_predicate=IN_2010, named=True)
-    assert (row["n_links"], row["influence_boat"]) == (1, boat)
-    assert row["influence"] > 0.005
+    assert row["n_links"] == 1
     assert (row["hi"] - row["lo"]) > 2 * (sound.factors["hi"] - sound.factors["lo"])[1]
 
 

@@ -14,9 +14,7 @@ from pipeline.uncertainty.propagation import (
     budget,
     combine,
     residual_scatter,
-    run_point_uncertainty,
 )
-from tests.pipeline.season_worlds import as_blocks, run_point_ratios
 
 
 def tows(assumed=None, **changed):
@@ -44,23 +42,6 @@ def test_what_is_said_of_a_normal_number_is_so():
     assert stats.median_abs_deviation([-1, 0, 1], scale="normal") == pytest.approx(
         MAD_TO_SD, rel=1e-4
     )
-
-
-def test_pooled_over_36_runs_the_estimate_is_near_the_truth():
-    ratio = run_point_ratios(36, 50)
-    assert ratio.mean() == pytest.approx(1.0, abs=0.06)
-    assert ratio.std() < 0.12
-    assert ratio.min() > 0.7
-
-
-def test_white_noise_gives_the_error_of_a_mean():
-    noise = 0.03 * np.random.default_rng(2).standard_normal((600, 50))
-    blocks = as_blocks(noise)
-    window = blocks.n > 0
-    window[:300, 40:] = False
-    sd = run_point_uncertainty(blocks, window, np.zeros(600, int))
-    assert sd[0] == pytest.approx(0.03 / np.sqrt(40), rel=0.08)
-    assert sd[-1] == pytest.approx(0.03 / np.sqrt(50), rel=0.08)
 
 
 def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():

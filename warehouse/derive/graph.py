@@ -48,11 +48,10 @@ from warehouse.store.store import Store
 EDITIONS: Final = ("from_edition", "to_edition")
 
 
-def recording_tables(tows: pl.DataFrame, blocks: Blocks) -> dict[str, pl.DataFrame]:
-    """The traces of all runs of sound tows, and the tool's figures of each of their channels."""
-    of_all = blocks.columns(*dict.fromkeys(("tow_id", *PLACE, *SUMS, *claims.CHANNELS.values())))
-    sound = of_all.join(tows, on="tow_id", how="semi", maintain_order="left")
-    return {"trace_seconds": second_means(sound), "run_statistics": claims.run_statistics(sound)}
+def trace_seconds(tows: pl.DataFrame, blocks: Blocks) -> pl.DataFrame:
+    """The traces of all runs of sound tows."""
+    of_all = blocks.columns(*dict.fromkeys(("tow_id", *PLACE, *SUMS)))
+    return second_means(of_all.join(tows, on="tow_id", how="semi", maintain_order="left"))
 
 
 def method_tables(
@@ -130,7 +129,7 @@ DATABASE: Final = Step(
 
 STEPS: Final = (
     ARCHIVE,
-    Step("recordings", recording_tables, ("trace_seconds", "run_statistics")),
+    *_alone("recordings", trace_seconds),
     *(METHOD, STUDIES, LINES, TYPES),
     *_alone("consistency", variance_components, slow_tows, repeat_pairs, era_shifts),
     *_alone("consistency", repeats.reproducibility),
