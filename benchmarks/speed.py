@@ -35,9 +35,9 @@ from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
+from pipeline.register.replay import RaceRules
 from warehouse.archive.files.contents import read_bytes
 from warehouse.archive.profile.reading import read_profiles
-from warehouse.editions import compare, publish
 from warehouse.intake import lake
 from warehouse.intake import seasons as intake
 from warehouse.store.store import Store, write_parquet
@@ -168,17 +168,16 @@ def tasks(world: World, compared: int) -> dict[str, Callable[[], object]]:
         all_tows.select("tow_id"), on="tow_id", how="semi"
     )
     blocks = stack_blocks(intake.all_blocks(world.store), runs)
-    methods = [shipped_method(name) for name in METHODS]
     return {
         "parse text, write Parquet": partial(parse_and_write, world, some, written),
         "blocks from text": partial(read_text, world, some, FOLDER / "empty"),
         "decode Parquet, pyarrow": partial(both, by_pyarrow, files),
         "decode Parquet, polars": partial(both, by_polars, files),
         "blocks from Parquet": partial(both, lambda f: block_sums(by_pyarrow(f), RATE_HZ), files),
-        "rebased, all tows, from blocks": partial(recompute, methods[0], all_tows, blocks),
-        "herijk compare, all tows": lambda: compare.compare(
-            world.store, *(publish.drafted(world.store, method) for method in methods)
+        "rebased, all tows, from blocks": partial(
+            recompute, shipped_method(METHODS[0]), all_tows, blocks
         ),
+        "herijk compare, all tows": partial(compared, world.store, *METHODS, RaceRules()),
     } | {
         f"herijk {command}": partial(
             subprocess.run,

@@ -39,6 +39,8 @@ class Compared:
 def compared(store: Store, old: str, new: str, rules: RaceRules) -> Compared:
     """Compares editions as they are, and drafts, methods and method files as their drafts are.
 
+    Two drafts are compared over all of history: also lines whose tow has expired.
+
     Raises:
         HerijkError: there is no such method or edition, or it cannot be computed.
     """
@@ -53,7 +55,11 @@ def compared(store: Store, old: str, new: str, rules: RaceRules) -> Compared:
     options = [] if before is None or after is None else list(differences(after, before))
     if not {old, new} <= {*published} and store.made_from("tows") is None:
         return Compared(old, new, options, None)
-    editions = (side if isinstance(side, Edition) else drafted(store, side) for side in sides)
+    counting = ("valid",) if {old, new} & {*published} else ("valid", "expired")
+    editions = (
+        side if isinstance(side, Edition) else drafted(store, side, counting=counting)
+        for side in sides
+    )
     return Compared(old, new, options, report_with_races(store, compare(store, *editions), rules))
 
 

@@ -9,6 +9,7 @@ import datetime as dt
 import hashlib
 import io
 import json
+from collections.abc import Collection
 from dataclasses import replace
 from typing import Final
 
@@ -76,6 +77,7 @@ def recomputed(
     decisions: pl.DataFrame,
     never_towed: pl.DataFrame,
     judged: pl.DataFrame | None = None,
+    counting: Collection[str] = ("valid",),
 ) -> Edition:
     """The edition that a method gives.
 
@@ -87,6 +89,7 @@ def recomputed(
         never_towed: boats with their crews of which lines without a tow are made.
         judged: the tows to take, with what was judged of them; all, as they are judged now, when
             left out.
+        counting: statuses of lines that have numbers.
     """
     today = tables_of_today(store)
     if judged is not None:
@@ -99,7 +102,7 @@ def recomputed(
     draft = draft_register(
         made.curves, tows, never_towed, manifest.valid_from, method.validity, decisions
     )
-    lines = _with_facts(draft, tows)
+    lines = _with_facts(draft, tows, counting)
     if manifest.carried_from is not None:
         printed = read_edition(store, manifest.carried_from)
         lines = with_carried(lines, printed, made.log_factors, manifest.valid_from, method)
@@ -166,13 +169,13 @@ def made_again(store: Store, edition: Edition) -> Edition:
     return with_changes(store, again)
 
 
-def _with_facts(draft: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Lines with the facts of their tows; numbers only where they are valid."""
+def _with_facts(draft: pl.DataFrame, tows: pl.DataFrame, counting: Collection[str]) -> pl.DataFrame:
+    """Lines with the facts of their tows; numbers only where they count."""
     facts = tows.select("tow_id", *SIZES, INPUTS_HASH)
-    valid = pl.col("status") == "valid"
+    counts = pl.col("status").is_in(list(counting))
     return draft.join(facts, on="tow_id", how="left", maintain_order="left").with_columns(
-        *(pl.when(valid).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
-        pl.when(valid).then(pl.lit(MEASURED)).alias("basis"),
+        *(pl.when(counts).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
+        pl.when(counts).then(pl.lit(MEASURED)).alias("basis"),
     )
 
 

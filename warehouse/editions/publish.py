@@ -6,6 +6,7 @@ it counts, the decision and the day of publication.
 """
 
 import datetime as dt
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -89,15 +90,31 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
     return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
 
 
-def as_decided(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Edition:
-    """The edition that publishing would freeze; raises and takes arguments as `publish`."""
+def as_decided(
+    store: Store,
+    method: Method,
+    terms: Terms,
+    carry: str | None = None,
+    counting: Collection[str] = ("valid",),
+) -> Edition:
+    """The edition that publishing would freeze; raises and takes arguments as `publish`.
+
+    Args:
+        counting: statuses of lines that have numbers.
+    """
     decisions = decided.decision_table(decisions_up_to(store, terms.published_on))
     _check_decided_tows(decisions, store.read("tows"))
     manifest = _manifest(store, terms, method, carry)
-    return recomputed(store, manifest, method, decisions, store.read("listed_boats"))
+    crews = store.read("listed_boats")
+    return recomputed(store, manifest, method, decisions, crews, counting=counting)
 
 
-def drafted(store: Store, method: Method, valid_from: dt.date | None = None) -> Edition:
+def drafted(
+    store: Store,
+    method: Method,
+    valid_from: dt.date | None = None,
+    counting: Collection[str] = ("valid",),
+) -> Edition:
     """The draft of a method as an edition: what publishing it would freeze.
 
     Args:
@@ -105,9 +122,11 @@ def drafted(store: Store, method: Method, valid_from: dt.date | None = None) -> 
         method: any method, also one that no rebuild applied.
         valid_from: the day on which it would begin to count; that on which drafts are judged when
             left out.
+        counting: statuses of lines that have numbers; with `expired` all of history has.
     """
     day = valid_from or reference_day(store.read("tows"), store.read("listed_races"))
-    return as_decided(store, method, Terms(draft_name(method.name), day, "", dt.date.today()))
+    terms = Terms(draft_name(method.name), day, "", dt.date.today())
+    return as_decided(store, method, terms, counting=counting)
 
 
 def publish_printed(store: Store, season: int, terms: Terms) -> Path:
