@@ -68,7 +68,7 @@ def index(store: Store, root: Path) -> None:
     all_faults = (*listed.faults, *race_faults, *register_faults)
     for fault in all_faults:
         if isinstance(fault, Failure):
-            note(store.root, fault.path.replace(" ", "-"), fault.trace)
+            note(store.root, (fault.tow_id or fault.path).replace(" ", "-"), fault.trace)
     about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
     about |= listed.profiles.publication.model_dump()
     tables = {
