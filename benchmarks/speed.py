@@ -43,8 +43,7 @@ from warehouse.intake import seasons as intake
 from warehouse.store.store import Store, write_parquet
 
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data"))
-RATE_HZ = 1000
-THREADS = 2
+RATE_HZ, THREADS = 1000, 2
 TEXT_LIMIT_BYTES = 10**9
 METHODS = ("rebased", "as-published")
 PLAIN_HEADER = b"run;log1 [m/s];log2 [m/s];gps [m/s];"
