@@ -4,7 +4,7 @@ Apart from the pages, as looking whether these are stale must not import what dr
 """
 
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 GUIDES: Final = ("method", "audit")
 """Documents of the project that have a page, by their name."""
@@ -20,3 +20,20 @@ def guide_file(name: str, language: str) -> Path:
     """Where the document is: packed with the program, or in its checkout."""
     packed = _PACKAGE / _FOLDERS[language] / f"{name}.md"
     return packed if packed.exists() else _PACKAGE.parent / _FOLDERS[language] / f"{name}.md"
+
+
+class MethodGuide(NamedTuple):
+    """The sections of the document on methods, in its order, each with its heading."""
+
+    measured: str
+    runs: str
+    added: str
+    certain: str
+    register: str
+    methods: str
+
+
+def method_guide(language: str) -> MethodGuide:
+    """The document on methods by section."""
+    text = guide_file("method", language).read_bytes().decode()
+    return MethodGuide(*(f"## {section}" for section in text.split("\n## ")[1:]))

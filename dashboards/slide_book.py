@@ -14,6 +14,8 @@ import polars as pl
 
 from dashboards import labels
 from dashboards.figures.slides import ENDS, PAIRS
+from dashboards.statements import Statement
+from dashboards.statements.method import voted_steps
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import Sentence, ngettext, say
@@ -69,7 +71,7 @@ class Slide(NamedTuple):
     figure: str
     rows: pl.DataFrame
     finding: Sentence
-    notes: Sequence[Sentence]
+    notes: Sequence[Sentence | Statement]
     source: str
     """The table that the finding comes from."""
 
@@ -374,7 +376,7 @@ class Book:
             after=100 * after["sd_ratio"],
             before=100 * before["sd_ratio"],
         )
-        notes = [
+        notes: list[Sentence | Statement] = [
             say(
                 "Of {pairs} repeat tows {after:.0f} % lie within 2 % of the tow before; "
                 "{method} it was {before:.0f} %. The presentation promised a large majority.",
@@ -388,6 +390,7 @@ class Book:
                 for slide in made
                 if slide.name.startswith(CONCLUDING)
             ),
+            *voted_steps(self.views, self.ends[-1]),
         ]
         yield Slide("conclusion", "reproducibility", rows, finding, notes, "reproducibility")
 

@@ -9,7 +9,8 @@ from dashboards.documents import pdf
 from dashboards.figures import FIGURES
 from dashboards.html import keep_units
 from dashboards.slide_book import Slide, slides
-from pipeline.messages import Say, say, speaker
+from dashboards.speech import Speech
+from pipeline.messages import say
 from warehouse.queries.views import Views
 from warehouse.store.unforeseen import Border
 
@@ -33,11 +34,12 @@ def slide_book(
     Raises:
         MissingKnowledgeError: there is no such type or boat, or nothing to compare.
     """
-    say = speaker(language)
+    speech = Speech(language)
+    say = speech.say
     pages = []
     for slide in slides(views, types, boats, border):
         with border(f"slide {slide.name} drawn"):
-            pages.append(_page(slide, language, say))
+            pages.append(_page(slide, speech))
     simulated = views.about().get("simulated") == "true"
     content = {
         "language": language,
@@ -48,7 +50,8 @@ def slide_book(
     return pdf("slides.typ", content)
 
 
-def _page(slide: Slide, language: str, say: Say) -> dict[str, Any]:
+def _page(slide: Slide, speech: Speech) -> dict[str, Any]:
+    say = speech.say
     spec: dict[str, Any] = FIGURES[slide.figure](slide.rows, say).to_dict(validate=False)
     if "facet" in spec:
         spec["spec"] |= PANEL
@@ -56,7 +59,7 @@ def _page(slide: Slide, language: str, say: Say) -> dict[str, Any]:
         spec |= WIDE if isinstance(spec.get("height"), int) else {"width": WIDE["width"]}
     return {
         "finding": keep_units(say(slide.finding)),
-        "chart": drawn.svg(spec, language),
-        "notes": [keep_units(say(note)) for note in slide.notes],
+        "chart": drawn.svg(spec, speech.language),
+        "notes": [keep_units(speech.words(note)) for note in slide.notes],
         "source": say(SOURCE, table=slide.source),
     }

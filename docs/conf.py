@@ -114,11 +114,18 @@ def _limit(check: Check) -> str:
 
 
 def _status(field: FieldInfo) -> str:
-    return str(field.json_schema_extra["status"])
+    return _of_values(field, "status", 0)
 
 
 def _source(field: FieldInfo) -> str:
-    return str(field.json_schema_extra["source"])
+    return _of_values(field, "source", 1)
+
+
+def _of_values(field: FieldInfo, name: str, place: int) -> str:
+    """Where an option comes from, and the values of it that come from elsewhere."""
+    basis = field.json_schema_extra
+    others = (f"`{value}`: {other[place]}" for value, other in basis["but"].items())
+    return "; ".join([str(basis[name]), *others])
 
 
 def _values(field: FieldInfo) -> str:

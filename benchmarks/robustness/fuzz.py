@@ -18,7 +18,6 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -38,7 +37,7 @@ from pipeline.method.definition import parse_method, shipped_methods, shipped_te
 from tests.reason_codes import REASON_CODES
 from warehouse.archive import FileHashes, index_archive
 from warehouse.archive.files.list_kinds import TOWS
-from warehouse.archive.lists import tows
+from warehouse.archive.lists.tows import readable, with_ids
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.archive.samples.file import read_samples
@@ -296,9 +295,8 @@ def _xlsx(tow_list: Path) -> bytes:
 
 
 def _read_list(path: Path, _: bytes) -> None:
-    for row in read_list(path.parent, TOWS, path.name, Wording()):
-        with suppress(DefectiveInputError):  # of a row: it is set aside
-            tows.read_tow(row, 2009, 20)
+    rows, problems = read_list(path.parent, TOWS, path.name, Wording())
+    readable(with_ids(rows), problems, Profiles(), [], [])
 
 
 _DECISION: Final = b"""[[besluit]]

@@ -9,10 +9,14 @@ import polars as pl
 from dashboards import drawn, labels
 from dashboards.documents import pdf
 from dashboards.figures import FIGURES
-from dashboards.guides import guide_file
+from dashboards.guides import method_guide
+from dashboards.html import keep_units
 from dashboards.markdown import to_blocks
+from dashboards.measured import picture
 from dashboards.speech import Speech
+from dashboards.statements import Statement
 from dashboards.statements.edition import Effect, changes, effects, undecided
+from dashboards.statements.method import BASES, EACH_STEP, VOTE, WORKED, Explained, explained
 from dashboards.statements.race import stretched_fatigue
 from pipeline.messages import in_per_cent, pgettext, say
 from pipeline.register.register import draft_name
@@ -23,6 +27,8 @@ from warehouse.store.methods import KnownMethods
 
 Part = dict[str, object]
 
+HEADS: Final = (EACH_STEP, WORKED, VOTE)
+"""Headings of the generated parts of the annex."""
 LARGEST: Final = 10
 """Crews named on each side."""
 
@@ -95,8 +101,10 @@ def proposal(
                 ),
             ),
         ],
-        "annex_title": say("Annex: how Cw is made"),
-        "annex": to_blocks(guide_file("method", language).read_text(encoding="utf-8")),
+        "annex_title": say("Annex: the method in two pages"),
+        "picture": picture(speech),
+        "guide": {name: to_blocks(text) for name, text in method_guide(language)._asdict().items()},
+        "methods": [_method(explained(views, method), speech) for method in methods],
         "footing": f"{say('Made by code')} {about.get('code_version', '')}",
     }
     return pdf("proposal.typ", content)
@@ -297,6 +305,26 @@ def _times(views: Views, winners: pl.DataFrame) -> pl.Series:
     races = winners.filter("winner_changed").select("race", "race_date")
     results = views.store.read("listed_races")
     return results.join(races, on=["race", "race_date"], how="semi")["rowing_time_s"]
+
+
+def _method(told: Explained, speech: Speech) -> Part:
+    """What each step of a method does, a boat worked through, and what is voted on."""
+    say, boat = speech.say, told.worked
+    spec = FIGURES["resistance_curve"](boat.drawn, say).to_dict() if boat else {}
+    return {
+        "title": say(labels.method(told.method.name)),
+        "heads": [say(head) for head in HEADS],
+        "bases": say(BASES),
+        "steps": [(say(step.name), *_spoken(step.statements, speech)) for step in told.steps],
+        "boat": _spoken(boat.statements, speech) if boat else [],
+        "curve": drawn.svg(spec, speech.language) if boat else "",
+        "uncertainty": _spoken(told.uncertainty, speech),
+        "vote": _spoken(told.vote, speech),
+    }
+
+
+def _spoken(statements: Sequence[Statement], speech: Speech) -> list[str]:
+    return [keep_units(statement(speech)) for statement in statements]
 
 
 def _chance(chance: float | None, speech: Speech) -> str:

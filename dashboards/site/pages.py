@@ -8,6 +8,7 @@ from typing import Final
 import polars as pl
 
 from dashboards.addresses import edition_page, race_path
+from dashboards.site.methods import method_pages
 from dashboards.site.parts import (
     Chart,
     Page,
@@ -20,7 +21,7 @@ from dashboards.site.parts import (
     methods_select,
     with_page,
 )
-from dashboards.site.prose import edition_pages, guide_links, guide_pages
+from dashboards.site.prose import audit_guide, edition_pages, guide_links
 from dashboards.site.races import race_pages
 from dashboards.site.start import ABOUT, MENU, start_page, words_page
 from dashboards.site.types import type_pages, types_page
@@ -48,7 +49,8 @@ def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Itera
         "about": lambda: [_about()],
         "quality": lambda: [_quality(views, methods)],
         "words": lambda: [words_page()],
-        "guides": guide_pages,
+        "methods": lambda: method_pages(views, methods),
+        "audits": lambda: [audit_guide()],
         "editions": lambda: edition_pages(views),
     }
 

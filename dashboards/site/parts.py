@@ -149,7 +149,7 @@ class Section:
     folded: bool = False
     headline: Headline | None = None
     state: str = ""
-    terms: Sequence[tuple[Sentence, Sentence]] = ()
+    terms: Sequence[tuple[Sentence, Text]] = ()
     key_figures: Sequence[tuple[Sentence, Text]] = ()
     grid: Grid | None = None
     prose: Callable[[Speech], Markup] | None = None

@@ -1,4 +1,4 @@
-"""Pages that are read: the method, how to read an audit, and what goes with an edition."""
+"""Pages that are read: how to read an audit, and what goes with an edition."""
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -19,7 +19,7 @@ from warehouse.store.editions import NOTICE, NOTICE_EN, edition_path
 TITLES: Final = {
     "method": (
         say("The method"),
-        say("Every formula, from samples to a register line, with its source."),
+        say("In two pages: what is measured, what each step does here, and what is voted on."),
     ),
     "audit": (
         say("Reading an audit"),
@@ -29,14 +29,15 @@ TITLES: Final = {
 """Title of each document, and a sentence about it."""
 
 
-def guide_pages() -> Iterator[Page]:
-    """The documents of the project, as they are shipped with the program."""
-    links = {f"{name}.md": f"{name}.html" for name in GUIDES}
-    for name in GUIDES:
-        nl, en = (_below_title(guide_file(name, language)) for language in LANGUAGES)
-        title = TITLES[name][0]
-        section = Section("guide", title, prose=_in_language((nl, en), links))
-        yield Page(f"{name}.html", title, [section])
+LINKS: Final = {f"{name}.md": f"{name}.html" for name in GUIDES}
+"""Where links between the documents lead on the site."""
+
+
+def audit_guide() -> Page:
+    """The document on audits, as it is shipped with the program."""
+    nl, en = (_below_title(guide_file("audit", language)) for language in LANGUAGES)
+    title = TITLES["audit"][0]
+    return Page("audit.html", title, [Section("guide", title, prose=in_language((nl, en), LINKS))])
 
 
 def _below_title(file: Path) -> str:
@@ -61,7 +62,7 @@ def edition_pages(views: Views) -> Iterator[Page]:
                 Section(
                     "notice",
                     say("Notice to the members"),
-                    prose=_in_language((dutch, english), {}),
+                    prose=in_language((dutch, english), {}),
                 ),
                 Section("downloads", say("Downloads"), files=files_of(edition)),
             ],
@@ -69,7 +70,7 @@ def edition_pages(views: Views) -> Iterator[Page]:
         )
 
 
-def _in_language(in_each: tuple[str, str], links: Mapping[str, str]) -> Callable[[Speech], Markup]:
+def in_language(in_each: tuple[str, str], links: Mapping[str, str]) -> Callable[[Speech], Markup]:
     """The document in the language of the page."""
     texts = dict(zip(LANGUAGES, in_each, strict=True))
     return lambda speech: to_html(texts[speech.language], links)

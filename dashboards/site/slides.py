@@ -33,6 +33,6 @@ def _sections(made: Sequence[Slide]) -> Iterator[Section]:
 def _explained(slide: Slide) -> Headline:
     def under(speech: Speech) -> str:
         notes = (*slide.notes, say(SOURCE, table=slide.source))
-        return Markup("<br>").join(map(speech.text, notes))
+        return Markup("<br>").join(map(speech.words, notes))
 
     return under

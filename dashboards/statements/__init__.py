@@ -81,9 +81,8 @@ class Statement:
         return speech.say(self.wording, **values)
 
 
-Value: TypeAlias = (
-    Number | Change | EditionName | Statement | Sentence | str | int | dt.date | Sequence["Value"]
-)
+Value: TypeAlias = Headline | Sentence | str | int | dt.date | Sequence["Value"]
+"""A number or statement is a headline, too: it speaks by itself."""
 
 
 def _spoken(value: Value, speech: Speech) -> object:

@@ -14,8 +14,8 @@ from urllib.parse import urlencode
 from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
 
 from dashboards.figures.style import SCENARIO
+from dashboards.option_labels import text
 from dashboards.workbench.form import CONTROLS, Control
-from dashboards.workbench.texts import text
 from pipeline.errors import HerijkError
 from pipeline.method.definition import Method, SeasonSteps, Steps, shipped_methods
 from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text

@@ -2,7 +2,7 @@
 
 What an option may be is read from the JSON schema of `pipeline.method.definition.Steps`, so that a
 new option appears by itself: as a choice, a number between bounds, or a list of codes. An option of
-another kind is shown and cannot be changed here. Texts are in `dashboards.workbench.texts`.
+another kind is shown and cannot be changed here. Texts are in `dashboards.option_labels`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,13 +10,11 @@ from dataclasses import dataclass
 from math import floor, log10
 from typing import Any, Final
 
+from dashboards.option_labels import unit_of
 from pipeline.method.definition import SeasonSteps, Steps
 
 POSITIONS: Final = 100
 """A number goes from its least to its most in at least so many steps."""
-
-UNITS: Final = {"_m_s": "m/s", "_s": "s", "_c": "°C", "_sd": "sd", "_ratio": "", "": ""}
-"""Unit of an option by the ending of its name, as in columns."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +38,7 @@ class Control:
     @property
     def unit(self) -> str:
         """Its unit, by the ending of its name."""
-        return next(unit for ending, unit in UNITS.items() if self.option.endswith(ending))
+        return unit_of(self.option)
 
     def read(self, written: str) -> object:
         """The value of an option as an address has it.

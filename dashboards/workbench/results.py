@@ -4,18 +4,19 @@ Numbers come from `warehouse.queries.scenario`; sections, tables and charts are 
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import polars as pl
 from markupsafe import Markup
 
 from dashboards import labels
 from dashboards.figures.style import SCENARIO
+from dashboards.option_labels import text
 from dashboards.site.cells import Cells, Show
 from dashboards.site.parts import Chart, Page, Section, Select, Table
-from dashboards.speech import Headline, Speech
+from dashboards.speech import Headline
+from dashboards.statements import Change
+from dashboards.statements.season import reproducibility
 from dashboards.workbench.bench import Asked, Bench
-from dashboards.workbench.texts import text
 from pipeline.messages import Sentence, say
 from warehouse.queries.chosen_tows import CHOICES
 from warehouse.queries.scenario import CURVE_COLUMNS, Scenario
@@ -86,69 +87,17 @@ def _leading(frame: pl.DataFrame, asked: Asked) -> pl.DataFrame:
 
 def _summary(scenario: Scenario) -> Part:
     s = scenario.summary()
-    changed, lines, gains, loses, added, removed = (
-        str(s[name]) for name in ("changed", "lines", "gains", "loses", "added", "removed")
-    )
-    repeats = scenario.reproducibility().filter(scope="all")
-    within, sd = (
-        _now_and_was(repeats, scenario, name) for name in ("share_within_1pct", "sd_ratio")
-    )
-    said: list[tuple[Sentence, str | Headline, Sentence]] = [
-        (
-            say("lines changed"),
-            f"{changed} / {lines}",
-            say("Lines whose Cw changes, of all lines."),
-        ),
-        (
-            say("gain time"),
-            gains,
-            say("Crews that may take longer over a race for the same power."),
-        ),
-        (say("lose time"), loses, say("Crews that have to be faster for the same power.")),
-        (say("lines added"), added, say("Lines that gain a valid curve.")),
-        (say("lines removed"), removed, say("Lines that lose their valid curve.")),
-        (
-            say("median Cw after / before"),
-            _spoken(s["median_ratio"], 4),
-            say("The middle ratio of new to old Cw over all lines."),
-        ),
-        (
-            say("repeats within 1 %"),
-            within,
-            say(
-                "How often an unaltered boat that was towed again has a Cw within 1 % of the "
-                "earlier one. Higher is better."
-            ),
-        ),
-        (
-            say("sd of one tow"),
-            sd,
-            say(
-                "How far one tow is off by chance, as a standard deviation of Cw. Lower is better."
-            ),
-        ),
+    median = s["median_ratio"]
+    figures: list[tuple[Sentence, str | Headline]] = [
+        (say("lines changed"), f"{s['changed']} / {s['lines']}"),
+        (say("gain time"), str(s["gains"])),
+        (say("lose time"), str(s["loses"])),
+        (say("lines added"), str(s["added"])),
+        (say("lines removed"), str(s["removed"])),
+        (say("Cw, median"), Change(median) if isinstance(median, float) else "-"),
     ]
-    figures = [(title, value) for title, value, _ in said]
-    meanings = [(title, meaning) for title, _, meaning in said]
-    return [
-        Section("overview", say("In short"), key_figures=figures),
-        Section("explained", say("What these figures say"), terms=meanings, folded=True),
-    ], {}
-
-
-def _spoken(value: Any, digits: int) -> Headline:
-    return lambda speech: "-" if value is None else speech.number(value, digits)
-
-
-def _now_and_was(repeats: pl.DataFrame, scenario: Scenario, column: str) -> Headline:
-    known = dict(repeats.select("method", column).iter_rows())
-    now, was = (known.get(name) for name in (SCENARIO, scenario.before.method.name))
-
-    def spoken(speech: Speech) -> str:
-        new, old = ("-" if v is None else f"{speech.number(100 * v, 1)} %" for v in (now, was))
-        return f"{new} ({speech.say(say('was'))} {old})"
-
-    return spoken
+    repeats = reproducibility(scenario.reproducibility(), SCENARIO)
+    return [Section("overview", say("In short"), key_figures=figures, headline=repeats)], {}
 
 
 def _register(scenario: Scenario) -> Part:

@@ -22,13 +22,13 @@ from starlette.routing import Route
 from dashboards import labels
 from dashboards.guard import guarded
 from dashboards.html import environment
+from dashboards.option_labels import range_in_words, text, value_in_words
 from dashboards.site.charts import page_json
 from dashboards.site.parts import Page
 from dashboards.site.render import Edition, shared_files
 from dashboards.workbench.bench import Asked, Bench, Saving
 from dashboards.workbench.form import CONTROLS, Control
 from dashboards.workbench.results import BenchCells, results
-from dashboards.workbench.texts import range_in_words, text, value_in_words
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGES, pgettext, spoken
 from pipeline.method.definition import SeasonSteps, shipped_methods

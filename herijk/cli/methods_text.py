@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from dashboards.workbench.texts import text
+from dashboards.option_labels import text
 from herijk.cli.render import table
 from pipeline.messages import LANGUAGE, say, tell
 from pipeline.method.definition import Method, basis_of
@@ -89,7 +89,7 @@ def options_text(options: Sequence[Difference], old: str, new: str) -> str:
             "before": ", ".join(map(json.dumps, one.before)),
             "after": json.dumps(one.after),
             "in_words": tell(text(f"{one.step}.{one.option}")),
-            "status": tell(text(f"status.{basis_of(one.step, one.option).status}")),
+            "status": tell(text(f"status.{basis_of(one.step, one.option, one.after).status}")),
         }
         for one in options
     ]

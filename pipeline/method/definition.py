@@ -14,6 +14,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, cached_property
 from importlib import resources
+from types import MappingProxyType
 from typing import Annotated, Any, Final, Literal, NamedTuple
 
 from pydantic import (
@@ -52,18 +53,23 @@ class Basis(NamedTuple):
     """Where an option comes from."""
 
     status: Status
-    source: str
+    source: Sentence
 
 
 def _option(
     status: Status,
-    source: str,
+    source: Sentence,
     default: object = ...,
     ge: float | None = None,
     le: float | None = None,
+    but: Mapping[str, Basis] = MappingProxyType({}),
 ) -> Any:
-    """An option with its basis; without a default every method has to name it."""
-    basis: dict[str, JsonValue] = {"status": status, "source": source}
+    """An option with its basis, and that of values that come from elsewhere.
+
+    Without a default every method has to name it.
+    """
+    of_values: dict[str, JsonValue] = {value: [*other] for value, other in but.items()}
+    basis: dict[str, JsonValue] = {"status": status, "source": source, "but": of_values}
     return Field(default=default, ge=ge, le=le, json_schema_extra=basis)
 
 
@@ -71,11 +77,13 @@ class Speed(_Options):
     """What is known to be wrong with the speed through the water, which is that of log 1."""
 
     correction: Literal["none", "prescribed", "estimated"] = _option(
-        "proposed", 'P2015, "Meten van de sleepsnelheid"; the estimate: this project'
+        "proposed",
+        say('P2015, "Meten van de sleepsnelheid"'),
+        but={"estimated": Basis("proposed", say("this project; appendix 4"))},
     )
     factor: float = _option(
         "proposed",
-        "P2015: up to 6 %; to multiply, not to divide by 0.94, is inferred",
+        say("P2015: up to 6 %; to multiply, not to divide by 0.94, is inferred"),
         1.0,
         0.85,
         1.2,
@@ -85,30 +93,33 @@ class Speed(_Options):
 class Calibration(_Options):
     """The factor that brings the log to ground speed."""
 
-    rule: Literal["none", "gps_per_tow"] = _option("decided", 'S2017, "IJking snelheid"')
+    rule: Literal["none", "gps_per_tow"] = _option("decided", say('S2017, "IJking snelheid"'))
 
 
 class Window(_Options):
     """Which part of a run counts; a window that a person gave goes before the steady part."""
 
-    rule: Literal["all", "steady"] = _option("decided", 'S2017, "Knippen"')
+    rule: Literal["all", "steady"] = _option("decided", say('S2017, "Knippen"'))
 
 
 class Wind(_Options):
     """How the resistance in air is taken off."""
 
-    model: Literal["head", "oblique"] = _option("proposed", 'P2015, "Dwarse tegenwind"')
+    model: Literal["head", "oblique"] = _option("proposed", say('P2015, "Dwarse tegenwind"'))
     coefficients: Literal["fixed", "per_run", "archive"] = _option(
-        "proposed", "P2015; one for the archive: this project", "fixed"
+        "proposed",
+        say('P2015, "Windweerstand"'),
+        "fixed",
+        but={"archive": Basis("proposed", say("this project; appendix 5"))},
     )
-    ahead: float = _option("proposed", 'P2015, "Windweerstand"', 0.5, 0.0, 2.0)
-    behind: float = _option("proposed", 'P2015, "Windweerstand"', 0.5, 0.0, 2.0)
-    side: float = _option("proposed", 'P2015, "Dwarse tegenwind"', 0.2, 0.0, 2.0)
+    ahead: float = _option("proposed", say('P2015, "Windweerstand"'), 0.5, 0.0, 2.0)
+    behind: float = _option("proposed", say('P2015, "Windweerstand"'), 0.5, 0.0, 2.0)
+    side: float = _option("proposed", say('P2015, "Dwarse tegenwind"'), 0.2, 0.0, 2.0)
     averaging_s: int = _option(
-        "proposed", "this project: the vane swings (method details, 5)", 0, 0, 15
+        "proposed", say("this project: the vane swings; appendix 5"), 0, 0, 15
     )
     anemometer: Literal["as_read", "estimated"] = _option(
-        "proposed", "this project: runs out and back (method details, 5)", "as_read"
+        "proposed", say("this project: runs out and back; appendix 5"), "as_read"
     )
 
 
@@ -116,10 +127,12 @@ class RunPoint(_Options):
     """How the samples of a window become one point."""
 
     estimator: Literal["mean_of_ratios", "ratio_of_means"] = _option(
-        "decided", "S2017: mean of ratios; the ratio of means: this project"
+        "decided",
+        say("S2017"),
+        but={"ratio_of_means": Basis("proposed", say("this project: a noisy log; appendix 3"))},
     )
     inertia: Literal["none", "end_speeds"] = _option(
-        "proposed", "this project (method details, 6)", "none"
+        "proposed", say("this project; appendix 6"), "none"
     )
 
 
@@ -127,7 +140,7 @@ class Temperature(_Options):
     """Whether resistance is brought to one water temperature."""
 
     rule: Literal["none", "ittc57"] = _option(
-        "decided", "correction of 9 May 2018; the formula is inferred"
+        "decided", say("correction of 9 May 2018; the formula is inferred")
     )
 
 
@@ -141,7 +154,11 @@ class Unrecorded(_Options):
     rule: Literal["as_is", "expected"] = Field(
         default="as_is",
         exclude_if=lambda value: value == "as_is",
-        json_schema_extra={"status": "inferred", "source": "method details, 4 to 6"},
+        json_schema_extra={
+            "status": "inferred",
+            "source": say("this project; appendix 4 to 6"),
+            "but": {},
+        },
     )
 
 
@@ -149,7 +166,7 @@ class Runs(_Options):
     """Which runs count."""
 
     highest_target_ratio: float = _option(
-        "proposed", 'P2015: "Geen v = +20% runs meer uitvoeren"', 1.15, 1.0, 1.5
+        "proposed", say('P2015: "Geen v = +20% runs meer uitvoeren"'), 1.15, 1.0, 1.5
     )
 
 
@@ -157,7 +174,7 @@ class Curve(_Options):
     """How the hyperbola is fitted: with B free, or at most `constants.CAP_HULL_SPEEDS`."""
 
     b: Literal["free", "capped"] = _option(
-        "proposed", 'P2015: "B-waarden maximeren aan 3x rompsnelheid"'
+        "proposed", say('P2015: "B-waarden maximeren aan 3x rompsnelheid"')
     )
 
 
@@ -177,7 +194,7 @@ class Assessment(_Options):
             WithJsonSchema({"type": "string", "enum": sorted(CODES)}),
         ],
         ...,
-    ] = _option("decided", "S2017; which checks is the method's choice", ())
+    ] = _option("decided", say("S2017; which checks is the method's choice"), ())
 
 
 class Steps(_Options):
@@ -210,10 +227,11 @@ class Steps(_Options):
         return self.speed.correction == "estimated" or self.estimates_without_gps
 
 
-def basis_of(step: str, option: str) -> Basis:
-    """Where an option comes from."""
+def basis_of(step: str, option: str, value: object) -> Basis:
+    """Where an option comes from, given what it is set to."""
     options: Any = Steps.model_fields[step].annotation
-    return Basis(**options.model_fields[option].json_schema_extra)
+    given = options.model_fields[option].json_schema_extra
+    return Basis(*given["but"].get(value, (given["status"], given["source"])))
 
 
 class RegisterRule(_Options):

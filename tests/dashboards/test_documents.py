@@ -132,7 +132,8 @@ def test_a_proposal_counts_every_line_that_changes(views, contents):
     )
     by_type = parts["For whom: by type"]["rows"]
     assert sum(int(row[1]) for row in by_type) == lines.drop_nulls("cw_ratio").height
-    assert {block["kind"] for block in contents[0]["annex"]} >= {"heading", "paragraph"}
+    (explained,) = contents[0]["methods"]
+    assert all(explained[part] for part in ("steps", "boat", "curve", "uncertainty", "vote"))
     moved = lines.drop_nulls("gain_in_two_hours_s").filter(change="changed")
     named = len(parts.get("Who gains most", {"rows": ()})["rows"])
     assert named == min(10, moved.filter(pl.col("gain_in_two_hours_s") > 0).height)

@@ -55,6 +55,7 @@ def test_every_page_is_there(site, built):
     boats = {boat_path(fsn_no) for fsn_no in built.table("boats")["fsn_no"]}
     paths = boats | {f"{name}.html" for name in ("index", *MENU, *ABOUT, *GUIDES)}
     paths |= {edition_page(edition) for edition in EDITIONS}
+    paths |= {f"method-{name}.html" for name in METHODS if name != default_method(METHODS)}
     with Views(Store(site.parent)) as views:
         paths |= {type_path(name) for name in views.type_names()}
         paths |= {race_path(race, day) for race, day in views.race_days()}

@@ -105,13 +105,6 @@ def test_mean_wind_angle_goes_round_north(angle, spread, seed):
     assert abs((found - angle / 64 + 180.0) % 360.0 - 180.0) < 1e-9
 
 
-@pytest.mark.parametrize("rate_hz", [1, 20, 50, 333, 1000])
-def test_a_run_of_50_s_has_50_full_blocks(rate_hz):
-    blocks = block_sums(samples_of([50 * rate_hz, 50 * rate_hz]), rate_hz)
-    assert blocks["second"].to_list() == [*range(50), *range(50)]
-    assert blocks["n"].to_list() == [rate_hz] * 100
-
-
 @given(
     share=st.floats(0.01, 0.999),
     channel=st.sampled_from([c for c in SAMPLE_SCHEMA if c not in ("run", "gps_m_s")]),
@@ -169,9 +162,3 @@ def test_a_run_without_blocks_breaks_a_promise():
     runs = pl.DataFrame({"tow_id": ["t", "t"], "run": pl.Series([1, 2], dtype=pl.Int8)})
     with pytest.raises(BrokenPromiseError, match="tow t, run 2"):
         stack_blocks(blocks, runs)
-
-
-def test_means_over_an_empty_window_are_zero_not_nan():
-    blocks = stacked(samples_of([30]), 10)
-    nothing = np.zeros(blocks.n.shape, dtype=bool)
-    assert WindowSums(blocks, nothing).mean("force").tolist() == [0.0]

@@ -105,7 +105,7 @@ def with_carried(
     return pl.concat([lines.join(taken, on=LINE, how="anti"), taken], how="diagonal_relaxed")
 
 
-def _registers(store: Store) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+def _registers(store: Store) -> tuple[pl.DataFrame, list[Fault]]:
     root = archive_root(store)
     if root is None:
         raise MissingKnowledgeError(

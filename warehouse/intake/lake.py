@@ -8,7 +8,6 @@ files look like is known to `warehouse.archive`, and which sums there are to
 """
 
 import dataclasses
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Final
@@ -108,15 +107,10 @@ def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFram
     """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
     sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
     frames = [read_parquet(store.blocks_path(season, key)) for key in sound["blocks_key"]]
-    return blocks_of_tows(sound["tow_id"], frames)
-
-
-def blocks_of_tows(tow_id: pl.Series, frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
-    """Blocks of tows one below the other, with the `tow_id` of each."""
     if not frames:
         return pl.DataFrame(schema={"tow_id": pl.String()})
     tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
-    return pl.concat(frames).insert_column(0, tow_id.gather(tow))
+    return pl.concat(frames).insert_column(0, sound["tow_id"].gather(tow))
 
 
 def _bring_in(

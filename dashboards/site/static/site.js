@@ -39,29 +39,38 @@
     data = await new Response(stream).json();
   }
 
-  // -- Search; a name with a typing error is found by the pairs of letters that it shares --------
+  // -- Search; a word with a typing error is found by its pairs of letters -------------------
   const find = document.querySelector(".find");
   const MOST_FOUND = 12;
   const pairs = (text) => new Set([...text].slice(1).map((letter, i) => text[i] + letter));
 
-  function likeness(name, wanted) {
-    const own = pairs(plain(name));
-    const asked = [...pairs(wanted)];
+  function likeness(text, word) {
+    if (/\d/.test(word)) {
+      const isIt = (own) => own.replace(/^0+/, "") === word.replace(/^0+/, "");
+      return text.split(" ").some(isIt) ? 1 : 0.6 * text.includes(word);
+    }
+    const own = pairs(text);
+    const asked = [...pairs(word)];
     return asked.filter((pair) => own.has(pair)).length / Math.max(asked.length, 1);
   }
+
+  const likenessOfAll = (text, words) => {
+    const all = words.map((word) => likeness(text, word));
+    return Math.min(...all) < 0.6 ? 0 : all.reduce((sum, one) => sum + one);
+  };
 
   async function search() {
     await load(`${site}static/find.js`);
     const words = wordsOf(find.querySelector("input").value);
-    const fits = ([name, more]) => words.every((word) => plain(`${name} ${more}`).includes(word));
-    let found = words.length ? window.HERIJK_FIND.filter(fits) : [];
-    if (words.length && !found.length) {
-      found = window.HERIJK_FIND.map((one) => [likeness(one[0], words.join(" ")), one])
-        .filter(([like]) => like >= 0.6).sort(([a], [b]) => b - a).map(([, one]) => one);
+    const texts = words.length ? window.HERIJK_FIND.map((one) => [plain(`${one[0]} ${one[1]}`), one]) : [];
+    let found = texts.filter(([text]) => words.every((word) => text.includes(word)));
+    if (!found.length) {
+      found = texts.map(([text, one]) => [likenessOfAll(text, words), one])
+        .filter(([like]) => like).sort(([a], [b]) => b - a);
     }
     const list = find.querySelector("ul");
     list.hidden = words.length === 0;
-    list.replaceChildren(...found.slice(0, MOST_FOUND).map(([name, , page]) => {
+    list.replaceChildren(...found.slice(0, MOST_FOUND).map(([, [name, , page]]) => {
       const item = make("li");
       item.append(make("a", { href: root + page, textContent: name }));
       return item;

@@ -199,7 +199,7 @@ def test_sample_archive_reads_without_faults() -> None:
 
 def test_published_registers() -> None:
     register, faults = read_published_registers(SAMPLE_ARCHIVE)
-    assert faults == ()
+    assert faults == []
     assert register["has_valid_curve"].to_list() == [True, True, True, False]
     assert register["cw_kg_m"].to_list() == [43.89, 41.63, 25.36, None]
     assert register["a_kg_m"].to_list()[-1] is None
@@ -208,7 +208,7 @@ def test_published_registers() -> None:
 
 def test_races() -> None:
     races, faults = read_races(SAMPLE_ARCHIVE)
-    assert faults == ()
+    assert faults == []
     assert races["rowing_time_s"].to_list() == [7825.0, 7451.0, 9669.0, 9520.0]
     assert races["distance_m"].to_list() == [18400.0] * 4
     assert races["stream_m"].to_list() == [None, None, 350.0, 300.0]

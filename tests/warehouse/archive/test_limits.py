@@ -3,23 +3,13 @@
 The limits are those of the declared tables; nothing here repeats one.
 """
 
-from functools import partial
-
 import pytest
 
-from pipeline.errors import DefectiveInputError
-from pipeline.tables.frames import frame_of, limits
-from pipeline.tables.lake import ListedRaces
+from pipeline.tables.frames import limits
 from warehouse.archive.files import list_kinds
-from warehouse.archive.lists import (
-    boats,
-    instruments,
-    races,
-    registers,
-    tows,
-    windows,
-)
-from warehouse.archive.sheets.reading import misfits, read_list
+from warehouse.archive.lists.races import read_races
+from warehouse.archive.sheets.reading import read_list
+from warehouse.archive.sheets.rows import faults_of
 from warehouse.archive.spelling.wording import Wording
 
 TOW = {
@@ -78,46 +68,32 @@ PRINTED = {
 }
 
 
-def tow_or_first_fault(row):
-    """A tow, whichever of its cells is outside; one that it can do without counts as empty."""
-    tow, lost = tows.read_tow(row, 2014, 1000)
-    for error in lost:
-        raise error
-    return tow
-
-
-def of_2014(read):
-    return lambda row: read(row, 2014)
-
-
-window = of_2014(partial(windows._window, {(2014, "2014-001"): {1}}))
-lamp = of_2014(partial(instruments._lamp, {"2014-001"}))
 LISTS = {
-    "boats": (list_kinds.BOATS, BOAT, boats._boat),
-    "tows": (list_kinds.TOWS, TOW, tow_or_first_fault),
-    "windows": (list_kinds.WINDOWS, WINDOW, window),
-    "checks": (list_kinds.FORCE_CHECKS, CHECK, of_2014(instruments._force_check)),
-    "lamps": (list_kinds.LAMPS, LAMP, lamp),
-    "races": (list_kinds.RACES, RACE, of_2014(races._race_result)),
-    "registers": (list_kinds.REGISTERS, PRINTED, of_2014(registers._register_line)),
+    "boats": (list_kinds.BOATS, BOAT),
+    "tows": (list_kinds.TOWS, TOW),
+    "windows": (list_kinds.WINDOWS, WINDOW),
+    "checks": (list_kinds.FORCE_CHECKS, CHECK),
+    "lamps": (list_kinds.LAMPS, LAMP),
+    "races": (list_kinds.RACES, RACE),
+    "registers": (list_kinds.REGISTERS, PRINTED),
 }
 
 
 def test_every_kind_of_list_is_tried():
-    assert {kind.name for kind, _, _ in LISTS.values()} == {k.name for k in list_kinds.LIST_KINDS}
+    assert {kind.name for kind, _ in LISTS.values()} == {k.name for k in list_kinds.LIST_KINDS}
 
 
 def values_of(name, cells, folder):
-    """What a list of one row is read as."""
-    kind, _, read = LISTS[name]
+    """What a list of one row is read as, and what is wrong in it."""
+    kind, _ = LISTS[name]
     (folder / "list.csv").write_text(";".join(cells) + "\n" + ";".join(cells.values()) + "\n")
-    (row,) = read_list(folder, kind, "list.csv", Wording())
-    return read(row)
+    rows, problems = read_list(folder, kind, "list.csv", Wording())
+    return rows.drop("cells").row(0, named=True), faults_of(rows, problems)
 
 
 def limited():
     """Every limit of a column that a list has: list, column, header, sign and limit."""
-    for name, (kind, cells, _) in LISTS.items():
+    for name, (kind, cells) in LISTS.items():
         for column in kind.columns:
             header = next((h for h in cells if h.split(" [")[0] == column.header), None)
             if header is None or column.key not in kind.table.column_names():
@@ -140,30 +116,37 @@ def cell_of(header, value):
 def test_one_step_outside_is_set_aside_and_inside_accepted(
     name, key, header, sign, limit, tmp_path
 ):
-    kind, cells, _ = LISTS[name]
+    kind, cells = LISTS[name]
     whole = kind.table.columns()[key].dtype.is_integer()
     step = 1 if whole else 1e-3 * max(1.0, abs(limit))
     others = dict(cells)
     if key in ("start_s", "end_s"):  # a window ends after it begins
         others |= {"van [s]": "0"} if key == "end_s" else {"tot [s]": "600"}
     inside = limit if whole and name != "windows" else limit - sign * step
-    accepted = values_of(name, others | {header: cell_of(header, inside)}, tmp_path)
+    accepted, faults = values_of(name, others | {header: cell_of(header, inside)}, tmp_path)
+    assert faults == []
     assert accepted[key] == pytest.approx(inside)
-    usual = values_of(name, others, tmp_path)
+    usual, _ = values_of(name, others, tmp_path)
     assert {k: v for k, v in accepted.items() if k != key} == {
         k: v for k, v in usual.items() if k != key
     }
-    with pytest.raises(DefectiveInputError, match="can be right") as fault:
-        values_of(name, others | {header: cell_of(header, limit + sign * step)}, tmp_path)
-    assert (fault.value.reason_code, fault.value.line) == (kind.reason_code, 2)
+    outside = others | {header: cell_of(header, limit + sign * step)}
+    _, (fault,) = values_of(name, outside, tmp_path)
+    assert "can be right" in fault.message
+    assert (fault.reason_code, fault.line) == (kind.reason_code, 2)
 
 
 @pytest.mark.parametrize(("season", "fits"), [(1989, False), (1990, True), (2100, True)])
 def test_a_season_outside_its_limits_is_set_aside_with_a_sentence(season, fits, tmp_path):
-    row = {**values_of("races", RACE, tmp_path), "season": season, "path": "a.csv", "line": 2}
-    found = [why for _, why in misfits(ListedRaces, frame_of(ListedRaces, [row]))]
+    (tmp_path / "wedstrijden").mkdir()
+    race = RACE | {"datum": f"{season}-06-01"}
+    (tmp_path / f"wedstrijden/a_{season}.csv").write_text(
+        ";".join(race) + "\n" + ";".join(race.values()) + "\n"
+    )
+    races, faults = read_races(tmp_path)
+    assert (len(races), len(faults)) == (int(fits), int(not fits))
     sentence = f"the year is {season}; 1990 to 2100 can be right."
-    assert found == ([] if fits else [sentence])
+    assert all(sentence in fault.message for fault in faults)
 
 
 def test_a_tow_list_of_an_impossible_year_is_set_aside(archive):

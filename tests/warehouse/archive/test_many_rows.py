@@ -1,52 +1,45 @@
 """Rows that repeat one fault take time in proportion to their number."""
 
 import time
+from collections.abc import Callable
 
 import pytest
 
-from pipeline.errors import DefectiveInputError
-from pipeline.tables.lake import ListedTows
-from warehouse.archive.index.comparisons import unique_ids, unique_samples
-from warehouse.archive.index.tow_rows import Entry
-from warehouse.archive.lists.boats import Boats
-from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.sheets.row import ListRow, Reading
+from tests.warehouse.archive.conftest import BOATS, TOWS, Archive
 
 MANY = 10_000
 MOST_S = 7
 """Processor time; the square of so many rows takes longer by far."""
-READING = Reading({}, "bad_list_row", {}, "", "", ListedTows)
-PROFILES = Profiles()
+TOW = "{id};2014-03-01;FSN{boat};eerste boot 8h 2014;;{rowers};H;2,40;;;;;;;;;;nee;20;"
 
 
-def entry_of(line: int, **values: object) -> Entry:
-    tow = {"samples_sha256": "a", "second_sha256": None, "fsn_no": "FSN1", "rowers": 8}
-    row = ListRow(line, {"tow_id": "1"}, READING, None)
-    return Entry(row, "list.csv", 2014, PROFILES, tow=tow | {"crew_class": "H"} | values)
-
-
-@pytest.mark.parametrize("differing", ["fsn_no", "rowers"])
-def test_tows_with_the_same_samples(differing: str) -> None:
-    entries = [entry_of(row, **{differing: row}) for row in range(MANY)]
-    began, check = time.process_time(), unique_samples(entries)
-    for entry in entries:
-        with pytest.raises(DefectiveInputError, match="nobody can know whose"):
-            check(entry)
-    assert time.process_time() - began < MOST_S
-
-
-def test_rows_of_one_tow() -> None:
-    entries = [entry_of(row) for row in range(MANY)]
-    began, check = time.process_time(), unique_ids(entries)
-    check(entries[0])
-    for entry in entries[1:]:
-        with pytest.raises(DefectiveInputError, match="the rows are equal"):
-            check(entry)
-    assert time.process_time() - began < MOST_S
-
-
-def test_tows_of_unknown_boats() -> None:
-    boats = Boats({f"FSN{number}": {} for number in range(MANY)}, (), {}, ())
+@pytest.mark.parametrize(
+    ("row", "reason_code"),
+    [
+        (lambda i: {"id": "1"}, "duplicate_tow_id"),
+        (lambda i: {"rowers": i % 7 + 6}, "samples_listed_twice"),
+        (lambda i: {"boat": i}, "samples_listed_twice"),
+        (lambda i: {"rowers": f"x{i}"}, "bad_list_row"),
+    ],
+    ids=["one tow", "crews", "boats", "bad cells"],
+)
+def test_rows_that_repeat_one_fault(
+    archive: Archive, row: Callable[[int], dict[str, object]], reason_code: str
+) -> None:
+    rows = [TOW.format(**{"id": i, "boat": 1, "rowers": 8} | row(i)) for i in range(MANY)]
+    header = (archive.root / TOWS).read_text("utf-8").split("\n")[0]
+    (archive.root / TOWS).write_text("\n".join([header, *rows, ""]), "utf-8")
     began = time.process_time()
-    assert not any(boats.find(f"FSN{MANY + number}") for number in range(MANY))
+    faults = archive.scan().index.faults
     assert time.process_time() - began < MOST_S
+    assert sum(fault.reason_code == reason_code for fault in faults) >= len(rows) - 1
+
+
+def test_boats_that_contradict_each_other(archive: Archive) -> None:
+    header = (archive.root / BOATS).read_text("utf-8").split("\n")[0]
+    rows = [f"FSN1;1;een;;8;{2 + i % 2};;1000;8;H" for i in range(MANY)]
+    (archive.root / BOATS).write_text("\n".join([header, *rows, ""]), "utf-8")
+    began = time.process_time()
+    faults = archive.scan().index.faults
+    assert time.process_time() - began < MOST_S
+    assert sum(f.reason_code == "duplicate_boat" and f.path == BOATS for f in faults) == MANY / 2

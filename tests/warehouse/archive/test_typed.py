@@ -3,7 +3,7 @@
 import pytest
 
 from tests.warehouse.archive.conftest import FIRST, RATE_HZ, ROWS, TOWS, Archive, Scan, line_of
-from warehouse.archive.sheets.row import BOAT_NUMBER
+from warehouse.archive.sheets.cells import BOAT_NUMBER
 
 TOW = "2014-001"
 WIND, ANGLE = 5, 6

@@ -13,7 +13,7 @@ from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import BOATS, LIST_KINDS
 from warehouse.archive.files.names import SAMPLES
 from warehouse.archive.profile.season import MAY_BE_ABSENT, SAMPLE_COLUMNS
-from warehouse.archive.sheets.row import BOAT_NUMBER
+from warehouse.archive.sheets.cells import BOAT_NUMBER
 from warehouse.archive.spelling.headers import split_header
 from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.units import find_scale

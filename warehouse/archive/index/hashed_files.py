@@ -13,7 +13,7 @@ from warehouse.archive.files.finding import ArchiveFile, list_files
 from warehouse.archive.files.hashes import hash_of_parts, hash_of_sheet
 from warehouse.archive.files.list_kinds import LIST_KINDS
 from warehouse.archive.files.names import PROFILE_FILE, split_sheet
-from warehouse.archive.index.tow_rows import SamplesFile
+from warehouse.archive.index.tow_files import SamplesFile
 
 
 class Hashes:

@@ -3,51 +3,38 @@
 Reading samples belongs to `samples`. A tow falls out at the first check that it does not pass.
 """
 
-from collections.abc import Callable
+import datetime as dt
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import polars as pl
 
-from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import say
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of
-from pipeline.tables.lake import ListedFiles, ListedRuns, ListedTows
-from pipeline.tables.row import Row
+from pipeline.tables.lake import ListedFiles
 from warehouse.archive.faults import Fault
-from warehouse.archive.files.finding import list_sample_files
-from warehouse.archive.index.comparisons import (
-    fits_table,
-    join_boat,
-    keep,
-    lost_cells,
-    place_day,
-    read_cells,
-    unique_ids,
-    unique_samples,
-)
+from warehouse.archive.files.finding import list_files, list_sample_files
+from warehouse.archive.files.list_kinds import TOWS
+from warehouse.archive.files.names import PROFILE_FILE
 from warehouse.archive.index.hashed_files import Hashes, hash_files, hash_lists
 from warehouse.archive.index.tow_files import (
     files_by_name,
     files_meant,
-    find_files,
     names_of_files,
     not_listed,
 )
-from warehouse.archive.index.tow_rows import Entry, idle_settings, read_tow_lists
+from warehouse.archive.index.tows import Known, usable_tows
 from warehouse.archive.index.unread_files import missing_lists, strangers
 from warehouse.archive.lists.boats import read_boats
-from warehouse.archive.lists.instruments import (
-    lamp_seconds,
-    load_cell_of,
-    read_force_checks,
-    read_lamps,
-)
+from warehouse.archive.lists.instruments import lamp_seconds, read_force_checks, read_lamps
+from warehouse.archive.lists.tows import with_ids
 from warehouse.archive.lists.windows import read_windows
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
+from warehouse.archive.sheets.reading import read_lists
+from warehouse.archive.spelling.wording import Wording
 
 
 @dataclass(frozen=True)
@@ -68,8 +55,8 @@ class ArchiveIndex:
     """
 
     boats: pl.DataFrame
-    tows: dy.DataFrame[ListedTows]
-    runs: dy.DataFrame[ListedRuns]
+    tows: pl.DataFrame
+    runs: pl.DataFrame
     windows: pl.DataFrame
     faults: tuple[Fault, ...]
     files: dy.DataFrame[ListedFiles]
@@ -96,58 +83,55 @@ def index_archive(
     """
     profiles = profiles or read_profiles(root)
     _check_present(root, profiles)
-    named = profiles.wording.files
+    wording = profiles.wording
     hashes = Hashes(hash_file)
-    faults: list[Fault] = []
-    unhashed = hash_lists(root, named, hashes)
-    faults += strangers(root, profiles)
-    boats = read_boats(root, profiles.wording)
-    faults += boats.faults
-    entries, unread_seasons = read_tow_lists(root, profiles, faults)
-    sample_files = list_sample_files(root, named)
+    unhashed = hash_lists(root, wording.files, hashes)
+    boats = read_boats(root, wording)
+    rows, problems, faults = read_lists(root, TOWS, wording)
+    unread = _unread_seasons(root, wording, faults)
+    year = pl.col("tow_date").dt.year().fill_null(0)
+    season = pl.when(pl.col("season") == 0).then(year).otherwise("season")
+    rows = rows.with_columns(season=season.cast(pl.Int64))
+    faults += [*strangers(root, profiles), *boats.faults]
+    sample_files = list_sample_files(root, wording.files)
     faults += hash_files(sample_files, hashes)
-    by_name = files_by_name(sample_files, entries)
-    faults += not_listed(entries, sample_files, unread_seasons, by_name)
-    faults += [] if unread_seasons else idle_settings(profiles, entries)
-    more = list(boats.more)
-    read_values = partial(read_cells, profiles=profiles)
-    good = keep(unique_ids(entries), entries, faults)
-    twice = {(entry.list_path, entry.row.line) for entry in entries}
-    twice -= {(entry.list_path, entry.row.line) for entry in good}
-    again = [entry for entry in entries if (entry.list_path, entry.row.line) in twice]
-    keep(read_values, again, more, more)
-    good = keep(read_values, good, faults, more)
-    good = keep(lambda entry: find_files(entry, by_name, hashes), good, faults)
-    good = keep(unique_samples(good), good, faults)
-    good = keep(lambda entry: join_boat(entry, boats), good, faults)
-    good = keep(lambda entry: place_day(entry, profiles), good, faults)
-    good = keep(fits_table(good), good, faults)
-    faults += [fault for entry in good for fault in lost_cells(entry)]
-    _add_instruments(root, profiles, entries, good, faults)
-    runs = [run for entry in good for run in _runs(entry)]
-    runs_of = {(entry.season, entry.tow_id): set[int]() for entry in entries}
-    runs_of |= {(e.season, e.tow_id): {run["run"] for run in _runs(e)} for e in good}
-    windows, faulty = read_windows(root, profiles.wording, runs_of)
-    faults += faulty
+    names = names_of_files(rows)
+    by_name = files_by_name(sample_files, names)
+    faults += not_listed(names, sample_files, unread, by_name)
+    tows_listed = with_ids(rows).select("season", "tow_id", "tow_date")
+    faults += [] if unread else _idle_settings(profiles, *map(set, tows_listed))
+    checks, of_checks = read_force_checks(root, wording)
+    lamps, of_lamps = read_lamps(root, wording, tows_listed["tow_id"].drop_nulls())
+    known = Known(problems, profiles, by_name, hashes, boats, checks, lamp_seconds(lamps))
+    usable = usable_tows(rows, known)
+    windows, of_windows = read_windows(
+        root, wording, tows_listed.select("season", "tow_id"), usable.runs
+    )
+    faults += [*usable.faults, *of_checks, *of_lamps, *of_windows]
     told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
     faults += [fault for fault in unhashed if fault.path not in told]
     return ArchiveIndex(
-        boats=boats.frame(),
-        tows=frame_of(ListedTows, [entry.tow for entry in good]),
-        runs=frame_of(ListedRuns, runs),
+        boats=boats.listed,
+        tows=usable.tows,
+        runs=usable.runs,
         windows=windows,
         faults=tuple(sorted(faults, key=_fault_order)),
         files=hashes.frame(),
         profiles=profiles,
         seasons={
-            part.path: entry.season
-            for entry in entries
-            for name in names_of_files(entry)
-            for file in files_meant(name, entry.season, by_name)
+            part.path: season
+            for season, name in names
+            for file in files_meant(name, season, by_name)
             for part in file.parts
         },
-        more=tuple(more),
+        more=(*boats.more, *usable.more),
     )
+
+
+def _unread_seasons(root: Path, wording: Wording, faults: Iterable[Fault]) -> set[int]:
+    """The seasons of tow lists that cannot be read."""
+    unread = {fault.path for fault in faults}
+    return {file.season for file in list_files(root, TOWS, wording.files) if file.path in unread}
 
 
 def _fault_order(fault: Fault) -> tuple[str, int, str]:
@@ -162,38 +146,26 @@ def _check_present(root: Path, profiles: Profiles) -> None:
         )
 
 
-def _add_instruments(
-    root: Path,
-    profiles: Profiles,
-    entries: list[Entry],
-    good: list[Entry],
-    faults: list[Fault],
-) -> None:
-    """Puts what is known of the load cell and the warning lamps into the tows."""
-    tow_ids = {entry.tow_id for entry in entries if entry.tow_id is not None}
-    checks, unread = read_force_checks(root, profiles.wording)
-    lamps, unread_lamps = read_lamps(root, profiles.wording, tow_ids)
-    faults += [*unread, *unread_lamps]
-    burned = lamp_seconds(lamps)
-    for entry in good:
-        seconds = burned.get(entry.tow["tow_id"])
-        entry.tow |= load_cell_of(entry.tow, checks)
-        entry.tow["lamp_ratio"] = None if seconds is None else seconds / entry.plan.seconds
-
-
-def _runs(entry: Entry) -> list[Row]:
-    plan = entry.plan
-    ways_of = {0: plan.directions, SECOND_FILE_OFFSET: plan.second_directions or plan.directions}
-    files = list(ways_of.items())[: len(entry.files)]
+def _idle_settings(
+    profiles: Profiles, seasons: set[int], tows: set[str], days: set[dt.date]
+) -> list[Fault]:
+    """What `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
+    idle = [
+        *(("set_aside", str(one.date)) for one in profiles.set_aside if one.date not in days),
+        *(
+            ("log_replaced", str(one.date))
+            for one in profiles.log_replaced
+            if one.date.year not in seasons
+        ),
+        *(("plan", tow) for plan in profiles.plan for tow in plan.tows if tow not in tows),
+        *(
+            (name, f"{first}:{last}")
+            for name, (first, last) in profiles.season_ranges
+            if not any(first <= season <= last for season in seasons)
+        ),
+    ]
+    message = say("[[{table}]] is for {what}, and no tow list has that: is it mistyped?")
     return [
-        {
-            "tow_id": entry.tow["tow_id"],
-            "run": offset + number,
-            "direction": ways[number - 1],
-            "target_speed_ratio": plan.targets[number - 1],
-            "selected": offset + number in entry.selection,
-            "planned_s": plan.seconds,
-        }
-        for offset, ways in files
-        for number in plan.runs
+        Fault(PROFILE_FILE, None, None, "idle_setting", say(message, table=table, what=what))
+        for table, what in idle
     ]

@@ -1,28 +1,48 @@
-"""Which samples files a row of a tow list means."""
+"""Which samples files the rows of the tow lists mean."""
 
 from collections import defaultdict
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
+
+import polars as pl
 
 from pipeline.messages import say
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, outside_archive
-from warehouse.archive.files.names import SAMPLES, as_one_run, match_key, split_sheet
-from warehouse.archive.index.hashed_files import Hashes
-from warehouse.archive.index.tow_rows import Entry, SamplesFile
+from warehouse.archive.files.names import PARTS, SAMPLES, as_one_run, match_key, split_sheet
+from warehouse.archive.sheets.cells import WrongError
 from warehouse.archive.spelling.text import fold, fold_word, shorten
 
-FilesByName = dict[tuple[int, str], list["SamplesFile"]]
+
+@dataclass(frozen=True)
+class SamplesFile:
+    """The samples that a name in a list stands for: a file, or one for every run.
+
+    Attributes:
+        parts: the files, in the order of their runs.
+    """
+
+    parts: tuple[ArchiveFile, ...]
+
+    @property
+    def path(self) -> str:
+        """Path relative to the archive; of several files with `PARTS` between them."""
+        return PARTS.join(part.path for part in self.parts)
+
+
+FilesByName = dict[tuple[int, str], list[SamplesFile]]
 """Samples files by season and the name they answer to."""
+Named = tuple[int, str]
+"""The season of a row and the name of a samples file in it."""
 
 
-def names_of_files(entry: Entry) -> list[str]:
-    """The names of the files in a row."""
-    cells = (entry.row.optional_text(key) for key in ("file", "second_file"))
-    return [_without_own_folder(cell, entry.season) for cell in cells if cell is not None]
+def names_of_files(rows: pl.DataFrame) -> list[Named]:
+    """The names of samples files in the rows, each once."""
+    first, second = (rows.select("season", name=key) for key in ("file", "second_file"))
+    return pl.concat([first, second]).drop_nulls().unique(maintain_order=True).rows()
 
 
-def _without_own_folder(name: str, season: int) -> str:
+def without_own_folder(name: str, season: int) -> str:
     r"""Return `snol 8h 2014` of `E:\slepen\meetdata_2014\snol 8h 2014` in the list of 2014.
 
     So the federation's tool shows a file (presentation 2015, "Meetfile"). Other paths stay.
@@ -31,13 +51,13 @@ def _without_own_folder(name: str, season: int) -> str:
     return own if fold(folder.rpartition("/")[2]) == fold(f"{SAMPLES}_{season}") else name
 
 
-def files_by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[Entry]) -> FilesByName:
+def files_by_name(sample_files: Iterable[ArchiveFile], names: Iterable[Named]) -> FilesByName:
     """The samples by season and the name they answer to.
 
     Files that are a run each answer together to what their names have in common, unless a row
     names one of them by itself.
     """
-    named = {(entry.season, match_key(name)) for entry in entries for name in names_of_files(entry)}
+    named = {(season, match_key(without_own_folder(name, season))) for season, name in names}
     by_name: FilesByName = defaultdict(list)
     by_run: dict[tuple[int, str], dict[int, list[ArchiveFile]]] = defaultdict(dict)
     for file in sample_files:
@@ -58,6 +78,7 @@ def files_meant(name: str, season: int, by_name: FilesByName) -> list[SamplesFil
 
     Of a workbook it can name a sheet: `proeven.xlsx#snol 8h`.
     """
+    name = without_own_folder(name, season)
     key, (own, sheet) = match_key(name), split_sheet(name)
     alike = by_name.get((season, key)) or by_name.get((0, key), [])
     exact = [file for file in alike if fold_word(file.parts[0].full_path.name) == fold_word(own)]
@@ -71,9 +92,9 @@ def _sheet_in(book: ArchiveFile, sheet: str) -> SamplesFile:
 
 
 def not_listed(
-    entries: Iterable[Entry],
+    names: Iterable[Named],
     sample_files: list[ArchiveFile],
-    unread_seasons: set[int],
+    unread_seasons: Collection[int],
     by_name: FilesByName,
 ) -> list[Fault]:
     """A fault for each samples file no row names, in seasons whose list could be read.
@@ -82,10 +103,9 @@ def not_listed(
     """
     named = {
         part.path
-        for entry in entries
-        for name in names_of_files(entry)
-        for season in (entry.season, 0)
-        for file in by_name.get((season, match_key(name)), [])
+        for season, name in names
+        for year in (season, 0)
+        for file in by_name.get((year, match_key(without_own_folder(name, season))), [])
         for part in file.parts
     }
     faults = []
@@ -94,39 +114,32 @@ def not_listed(
             continue
         if not file.inside:
             faults.append(fault_from(outside_archive(file.path), file.path))
-        elif not unread_seasons & {file.season, 0} and (file.season or not unread_seasons):
+        elif not {*unread_seasons} & {file.season, 0} and (file.season or not unread_seasons):
             message = say("No row of a tow list names this file.")
             faults.append(Fault(file.path, None, None, "samples_not_listed", message))
     return faults
 
 
-def find_files(entry: Entry, by_name: FilesByName, hashes: Hashes) -> None:
-    """Finds the samples of a row and notes them in its tow."""
-    entry.files = [_find_file(entry, name, by_name) for name in names_of_files(entry)]
-    first, second = entry.files[0], entry.files[1] if len(entry.files) > 1 else None
-    entry.tow |= {
-        "samples_path": first.path,
-        "samples_sha256": hashes.add_samples(first),
-        "second_path": second.path if second else None,
-        "second_sha256": hashes.add_samples(second) if second else None,
-        "list_path": entry.list_path,
-        "list_line": entry.row.line,
-    }
+def the_file(name: str, season: int, by_name: FilesByName) -> SamplesFile:
+    """The one file that a name in a list means.
 
-
-def _find_file(entry: Entry, name: str, by_name: FilesByName) -> SamplesFile:
-    values = {"name": shorten(name), "folder": f"meetdata_{entry.season}/"}
-    if "/" in name or "\\" in name or name.startswith(".."):
-        message = say("'{name}' is a path; only the name of a file in {folder} can be given here.")
-        raise entry.row.fault(say(message, **values), "path_outside_archive")
-    candidates = files_meant(name, entry.season, by_name)
+    Raises:
+        WrongError: there is none, or more than one.
+        DefectiveInputError: it lies outside the archive.
+    """
+    own = without_own_folder(name, season)
+    values = {"name": shorten(own), "folder": f"meetdata_{season}/"}
+    if "/" in own or "\\" in own or own.startswith(".."):
+        text = say("'{name}' is a path; only the name of a file in {folder} can be given here.")
+        raise WrongError(text, "path_outside_archive", **values)
+    candidates = files_meant(name, season, by_name)
     if not candidates:
-        message = say("there is no file '{name}' in {folder}.", **values)
-        raise entry.row.fault(message, "samples_missing")
+        text = say("there is no file '{name}' in {folder}.")
+        raise WrongError(text, "samples_missing", **values)
     if len(candidates) > 1:
-        names = ", ".join(f"'{file.parts[0].full_path.name}'" for file in candidates)
-        message = say("'{name}' can be any of {found}.", name=shorten(name), found=names)
-        raise entry.row.fault(message, "ambiguous_file")
+        text = say("'{name}' can be any of {found}.")
+        found = ", ".join(f"'{file.parts[0].full_path.name}'" for file in candidates)
+        raise WrongError(text, "ambiguous_file", **values, found=found)
     outside = [part for part in candidates[0].parts if not part.inside]
     if outside:
         raise outside_archive(outside[0].path)

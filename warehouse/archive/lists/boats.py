@@ -1,22 +1,18 @@
 """The boats of the archive: `sloependata.csv`, or several lists of boats."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
 import polars as pl
 
 from pipeline.messages import say
-from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedBoats
-from pipeline.tables.row import Row
-from warehouse.archive.faults import Fault, fault_from, place
-from warehouse.archive.files.finding import list_files
+from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import BOATS
-from warehouse.archive.sheets.reading import CREW, read_list
-from warehouse.archive.sheets.row import ListRow, others_of
+from warehouse.archive.sheets.reading import CREW, read_lists
+from warehouse.archive.sheets.rows import header, keep, place_of, sound_rows
 from warehouse.archive.spelling.synonyms import NO_TYPE
 from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.wording import Wording
@@ -32,49 +28,30 @@ class Boats:
     """The boat lists.
 
     Attributes:
-        good: the boats that can be used, by `fsn_no`; the last row of a boat gives its name.
-        crews: every row of those boats: a boat and a crew that rows it.
+        listed: the boats that can be used (`ListedBoats`), a row for each crew that rows them, in
+            the order of the list; the last row of a boat gives its name.
         bad: why others cannot be used.
+        numbers: the numbers of the good boats by what each can be called: a name that it had,
+            folded, or its number without leading zeros.
         faults: what is wrong in the lists.
         more: what else is wrong in those rows.
         unread: why one of the lists as a whole cannot be read.
     """
 
-    good: Mapping[str, Row]
-    crews: Sequence[Row]
+    listed: pl.DataFrame
     bad: Mapping[str, Fault]
-    faults: tuple[Fault, ...]
-    more: tuple[Fault, ...] = ()
+    numbers: Mapping[tuple[str, str], set[str]]
+    faults: list[Fault]
+    more: list[Fault] = field(default_factory=list)
     unread: Fault | None = None
 
-    def frame(self) -> pl.DataFrame:
-        """The good boats, a row for each crew that rows them, in the order of the list."""
-        rows = [self.good[boat["fsn_no"]] | {key: boat[key] for key in CREW} for boat in self.crews]
-        return frame_of(ListedBoats, rows).unique(maintain_order=True)
-
-    def find(self, fsn_no: str) -> Row | None:
-        """A boat by its number or a name; leading zeros do not matter where one boat is left."""
-        if fsn_no in self.good:
-            return self.good[fsn_no]
-        alike = self._by_bare_number.get(_bare(fsn_no)) or self._by_name.get(fold(fsn_no), set())
-        return self.good[next(iter(alike))] if len(alike) == 1 else None
-
-    @cached_property
-    def _by_name(self) -> Mapping[str, set[str]]:
-        """The numbers of the boats that have or had a name, by that name folded."""
-        return _grouped((fold(boat["name"]), boat["fsn_no"]) for boat in self.crews)
-
-    @cached_property
-    def _by_bare_number(self) -> Mapping[str, set[str]]:
-        """The numbers of the good boats, by the number without leading zeros."""
-        return _grouped((_bare(number), number) for number in self.good)
-
-
-def _grouped(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
-    numbers: dict[str, set[str]] = {}
-    for key, number in pairs:
-        numbers.setdefault(key, set()).add(number)
-    return numbers
+    def find(self, fsn_no: str) -> str | None:
+        """The number of a boat by a number or a name; zeros before it count where two are alike."""
+        bare = self.numbers.get(("number", _bare(fsn_no)), set())
+        if fsn_no in bare:
+            return fsn_no
+        alike = bare or self.numbers.get(("name", fold(fsn_no)), set())
+        return next(iter(alike)) if len(alike) == 1 else None
 
 
 def _bare(fsn_no: str) -> str:
@@ -88,64 +65,53 @@ def read_boats(root: Path, wording: Wording) -> Boats:
     weight and crew may be empty. Rows that contradict each other cost the boat: nobody can know
     which of them is right.
     """
-    good: dict[str, Row] = {}
-    first: dict[str, str] = {}
-    crews: list[Row] = []
-    bad: dict[str, Fault] = {}
-    faults: list[Fault] = []
+    rows, problems, faults = read_lists(root, BOATS, wording)
+    unread = faults[-1] if faults else None
+    of_rows: list[Fault] = []
     more: list[Fault] = []
-    unread: Fault | None = None
-    for file in list_files(root, BOATS, wording.files):
-        try:
-            rows = read_list(root, BOATS, file.path, wording)
-        except BaseException as error:
-            unread = fault_from(error, file.path)
-            faults.append(unread)
-            continue
-        for row in rows:
-            try:
-                boat = _boat(row)
-                fsn_no = boat["fsn_no"]
-                where = first.setdefault(fsn_no, place(row.line, file.path))
-                good[fsn_no] = _merged(row, boat, good.get(fsn_no), where)
-            except BaseException as error:
-                fault = fault_from(error, file.path)
-                faults.append(fault)
-                more += [fault_from(other, file.path) for other in others_of(error)]
-                if row.optional_text("fsn_no") is not None:
-                    bad[row.boat("fsn_no")] = fault
-            else:
-                crews.append(boat)
-    usable = {fsn_no: boat for fsn_no, boat in good.items() if fsn_no not in bad}
-    rowed = [boat for boat in crews if boat["fsn_no"] in usable]
-    return Boats(usable, rowed, bad, tuple(faults), tuple(more), unread)
+    rows = rows.with_columns(of_tow="fsn_no")  # which boat a fault costs
+    rows = _that_agree(sound_rows(rows, problems, of_rows, more), of_rows)
+    of_rows.sort(key=lambda fault: (fault.path, fault.line))
+    bad = {f.tow_id: replace(f, tow_id=None) for f in of_rows if f.tow_id is not None}
+    is_no_type = pl.col("boat_type").map_elements(_is_no_type, pl.Boolean)
+    rows = rows.filter(~pl.col("fsn_no").is_in([*bad])).with_columns(
+        boat_type=pl.when(~is_no_type).then("boat_type")
+    )
+    whole = rows.group_by("fsn_no", maintain_order=True).agg(
+        pl.col(*ListedBoats.column_names()).exclude("fsn_no").drop_nulls().last()
+    )
+    listed = rows.select("fsn_no", *CREW).join(whole.drop(CREW), on="fsn_no", maintain_order="left")
+    numbers: dict[tuple[str, str], set[str]] = {}
+    for number, name in rows.select("fsn_no", "name").rows():
+        numbers.setdefault(("number", _bare(number)), set()).add(number)
+        numbers.setdefault(("name", fold(name)), set()).add(number)
+    return Boats(
+        listed=ListedBoats.cast(
+            listed.select(ListedBoats.column_names()).unique(maintain_order=True)
+        ),
+        bad=bad,
+        numbers=numbers,
+        faults=[*faults, *(replace(fault, tow_id=None) for fault in of_rows)],
+        more=[replace(fault, tow_id=None) for fault in more],
+        unread=unread,
+    )
 
 
-def _boat(row: ListRow) -> Row:
-    row.check_whole()
-    boat = row.values(BOATS.columns)
-    has_no_type = fold_word(boat["boat_type"] or "") in NO_TYPE
-    return boat | {"boat_type": None} if has_no_type else boat
+def _is_no_type(boat_type: str) -> bool:
+    return fold_word(boat_type) in NO_TYPE
 
 
-def _merged(row: ListRow, boat: Row, before: Row | None, where: str) -> Row:
-    """A boat with what its rows so far say; two sizes or types cannot both be right.
-
-    Args:
-        where: the first of these rows.
-    """
-    if before is None:
-        return boat
+def _that_agree(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
+    """The rows that do not contradict the first of their boat: two sizes cannot both be right."""
+    text = say(
+        "boat {boat} is listed twice and the rows differ in {key}: {one} here, {other} on {where}."
+    )
+    first = {f"first_{key}": pl.col(key).drop_nulls().first().over("fsn_no") for key in OF_THE_BOAT}
+    where = place_of("line", "path").first().over("fsn_no")
+    rows = rows.with_columns(**first, where=where)
     for key in OF_THE_BOAT:
-        if None not in (boat[key], before[key]) and boat[key] != before[key]:
-            message = say(
-                "boat {boat} is listed twice and the rows differ in {key}: {one} here, {other} on "
-                "{where}.",
-                boat=boat["fsn_no"],
-                key=row.named(key),
-                one=boat[key],
-                other=before[key],
-                where=where,
-            )
-            raise row.fault(message, "duplicate_boat")
-    return {key: value if value is not None else before[key] for key, value in boat.items()}
+        one, other = pl.col(key), pl.col(f"first_{key}")
+        facts = {"boat": pl.col("fsn_no"), "key": header(key), "one": one, "other": other}
+        facts |= {"where": pl.col("where")}
+        rows = keep(rows, faults, one != other, "duplicate_boat", text, **facts)
+    return rows

@@ -1,6 +1,5 @@
 """Race results. Computing with them belongs elsewhere."""
 
-import re
 from pathlib import Path
 from typing import Final
 
@@ -9,93 +8,59 @@ import polars as pl
 from pipeline.messages import say
 from pipeline.tables.bases import TowFacts
 from pipeline.tables.frames import limits
-from pipeline.tables.row import Row
-from warehouse.archive.faults import Fault, at_line
+from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import RACES
 from warehouse.archive.profile.reading import read_profiles
-from warehouse.archive.sheets.reading import read_lists
-from warehouse.archive.sheets.row import ROWS_ARE_EQUAL, ROWS_DIFFER, ListRow
-from warehouse.archive.spelling.wording import Wording
-
-_ROWING_TIME: Final = re.compile(
-    r"([0-9]{1,2})(?::|\.|[uh]\s*)([0-5]?[0-9])(?::|\.|['m]\s*)([0-5]?[0-9])(?:[.,]0*|[\"s])?"
+from warehouse.archive.sheets.reading import read_sound
+from warehouse.archive.sheets.rows import (
+    ROWS_ARE_EQUAL,
+    ROWS_DIFFER,
+    cell,
+    check_year,
+    keep,
+    to_table,
 )
-
-
-def read_races(
-    root: Path, wording: Wording | None = None
-) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Reads every `wedstrijden/<naam>_<jaar>.csv`.
-
-    Returns:
-        One row a result (`ListedRaces`; distances in m, times in s, penalties in W), and the lines
-        that cannot be read.
-    """
-    wording = wording or read_profiles(root).wording
-    results, faults = read_lists(root, RACES, wording, _possible_result)
-    kept, twice = _once(results)
-    return kept, (*faults, *twice)
-
+from warehouse.archive.spelling.wording import Wording
 
 _RESULT: Final = ("race", "race_date", "fsn_no", "rowers", "crew_class")
 """What a crew has one result of."""
 
 
-def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
-    """The results of crews that have one in a race; of equal rows the first counts."""
-    others = [name for name in results.columns if name not in {"path", "line"}]
-    is_again = pl.struct(others).is_first_distinct().not_()
-    one = results.filter(is_again.not_())
-    differ = one.filter(pl.struct(_RESULT).is_duplicated())
-    faults = [
-        _again(row, ending)
-        for rows, ending in ((results.filter(is_again), ROWS_ARE_EQUAL), (differ, ROWS_DIFFER))
-        for row in rows.iter_rows(named=True)
-    ]
-    return one.filter(pl.struct(_RESULT).is_unique()), faults
+def read_races(root: Path, wording: Wording | None = None) -> tuple[pl.DataFrame, list[Fault]]:
+    """Reads every `wedstrijden/<naam>_<jaar>.csv`.
+
+    A crew has one result in a race; of equal rows the first counts.
+
+    Returns:
+        One row a result (`ListedRaces`; distances in m, times in s, penalties in W), and the lines
+        that cannot be read.
+    """
+    rows, faults = read_sound(root, RACES, wording or read_profiles(root).wording)
+    rows = check_year(rows, faults, "race_date", RACES.reason_code)
+    rows = rows.with_columns(season=pl.col("race_date").dt.year().cast(pl.Int64))
+    rows = _possible(rows, faults)
+    own = [name for name in RACES.table.column_names() if name not in {"path", "line"}]
+    is_again = pl.struct(own).is_first_distinct().not_()
+    for is_twice, ending in (
+        (is_again, ROWS_ARE_EQUAL),
+        (pl.struct(_RESULT).is_duplicated(), ROWS_DIFFER),
+    ):
+        text = say("{boat} {crew} is listed twice for {race}; {ending}")
+        crew = pl.format("{}{}", "rowers", "crew_class")
+        named = {"boat": pl.col("fsn_no"), "crew": crew, "race": pl.col("race"), "ending": ending}
+        rows = keep(rows, faults, is_twice, RACES.reason_code, text, **named)
+    return to_table(RACES.table, rows, faults, RACES.reason_code), faults
 
 
-def _again(row: Row, ending: str) -> Fault:
-    what = say(
-        "{boat} {crew} is listed twice for {race}; {ending}",
-        boat=row["fsn_no"],
-        crew=f"{row['rowers']}{row['crew_class']}",
-        race=row["race"],
-        ending=ending,
+def _possible(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
+    """The results whose speed through the water a boat can have."""
+    through_water_m = pl.col("distance_m") - pl.col("stream_m").fill_null(0.0)
+    speed = through_water_m / pl.col("rowing_time_s")
+    low, high = limits(TowFacts, "declared_speed_m_s")
+    text = say(
+        "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
+        "{high:g} can be right."
     )
-    return Fault(row["path"], None, row["line"], "bad_race_row", at_line(row["line"], what))
-
-
-def _race_result(row: ListRow, season: int) -> Row:
-    result = row.values(column for column in RACES.columns if column.key != "rowing_time_s")
-    day = result["race_date"]
-    if season:
-        row.check_year(day, season)
-    return result | {"season": day.year, "rowing_time_s": _rowing_time(row)}
-
-
-def _possible_result(row: ListRow, season: int) -> Row:
-    """A result whose speed through the water a boat can have."""
-    result = _race_result(row, season)
-    through_water_m = result["distance_m"] - (result["stream_m"] or 0.0)
-    speed = through_water_m / result["rowing_time_s"]
-    lowest, highest = limits(TowFacts, "declared_speed_m_s")
-    if not lowest <= speed <= highest:
-        message = say(
-            "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
-            "{high:g} can be right."
-        )
-        km = through_water_m / 1000
-        raise row.wrong(message, "rowing_time_s", km=km, speed=speed, low=lowest, high=highest)
-    return result
-
-
-def _rowing_time(row: ListRow) -> float:
-    cell = row.text("rowing_time_s")
-    match = _ROWING_TIME.fullmatch(cell)
-    if match is None:
-        raise row.wrong("'roeitijd' is '{cell}', not a time such as 2:10:25.", "rowing_time_s")
-    seconds = int(match[1]) * 3600 + int(match[2]) * 60 + int(match[3])
-    if seconds == 0:
-        raise row.fault(say("'roeitijd' is 0."))
-    return float(seconds)
+    facts = {"cell": cell("rowing_time_s"), "km": through_water_m / 1000, "speed": speed}
+    is_impossible = ~speed.is_between(low, high)
+    return keep(rows, faults, is_impossible, RACES.reason_code, text, **facts, low=low, high=high)

@@ -1,6 +1,5 @@
 """Registers as they were published: what the recomputed history is compared with."""
 
-import re
 from pathlib import Path
 from typing import Final
 
@@ -8,12 +7,11 @@ import polars as pl
 
 from pipeline.messages import say
 from pipeline.register.register import NO_EMPTY_THWART
-from pipeline.tables.row import Row
 from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import REGISTERS
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.archive.sheets.reading import read_lists
-from warehouse.archive.sheets.row import ListRow
+from warehouse.archive.sheets.rows import cell, header, keep, sound_rows, to_table
 from warehouse.archive.spelling.wording import Wording
 
 NEVER_TOWED_CW: Final = (0.995, 1.005)
@@ -23,67 +21,62 @@ CW_AS_PRINTED: Final = 0.01
 """By how much a printed Cw may differ from its A and B, beside what rounding does: an intermediate
 result was sometimes rounded too."""
 _BELOW_ONE: Final = 0.999
+_CURVE: Final = ("a_kg_m", "b_m_s", "cw_kg_m")
 
 
 def read_published_registers(
     root: Path, wording: Wording | None = None
-) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+) -> tuple[pl.DataFrame, list[Fault]]:
     """Reads every `sloepregister/sloepregister_<jaar>.csv`.
 
     Returns:
         One row per line of a register (`PrintedLines`), and the lines that cannot be read. A boat
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
-    wording = wording or read_profiles(root).wording
-    return read_lists(root, REGISTERS, wording, _fitting_line)
+    rows, problems, faults = read_lists(root, REGISTERS, wording or read_profiles(root).wording)
+    is_valid = ~pl.col("cw_kg_m").is_between(*NEVER_TOWED_CW)
+    rows = rows.with_columns(has_valid_curve=is_valid)
+    never_towed = {*rows.filter(~pl.col("has_valid_curve"))["row"]}
+    rows = sound_rows(
+        rows, (p for p in problems if p.row not in never_towed or p.key not in _CURVE), faults
+    )
+    for key in ("cw_kg_m", "a_kg_m", "b_m_s"):
+        is_empty = pl.col(key).is_null() & pl.col("has_valid_curve").fill_null(value=True)
+        text = say("column '{column}' is empty.")
+        rows = keep(rows, faults, is_empty, REGISTERS.reason_code, text, column=header(key))
+    rows = rows.with_columns(
+        *(pl.when(pl.col("has_valid_curve")).then(pl.col(key)).alias(key) for key in _CURVE),
+        pl.col("empty_thwart").fill_null(NO_EMPTY_THWART),
+    )
+    rows = _fitting(rows, faults)
+    return to_table(REGISTERS.table, rows, faults, REGISTERS.reason_code), faults
 
 
-def _register_line(row: ListRow, season: int) -> Row:
-    cw = row.number("cw_kg_m")
-    is_valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
-    curve = {key: row.number(key) if is_valid else None for key in ("a_kg_m", "b_m_s", "cw_kg_m")}
-    line = row.values(column for column in REGISTERS.columns if column.key not in curve)
-    thwart = line["empty_thwart"] or NO_EMPTY_THWART
-    return line | curve | {"season": season, "has_valid_curve": is_valid, "empty_thwart": thwart}
+def _fitting(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
+    """The lines whose Cw is A / (1 - (v/B)^2), however the numbers were rounded.
 
-
-def _fitting_line(row: ListRow, season: int) -> Row:
-    """A line of a register that is its own curve."""
-    line = _register_line(row, season)
-    if line["has_valid_curve"]:
-        _check_curve(row)
-    return line
-
-
-def _check_curve(row: ListRow) -> None:
-    """Holds a printed Cw against A, B and the speed beside it: two exchanged, or one mistyped.
-
-    Raises:
-        DefectiveInputError: Cw = A / (1 - (v/B)^2) does not hold, however the numbers were rounded.
+    Others have two of them exchanged, or one mistyped.
     """
-    keys = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s")
-    if row.optional_number("declared_speed_m_s") is None:
-        return
-    a, b, cw, speed = (row.number(key) for key in keys)
-    printed = {key: row.text(key) for key in keys}
-    if b <= speed:
-        message = say("B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher.")
-        raise row.fault(say(message, **printed))
-    half_a, half_b, half_cw, half_v = (_half_unit(printed[key]) for key in keys)
+    keys = (*_CURVE, "declared_speed_m_s")
+    a, b, cw, speed = map(pl.col, keys)
+    printed = {key: cell(key) for key in keys}
+    text = say("B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher.")
+    rows = keep(rows, faults, b <= speed, REGISTERS.reason_code, text, **printed)
+    half_a, half_b, half_cw, half_v = map(_half_unit, keys)
     slowest = (speed - half_v) / (b + half_b)
-    fastest = min((speed + half_v) / (b - half_b), _BELOW_ONE)
+    fastest = pl.min_horizontal((speed + half_v) / (b - half_b), _BELOW_ONE)
     lowest = (a - half_a) / (1.0 - slowest**2) - half_cw
     highest = (a + half_a) / (1.0 - fastest**2) + half_cw
-    if not lowest * (1.0 - CW_AS_PRINTED) <= cw <= highest * (1.0 + CW_AS_PRINTED):
-        message = say(
-            "Cw is {cw_kg_m}, but A {a_kg_m} and B {b_m_s} give {given:.2f} at "
-            "{declared_speed_m_s} m/s; one of them is wrong, or two are exchanged."
-        )
-        given = a / (1.0 - (speed / b) ** 2)
-        raise row.fault(say(message, **printed, given=given))
+    fits = (cw >= lowest * (1.0 - CW_AS_PRINTED)) & (cw <= highest * (1.0 + CW_AS_PRINTED))
+    text = say(
+        "Cw is {cw_kg_m}, but A {a_kg_m} and B {b_m_s} give {given:.2f} at "
+        "{declared_speed_m_s} m/s; one of them is wrong, or two are exchanged."
+    )
+    given = a / (1.0 - (speed / b) ** 2)
+    return keep(rows, faults, ~fits, REGISTERS.reason_code, text, **printed, given=given)
 
 
-def _half_unit(cell: str) -> float:
+def _half_unit(key: str) -> pl.Expr:
     """Half a unit of the last digit that is printed."""
-    decimals = re.search(r"[.,]([0-9]+)", cell)
-    return 0.5 * 10.0 ** -(len(decimals[1]) if decimals else 0)
+    decimals = cell(key).str.extract(r"[.,]([0-9]+)").str.len_chars().fill_null(0)
+    return 0.5 / pl.lit(10.0).pow(decimals.cast(pl.Int32))

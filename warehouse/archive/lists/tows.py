@@ -1,160 +1,149 @@
 """The rows of the tow lists: `sleeplijst_<jaar>.csv`.
 
-One row at a time: text to values. What rows, boats and files say about each other belongs to
-the room `index`.
+What a row says by itself. What rows, boats and files say about each other belongs to the room
+`index`.
 """
 
 import re
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Final
 
+import polars as pl
+
 from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
-from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
-from pipeline.tables.row import Row
+from warehouse.archive.faults import Fault
 from warehouse.archive.files.list_kinds import TOWS
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.season import Plan
-from warehouse.archive.sheets.row import DefectiveRowError, ListRow, run_number
+from warehouse.archive.sheets.cells import WrongError, run_number
+from warehouse.archive.sheets.rows import Problem, cell, check_year, header, sound_rows
 from warehouse.archive.spelling.synonyms import ALL_RUNS
 from warehouse.archive.spelling.text import fold_word, shorten
 
-TWICE: Final = 2.0
-"""A size this many times that of the boat list cannot be right (inferred)."""
-_DIMENSIONS: Final = {
-    column.key: column
-    for column in TOWS.columns
-    if column.key in {"waterline_length_m", "beam_m", "bow_height_m"}
-}
-"""What a tow or else its boat must have; the height of the bow only where wind was measured."""
-_VALUES: Final = tuple(
-    column
-    for column in TOWS.columns
-    if column.key != "tow_id" and column.key in TOWS.table.columns()
-)
-"""Columns whose cells are values of the tow as they are."""
 _DECISIVE: Final = frozenset({"speed_correction_ratio", "sample_rate_hz", "altered"})
 """Optional, but where one cannot be read an empty cell would say something else: no alteration."""
 _DISPENSABLE: Final = frozenset(
-    column.key for column in _VALUES if not column.required and column.key not in _DECISIVE
+    column.key for column in TOWS.columns if not column.required and column.key not in _DECISIVE
 )
 """Values whose absence makes a tow less sure, and not wrong."""
 _RANGE: Final = re.compile(r"(b?[0-9]+)\s*(?:-|\.\.|:|t/m|tm|tot en met|to|bis|à)\s*(b?[0-9]+)")
 _TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
 
 
-def with_ids(rows: Sequence[ListRow]) -> list[ListRow]:
+def with_ids(rows: pl.DataFrame) -> pl.DataFrame:
     """The rows with the id of their tow; without a column of ids: day, boat and crew."""
-    return [row if "tow_id" in row.columns else _with_id(row) for row in rows]
+    day = pl.coalesce(pl.col("tow_date").dt.strftime("%Y-%m-%d"), cell("tow_date"), pl.lit(""))
+    others = [cell(key).fill_null("") for key in ("fsn_no", "rowers", "crew_class")]
+    made = pl.format("{} {} {}{}", day, *others).str.replace_all("/", "-", literal=True)
+    has_ids = pl.col("headers").struct.field("tow_id").is_not_null()
+    tow_id = pl.when(has_ids).then("tow_id").otherwise(made)
+    return rows.with_columns(tow_id=tow_id, of_tow=tow_id)
 
 
-def _with_id(row: ListRow) -> ListRow:
-    cells = row.cells
-    try:
-        day = row.date("tow_date").isoformat()
-    except DefectiveInputError:  # said when the date is read
-        day = cells.get("tow_date", "")
-    crew = f"{cells.get('rowers', '')}{cells.get('crew_class', '')}"
-    tow_id = f"{day} {cells.get('fsn_no', '')} {crew}".replace("/", "-")
-    return replace(row, cells=cells | {"tow_id": tow_id})
+@dataclass(frozen=True)
+class TowRows:
+    """The rows of tow lists that can be read.
 
-
-def read_tow(
-    row: ListRow, season: int, default_rate_hz: int
-) -> tuple[Row, list[DefectiveInputError]]:
-    """The values of a tow, without its files; empty dimensions are None.
-
-    Returns:
-        The values; and what is wrong in cells that the tow can do without, which count as empty.
-
-    Raises:
-        DefectiveInputError: `bad_list_row` with the line.
+    Attributes:
+        rows: a row each.
+        selections: the runs to use, by `row`; those of the second file are 21 and on.
+        lost: what is wrong in cells that a tow can do without, which count as empty.
     """
-    tow_id = row.text("tow_id")
-    if not _TOW_ID.fullmatch(tow_id):
-        message = say("'{tow}' cannot be a sleep_id: it is too long, or has a slash.")
-        raise row.fault(say(message, tow=shorten(tow_id)))
-    values: Row = {}
-    wrong: dict[str, DefectiveInputError] = {}
-    for column in _VALUES:
-        try:
-            values[column.key] = row.value(column)
-        except DefectiveInputError as error:
-            values[column.key] = None
-            wrong[column.key] = error
-    costly = [error for key, error in wrong.items() if key not in _DISPENSABLE]
-    lost = [wrong[key] for key in sorted(wrong.keys() & _DISPENSABLE)]
-    if costly:
-        raise DefectiveRowError([*costly, *lost])
-    return {
-        "tow_id": tow_id,
-        "season": season,
-        **values,
-        "sample_rate_hz": values["sample_rate_hz"] or default_rate_hz,
-    }, lost
+
+    rows: pl.DataFrame
+    selections: Mapping[int, frozenset[int]]
+    lost: list[Problem]
 
 
-def unlike_boat(tow: Row, boat: Row, row: ListRow) -> dict[str, DefectiveInputError]:
-    """What is wrong in cells that the boat list contradicts: in feet, or a digit too many.
-
-    No rebuilding makes a boat twice as long or heavy. Which of the two is right nobody can know.
-    """
-    apart = {}
-    for key in (*_DIMENSIONS, "weight_kg"):
-        here, listed = tow[key], boat[key]
-        if here is None or listed is None or 1 / TWICE < here / listed < TWICE:
-            continue
-        apart[key] = row.wrong(
-            "column '{column}' is {cell} and the boat list says {listed:g}; one of the two cannot "
-            "be right.",
-            key,
-            listed=listed,
-        )
-    return apart
-
-
-def fill_dimensions(tow: Row, boat: Row, row: ListRow, has_wind: bool) -> Row:
-    """The tow with the boat's dimensions where that day's were not written down.
+def readable(
+    rows: pl.DataFrame,
+    problems: Iterable[Problem],
+    profiles: Profiles,
+    faults: list[Fault],
+    more: list[Fault],
+) -> TowRows:
+    """The rows of which everything that a tow needs can be read; each other leaves a fault.
 
     Args:
-        tow: what the row says.
-        boat: its boat.
-        row: the row.
-        has_wind: wind was measured, so that the boat's front has to be known.
-
-    Raises:
-        DefectiveInputError: `bad_list_row` when the boat list does not have them either.
+        rows: as `with_ids` returns them.
+        problems: what is wrong in their cells.
+        profiles: the runs that the tows are meant to have.
+        faults: the first fault of each other row is added.
+        more: what else is wrong in it.
     """
-    filled = dict(tow) | {key: boat[key] for key in _DIMENSIONS if tow[key] is None}
-    needed = {*_DIMENSIONS} - (set() if has_wind else {"bow_height_m"})
-    lacking = [c for key, c in _DIMENSIONS.items() if key in needed and filled[key] is None]
-    if lacking:
-        message = say("{names} must be there, here or in the boat list.")
-        raise row.fault(say(message, names=", ".join(f"'{column.named}'" for column in lacking)))
-    return filled
+    known: dict[int, list[Problem]] = {}
+    for problem in problems:
+        known.setdefault(problem.row, []).append(problem)
+    selections: dict[int, frozenset[int]] = {}
+    costly: list[Problem] = []
+    lost: list[Problem] = []
+    facts = rows.select(
+        *("row", "tow_id", "season", "second_file", "use_runs"),
+        id_column=header("tow_id"),
+        runs_column=header("use_runs"),
+    )
+    for row, tow_id, season, second, use_runs, id_column, runs_column in facts.iter_rows():
+        own = known.get(row, [])
+        if own and not own[0].key:
+            costly += own
+            continue
+        found = [p for p in own if p.key not in _DISPENSABLE and p.key != "file"]
+        can_lack = sorted((p for p in own if p.key in _DISPENSABLE), key=lambda p: p.key)
+        found += can_lack if found else []
+        wrong_id = _wrong_id(row, tow_id, id_column)
+        found = [wrong_id] if wrong_id else found
+        try:
+            plan = profiles.plan_of(tow_id or "", season)
+            selections[row] = read_selection(use_runs, second is not None, plan, runs_column)
+        except WrongError as error:
+            text = error.in_words(runs_column, use_runs or "")
+            found.append(Problem(row, "use_runs", TOWS.reason_code, text))
+        found += [p for p in own if p.key == "file"]
+        costly += found
+        lost += [] if found else can_lack
+    rows = sound_rows(rows, costly, faults, more)
+    rows = check_year(rows, faults, "tow_date", "date_outside_season")
+    return TowRows(rows, selections, lost)
 
 
-def read_selection(row: ListRow, plan: Plan) -> frozenset[int]:
+def _wrong_id(row: int, tow_id: str | None, named: str) -> Problem | None:
+    if tow_id is None:
+        text = say("column '{column}' is empty.", column=named)
+    elif not _TOW_ID.fullmatch(tow_id):
+        text = say("'{tow}' cannot be a sleep_id: it is too long, or has a slash.")
+        text = say(text, tow=shorten(tow_id))
+    else:
+        return None
+    return Problem(row, "tow_id", TOWS.reason_code, text)
+
+
+def read_selection(
+    written: str | None, has_second: bool, plan: Plan, column: str
+) -> frozenset[int]:
     """The runs to use; runs of the second file are 21 and on.
 
     Args:
-        row: row of a tow list.
-        plan: its runs; when the cell is empty all of the first file, and of the second where the
+        written: what the list says; None for nothing.
+        has_second: the tow has a second file.
+        plan: its runs; where nothing is written all of the first file, and of the second where the
             plan has them.
+        column: what the list calls it.
 
     Raises:
-        DefectiveInputError: `bad_list_row` with the line.
+        WrongError: it cannot be read.
     """
-    cell, planned = row.optional_text("use_runs"), plan.runs
-    if cell is None or fold_word(cell) in ALL_RUNS:
-        both = plan.second_directions and row.optional_text("second_file") is not None
+    planned = plan.runs
+    if written is None or fold_word(written) in ALL_RUNS:
+        both = plan.second_directions and has_second
         return frozenset(planned) | {SECOND_FILE_OFFSET + run for run in planned if both}
-    parts = re.split(r"[\s,;+&]+", _spelled_out(fold_word(cell)).strip(" ,;"))
-    runs = [run_number(part, row, row.named("use_runs"), planned) for part in parts]
+    parts = re.split(r"[\s,;+&]+", _spelled_out(fold_word(written)).strip(" ,;"))
+    runs = [run_number(part, column, planned) for part in parts]
     if len(set(runs)) < len(runs):
-        raise row.wrong("column '{column}' is '{cell}'; it names one run twice.", "use_runs")
-    if max(runs) > SECOND_FILE_OFFSET and row.optional_text("second_file") is None:
-        raise row.wrong("column '{column}' is '{cell}', but there is no meetfile2.", "use_runs")
+        raise WrongError(say("column '{column}' is '{cell}'; it names one run twice."))
+    if max(runs) > SECOND_FILE_OFFSET and not has_second:
+        raise WrongError(say("column '{column}' is '{cell}', but there is no meetfile2."))
     return frozenset(runs)
 
 

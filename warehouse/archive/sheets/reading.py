@@ -1,8 +1,8 @@
-"""Reading a list: a small table with one header, and the values in its rows."""
+"""Reading a list: a small table with one header, as a frame of its rows."""
 
 import re
 import unicodedata
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -10,17 +10,16 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import DefectiveInputError
-from pipeline.messages import Sentence, say
-from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of, limits
-from pipeline.tables.row import Row
-from warehouse.archive.faults import Fault, at_line, fault_from
+from pipeline.messages import say
+from pipeline.tables.frames import dtypes
+from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.contents import read_bytes
 from warehouse.archive.files.finding import list_files, path_inside
 from warehouse.archive.files.list_kinds import ListKind
 from warehouse.archive.files.names import split_sheet
 from warehouse.archive.limits import LIST_MAX_BYTES
-from warehouse.archive.sheets.row import ListRow, Reading
+from warehouse.archive.sheets.cells import Reading, Wrong, read_column
+from warehouse.archive.sheets.rows import PLACE, Problem, sound_rows
 from warehouse.archive.sheets.sheet import Sheet, read_sheets
 from warehouse.archive.spelling.columns import (
     Column,
@@ -40,7 +39,42 @@ _CREW: Final = re.compile(r"([0-9]{1,2})\s*([^\W\d_]+)")
 """Rowers and class in one cell: `8H`."""
 
 
-def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[ListRow]:
+def read_sound(root: Path, kind: ListKind, wording: Wording) -> tuple[pl.DataFrame, list[Fault]]:
+    """The rows of all lists of a kind in which nothing is wrong, and a fault for each other."""
+    rows, problems, faults = read_lists(root, kind, wording)
+    return sound_rows(rows, problems, faults), faults
+
+
+def read_lists(
+    root: Path, kind: ListKind, wording: Wording
+) -> tuple[pl.DataFrame, list[Problem], list[Fault]]:
+    """All lists of a kind as one frame, what is wrong in its rows, and the lists that are not read.
+
+    Args:
+        root: folder of the archive.
+        kind: which lists.
+        wording: how the lists are worded.
+
+    Returns:
+        The rows as in `read_list`, with `row` counted over all lists.
+    """
+    frames = [_no_rows(kind)]
+    problems: list[Problem] = []
+    faults: list[Fault] = []
+    for file in list_files(root, kind, wording.files):
+        try:
+            rows, wrong = read_list(root, kind, file.path, wording, sum(map(len, frames)))
+        except BaseException as error:
+            faults.append(fault_from(error, file.path))
+            continue
+        frames.append(rows.with_columns(season=pl.lit(file.season, pl.Int64)))
+        problems += wrong
+    return pl.concat(frames), problems, faults
+
+
+def read_list(
+    root: Path, kind: ListKind, path: str, wording: Wording, first_row: int = 0
+) -> tuple[pl.DataFrame, list[Problem]]:
     """The rows of a list of the archive; empty ones are left out.
 
     Args:
@@ -48,128 +82,113 @@ def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[L
         kind: which list.
         path: the list, relative to the archive.
         wording: how the lists of this archive are worded.
+        first_row: number of the first row.
+
+    Returns:
+        The number of each `row`, its `PLACE`, `cells` and `headers` as they are written, and the
+        values, null where a cell is empty or wrong; and what is wrong, row by row.
 
     Raises:
         DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
             it can be a misspelt one, and left out in silence would change numbers.
     """
-    file, sheet = split_sheet(path)
+    file, name = split_sheet(path)
     data = read_bytes(path_inside(root, file), LIST_MAX_BYTES)
     wanted = wording.with_names(kind.columns)
     suffix = file[file.rfind(".") :].casefold()
-    sheets = read_sheets(data, wanted, suffix, sheet, wording.header_lines.get(path))
+    sheets = read_sheets(data, wanted, suffix, name, wording.header_lines.get(path))
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
     told = wording.decimals.get(path, wording.decimals.get("*", ""))
-    return [
-        row
-        for sheet in sheets
-        for row in _rows(
-            sheet,
-            Reading(
-                _columns_of(sheet, wanted, wording),
-                kind.reason_code,
-                wording.words,
-                order,
-                told or decimal_mark(cells),
-                kind.table,
-                sheet.name,
-                bool(told),
-            ),
-        )
+    mark = told or decimal_mark(cells)
+    frames, problems = [_no_rows(kind)], list[Problem]()
+    for sheet in sheets:
+        found = _columns_of(sheet, wanted, wording)
+        reading = Reading(found, kind.table, order, mark, bool(told))
+        texts = _texts(sheet, kind, found, wording.words)
+        rows, wrong = _read_rows(sheet, kind, reading, texts, first_row)
+        frames.append(rows.with_columns(path=pl.lit(path)).select(frames[0].columns))
+        problems += wrong
+        first_row += len(rows)
+    return pl.concat(frames), problems
+
+
+def _no_rows(kind: ListKind) -> pl.DataFrame:
+    """The frame of a list without any row."""
+    written = pl.Struct({column.key: pl.String for column in kind.columns})
+    about = {"row": pl.Int64(), **PLACE, "season": pl.Int64(), "cells": written, "headers": written}
+    declared = dtypes(kind.table)
+    values = {c.key: declared.get(c.key, pl.String()) for c in kind.columns}
+    return pl.DataFrame(schema=about | values)
+
+
+def _read_rows(
+    sheet: Sheet, kind: ListKind, reading: Reading, texts: Mapping[str, pl.Series], first_row: int
+) -> tuple[pl.DataFrame, list[Problem]]:
+    read = {c.key: read_column(texts[c.key], c, reading) for c in kind.columns}
+    headers = {key: c.header for key in texts if (c := reading.columns.get(key))}
+    written = [pl.lit(headers.get(key), pl.String).alias(key) for key in texts]
+    rows = pl.DataFrame(
+        {"line": pl.Series([row.line for row in sheet.rows], dtype=pl.Int64)}
+        | {key: values for key, (values, _) in read.items()}
+    ).with_columns(
+        row=pl.int_range(first_row, first_row + pl.len(), dtype=pl.Int64),
+        sheet=pl.lit(sheet.name),
+        of_tow=pl.lit(None, pl.String),
+        season=pl.lit(0, pl.Int64),
+        cells=pl.DataFrame(texts).to_struct(),
+        headers=pl.struct(written),
+    )
+    whole = [
+        Problem(first_row + i, "", kind.reason_code, row.problem)
+        for i, row in enumerate(sheet.rows)
+        if row.problem is not None
     ]
+    torn = {problem.row for problem in whole}
+    of_cells = (
+        Problem(first_row + i, key, code or kind.reason_code, text)
+        for key, (_, wrong) in read.items()
+        if wrong
+        for i, (code, text) in _wrong_cells(texts[key], wrong)
+        if first_row + i not in torn
+    )
+    return rows, sorted([*whole, *of_cells], key=lambda problem: problem.row)
 
 
-def read_lists(
-    root: Path,
-    kind: ListKind,
-    wording: Wording,
-    read_row: Callable[[ListRow, int], Row],
-) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    """Reads the lists of a kind: rows of its table, and a fault for each that cannot be read.
-
-    Args:
-        root: folder of the archive.
-        kind: which lists; its table has `path` and `line` too.
-        wording: how the lists are worded.
-        read_row: from a row and the year in the file's name to the other values.
-    """
-    good: list[Row] = []
-    faults: list[Fault] = []
-    for file in list_files(root, kind, wording.files):
-        try:
-            rows = read_list(root, kind, file.path, wording)
-        except BaseException as error:
-            faults.append(fault_from(error, file.path))
-            continue
-        for row in rows:
-            try:
-                row.check_whole()
-                values = read_row(row, file.season)
-            except BaseException as error:
-                faults.append(fault_from(error, file.path))
-            else:
-                good.append({**values, "path": file.path, "line": row.line})
-    frame = frame_of(kind.table, good)
-    for misfit, why in misfits(kind.table, frame):
-        place, said = (misfit["path"], None, misfit["line"]), at_line(misfit["line"], why)
-        faults.append(Fault(*place, kind.reason_code, said))
-    return kind.table.filter(frame).result, tuple(faults)
+def _wrong_cells(cells: pl.Series, wrong: Wrong) -> Iterable[tuple[int, tuple[str | None, str]]]:
+    return ((i, wrong[cell]) for i, cell in enumerate(cells) if cell in wrong)
 
 
-def _columns_of(sheet: Sheet, wanted: Sequence[Column], wording: Wording) -> dict[str, FoundColumn]:
-    """The columns of a list; one that nobody knows is a fault."""
-    optional = [replace(column, required=False) for column in wanted]
-    places = find_columns(sheet.header, optional, sheet.line)
-    strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
-    _check_named(sheet, {column.index for column in places.values()})
-    if strange:
-        free = [column for column in wanted if column.key not in places]
-        raise DefectiveInputError("unknown_column", _about_unknown(strange, free), sheet.line)
-    serving = {c.key: places[c.or_else] for c in wanted if c.or_else in places}
-    of_both = [places[k] for k in CREW if k in places and _has_crews(sheet, places[k].index)]
-    serving |= dict.fromkeys(CREW, of_both[0]) if of_both else {}
-    wanted = [replace(c, required=c.required and c.key not in serving) for c in wanted]
-    return serving | find_columns(sheet.header, wanted, sheet.line)
+def _texts(
+    sheet: Sheet, kind: ListKind, found: Mapping[str, FoundColumn], words: Mapping[str, str]
+) -> dict[str, pl.Series]:
+    """What is written in each column, trimmed and in words that are known; null for nothing."""
+    texts: dict[str, list[str | None]] = {}
+    for column in kind.columns:
+        place = found[column.key].index if column.key in found else len(sheet.header)
+        fields = [
+            row.fields[place].strip() if place < len(row.fields) else "" for row in sheet.rows
+        ]
+        known = column.key in found
+        meant = {field: (_meant(field, words) or None) if known else None for field in set(fields)}
+        texts[column.key] = [meant[field] for field in fields]
+    if {*CREW} <= texts.keys():
+        crews = [_crew_apart(*crew) for crew in zip(*(texts[key] for key in CREW), strict=True)]
+        texts |= {key: [crew[i] for crew in crews] for i, key in enumerate(CREW)}
+    series = {key: pl.Series(key, cells, pl.String) for key, cells in texts.items()}
+    if "tow_id" in series:  # 2014/17 would be a folder in names of pages and files
+        series["tow_id"] = series["tow_id"].str.replace_all("/", "-", literal=True)
+    return series
 
 
-def _has_crews(sheet: Sheet, place: int) -> bool:
-    cells = (row.fields[place] for row in sheet.rows if place < len(row.fields))
-    return any(_crew_in(cell) for cell in cells)
-
-
-def _crew_in(cell: str) -> tuple[str, str] | None:
-    """Rowers and class of `8H`; None of another cell."""
-    match = _CREW.fullmatch(cell.strip())
-    return (match[1], match[2]) if match and fold_word(match[2]) in CLASSES else None
-
-
-def _rows(sheet: Sheet, reading: Reading) -> list[ListRow]:
-    return [
-        ListRow(row.line, _cells(row.fields, reading), reading, row.problem) for row in sheet.rows
-    ]
-
-
-def _cells(fields: Sequence[str], reading: Reading) -> dict[str, str]:
-    cells = {
-        key: _meant(fields[column.index].strip(), reading.words)
-        for key, column in reading.columns.items()
-        if column.index < len(fields)
-    }
-    if "tow_id" in cells:  # 2014/17 would be a folder in names of pages and files
-        cells["tow_id"] = cells["tow_id"].replace("/", "-")
-    return cells | _crew_apart(cells)
-
-
-def _crew_apart(cells: Mapping[str, str]) -> dict[str, str]:
-    """Rowers and class of a cell with both, where the class is empty or the same."""
-    rowers, crew_class = (cells.get(key, "") for key in CREW)
-    crew = _crew_in(rowers)
+def _crew_apart(rowers: str | None, crew_class: str | None) -> tuple[str | None, str | None]:
+    """Rowers and class; of one cell with both where the class is empty or the same."""
+    crew = _crew_in(rowers or "")
     if crew is None:
-        return {}
-    said = CLASSES.get(fold_word(crew_class))
-    is_its_own = crew_class in {"", rowers} or said == CLASSES[fold_word(crew[1])]
-    return dict(zip(CREW, crew, strict=True)) if is_its_own else {}
+        return rowers, crew_class
+    said = CLASSES.get(fold_word(crew_class or ""))
+    is_its_own = crew_class in {None, rowers} or said == CLASSES[fold_word(crew[1])]
+    return crew if is_its_own else (rowers, crew_class)
 
 
 def _meant(cell: str, words: Mapping[str, str]) -> str:
@@ -217,20 +236,28 @@ def _about_unknown(unknown: Iterable[str], free: Sequence[Column]) -> str:
     )
 
 
-def misfits(table: type[dy.Schema], frame: pl.DataFrame) -> Iterator[tuple[Row, Sentence]]:
-    """Each row outside the declared limits, with the first limit that it breaks."""
-    _, failure = table.filter(frame)
-    for row in failure.details().iter_rows(named=True):
-        broken = next(name for name, state in row.items() if state == "invalid")
-        yield row, _why(table, row, *broken.split("|"))
+def _columns_of(sheet: Sheet, wanted: Sequence[Column], wording: Wording) -> dict[str, FoundColumn]:
+    """The columns of a list; one that nobody knows is a fault."""
+    optional = [replace(column, required=False) for column in wanted]
+    places = find_columns(sheet.header, optional, sheet.line)
+    strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
+    _check_named(sheet, {column.index for column in places.values()})
+    if strange:
+        free = [column for column in wanted if column.key not in places]
+        raise DefectiveInputError("unknown_column", _about_unknown(strange, free), sheet.line)
+    serving = {c.key: places[c.or_else] for c in wanted if c.or_else in places}
+    of_both = [places[k] for k in CREW if k in places and _has_crews(sheet, places[k].index)]
+    serving |= dict.fromkeys(CREW, of_both[0]) if of_both else {}
+    wanted = [replace(c, required=c.required and c.key not in serving) for c in wanted]
+    return serving | find_columns(sheet.header, wanted, sheet.line)
 
 
-def _why(table: type[dy.Schema], row: Row, column: str, rule: str) -> Sentence:
-    named = {"column": column, "cell": row[column]}
-    if rule not in {"min", "max"}:
-        return say("column '{column}' is '{cell}', which cannot be right.", **named)
-    low, high = limits(table, column)
-    message = say("column '{column}' is {cell}; {low:g} to {high:g} can be right.")
-    if column == "season":  # of the file's name, or of a date: no list has such a column
-        message = say("the year is {cell}; {low:g} to {high:g} can be right.")
-    return say(message, **named, low=low, high=high)
+def _has_crews(sheet: Sheet, place: int) -> bool:
+    cells = (row.fields[place] for row in sheet.rows if place < len(row.fields))
+    return any(_crew_in(cell) for cell in cells)
+
+
+def _crew_in(cell: str) -> tuple[str, str] | None:
+    """Rowers and class of `8H`; None of another cell."""
+    match = _CREW.fullmatch(cell.strip())
+    return (match[1], match[2]) if match and fold_word(match[2]) in CLASSES else None

@@ -1,0 +1,430 @@
+"""A method: what each step of it does here and on what authority, the vote, and one boat."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final, NamedTuple
+
+import polars as pl
+
+from dashboards import labels
+from dashboards.option_labels import range_in_words, text, unit_of, value_in_words
+from dashboards.speech import Headline
+from dashboards.statements import Change, Number, Statement, Value
+from dashboards.statements.edition import NEGLIGIBLE
+from pipeline.messages import Sentence, ngettext, pgettext, say
+from pipeline.method.definition import COMPLETE, Method, Steps, basis_of
+from pipeline.method.variant import Difference, differences
+from pipeline.studies.ladder import START, STEP_ORDER
+from pipeline.tables.row import Row
+from warehouse.queries.views import Views
+from warehouse.store.methods import KnownMethods
+
+EACH_STEP: Final = say("What each step does here")
+WORKED: Final = say("One boat worked through")
+VOTE: Final = say("What is put to the vote")
+BASES: Final = say(
+    "What differs from the numbers as first published. Decided: in a text of the federation. "
+    "Proposed: put forward. Inferred: our reading where the texts are silent. P2015: presentation "
+    "of R. Pot, 24 January 2015. S2017: his text \u201cSleepproef\u201d, 2017."
+)
+"""What the status and the sources of a step mean."""
+LADDER: Final = ("correction_steps",)
+
+
+DRAWN: Final = (
+    "kind",
+    "run",
+    "direction",
+    "speed_m_s",
+    "cw_kg_m",
+    "cw_lo_kg_m",
+    "cw_hi_kg_m",
+    "used",
+)
+
+
+class Explained(NamedTuple):
+    """What there is to say of a method, against the first of this archive.
+
+    Attributes:
+        method: the method.
+        steps: every step, what it does otherwise and what comes of it here.
+        uncertainty: how wide an interval of Cw is here.
+        vote: what a meeting decides with it.
+        worked: a tow worked through; None where no tow changes.
+    """
+
+    method: Method
+    steps: Sequence["Step"]
+    uncertainty: Sequence[Statement]
+    vote: Sequence[Statement]
+    worked: "Worked | None"
+
+
+def explained(views: Views, name: str) -> Explained:
+    """A method of the last rebuild, explained.
+
+    Raises:
+        MissingKnowledgeError: there is no such method.
+    """
+    first, method = _ends(views, name)
+    ends = {"from_method": first.name, "to_method": name}
+    ladder = views.table("correction_steps").filter(**ends)
+    return Explained(
+        method,
+        _steps(method, first, ladder),
+        _uncertainty(views, method),
+        _vote(method, first),
+        _worked(views, method, ladder),
+    )
+
+
+def _ends(views: Views, name: str) -> tuple[Method, Method]:
+    """The first method of this archive, and the one of this name."""
+    known = KnownMethods.of(views.store)
+    return known.get(views.table("methods")["method"][0]), known.get(name)
+
+
+class Step(NamedTuple):
+    """A step of a method: its name, then what it does otherwise, and what comes of it here."""
+
+    name: Sentence
+    statements: Sequence[Statement]
+
+
+def _steps(method: Method, first: Method, ladder: pl.DataFrame) -> list[Step]:
+    """Every step, in the order in which steps are exchanged.
+
+    Args:
+        method: what is explained.
+        first: the method that it is compared with.
+        ladder: rows of `correction_steps` from the one to the other.
+    """
+    changed = differences(method, first)
+    effects = _effects(ladder)
+    return [
+        Step(
+            text(f"step.{step}"),
+            [
+                *([effects[step]] if step in effects else []),
+                *(_rule(one) for one in changed if one.step == step),
+                *_kept(method, step, changed),
+            ],
+        )
+        for step in dict.fromkeys((*STEP_ORDER, *Steps.model_fields))
+    ]
+
+
+def _rule(one: Difference) -> Statement:
+    """What an option is set to, what it was, and where that comes from."""
+    before: list[Value] = [_value(one.option, value) for value in one.before]
+    return Statement(
+        "rule",
+        say("{option}, {seasons}: {after}; it was: {before} ({status}: {source})."),
+        _words(one.step, one.option, one.after)
+        | {"seasons": range_in_words(one.first, one.last), "before": before},
+    )
+
+
+def _kept(method: Method, step: str, changed: Sequence[Difference]) -> Iterator[Statement]:
+    """What the first option of a step is, where the step is as it was."""
+    if any(one.step == step for one in changed):
+        return
+    options: type = Steps.model_fields[step].annotation  # type: ignore[assignment]
+    option = next(iter(options.model_fields))  # type: ignore[attr-defined]
+    value = getattr(getattr(method.ranges[-1].steps, step), option)
+    wording = say("{option}: {after}, as it was ({status}: {source}).")
+    yield Statement("kept", wording, _words(step, option, value))
+
+
+def _words(step: str, option: str, value: object) -> dict[str, Value]:
+    basis = basis_of(step, option, value)
+    return {
+        "option": text(f"{step}.{option}"),
+        "after": _value(option, value),
+        "status": text(f"status.{basis.status}"),
+        "source": basis.source,
+    }
+
+
+def _value(option: str, value: object) -> Headline:
+    """The value of an option with its unit."""
+    return lambda speech: f"{value_in_words(value, speech)} {unit_of(option)}".rstrip()
+
+
+def _effects(ladder: pl.DataFrame) -> dict[str, Statement]:
+    """By step, how many tows it changes: their median, and the tow that it changes most."""
+    size = pl.col("factor").log().abs()
+    moved = pl.col("factor").filter((pl.col("factor") - 1).abs() >= NEGLIGIBLE)
+    found = (
+        ladder.filter(pl.col("step") != START)
+        .sort("tow_id")
+        .group_by("step", maintain_order=True)
+        .agg(
+            tows=pl.len(),
+            moved=moved.len(),
+            median=moved.median(),
+            largest=pl.col("factor").sort_by(size).last(),
+            tow=pl.col("tow_id").sort_by(size).last(),
+        )
+    )
+    return {row["step"]: _effect(row) for row in found.to_dicts()}
+
+
+def _effect(row: Row) -> Statement:
+    if not row["moved"]:
+        return Statement("no_effect", say("It changes no tow of this archive."), rests_on=LADDER)
+    return Statement(
+        "effect",
+        say("It changes {moved} of {tows} tows: median {median}, largest {largest} (tow {tow})."),
+        row | {"median": Change(row["median"]), "largest": Change(row["largest"])},
+        rests_on=LADDER,
+    )
+
+
+VOTED: Final = {
+    "decided": say("Follows from texts of the federation: {options}."),
+    "proposed": say("Put to the vote: {options}."),
+    "inferred": say("Our reading, for the meeting to confirm: {options}."),
+}
+"""What the meeting is asked about changes, by their status."""
+ESTIMATES: Final = {
+    "as_measured": say(
+        "The register takes Cw as measured, and a tow counts for {years} calendar years after it."
+    ),
+    "best_estimate": say(
+        "The register takes the best estimate, and a tow counts for {years} calendar years after "
+        "it."
+    ),
+}
+
+
+def _vote(method: Method, first: Method) -> list[Statement]:
+    """What a meeting decides with this method: its changes by status, and the register's rule."""
+    by_status: dict[str, dict[str, list[Value]]] = {status: {} for status in VOTED}
+    for one in differences(method, first):
+        words = _words(one.step, one.option, one.after)
+        named = Statement("option", say("{option}: {after}"), words)
+        status = basis_of(one.step, one.option, one.after).status
+        by_status[status].setdefault(one.step, []).append(named)
+    found = [
+        Statement(status, VOTED[status], {"options": [_of_step(*one) for one in options.items()]})
+        for status, options in by_status.items()
+        if options
+    ]
+    rule = method.validity
+    years: dict[str, Value] = {"years": rule.valid_years}
+    return [*found, Statement("register_rule", ESTIMATES[rule.estimate], years, rule.estimate)]
+
+
+def voted_steps(views: Views, name: str) -> list[Statement]:
+    """By status the steps in which a method differs from the first, for where room is scarce."""
+    first, method = _ends(views, name)
+    steps: dict[str, dict[str, Value]] = {status: {} for status in VOTED}
+    for one in differences(method, first):
+        status = basis_of(one.step, one.option, one.after).status
+        steps[status][one.step] = text(f"step.{one.step}")
+    return [
+        Statement(status, VOTED[status], {"options": list(named.values())})
+        for status, named in steps.items()
+        if named
+    ]
+
+
+def _of_step(step: str, options: list[Value]) -> Statement:
+    """Options of a step, in brackets."""
+    words: dict[str, Value] = {"step": text(f"step.{step}"), "options": options}
+    return Statement("step", say("{step} ({options})"), words)
+
+
+def _uncertainty(views: Views, method: Method) -> list[Statement]:
+    """How wide an interval of Cw is here, and what it consists of most; none without a curve."""
+    known = views.table("curves").filter(method=method.name).drop_nulls("cw_lo_kg_m")
+    if known.is_empty():
+        return []
+    half = (pl.col("cw_hi_kg_m") - pl.col("cw_lo_kg_m")) / 2 / pl.col("cw_kg_m")
+    width = Number(100 * known.select(half.median()).item(), 1, "%")
+    if method.interval != COMPLETE:
+        wording = say(
+            "In this archive the runs of a tow scatter by \u00b1{width} % of Cw (median of {tows} "
+            "tows); the error of the log comes on top of that."
+        )
+        return [Statement("runs_alone", wording, {"width": width, "tows": known.height})]
+    parts = views.table("uncertainty_budget").filter(method=method.name)
+    largest = parts.group_by("component", maintain_order=True).agg(pl.col("u_ratio").median())
+    by_size = largest.sort("u_ratio", "component")["component"].reverse()
+    return [
+        Statement(
+            "interval_width",
+            say(
+                "In this archive the 95 % interval of Cw is \u00b1{width} % (median of {tows} "
+                "tows), most of it from: {first}; then: {second}."
+            ),
+            {
+                "width": width,
+                "tows": known.height,
+                "first": labels.code(by_size[0]),
+                "second": labels.code(by_size[1]),
+            },
+            rests_on=("curves", "uncertainty_budget"),
+        )
+    ]
+
+
+class Worked(NamedTuple):
+    """A tow worked through, from a run to its number and from its old number to the new.
+
+    Attributes:
+        statements: the steps in order.
+        drawn: rows of the figure `resistance_curve`.
+    """
+
+    statements: Sequence[Statement]
+    drawn: pl.DataFrame
+
+
+def _worked(views: Views, method: Method, ladder: pl.DataFrame) -> Worked | None:
+    """A tow on which most steps act, and that changes as much as such tows do.
+
+    Args:
+        ladder: rows of `correction_steps` to the method.
+    """
+    tow_id = _typical(ladder)
+    if tow_id is None:
+        return None
+    key = {"method": method.name, "tow_id": tow_id}
+    curve = views.table("curves").filter(**key).row(0, named=True)
+    tow = views.table("tows").filter(tow_id=tow_id).row(0, named=True)
+    boat = views.table("boats").filter(fsn_no=curve["fsn_no"]).row(0, named=True)
+    run = views.table("run_points").filter("used", **key).sort("run").row(0, named=True)
+    own = ladder.filter(tow_id=tow_id).sort("position")
+    said = [_tow(boat | tow, curve), _force(run), _corrections(run), *_curve(curve), _change(own)]
+    return Worked(said, _drawn(views, method, key))
+
+
+def _drawn(views: Views, method: Method, key: dict[str, str]) -> pl.DataFrame:
+    """The curve of a tow, its runs, and its number at the declared speed."""
+    declared = views.table("curves").with_columns(speed_m_s="declared_speed_m_s")
+    kinds = {
+        "line": views.table("curve_points"),
+        "point": views.table("run_points").drop_nulls("cw_kg_m"),
+        "declared": declared,
+    }
+    rows = [rows.filter(**key).with_columns(kind=pl.lit(kind)) for kind, rows in kinds.items()]
+    shown = pl.concat(rows, how="diagonal_relaxed").select(DRAWN)
+    return shown.with_columns(interval=pl.lit(method.interval))
+
+
+def _typical(ladder: pl.DataFrame) -> str | None:
+    """The tow that most steps change, of several the one nearest to their median."""
+    change = pl.col("change")
+    tows = (
+        ladder.group_by("tow_id", maintain_order=True)
+        .agg(
+            steps=((pl.col("factor") - 1).abs() >= NEGLIGIBLE).sum(),
+            change=pl.col("factor").log().sum(),
+        )
+        .filter(pl.col("steps") == pl.col("steps").max())
+        .sort((change - change.median()).abs().round(9), "tow_id")
+    )
+    return None if tows.is_empty() else str(tows["tow_id"][0])
+
+
+def _tow(boat: Row, curve: Row) -> Statement:
+    return Statement(
+        "worked_tow",
+        say("{name} ({fsn_no}), {rowers} rowers ({people}), towed on {day}: {runs} that count."),
+        {
+            **{name: boat[name] for name in ("name", "fsn_no", "rowers")},
+            "people": labels.crew(boat["crew_class"]),
+            "day": boat["tow_date"],
+            "runs": ngettext("1 run", "{n} runs", curve["runs_used"]),
+        },
+        rests_on=("tows", "curves"),
+    )
+
+
+def _force(run: Row) -> Statement:
+    speed, gross = run["speed_m_s"], run["gross_cw_kg_m"]
+    return Statement(
+        "worked_run",
+        say(
+            "Run {run}, from {start} to {end} s: {force} N at {speed} m/s, the speed of the log "
+            "times {factor}. Force divided by speed squared is {gross} kg/m."
+        ),
+        {
+            "run": run["run"],
+            "start": Number(run["window_start_s"], 0, "s"),
+            "end": Number(run["window_end_s"], 0, "s"),
+            "force": Number(gross * speed**2, 0, "N"),
+            "speed": Number(speed, 3, "m/s"),
+            "factor": Number(run["speed_factor"], 3, "1"),
+            "gross": Number(gross),
+        },
+        rests_on=("run_points",),
+    )
+
+
+CORRECTIONS: Final = (
+    (pgettext("correction", "acceleration"), "inertia_cw_kg_m", -1),
+    (pgettext("correction", "wind"), "air_cw_kg_m", -1),
+    (pgettext("correction", "still air"), "still_air_cw_kg_m", 1),
+    (pgettext("correction", "water of 15 \u00b0C"), "temperature_cw_kg_m", 1),
+)
+"""What is added to the gross Cw of a run: its name, column and sign."""
+
+
+def _corrections(run: Row) -> Statement:
+    parts: list[Value] = [
+        Statement(
+            "correction", say("{name} {by}"), {"name": name, "by": Number(sign * by, sign="+")}
+        )
+        for name, column, sign in CORRECTIONS
+        if (by := run[column])
+    ]
+    return Statement(
+        "worked_corrections",
+        say("Corrected for {parts}, it is {cw} kg/m."),
+        {"parts": parts or labels.code("none"), "cw": Number(run["cw_kg_m"])},
+        rests_on=("run_points",),
+    )
+
+
+def _curve(curve: Row) -> Iterator[Statement]:
+    yield Statement(
+        "worked_curve",
+        say(
+            "Through the runs goes the curve with A {a} kg/m and B {b} m/s: at the declared "
+            "{speed} m/s that is Cw = A / (1 \u2212 (v/B)\u00b2) = {cw} kg/m."
+        ),
+        {
+            "a": Number(curve["a_kg_m"]),
+            "b": Number(curve["b_m_s"], unit="m/s"),
+            "speed": Number(curve["declared_speed_m_s"], unit="m/s"),
+            "cw": Number(curve["cw_kg_m"]),
+        },
+        rests_on=("curves",),
+    )
+    yield Statement(
+        "worked_power",
+        say("To row that speed asks {power} W of each rower: Cw v\u00b3 / n."),
+        {"power": Number(curve["power_w"], 0, "W")},
+        rests_on=("curves",),
+    )
+
+
+def _change(ladder: pl.DataFrame) -> Statement:
+    causes: list[Value] = [
+        Statement(
+            "worked_cause",
+            say("{step} {by}"),
+            {"step": labels.code(row["step"]), "by": Change(row["factor"])},
+        )
+        for row in ladder.to_dicts()
+        if abs(row["factor"] - 1) >= NEGLIGIBLE
+    ]
+    return Statement(
+        "worked_change",
+        say("As first published it was {old} kg/m. From there: {causes}."),
+        {"old": Number(ladder["cw_kg_m"][0]), "causes": causes or labels.code("none")},
+        rests_on=LADDER,
+    )
