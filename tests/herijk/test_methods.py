@@ -38,7 +38,7 @@ def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeyp
     assert [(o["step"], o["option"], o["after"]) for o in report["options"]] == [
         ("wind", "side", 0.3)
     ]
-    assert report["effect"]["by_season"]
+    assert report["effect"]["causes"]
     assert "wind.side" in herijk("compare", "concept-rebased-2015", "ours.toml", *data)[1]
 
 

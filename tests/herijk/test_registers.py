@@ -70,7 +70,7 @@ def test_editions_are_compared_with_causes_and_races(herijk, published):
     assert (status, err) == (0, "")
     for part in ("Gain", "Lose", "temperature", "in 2 h", "corrected for fatigue", "Winners"):
         assert part in out
-    report = json.loads(herijk(*call, "--json")[1])
+    report = json.loads(herijk(*call, "--json")[1])["effect"]
     assert len(report["rows"]) == report["lines"]
     assert {"cw_ratio", "old_rank", "new_rank", "old_power_w", "causes"} <= set(report["rows"][0])
 
