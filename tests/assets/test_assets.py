@@ -26,7 +26,6 @@ from tests.assets.test_rebuild import (
     spoil,
 )
 from tests.conftest import METHODS, SMALL, Workbench, in_one_process
-from tests.elsewhere import dask_cluster
 from warehouse.derive.graph import STEPS
 from warehouse.intake import seasons as intake
 from warehouse.store.methods import KnownMethods
@@ -181,8 +180,11 @@ def test_a_server_works_on_its_own_folders_alone(bench, instance, tmp_path, monk
 def test_two_workers_of_a_dask_cluster_make_the_same_tables(built, tmp_path):
     bench = Workbench(built.archive, tmp_path / "data")
     bench.data.mkdir()
-    with dask_cluster(2, tmp_path / "home") as cluster:
-        (bench.data / "beheer.toml").write_text(f'dask = "{cluster.address}"\n')
+    from distributed import LocalCluster  # noqa: PLC0415 - takes seconds to import
+
+    here = {"host": "127.0.0.1", "dashboard_address": None, "local_directory": tmp_path / "dask"}
+    with LocalCluster(n_workers=2, threads_per_worker=1, **here) as cluster:
+        (bench.data / "beheer.toml").write_text(f'dask = "{cluster.scheduler_address}"\n')
         names = [part for name in METHODS for part in ("--method", name)]
         done = subprocess.run(
             [
