@@ -91,3 +91,10 @@ def test_without_a_list_all_that_ship_are_applied_and_those_that_are_there(tmp_p
     assert methods_to_apply(built.store, ("rebased",)) == ["rebased"]
     setup = Setup(archive="", data=str(built.data), methods=[])
     assert [method.name for method in setup.chosen_methods] == list(shipped_methods())
+
+
+def test_editions_and_methods_are_compared_with_each_other(herijk, published):
+    data = ("--data", published.data)
+    report = json.loads(herijk("compare", "2014-1", "rebased", *data, "--json")[1])
+    assert report["effect"]["rows"]
+    assert json.loads(herijk("compare", "rebased", "2014-1", *data, "--json")[1])["options"]
