@@ -42,7 +42,6 @@ from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.archive.samples.file import read_samples
 from warehouse.archive.sheets.reading import read_list
-from warehouse.archive.spelling.wording import Wording
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.decisions import read_decisions
 from warehouse.store.editions import MANIFEST, read_manifest
@@ -295,7 +294,7 @@ def _xlsx(tow_list: Path) -> bytes:
 
 
 def _read_list(path: Path, _: bytes) -> None:
-    rows, problems = read_list(path.parent, TOWS, path.name, Wording())
+    rows, problems = read_list(path.parent, TOWS, path.name, Profiles())
     readable(with_ids(rows), problems, Profiles(), [], [])
 
 

@@ -8,9 +8,9 @@ import pytest
 from pipeline.tables.frames import limits
 from warehouse.archive.files import list_kinds
 from warehouse.archive.lists.races import read_races
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.sheets.rows import faults_of
-from warehouse.archive.spelling.wording import Wording
 
 TOW = {
     "sleep_id": "2014-001",
@@ -87,7 +87,7 @@ def values_of(name, cells, folder):
     """What a list of one row is read as, and what is wrong in it."""
     kind, _ = LISTS[name]
     (folder / "list.csv").write_text(";".join(cells) + "\n" + ";".join(cells.values()) + "\n")
-    rows, problems = read_list(folder, kind, "list.csv", Wording())
+    rows, problems = read_list(folder, kind, "list.csv", Profiles())
     return rows.drop("cells").row(0, named=True), faults_of(rows, problems)
 
 

@@ -131,8 +131,8 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
     if lacking:
         return None, [*strangers(root, profiles), *lacking]
     index = index_archive(root, quick_hash, profiles)
-    _, in_races = read_races(root, profiles.wording)
-    _, in_registers = read_published_registers(root, profiles.wording)
+    _, in_races = read_races(root, profiles)
+    _, in_registers = read_published_registers(root, profiles)
     unused = {fault.path for fault in index.faults if fault.reason_code == "samples_not_listed"}
     in_headers = list(faults_in_headers(root, index, unused))
     wrong = {fault.path for fault in in_headers}
@@ -143,7 +143,7 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
 
 def _seasons(root: Path, profiles: Profiles, index: ArchiveIndex | None) -> dict[str, int]:
     """The season of each samples file: of its folder, or of the row that names it."""
-    files = list_sample_files(root, profiles.wording.files)
+    files = list_sample_files(root, profiles.files)
     return {file.path: file.season for file in files} | (index.seasons if index else {})
 
 

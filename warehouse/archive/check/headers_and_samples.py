@@ -28,7 +28,7 @@ def faults_in_headers(root: Path, index: ArchiveIndex, unused: Collection[str]) 
 
     Files that lists which can be read do not name say nothing of their season.
     """
-    for file in list_sample_files(root, index.profiles.wording.files):
+    for file in list_sample_files(root, index.profiles.files):
         if file.path in unused:
             continue
         sheets = [path for path in index.seasons if split_sheet(path)[0] == file.path]
@@ -60,7 +60,7 @@ def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Itera
             yield from of_all or judge_in_files(samples, tow, index.runs, root, profile).faults
         except DefectiveInputError as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
-    for file in list_sample_files(root, index.profiles.wording.files):
+    for file in list_sample_files(root, index.profiles.files):
         season = index.seasons.get(file.path, file.season)
         key = (season, kind_of(file.full_path))
         if key not in done and file.path not in wrong:

@@ -192,6 +192,12 @@ def list_misnamed(root: Path) -> list[str]:
     return sorted(os.fsencode(_path_in(root, path)).decode(errors="replace") for path in misnamed)
 
 
+def list_profile(root: Path) -> list[ArchiveFile]:
+    """`archief.toml`, where it is there."""
+    path = root / PROFILE_FILE
+    return [_archive_file(root, path, 0)] if path.is_file() else []
+
+
 def _archive_file(root: Path, entry: Path, season: int) -> ArchiveFile:
     inside = _is_inside(root, entry) and entry.is_file()
     return ArchiveFile(entry.relative_to(root).as_posix(), entry, season, inside)

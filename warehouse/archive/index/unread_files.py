@@ -32,7 +32,7 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
             root,
             BOATS_FILE,
         )
-    named = profiles.wording.files
+    named = profiles.files
     lacking = []
     if not list_files(root, BOATS, named):
         lacking.append(
@@ -53,8 +53,8 @@ def strangers(root: Path, profiles: Profiles) -> list[Fault]:
     ]
     return misnamed + [
         Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
-        for path in list_strangers(root, profiles.wording.files)
-        if fold(path) not in profiles.wording.ignore
+        for path in list_strangers(root, profiles.files)
+        if fold(path) not in profiles.ignore
     ]
 
 

@@ -18,6 +18,7 @@ from warehouse.archive.files.finding import list_files, path_inside
 from warehouse.archive.files.list_kinds import ListKind
 from warehouse.archive.files.names import split_sheet
 from warehouse.archive.limits import LIST_MAX_BYTES
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.cells import Reading, Wrong, read_column
 from warehouse.archive.sheets.rows import PLACE, Problem, sound_rows
 from warehouse.archive.sheets.sheet import Sheet, read_sheets
@@ -32,28 +33,27 @@ from warehouse.archive.spelling.dates import date_order
 from warehouse.archive.spelling.numbers import decimal_mark
 from warehouse.archive.spelling.synonyms import CLASSES, NOTHING
 from warehouse.archive.spelling.text import fold, fold_word, shorten
-from warehouse.archive.spelling.wording import Wording
 
 CREW: Final = ("rowers", "crew_class")
 _CREW: Final = re.compile(r"([0-9]{1,2})\s*([^\W\d_]+)")
 """Rowers and class in one cell: `8H`."""
 
 
-def read_sound(root: Path, kind: ListKind, wording: Wording) -> tuple[pl.DataFrame, list[Fault]]:
+def read_sound(root: Path, kind: ListKind, profiles: Profiles) -> tuple[pl.DataFrame, list[Fault]]:
     """The rows of all lists of a kind in which nothing is wrong, and a fault for each other."""
-    rows, problems, faults = read_lists(root, kind, wording)
+    rows, problems, faults = read_lists(root, kind, profiles)
     return sound_rows(rows, problems, faults), faults
 
 
 def read_lists(
-    root: Path, kind: ListKind, wording: Wording
+    root: Path, kind: ListKind, profiles: Profiles
 ) -> tuple[pl.DataFrame, list[Problem], list[Fault]]:
     """All lists of a kind as one frame, what is wrong in its rows, and the lists that are not read.
 
     Args:
         root: folder of the archive.
         kind: which lists.
-        wording: how the lists are worded.
+        profiles: how the lists are worded.
 
     Returns:
         The rows as in `read_list`, with `row` counted over all lists.
@@ -61,9 +61,9 @@ def read_lists(
     frames = [_no_rows(kind)]
     problems: list[Problem] = []
     faults: list[Fault] = []
-    for file in list_files(root, kind, wording.files):
+    for file in list_files(root, kind, profiles.files):
         try:
-            rows, wrong = read_list(root, kind, file.path, wording, sum(map(len, frames)))
+            rows, wrong = read_list(root, kind, file.path, profiles, sum(map(len, frames)))
         except BaseException as error:
             faults.append(fault_from(error, file.path))
             continue
@@ -73,7 +73,7 @@ def read_lists(
 
 
 def read_list(
-    root: Path, kind: ListKind, path: str, wording: Wording, first_row: int = 0
+    root: Path, kind: ListKind, path: str, profiles: Profiles, first_row: int = 0
 ) -> tuple[pl.DataFrame, list[Problem]]:
     """The rows of a list of the archive; empty ones are left out.
 
@@ -81,7 +81,7 @@ def read_list(
         root: folder of the archive.
         kind: which list.
         path: the list, relative to the archive.
-        wording: how the lists of this archive are worded.
+        profiles: how the lists of this archive are worded.
         first_row: number of the first row.
 
     Returns:
@@ -94,18 +94,18 @@ def read_list(
     """
     file, name = split_sheet(path)
     data = read_bytes(path_inside(root, file), LIST_MAX_BYTES)
-    wanted = wording.with_names(kind.columns)
+    wanted = profiles.named(kind.columns)
     suffix = file[file.rfind(".") :].casefold()
-    sheets = read_sheets(data, wanted, suffix, name, wording.header_lines.get(path))
+    sheets = read_sheets(data, wanted, suffix, name, profiles.header_lines.get(path))
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
-    order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
-    told = wording.decimals.get(path, wording.decimals.get("*", ""))
+    order = profiles.dates.get(path, profiles.dates.get("*", "")) or date_order(cells)
+    told = profiles.decimals.get(path, profiles.decimals.get("*", ""))
     mark = told or decimal_mark(cells)
     frames, problems = [_no_rows(kind)], list[Problem]()
     for sheet in sheets:
-        found = _columns_of(sheet, wanted, wording)
+        found = _columns_of(sheet, wanted, profiles)
         reading = Reading(found, kind.table, order, mark, bool(told))
-        texts = _texts(sheet, kind, found, wording.words)
+        texts = _texts(sheet, kind, found, profiles.words)
         rows, wrong = _read_rows(sheet, kind, reading, texts, first_row)
         frames.append(rows.with_columns(path=pl.lit(path)).select(frames[0].columns))
         problems += wrong
@@ -236,11 +236,13 @@ def _about_unknown(unknown: Iterable[str], free: Sequence[Column]) -> str:
     )
 
 
-def _columns_of(sheet: Sheet, wanted: Sequence[Column], wording: Wording) -> dict[str, FoundColumn]:
+def _columns_of(
+    sheet: Sheet, wanted: Sequence[Column], profiles: Profiles
+) -> dict[str, FoundColumn]:
     """The columns of a list; one that nobody knows is a fault."""
     optional = [replace(column, required=False) for column in wanted]
     places = find_columns(sheet.header, optional, sheet.line)
-    strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
+    strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in profiles.ignore]
     _check_named(sheet, {column.index for column in places.values()})
     if strange:
         free = [column for column in wanted if column.key not in places]
