@@ -36,6 +36,7 @@ from pipeline.errors import DefectiveInputError, HerijkError
 from pipeline.method.definition import parse_method, shipped_methods, shipped_text
 from tests.reason_codes import REASON_CODES
 from warehouse.archive import FileHashes, index_archive
+from warehouse.archive.files.finding import ArchiveFile
 from warehouse.archive.files.list_kinds import TOWS
 from warehouse.archive.lists.tows import readable, with_ids
 from warehouse.archive.profile.definition import Profiles
@@ -294,7 +295,8 @@ def _xlsx(tow_list: Path) -> bytes:
 
 
 def _read_list(path: Path, _: bytes) -> None:
-    rows, problems = read_list(path.parent, TOWS, path.name, Profiles())
+    file = ArchiveFile(path.name, path, TOWS.name, 2009, inside=True)
+    rows, problems = read_list(file, TOWS, Profiles())
     readable(with_ids(rows), problems, Profiles(), [], [])
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from pipeline.tables.frames import limits
 from warehouse.archive.files import list_kinds
+from warehouse.archive.files.finding import ArchiveFile
 from warehouse.archive.lists.races import read_races
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.reading import read_list
@@ -87,7 +88,8 @@ def values_of(name, cells, folder):
     """What a list of one row is read as, and what is wrong in it."""
     kind, _ = LISTS[name]
     (folder / "list.csv").write_text(";".join(cells) + "\n" + ";".join(cells.values()) + "\n")
-    rows, problems = read_list(folder, kind, "list.csv", Profiles())
+    file = ArchiveFile("list.csv", folder / "list.csv", kind.name, 2014, inside=True)
+    rows, problems = read_list(file, kind, Profiles())
     return rows.drop("cells").row(0, named=True), faults_of(rows, problems)
 
 

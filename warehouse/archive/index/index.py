@@ -15,15 +15,19 @@ from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.lake import ListedFiles, ListedRuns, ListedTows
 from warehouse.archive.faults import DefectiveFileError, Fault, fault_from
-from warehouse.archive.files.finding import ArchiveFile, list_files, list_profile, list_sample_files
-from warehouse.archive.files.list_kinds import LIST_KINDS, TOWS
-from warehouse.archive.files.names import PROFILE_FILE
-from warehouse.archive.index.hashed_files import Hashes, as_files, hash_files
-from warehouse.archive.index.tow_files import (
+from warehouse.archive.files.finding import STRANGER, ArchiveFile, files_of
+from warehouse.archive.files.list_kinds import TOWS
+from warehouse.archive.files.names import PROFILE_FILE, SAMPLES
+from warehouse.archive.index.files import (
+    Hashes,
+    as_files,
     files_by_name,
     files_meant,
+    hash_files,
+    missing_lists,
     names_of_files,
     not_listed,
+    strangers,
 )
 from warehouse.archive.index.tows import (
     as_listed,
@@ -37,7 +41,6 @@ from warehouse.archive.index.tows import (
     with_own_samples,
     within_limits,
 )
-from warehouse.archive.index.unread_files import missing_lists, strangers
 from warehouse.archive.lists.boats import Boats, read_boats
 from warehouse.archive.lists.instruments import lamp_seconds, read_force_checks, read_lamps
 from warehouse.archive.lists.tows import readable, with_ids
@@ -93,16 +96,19 @@ def index_archive(
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
     profiles = profiles or read_profiles(root)
-    _check_present(root, profiles)
-    lists = [file for kind in LIST_KINDS for file in list_files(root, kind, profiles.files)]
-    samples = list_sample_files(root, profiles.files)
-    hashes = hash_files([*list_profile(root), *lists, *samples], hash_file)
-    rows, problems, faults = read_lists(root, TOWS, profiles)
-    unread = {file.season for file in lists if file.path in {fault.path for fault in faults}}
+    files = files_of(root, profiles.files)
+    lacking = missing_lists(root, files)
+    if lacking:
+        raise MissingKnowledgeError(
+            "The archive at {} cannot be read: {}", root, lacking[0].message
+        )
+    hashes = hash_files((file for file in files if file.kind != STRANGER), hash_file)
+    rows, problems, faults = read_lists(files, TOWS, profiles)
+    unread = {file.season for file in files if file.path in {fault.path for fault in faults}}
     year = pl.col("tow_date").dt.year().cast(pl.Int64).fill_null(0)
     rows = rows.with_columns(season=pl.when(pl.col("season") == 0).then(year).otherwise("season"))
-    faults += strangers(root, profiles)
-    read = _Read(root, profiles, samples, hashes, read_boats(root, profiles), problems, unread)
+    faults += strangers(root, files, profiles.ignore)
+    read = _Read(profiles, files, hashes, read_boats(files, profiles), problems, unread)
     index, failures = _index_or_set_aside(rows, read)
     faults += [*failures, *read.boats.faults, *index.faults]
     told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
@@ -119,16 +125,15 @@ class _Read:
     """What is read of an archive before its tows.
 
     Attributes:
-        samples: the samples files.
-        hashes: of all files.
+        files: everything that lies in it.
+        hashes: of its files.
         boats: the boat lists.
         problems: what is wrong in the cells of the tow lists.
         unread: the seasons of tow lists that cannot be read.
     """
 
-    root: Path
     profiles: Profiles
-    samples: list[ArchiveFile]
+    files: list[ArchiveFile]
     hashes: Hashes
     boats: Boats
     problems: list[Problem]
@@ -154,17 +159,18 @@ def _index_or_set_aside(rows: pl.DataFrame, read: _Read) -> tuple[ArchiveIndex, 
 
 def _index(rows: pl.DataFrame, read: _Read) -> ArchiveIndex:
     """What rows of tow lists come to, with the faults that are about them."""
-    root, profiles = read.root, read.profiles
+    profiles, files = read.profiles, read.files
+    samples = [file for file in files if file.kind == SAMPLES]
     faults: list[Fault] = []
     more = [*read.boats.more]
     names = names_of_files(rows)
-    by_name = files_by_name(read.samples, names)
-    faults += not_listed(names, read.samples, read.unread, by_name)
+    by_name = files_by_name(samples, names)
+    faults += not_listed(names, samples, read.unread, by_name)
     rows = with_ids(rows)
     listed = rows.select("season", "tow_id", "tow_date")
     faults += [] if read.unread else _idle_settings(profiles, *map(set, listed))
-    checks, of_checks = read_force_checks(root, profiles)
-    lamps, of_lamps = read_lamps(root, profiles, listed["tow_id"].drop_nulls())
+    checks, of_checks = read_force_checks(files, profiles)
+    lamps, of_lamps = read_lamps(files, profiles, listed["tow_id"].drop_nulls())
     own = of_one_row(rows, faults)
     again = rows.join(own, on="row", how="anti", maintain_order="left")
     readable(again, read.problems, profiles, more, more)
@@ -176,7 +182,7 @@ def _index(rows: pl.DataFrame, read: _Read) -> ArchiveIndex:
     tows = with_instruments(tows, profiles, checks, lamp_seconds(lamps))
     tows = within_limits(tows, faults)
     runs = runs_of(tows, selections, profiles)
-    windows, of_windows = read_windows(root, profiles, listed.select("season", "tow_id"), runs)
+    windows, of_windows = read_windows(files, profiles, listed.select("season", "tow_id"), runs)
     faults += [*lost_cells(tows, lost), *of_checks, *of_lamps, *of_windows]
     return ArchiveIndex(
         boats=read.boats.listed,
@@ -198,14 +204,6 @@ def _index(rows: pl.DataFrame, read: _Read) -> ArchiveIndex:
 
 def _fault_order(fault: Fault) -> tuple[str, int, str]:
     return fault.path, fault.line or 0, fault.tow_id or ""
-
-
-def _check_present(root: Path, profiles: Profiles) -> None:
-    lacking = missing_lists(root, profiles)
-    if lacking:
-        raise MissingKnowledgeError(
-            "The archive at {} cannot be read: {}", root, lacking[0].message
-        )
 
 
 def _idle_settings(

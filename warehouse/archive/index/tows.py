@@ -18,8 +18,7 @@ from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedRuns, ListedTows
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.list_kinds import TOWS
-from warehouse.archive.index.hashed_files import Hashes, hash_samples
-from warehouse.archive.index.tow_files import FilesByName, the_file
+from warehouse.archive.index.files import FilesByName, Hashes, hash_samples, the_file
 from warehouse.archive.lists.boats import Boats
 from warehouse.archive.lists.instruments import load_cell_of
 from warehouse.archive.profile.definition import Profiles

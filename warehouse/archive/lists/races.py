@@ -9,6 +9,7 @@ from pipeline.messages import say
 from pipeline.tables.bases import TowFacts
 from pipeline.tables.frames import limits
 from warehouse.archive.faults import Fault
+from warehouse.archive.files.finding import files_of
 from warehouse.archive.files.list_kinds import RACES
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
@@ -34,7 +35,8 @@ def read_races(root: Path, profiles: Profiles | None = None) -> tuple[pl.DataFra
         One row a result (`ListedRaces`; distances in m, times in s, penalties in W), and the lines
         that cannot be read.
     """
-    rows, faults = read_sound(root, RACES, profiles or read_profiles(root))
+    profiles = profiles or read_profiles(root)
+    rows, faults = read_sound(files_of(root, profiles.files), RACES, profiles)
     rows = check_year(rows, faults, "race_date", RACES.reason_code)
     rows = rows.with_columns(season=pl.col("race_date").dt.year().cast(pl.Int64))
     rows = _possible(rows, faults)

@@ -8,6 +8,7 @@ import polars as pl
 from pipeline.messages import say
 from pipeline.register.register import NO_EMPTY_THWART
 from warehouse.archive.faults import Fault
+from warehouse.archive.files.finding import files_of
 from warehouse.archive.files.list_kinds import REGISTERS
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
@@ -33,7 +34,8 @@ def read_published_registers(
         One row per line of a register (`PrintedLines`), and the lines that cannot be read. A boat
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
-    rows, problems, faults = read_lists(root, REGISTERS, profiles or read_profiles(root))
+    profiles = profiles or read_profiles(root)
+    rows, problems, faults = read_lists(files_of(root, profiles.files), REGISTERS, profiles)
     is_valid = ~pl.col("cw_kg_m").is_between(*NEVER_TOWED_CW)
     rows = rows.with_columns(has_valid_curve=is_valid)
     never_towed = {*rows.filter(~pl.col("has_valid_curve"))["row"]}
