@@ -101,7 +101,7 @@ def read_list(
     wanted = profiles.named(kind.columns)
     suffix, sheet_name = file.full_path.suffix.casefold(), split_sheet(path)[1]
     sheets = read_sheets(data, wanted, suffix, sheet_name, profiles.header_lines.get(path))
-    cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
+    cells = {cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields}
     order = profiles.dates.get(path, profiles.dates.get("*", "")) or date_order(cells)
     told = profiles.decimals.get(path, profiles.decimals.get("*", ""))
     mark = told or decimal_mark(cells)
