@@ -295,9 +295,8 @@ def _xlsx(tow_list: Path) -> bytes:
 
 
 def _read_list(path: Path, _: bytes) -> None:
-    file = ArchiveFile(path.name, path, TOWS.name, 2009, inside=True)
-    rows, problems = read_list(file, TOWS, Profiles())
-    readable(with_ids(rows), problems, Profiles(), [], [])
+    rows, found = read_list(ArchiveFile(path.name, path, "", 2009, inside=True), TOWS, Profiles())
+    readable(with_ids(rows), found, Profiles(), [], [])
 
 
 _DECISION: Final = b"""[[besluit]]
