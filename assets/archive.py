@@ -11,7 +11,6 @@ import dagster as dg
 import polars as pl
 
 from assets.resources import Setup
-from assets.workers import read_season
 from pipeline.blocks.run_blocks import BLOCK_SCHEMA
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.messages import say
@@ -105,7 +104,7 @@ def samples_and_blocks(
         listed = Counter(store.read("listed_tows", columns=["season"])["season"])
         tows, began = sum(listed[season] for season in stale), time.monotonic()
         LOG.info(say("reading {} tows", tows))
-        for season, _ in setup.map(partial(read_season, store.root, root), stale):
+        for season, _ in setup.map(partial(intake.read_season, store, root), stale):
             read.add(season)
             done = sum(listed[season] for season in read)
             left_s = (time.monotonic() - began) * (tows - done) / done

@@ -8,14 +8,11 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from functools import cache
-from pathlib import Path
 from typing import TypeVar
 
 from pipeline.errors import MissingKnowledgeError, UnavailableError
 from warehouse.derive.graph import STEPS
 from warehouse.derive.inputs import Scope
-from warehouse.intake import seasons
-from warehouse.store.store import Store
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -85,13 +82,6 @@ def in_parallel(
         ) from error
     finally:
         wait([future for _, future in asked if not future.cancel()])
-
-
-def read_season(data: Path, archive: Path, season: int) -> None:
-    """Reads a season: its samples and blocks go into the lake."""
-    store = Store(data)
-    seasons.read_season(store, archive, season)
-    seasons.collect_blocks(store, season)
 
 
 def make_step(name: str, scope: Scope) -> None:

@@ -62,7 +62,6 @@ def _make_directly(
     known = [KnownMethods.of(store).get(name) for name in methods]
     for season in intake.stale_seasons(store, archive, seasons):
         intake.read_season(store, archive, season)
-        intake.collect_blocks(store, season)
         done.seasons = sorted({*done.seasons, season})
     for step in STEPS:
         for scope in step.stale(store, known):

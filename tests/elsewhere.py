@@ -1,6 +1,5 @@
-"""A Dask cluster on loopback, and whether what they made is what is made here."""
+"""A Dask cluster on loopback."""
 
-import hashlib
 import json
 import os
 import subprocess
@@ -11,12 +10,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-
-from polars.testing import assert_frame_equal
-
-from warehouse.derive.database import DATABASE_TABLE
-from warehouse.intake.seasons import INDEXED
-from warehouse.store.store import Store, read_parquet
 
 ROOT = Path(__file__).parents[1]
 PATIENCE_S = 120.0
@@ -81,41 +74,3 @@ def _wait_for(file: Path) -> str:
 def _stop(process: subprocess.Popen[bytes]) -> None:
     process.kill()
     process.wait()
-
-
-def assert_same_lake(one: Store, other: Store) -> None:
-    """Samples, blocks and tables are the same and made from the same, wherever they lie.
-
-    The hash of the database file is of no concern: DuckDB never writes the same bytes twice. Nor is
-    what lists were made from: they name it only where the archive had lain still for a while.
-    """
-    files, others = _files_below(one.lake), _files_below(other.lake)
-    assert files.keys() == others.keys()
-    for name in files.keys() - {f"tables/{DATABASE_TABLE}.parquet"}:
-        assert_frame_equal(read_parquet(files[name]), read_parquet(others[name]), check_exact=True)
-    made = {_table(name) for name in files if name.startswith("tables/")}
-    for table, partition in made - {(table, None) for table in INDEXED}:
-        assert one.made_from(table, partition) == other.made_from(table, partition), table
-
-
-def _files_below(folder: Path, above: str = "") -> dict[str, Path]:
-    """Parquet files at any depth below a folder, by path."""
-    found: dict[str, Path] = {}
-    for below in folder.iterdir():
-        if below.name.endswith(".parquet"):
-            found[above + below.name] = below
-        elif not below.name.endswith(".json"):  # the cache of hashes stays on the machine
-            found |= _files_below(below, f"{above}{below.name}/")
-    return found
-
-
-def _table(name: str) -> tuple[str, str | None]:
-    """Table and partition that lie under a path of the lake."""
-    table, _, partition = name.removeprefix("tables/").removesuffix(".parquet").partition("/")
-    return table, partition or None
-
-
-def edition_hashes(store: Store, edition: str) -> dict[str, str]:
-    """SHA-256 of every file of an edition, by name."""
-    files = (store.editions / edition).iterdir()
-    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}

@@ -16,4 +16,3 @@ def bring_in(store: Store, root: Path) -> None:
     intake.forget_unlisted_seasons(store)
     for season in intake.stale_seasons(store, root):
         intake.read_season(store, root, season)
-        intake.collect_blocks(store, season)

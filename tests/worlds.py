@@ -78,19 +78,6 @@ def nearest_hyperbola(hull, declared_speed_m_s, temperature_c, air):
     return 1.0 / intercept, np.sqrt(-intercept / slope)
 
 
-def with_force_error(world: Measured, season: int, ratio: float) -> Measured:
-    """The same world with a load cell that reads so many times too much in one season."""
-    power = {"force": 1, "log1_cw": 1, "log1_cw2": 2}
-    mine = world.blocks.runs.join(
-        world.tows.select("tow_id", "season"), on="tow_id", maintain_order="left"
-    )
-    factor = np.where(mine["season"] == season, ratio, 1.0)[:, None]
-    sums = {
-        name: values * factor ** power.get(name, 0) for name, values in world.blocks.sums.items()
-    }
-    return replace(world, blocks=replace(world.blocks, sums=sums))
-
-
 STILL_AIR = {"wind_v": "log1_v", "wind_x": "log1_v", "wind_y": None, "wind_sin": None}
 """What blocks hold where no wind was measured: the boat's own speed from ahead, or nothing."""
 

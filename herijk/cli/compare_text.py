@@ -1,6 +1,5 @@
-"""Two editions or two methods side by side: who gains, who loses, and why."""
+"""Two editions, drafts or methods side by side: who gains, who loses, and why."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -11,101 +10,67 @@ from herijk.cli.render import cell, codes, interval_of_runs_alone, page, section
 from pipeline.messages import in_per_cent, say, tell
 from pipeline.method.variant import Difference, differences
 from pipeline.register.register import draft_name
+from pipeline.register.replay import RaceRules
 from pipeline.tables.row import Row
-from warehouse.editions.compare import DiffReport, Group
-from warehouse.queries.scenario import RebaseReport, against_print, rebase
-from warehouse.store.editions import edition_names, method_of_edition, read_edition
+from warehouse.editions.compare import DiffReport, Group, compare, report_with_races
+from warehouse.editions.publish import drafted
+from warehouse.store.editions import Edition, edition_names, read_edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
-# Methods
-
 
 @dataclass(frozen=True)
-class MethodComparison:
-    """Two methods side by side.
+class Compared:
+    """Two editions, drafts or methods side by side.
 
     Attributes:
         old, new: what is compared.
         options: options that differ, where both have a method.
-        effect: what that does to all boats; None where the data folder has no tows.
+        effect: what that does to all boats; None where a draft is to be made and the data folder
+            has no tows.
     """
 
     old: str
     new: str
     options: list[Difference]
-    effect: RebaseReport | None
+    effect: DiffReport | None
 
 
-def of_methods(store: Store, old: str, new: str) -> MethodComparison:
-    """Compares the methods of two editions or drafts, or methods themselves.
+def compared(store: Store, old: str, new: str, rules: RaceRules) -> Compared:
+    """Compares editions as they are, and drafts, methods and method files as their drafts are.
+
+    Two drafts are compared over all of history: also lines whose tow has expired.
 
     Raises:
-        MissingKnowledgeError: there is no such method or edition, or the new one is a printed
-            edition, which has no method.
+        HerijkError: there is no such method or edition, or it cannot be computed.
     """
-    known, editions = KnownMethods.of(store), edition_names(store)
-    if new in editions:
-        method = method_of_edition(store, new)
-    else:
-        method = known.named(new.removeprefix(draft_name("")))
-    printed = read_edition(store, old) if old in editions else None
-    if printed is not None and printed.method is None:
-        return MethodComparison(old, method.name, [], against_print(store, method, printed))
-    before = (
-        method_of_edition(store, old) if printed else known.named(old.removeprefix(draft_name("")))
+    known, published = KnownMethods.of(store), edition_names(store)
+    sides = [
+        read_edition(store, name)
+        if name in published
+        else known.named(name.removeprefix(draft_name("")))
+        for name in (old, new)
+    ]
+    before, after = (side.method if isinstance(side, Edition) else side for side in sides)
+    options = [] if before is None or after is None else list(differences(after, before))
+    if not {old, new} <= {*published} and store.made_from("tows") is None:
+        return Compared(old, new, options, None)
+    counting = ("valid",) if {old, new} & {*published} else ("valid", "expired")
+    editions = (
+        side if isinstance(side, Edition) else drafted(store, side, counting=counting)
+        for side in sides
     )
-    options = list(differences(method, before))
-    effect = rebase(store, method, before) if store.made_from("tows") else None
-    return MethodComparison(before.name, method.name, options, effect)
+    return Compared(old, new, options, report_with_races(store, compare(store, *editions), rules))
 
 
-def methods(report: MethodComparison) -> str:
-    """Which options differ, and what that does per season and to the boats most affected."""
+def text(report: Compared) -> str:
+    """Which options differ, and what that does to all boats and races."""
     if not report.options and report.effect is None:
         return tell("{} and {} say the same of every season.", report.old, report.new)
-    effect = report.effect
-    parts = [options_text(report.options, report.old, report.new)]
-    if effect is not None:
-        parts += _effect(effect)
-    return page(parts, effect is not None and effect.simulated)
-
-
-def _effect(report: RebaseReport) -> list[str]:
-    counts = ", ".join(f"{row['count']} {code_in_words(row['change'])}" for row in report.changes)
-    steps = [name for name in (report.by_season or [{}])[0] if name not in SEASON]
-    heads = {name: code_in_words(name) for name in steps}
-    seasons = [row | _as_changes(row, steps) for row in report.by_season]
-    boats = [row | _as_changes(row, steps) | {"in_2_h": in_two_hours(row)} for row in report.boats]
-    shown = " ".join(steps)
-    return [
-        tell("{} against {}; nothing was stored.", report.method, report.against),
-        tell("Register lines: {}.", counts),
-        section(
-            tell(
-                "Change of Cw at the declared speed by each step, median of the season's tows; a "
-                "tow's\nown steps multiply to its total, medians need not:"
-            ),
-            table(seasons, f"season tows {shown} total", heads),
-        ),
-        section(
-            tell("Register lines most affected:"),
-            table(boats, f"fsn_no name crew {shown} cw_ratio in_2_h", heads | CW),
-        ),
-    ]
-
-
-CW: Final = {"cw_ratio": say("Cw")}
-SEASON: Final = ("season", "tows", "total")
-
-
-def _as_changes(row: Row, steps: Sequence[str]) -> Row:
-    return {name: cell("cw_ratio", row.get(name)) for name in steps}
-
-
-def in_two_hours(row: Row) -> str:
-    """What a line of the register gives in a race of two hours."""
-    return seconds(7200 * (row["time_ratio"] - 1))
+    options = options_text(report.options, report.old, report.new) if report.options else ""
+    if report.effect is None:
+        return options
+    return page([options, *_effect(report.effect)], report.effect.simulated)
 
 
 def seconds(value: float | None) -> str:
@@ -113,15 +78,12 @@ def seconds(value: float | None) -> str:
     return "-" if value is None else f"{speech().number(value, 0, '+')}\u00a0s"
 
 
-# Editions
-
-
-def editions(report: DiffReport) -> str:
-    """Two editions side by side."""
+def _effect(report: DiffReport) -> list[str]:
+    """Who gains and loses, why, and what that does to races."""
     counts = ", ".join(f"{n} {codes(change)}" for change, n in report.changes.items())
     known = report.changes.get("changed", 0) > report.interval_unknown
     causes = [cause | {"cause": tell(labels.cause(cause))} for cause in report.causes]
-    parts = [
+    return [
         f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.",
         tell(
             "Gain (more power for the same race): {}\nLose: {}\nLarger than the "
@@ -143,7 +105,6 @@ def editions(report: DiffReport) -> str:
         ),
         _races(report),
     ]
-    return page(parts, report.simulated)
 
 
 CAUSES: Final = "cause lines median_factor lowest_factor highest_factor"

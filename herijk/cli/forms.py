@@ -9,11 +9,10 @@ from typing import Any, Final
 from pydantic import TypeAdapter
 
 from herijk.cli.check_text import Checked
-from herijk.cli.compare_text import MethodComparison
+from herijk.cli.compare_text import Compared
 from herijk.cli.methods_text import MethodReport
 from herijk.cli.rebuild_text import Rebuilt
 from pipeline.tables.row import Row
-from warehouse.editions.compare import DiffReport
 from warehouse.editions.lineage import Lineage
 from warehouse.editions.publish import Published
 from warehouse.editions.verify import Verification
@@ -52,8 +51,7 @@ FORMS: Final[dict[str, Any]] = {
     "audit BOAT --edition EDITION": Lineage,
     "audit TYPE": TypesAudit,
     "check": Checked,
-    "compare EDITION EDITION": DiffReport,
-    "compare METHOD METHOD": MethodComparison,
+    "compare OLD NEW": Compared,
     "export": Files,
     "init": Files,
     "methods": Methods,

@@ -11,9 +11,7 @@ from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, tell
 
 if TYPE_CHECKING:
-    from warehouse.editions.compare import DiffReport
     from warehouse.store.methods import KnownMethods
-    from warehouse.store.store import Store
 
 method_argument = argument(
     "name", metavar="METHOD_OR_FILE", help="A method's name, or a TOML file."
@@ -120,22 +118,11 @@ def compare(old: str, new: str, data: Path, fatigue: str, as_json: bool) -> None
     Published editions are compared as they are, with races. For a draft, a method or a method file
     all tows are recomputed under both methods; nothing is published or stored.
     """
-    from herijk.cli import compare_text as text
-    from warehouse.store.editions import edition_names
-    from warehouse.store.store import Store
-
-    store = Store(data)
-    if {old, new} <= {*edition_names(store)}:
-        show(_editions(store, old, new, fatigue), text.editions, as_json)
-        return
-    show(text.of_methods(store, old, new), text.methods, as_json)
-
-
-def _editions(store: "Store", old: str, new: str, fatigue: str) -> "DiffReport":
     from typing import cast
 
+    from herijk.cli import compare_text as text
     from pipeline.register.replay import Fatigue, RaceRules
-    from warehouse.editions.compare import diff, report_with_races
+    from warehouse.store.store import Store
 
     rules = RaceRules(fatigue=cast(Fatigue, fatigue))
-    return report_with_races(store, diff(store, old, new), rules)
+    show(text.compared(Store(data), old, new, rules), text.text, as_json)

@@ -1,17 +1,15 @@
-"""The image and the wheel hold what they need, and nothing of one system alone."""
+"""The image and the wheel hold what they need."""
 
-import ast
 import re
 import tomllib
 
 from packaging.specifiers import SpecifierSet
 
-from tests.architecture.repository import ROOT, modules, read
+from tests.architecture.repository import ROOT, read
 
 SETTINGS = tomllib.loads(read("pyproject.toml"))
 PROJECT = SETTINGS["project"]
 IN_THE_WHEEL = SETTINGS["tool"]["hatch"]["build"]["targets"]["wheel"]
-ONE_SYSTEM = {"fcntl", "grp", "msvcrt", "posix", "pwd", "resource", "termios", "winreg"}
 
 
 def test_the_image_copies_and_starts_what_is_there():
@@ -33,21 +31,3 @@ def test_the_image_copies_and_starts_what_is_there():
 
 def test_the_citation_names_the_version():
     assert f"\nversion: {PROJECT['version']}\n" in read("CITATION.cff")
-
-
-def test_no_module_is_imported_that_one_system_alone_has():
-    found = {
-        (str(file), name)
-        for file in modules()
-        for node in ast.walk(ast.parse(file.read_bytes()))
-        for name in _imported(node)
-    }
-    assert {(file, name) for file, name in found if name in ONE_SYSTEM} == set()
-
-
-def _imported(node):
-    if isinstance(node, ast.Import):
-        return [alias.name.partition(".")[0] for alias in node.names]
-    if isinstance(node, ast.ImportFrom) and not node.level:
-        return [str(node.module).partition(".")[0]]
-    return []

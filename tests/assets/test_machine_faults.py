@@ -2,7 +2,7 @@
 
 import errno
 import os
-import resource
+import resource  # noqa: TID251 - of limits, which Windows has not
 import shutil
 import subprocess
 import sys

@@ -2,10 +2,8 @@
 
 import datetime as dt
 import json
-from contextlib import contextmanager
 
 import dagster as dg
-import duckdb
 import polars as pl
 import pytest
 
@@ -17,9 +15,9 @@ from tests.conftest import METHODS
 from tests.warehouse.test_faults import Archive, cells, line_of, times
 from warehouse.queries.change_report import (
     change_report,
-    remember,
     reported_path,
 )
+from warehouse.store.store import read_parquet, write_parquet
 
 NOW = dt.datetime(2026, 11, 21, 3, 5, tzinfo=dt.UTC)
 
@@ -70,33 +68,31 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     assert [row["what"] for row in report.tows] == ["new"]
 
 
-@contextmanager
-def reported(bench):
-    """What was last reported on, to be changed by changing today's tables for a moment."""
-    today = bench.store.database.read_bytes()
-    with duckdb.connect(bench.store.database) as db:
-        yield db
-    remember(bench.store)
-    bench.store.database.write_bytes(today)
+def change_reported(bench, table, **columns):
+    """Makes the last report one of other tables."""
+    for name, changed in ((table, columns), ("about", {"database": pl.lit("other")})):
+        path = reported_path(bench.store) / f"{name}.parquet"
+        write_parquet(read_parquet(path).with_columns(**changed), path)
 
 
 def test_a_log_factor_that_shows_the_same_did_not_move(bench):
-    with reported(bench) as db:
-        db.execute("UPDATE log_factors SET factor = factor * 1.00004 WHERE season = 2009")
-        db.execute("UPDATE log_factors SET factor = factor * 1.00006 WHERE season = 2014")
+    moved = pl.when(season=2009).then(1.00004).otherwise(1.00006)
+    change_reported(bench, "log_factors", factor=pl.col("factor") * moved)
     assert {row["season"] for row in change_report(bench.store).factors} == {2014}
 
 
 @pytest.mark.parametrize("spoilt", [b"", b"PAR1"])
 def test_a_damaged_memory_of_the_last_report_makes_the_next_the_first(bench, spoilt):
-    reported_path(bench.store).write_bytes(spoilt)
+    (reported_path(bench.store) / "tows.parquet").write_bytes(spoilt)
+    change_reported(bench, "register")
     assert bench.rebuild().first
     assert bench.rebuild().nothing_changed
 
 
 def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):
-    with reported(bench) as db:
-        db.execute("UPDATE tows SET season = 2002 WHERE tow_id = (SELECT min(tow_id) FROM tows)")
+    first = pl.col("tow_id") == pl.col("tow_id").min()
+    was = pl.when(first).then(2002).otherwise("season").cast(pl.Int32)
+    change_reported(bench, "tows", season=was)
     summary = change_report(bench.store)
     assert summary.seasons_gone == [2002]
     first = headlines(summary, [], speaker("en"))[0]

@@ -24,9 +24,10 @@ from pipeline.method.definition import Steps, parse_method
 from pipeline.recompute.run_cache import RunCache
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
+from warehouse.editions.compare import compare
+from warehouse.editions.publish import drafted
 from warehouse.queries.chosen_tows import NEWEST
 from warehouse.queries.history import History
-from warehouse.queries.scenario import rebase
 from warehouse.store.store import Store
 
 PARENT = "rebased-2015"
@@ -189,16 +190,17 @@ def test_the_register_of_a_saved_file_is_the_one_that_was_shown(bench, history, 
     assert_frame_equal(again.drop("edition"), shown.drop("edition"))
 
 
-def test_rebase_finds_what_the_workbench_showed(bench, built):
+def test_a_comparison_finds_what_the_workbench_showed(bench, built):
     lines = bench.scenario(asked(bench, **SIDE)).register_lines
     path = bench.save(saving())
     method = parse_method(path.read_text(encoding="utf-8"), str(path))
-    report = rebase(built.store, method, bench.known.get("as-published"))
-    counts = {row["change"]: row["count"] for row in report.changes}
-    assert counts.get("changed", 0) == lines.filter(change="changed").height > 0
+    drafts = (drafted(built.store, one) for one in (bench.known.get("as-published"), method))
+    compared = compare(built.store, *drafts).lines
+    changed = compared.filter(change="changed")
+    assert changed.height == lines.filter(change="changed").height > 0
     key = ("fsn_no", "rowers", "crew_class")
     shown = {tuple(row[k] for k in key): row["cw_ratio"] for row in lines.to_dicts()}
-    for row in report.boats:
+    for row in changed.to_dicts():
         assert shown[tuple(row[k] for k in key)] == pytest.approx(row["cw_ratio"], rel=1e-9)
 
 

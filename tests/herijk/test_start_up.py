@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -23,6 +24,16 @@ NEEDED = {
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}
 
+THREADS = """
+import os
+import polars as pl
+import assets.definitions, herijk.cli.main, dashboards.site.render, herijk.library
+imported = len(os.listdir("/proc/self/task"))
+pl.DataFrame({"x": [1]}).lazy().select("x").collect()
+print(imported, len(os.listdir("/proc/self/task")))
+"""
+"""How many threads there are when all is imported, and when Polars has computed something."""
+
 
 @pytest.mark.parametrize("module", NEEDED)
 def test_a_module_imports_no_more_than_it_needs(module):
@@ -32,3 +43,13 @@ def test_a_module_imports_no_more_than_it_needs(module):
     assert module in imported
     assert imported & HEAVY <= NEEDED[module]
     assert imported & UNUSED_PARTS == set()
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted on Linux")
+def test_importing_computes_nothing():
+    """A process forked after Polars has threads waits for them for ever."""
+    found = subprocess.run(
+        [sys.executable, "-c", THREADS], capture_output=True, text=True, check=True
+    )
+    imported, computed = map(int, found.stdout.split())
+    assert imported < computed

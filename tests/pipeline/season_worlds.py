@@ -4,13 +4,10 @@ Fast enough for hundreds of worlds; what a tow's samples look like is left to `h
 The set-ups are clean, and hard: logs that vary, boats that are altered and age.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
-
-from pipeline import season_log
-from pipeline.uncertainty import propagation as uncertainty
 
 SEASONS = range(2009, 2019)
 ANCHORED_FROM = 2014
@@ -188,34 +185,3 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "q_sd": 2.5 * setup.run_noise,
         "ln_cw_q_cov": 0.0,
     }
-
-
-def register(world):
-    """Season factors, the last tow of every line, and the budget of every tow."""
-    found = season_log.estimate_season_factors(world.tows)
-    logs = found.factors.select("season", "part", log_sd="ln_sd", log_dof="dof")
-    era = pl.when(pl.col("season") < 2012).then(2009).otherwise(2012)
-    wander = era.replace_strict(found.tow_log_sd, return_dtype=pl.Float64)
-    anchored = pl.col("anchored")
-    tows = world.tows.join(logs, on=["season", "part"], how="left").with_columns(
-        pl.col("log_sd").fill_null(0.0),
-        pl.col("log_dof").fill_null(np.inf),
-        pl.when(anchored).then(0.0).otherwise(wander).alias("tow_log_sd"),
-        anchored.alias("calibrated"),
-        pl.col("ln_cw_sd").alias("random_ratio"),
-        pl.lit(200.0).alias("random_dof"),
-        pl.lit(0.0).alias("misfit_ratio"),
-        pl.lit(None, pl.Float64).alias("wind_ln_sd"),
-        pl.lit(None, pl.Float64).alias("askew_ratio"),
-        pl.lit(1.0).alias("speed_ratio"),
-        pl.lit(0.025).alias("air_ratio"),
-        pl.lit(0.05).alias("air_per_coefficient"),
-        pl.lit(True).alias("wind_measured"),
-        pl.lit(0.025).alias("still_air_ratio"),
-        (pl.col("season") >= 2018).alias("temperature_known"),
-        pl.lit(0.0).alias("water_off_c"),
-    )
-    last = world.tows.sort("season", "tow_id").unique("fsn_no", keep="last", maintain_order=True)
-    lines = last.select("fsn_no", "tow_id", pl.col("ln_cw").exp().alias("cw_kg_m"))
-    assumed = {n: pl.lit(x) for n, x in asdict(uncertainty.Assumed()).items()}
-    return found, lines, uncertainty.budget(tows.with_columns(**assumed))

@@ -1,9 +1,6 @@
 """Blocks give exactly the means over samples, whatever the rate and the length of the runs."""
 
 import math
-import os
-import subprocess
-import sys
 
 import numpy as np
 import polars as pl
@@ -108,13 +105,6 @@ def test_mean_wind_angle_goes_round_north(angle, spread, seed):
     assert abs((found - angle / 64 + 180.0) % 360.0 - 180.0) < 1e-9
 
 
-@pytest.mark.parametrize("rate_hz", [1, 20, 50, 333, 1000])
-def test_a_run_of_50_s_has_50_full_blocks(rate_hz):
-    blocks = block_sums(samples_of([50 * rate_hz, 50 * rate_hz]), rate_hz)
-    assert blocks["second"].to_list() == [*range(50), *range(50)]
-    assert blocks["n"].to_list() == [rate_hz] * 100
-
-
 @given(
     share=st.floats(0.01, 0.999),
     channel=st.sampled_from([c for c in SAMPLE_SCHEMA if c not in ("run", "gps_m_s")]),
@@ -172,31 +162,3 @@ def test_a_run_without_blocks_breaks_a_promise():
     runs = pl.DataFrame({"tow_id": ["t", "t"], "run": pl.Series([1, 2], dtype=pl.Int8)})
     with pytest.raises(BrokenPromiseError, match="tow t, run 2"):
         stack_blocks(blocks, runs)
-
-
-def test_means_over_an_empty_window_are_zero_not_nan():
-    blocks = stacked(samples_of([30]), 10)
-    nothing = np.zeros(blocks.n.shape, dtype=bool)
-    assert WindowSums(blocks, nothing).mean("force").tolist() == [0.0]
-
-
-def sums_of_a_tow() -> np.ndarray:
-    return block_sums(samples_of([900, 1234]), 333).select(SUM_NAMES).to_numpy()
-
-
-@pytest.mark.slow
-def test_sums_are_the_same_on_any_processor_but_for_rounding(tmp_path):
-    """Compiled for a processor that works on one or two numbers at a time."""
-    plain = {
-        "NUMBA_CPU_NAME": "generic",
-        "NUMBA_CPU_FEATURES": "",
-        "NUMBA_CACHE_DIR": str(tmp_path),
-    }
-    file = tmp_path / "elsewhere.npy"
-    code = (
-        "import sys, numpy; from tests.pipeline.test_blocks import sums_of_a_tow; "
-        "numpy.save(sys.argv[1], sums_of_a_tow())"
-    )
-    subprocess.run([sys.executable, "-c", code, file], env=os.environ | plain, check=True)
-    elsewhere, here = np.load(file), sums_of_a_tow()
-    assert (np.abs(elsewhere - here) <= EXACT * np.abs(here).mean(axis=0)).all()

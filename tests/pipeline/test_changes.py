@@ -103,16 +103,12 @@ def test_whatever_is_known_all_factors_multiply_to_the_change(factors):
 
 
 def test_the_steps_of_a_ladder_go_to_the_lines_of_their_tow_in_order():
-    ladder = pl.DataFrame(
-        [("t", 1, "b", 2.0), ("t", 0, "a", 1.0), ("u", 0, "c", 3.0)],
-        schema=["tow_id", "position", "step", "factor"],
-        orient="row",
-    )
+    rows = [("t", 1, "b", 2.0), ("t", 0, "a", 1.0), ("u", 0, "c", 3.0)]
+    ladder = pl.DataFrame(rows, schema=["tow_id", "position", "step", "factor"], orient="row")
     found = steps_of_lines(edition("old", line("FSN1", 40.0)), ladder)
     assert found.select("cause", "step", "factor").rows() == [
-        ("method", "a", 1.0),
-        ("method", "b", 2.0),
-    ]
+        ("method", "a", 1.0), ("method", "b", 2.0),
+    ]  # fmt: skip
 
 
 # Numbers side by side

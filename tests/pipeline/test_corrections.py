@@ -106,6 +106,19 @@ def test_temperature(clean, water_c):
     assert corrected.max() < 0.01
 
 
+@pytest.mark.parametrize("missing", ["weight_kg", "crew_weight_kg", "water_temperature_c"])
+def test_what_is_not_known_is_not_corrected(missing):
+    """Of one of eight tows."""
+    cold = measure(world(Defects(water_temperature_c=(4.0, 4.0))))
+    first = pl.col("tow_id") == cold.tows["tow_id"][0]
+    tows = cold.tows.with_columns(pl.when(~first).then(missing).alias(missing))
+    with_rule = recompute(method(temperature='{ rule = "ittc57" }'), tows, cold.blocks)
+    without = recompute(method(), tows, cold.blocks)
+    corrected = (with_rule.curves["cw_kg_m"] < without.curves["cw_kg_m"]).to_list()
+    assert corrected == [False] + 7 * [True]
+    assert with_rule.curves["cw_kg_m"][0] == without.curves["cw_kg_m"][0]
+
+
 def accelerating(acceleration_m_s2: float) -> tuple[pl.DataFrame, "object"]:
     """A world without defects whose boats gain or lose speed steadily during each run."""
     settings = world(Defects())

@@ -75,42 +75,32 @@ def due(*lines, raced=(), types=()):
     return {r["fsn_no"]: r for r in due_list(register, boats, races, AS_OF).iter_rows(named=True)}
 
 
-def test_a_realistic_speed_stays():
-    row = due(line("X", 2.35))["X"]
-    assert (row["tow_speed_m_s"], row["speed_reason"]) == (2.35, REALISTIC)
-    assert row["power_w"] == pytest.approx(71.21, abs=0.01)
+@pytest.mark.parametrize(
+    ("declared", "raced", "reason", "proposed"),
+    [
+        (2.35, {}, REALISTIC, 2.35),
+        (2.8, {(2018, 5, 1): 2.8}, TOO_FAST, "highest_speed_m_s"),
+        (2.1, {(2018, 5, 1): 2.3}, ROWED_FASTER, 2.3),
+        (2.1, {(2018, 5, 1): 2.45}, ROWED_FASTER, 2.45),
+        (2.1, {(2018, 5, 1): 2.9}, ROWED_FASTER, "highest_speed_m_s"),
+        (2.1, {(2018, 5, 1): 2.05}, REALLY_ROWED_SO, 2.1),
+        # Over a year ago, and after the day of the list.
+        (2.1, {(2017, 6, 1): 2.6, (2018, 6, 2): 2.6}, NOT_RACED, "lowest_speed_m_s"),
+    ],
+)
+def test_the_rule_for_the_next_speed(declared, raced, reason, proposed):
+    races = [("X", dt.date(*day), speed, 0.0) for day, speed in raced.items()]
+    row = due(line("X", declared), raced=races)["X"]
+    assert row["speed_reason"] == reason
+    assert row["tow_speed_m_s"] == pytest.approx(row.get(proposed, proposed))
     assert power(row["lowest_speed_m_s"]) == pytest.approx(70)
     assert power(row["highest_speed_m_s"]) == pytest.approx(90)
+
+
+def test_power_is_that_of_the_example():
+    row = due(line("X", 2.35))["X"]
+    assert row["power_w"] == pytest.approx(71.21, abs=0.01)
     assert not row["beyond_curve"]
-
-
-def test_a_speed_that_takes_too_much_is_brought_down():
-    row = due(line("X", 2.8), raced=[("X", dt.date(2018, 5, 1), 2.8, 0.0)])["X"]
-    assert row["speed_reason"] == TOO_FAST
-    assert power(row["tow_speed_m_s"]) == pytest.approx(90)
-
-
-@pytest.mark.parametrize(
-    ("raced", "speed"),
-    [(2.3, 2.3), (2.45, 2.45), (2.9, "highest_speed_m_s")],
-)
-def test_a_low_speed_is_brought_up_to_what_was_rowed_faster(raced, speed):
-    row = due(line("X", 2.1), raced=[("X", dt.date(2018, 5, 1), raced, 0.0)])["X"]
-    assert row["speed_reason"] == ROWED_FASTER
-    assert row["tow_speed_m_s"] == pytest.approx(row.get(speed, speed))
-
-
-def test_a_low_speed_that_was_really_rowed_stands():
-    row = due(line("X", 2.1), raced=[("X", dt.date(2018, 5, 1), 2.05, 0.0)])["X"]
-    assert (row["tow_speed_m_s"], row["speed_reason"]) == (2.1, REALLY_ROWED_SO)
-
-
-def test_without_a_race_in_the_past_year_the_lower_end_is_proposed():
-    before = [("X", dt.date(2017, 6, 1), 2.6, 0.0), ("X", dt.date(2018, 6, 2), 2.6, 0.0)]
-    row = due(line("X", 2.1), raced=before)["X"]
-    assert row["raced_speed_m_s"] is None
-    assert row["speed_reason"] == NOT_RACED
-    assert power(row["tow_speed_m_s"]) == pytest.approx(70)
 
 
 def test_a_boat_without_a_curve_gets_the_middle_of_like_boats():

@@ -4,59 +4,55 @@ import numpy as np
 import polars as pl
 import pytest
 
+from herijk.simulate import WorldSettings
+from pipeline.method.definition import shipped_method
+from pipeline.recompute.recompute import recompute
 from pipeline.uncertainty import ensemble
-from pipeline.uncertainty import propagation as uncertainty
-from tests.pipeline.season_worlds import HARD, register, simulate
+from tests.worlds import measure
 
 MANY = 20_000
 
 
 @pytest.fixture(scope="module")
-def world():
-    return simulate(HARD, 1)
+def made():
+    world = measure(WorldSettings((2010, 2012, 2015), 12, 10, 3))
+    return recompute(shipped_method("rebased"), world.tows, world.blocks, with_bands=False)
 
 
 @pytest.fixture(scope="module")
-def drawn(world):
-    found, lines, held = register(world)
-    errors = ensemble.ln_errors(lines["tow_id"], held, found)
-    return found, lines, held, lines["cw_kg_m"].to_numpy() * np.exp(errors.T)
+def lines(made):
+    """The newest tow of each boat, with its standard uncertainty and the shared part of it."""
+    square, is_shared = pl.col("u_ratio") ** 2, pl.col("shared") != "single"
+    total = made.uncertainty_budget.group_by("tow_id").agg(
+        u_ratio=square.sum().sqrt(), u_ratio_shared=square.filter(is_shared).sum().sqrt()
+    )
+    newest = made.curves.drop_nulls("cw_kg_m").sort("tow_id").unique("fsn_no", keep="last")
+    return newest.sort("tow_id").join(total, on="tow_id", maintain_order="left")
 
 
-def of_tows(world, tow_ids):
-    return pl.DataFrame({"tow_id": tow_ids, "cw_kg_m": np.linspace(30, 50, len(tow_ids))})
+def errors(made, tows, members=ensemble.MEMBERS):
+    held = made.uncertainty_budget.join(tows, on="tow_id", how="semi", maintain_order="left")
+    return ensemble.ln_errors(tows["tow_id"], held, made.factors, members)
 
 
-def test_members_spread_as_the_budget_says(drawn):
-    _, lines, held, members = drawn
-    u = lines.join(uncertainty.combine(held), on="tow_id", maintain_order="left")["u_ratio"]
-    ratio = np.log(members).std(axis=0, ddof=1) / u.to_numpy()
-    assert members.shape == (200, lines.height)
-    # Four standard errors of a deviation from 200 members.
-    assert np.abs(ratio - 1).max() < 4 / np.sqrt(2 * 199)
-    centre = np.log(members).mean(axis=0) - np.log(lines["cw_kg_m"].to_numpy())
-    assert np.abs(centre / u.to_numpy()).max() < 4 / np.sqrt(200)
+def test_members_spread_as_the_budget_says(made, lines):
+    drawn = errors(made, lines).T / lines["u_ratio"].to_numpy()
+    # Four standard errors of a deviation and of a mean, from 200 members.
+    assert drawn.shape == (200, lines.height)
+    assert np.abs(drawn.std(axis=0, ddof=1) - 1).max() < 4 / np.sqrt(2 * 199)
+    assert np.abs(drawn.mean(axis=0)).max() < 4 / np.sqrt(200)
 
 
-def test_tows_of_one_season_err_together_as_far_as_they_share(world):
-    found, _, held = register(world)
-    lines = of_tows(world, world.tows.filter(pl.col("season") == 2010)["tow_id"][:2].to_list())
-    errors = ensemble.ln_errors(lines["tow_id"], held, found, MANY)
-    total = lines.join(uncertainty.combine(held), on="tow_id", maintain_order="left")
-    of_both = uncertainty.combine(held.filter(pl.col("shared") != "single"))
-    shared = lines.join(of_both, on="tow_id", maintain_order="left")["u_ratio"]
-    expected = shared.product() / total["u_ratio"].product()
-    correlation = np.corrcoef(errors)[0, 1]
+def test_tows_of_one_season_err_together_as_far_as_they_share(made, lines):
+    two = lines.filter(season=2010).head(2)
+    expected = two["u_ratio_shared"].product() / two["u_ratio"].product()
     assert expected > 0.05
+    correlation = np.corrcoef(errors(made, two, MANY))[0, 1]
     assert correlation == pytest.approx(expected, abs=4 / np.sqrt(MANY))
 
 
-def test_a_line_keeps_its_members_when_others_go(drawn):
-    found, lines, held, members = drawn
-    kept = lines.head(3)
-    mine = held.filter(pl.col("tow_id").is_in(kept["tow_id"].implode()))
-    again = ensemble.ln_errors(kept["tow_id"], mine, found)
-    assert pytest.approx(np.log(members[:, :3] / kept["cw_kg_m"].to_numpy())) == again.T
+def test_a_line_keeps_its_members_when_others_go(made, lines):
+    assert errors(made, lines.head(3)) == pytest.approx(errors(made, lines)[:3])
 
 
 def test_who_is_heavier_is_told_apart_by_what_is_not_shared():
@@ -78,23 +74,21 @@ def test_who_is_heavier_is_told_apart_by_what_is_not_shared():
     assert (b > a).mean() == pytest.approx(0.56, abs=0.14)
 
 
-def test_members_lie_around_the_number_of_the_register(world):
+def test_members_lie_around_the_number_of_the_register(made, lines):
     """As wide as its interval: half as wide for a best estimate with half the interval."""
-    found, lines, held = register(world)
-    measured = lines.with_columns(
-        cw_lo_kg_m=pl.col("cw_kg_m") * np.exp(-0.04), cw_hi_kg_m=pl.col("cw_kg_m") * np.exp(0.04)
+    cw = pl.col("cw_kg_m")
+    measured, ruled = (
+        lines.with_columns(level, cw_lo_kg_m=level * np.exp(-half), cw_hi_kg_m=level * np.exp(half))
+        for level, half in ((cw, 0.04), (cw * 0.97, 0.02))
     )
-    best = pl.col("cw_kg_m") * 0.97
-    ruled = measured.with_columns(
-        best, cw_lo_kg_m=best * np.exp(-0.02), cw_hi_kg_m=best * np.exp(0.02)
-    )
-    by_own, by_best = (
-        ensemble.tow_ensemble("rebased", measured, used, held, found)
+    of_own, of_best = (
+        ensemble.tow_ensemble("rebased", measured, used, made.uncertainty_budget, made.factors)
         .group_by("tow_id", maintain_order=True)
-        .agg(middle=pl.col("cw_kg_m").log().mean(), sd=pl.col("cw_kg_m").log().std())
+        .agg(middle=cw.log().mean(), sd=cw.log().std())
+        .join(measured, on="tow_id", maintain_order="left")
+        .with_columns(pl.col("middle") - cw.log())
         for used in (measured, ruled)
     )
-    assert (by_best["sd"] / by_own["sd"]).to_list() == pytest.approx([0.5] * by_own.height)
-    ln_cw = measured.join(by_own, on="tow_id", maintain_order="right")["cw_kg_m"].log()
-    own, moved = by_own["middle"] - ln_cw, by_best["middle"] - ln_cw - np.log(0.97)
-    assert moved.to_list() == pytest.approx((0.5 * own).to_list())
+    assert (of_best["sd"] / of_own["sd"]).to_list() == pytest.approx([0.5] * lines.height)
+    expected = 0.5 * of_own["middle"] + np.log(0.97)
+    assert of_best["middle"].to_list() == pytest.approx(expected.to_list())

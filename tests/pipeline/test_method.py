@@ -40,23 +40,12 @@ FIRST_OVERRIDE = len(method_text().splitlines()) + 1
 
 WRONG = {
     "no TOML": ("name = \n", ["own.toml", "line 1", "not valid TOML"]),
-    "a misspelt title": (
-        method_text().replace('title = ', 'titel = '), ["line 2", "titel", "unknown key", "title"],
-    ),
-    "decimal comma": (method_text() + "x = 0,3\n", ["not valid TOML", "decimal point"]),
-    "no name": (method_text().split("\n", 1)[1], ["own.toml", "name", "missing"]),
     "name with capitals": (method_text("Own"), ["line 1", "name", "'Own'"]),
-    "title of a wrong type": (
-        method_text().replace('title = "Test"', "title = 3"), ["line 2", "title", "text between quotes", "3"],
-    ),
     "unknown key at the top": (
         'titel = "x"\n' + method_text(), ["line 1", "titel", "unknown key", "title", "overrides"],
     ),
     "unknown step": (
         method_text(winds="{}"), [f"line {len(PLAIN) + 4}", "winds", "unknown step", "wind", "curve"],
-    ),
-    "step without options": (
-        changed("wind", '"none"'), [f"line {LINE_OF['wind']}", "steps.wind", "table", "'none'"],
     ),
     "missing step": (
         "\n".join(li for li in method_text().splitlines() if not li.startswith("curve")),
@@ -78,15 +67,9 @@ WRONG = {
         changed("wind", '{ model = "head", ahead = -0.5 }'),
         [f"line {LINE_OF['wind']}", "wind.ahead", "at least 0", "-0.5"],
     ),
-    "not a number": (
-        changed("wind", '{ model = "head", ahead = nan }'), ["wind.ahead", "must be a number", "nan"],
-    ),
     "too many per cent": (
         changed("speed", '{ correction = "prescribed", factor = 6.0 }'),
         [f"line {LINE_OF['speed']}", "speed.factor", "at most 1.2", "6.0"],
-    ),
-    "half a second": (
-        changed("wind", '{ model = "head", averaging_s = 2.5 }'), ["wind.averaging_s", "whole number", "2.5"],
     ),
     "range that is no range": (
         with_override('wind = { ahead = 0.4 }', '"2010-2012"'),
@@ -94,15 +77,6 @@ WRONG = {
     ),
     "range backwards": (
         with_override('wind = { ahead = 0.4 }', '"2012:2010"'), ["range", "ends before it begins"],
-    ),
-    "range that is a number": (
-        with_override('wind = { ahead = 0.4 }', "2010"), ["range", "2010", "2009:2011"],
-    ),
-    "no range": (
-        method_text() + "[[overrides]]\nwind = { ahead = 0.4 }\n", ["own.toml", "range", "2009:2011"],
-    ),
-    "unknown step in an override": (
-        with_override("winds = { ahead = 0.4 }"), [f"line {FIRST_OVERRIDE + 2}", "winds", "unknown step"],
     ),
     "impossible value in an override": (
         with_override("wind = { ahead = 4.0 }"),
@@ -220,17 +194,13 @@ def test_the_hash_changes_with_any_option(step):
 
 
 def test_the_hash_changes_with_one_season_of_an_override_and_with_the_seasons_covered():
-    hashes = [
-        parse(text).content_hash
-        for text in (
-            method_text(),
-            with_override("wind = { ahead = 0.4 }"),
-            with_override("wind = { ahead = 0.4 }", '"2010:2011"'),
-            method_text().replace("title =", 'seasons = "2009:2016"\ntitle ='),
-        )
-    ]
-    assert len(set(hashes)) == len(hashes)
-    assert all(re.fullmatch("[0-9a-f]{64}", h) for h in hashes)
+    texts = (
+        method_text(),
+        with_override("wind = { ahead = 0.4 }"),
+        with_override("wind = { ahead = 0.4 }", '"2010:2011"'),
+        method_text().replace("title =", 'seasons = "2009:2016"\ntitle ='),
+    )
+    assert len({parse(text).content_hash for text in texts}) == len(texts)
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,22 @@
-"""The draft register: newest sound tow, validity, and lines without a curve."""
+"""The draft register: newest sound tow, validity, decisions of people, lines without a curve."""
 
 import datetime as dt
 
 import polars as pl
 import pytest
 
-from pipeline.method.definition import RegisterRule
-from pipeline.register.register import draft_register, lines_of_all_days
+from pipeline.method.definition import (
+    MethodFileError,
+    RegisterRule,
+    parse_method,
+    shipped_method,
+    shipped_methods,
+)
+from pipeline.method.writing import method_text
+from pipeline.register.register import DECISION_SCHEMA, draft_register, lines_of_all_days
 
 ON = dt.date(2016, 6, 1)
-NUMBERS = (*("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),)
+NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 
 
 def frames(rows):
@@ -40,8 +47,9 @@ BOATS = pl.DataFrame(
 )
 
 
-def register(rows=ROWS, on=ON):
-    return draft_register(*frames(rows), BOATS, on, RegisterRule())
+def register(rows=ROWS, on=ON, rule=RegisterRule(), decisions=()):  # noqa: B008 - frozen
+    decided = pl.DataFrame(list(decisions), schema=DECISION_SCHEMA, orient="row")
+    return draft_register(*frames(rows), BOATS, on, rule, decided)
 
 
 def test_one_line_per_boat_and_crew_with_its_newest_sound_tow():
@@ -56,12 +64,20 @@ def test_one_line_per_boat_and_crew_with_its_newest_sound_tow():
 
 
 @pytest.mark.parametrize(
-    ("on", "status"), [(dt.date(2015, 12, 31), "valid"), (dt.date(2016, 1, 1), "expired")]
+    ("on", "first_of_six", "until", "status"),
+    [
+        (dt.date(2015, 12, 31), 2023, 2015, "valid"),
+        (dt.date(2016, 1, 1), 2023, 2015, "expired"),
+        (dt.date(2016, 1, 1), 2011, 2015, "expired"),
+        (dt.date(2016, 1, 1), 2010, 2016, "valid"),
+    ],
 )
-def test_a_tow_is_valid_to_the_end_of_the_fifth_calendar_year(on, status):
-    line = register(on=on).filter(fsn_no="FSN2")
-    assert line["valid_until"].item() == dt.date(2015, 12, 31)
-    assert line["status"].item() == status
+def test_a_tow_is_valid_to_the_end_of_the_fifth_or_sixth_calendar_year(
+    on, first_of_six, until, status
+):
+    rule = RegisterRule(six_years_from=first_of_six)
+    line = register(on=on, rule=rule).filter(fsn_no="FSN2").row(0, named=True)
+    assert (line["valid_until"], line["status"]) == (dt.date(until, 12, 31), status)
 
 
 def test_a_tow_with_a_thwart_left_free_is_a_line_of_its_own():
@@ -80,3 +96,39 @@ def test_on_each_day_the_same_line_counts_in_the_history_as_in_the_register():
         assert sorted(newest["tow_id"]) == sorted(lines["tow_id"])
         valid = newest.filter(pl.col("valid_until") >= day)
         assert sorted(valid["tow_id"]) == sorted(lines.filter(status="valid")["tow_id"])
+
+
+@pytest.mark.parametrize(
+    ("decisions", "tow_id"),
+    [
+        ([("new", "exclude")], "middle"),
+        ([("old", "prefer")], "old"),
+        ([("old", "prefer"), ("middle", "prefer")], "middle"),
+        ([("old", "exclude"), ("middle", "exclude"), ("new", "exclude")], None),
+    ],
+)
+def test_people_exclude_a_tow_or_prefer_one(decisions, tow_id):
+    days = {"old": 2012, "middle": 2013, "new": 2014, "later": 2016}
+    rows = [(t, dt.date(y, 3, 1), "FSN1", 8, "H", "accepted") for t, y in days.items()]
+    line = register(rows, dt.date(2015, 1, 1), decisions=decisions).row(0, named=True)
+    assert line["tow_id"] == tow_id
+    assert (line["status"] == "excluded") == (line["cw_kg_m"] is None) == (tow_id is None)
+
+
+def test_the_rule_stands_in_the_method_and_changes_no_curve():
+    text = method_text(shipped_method("rebased"))
+    assert "six_years_from = 2023" in text
+    other = parse_method(text.replace("valid_years = 5", "valid_years = 4"), "x.toml")
+    assert other.validity.valid_years == 4
+    assert other.content_hash == shipped_method("rebased").content_hash
+    wrong = 'name = "own"\ntitle = "own"\nextends = "rebased"\n[register]\nyears = 2\n'
+    with pytest.raises(MethodFileError, match=r"x.toml, line 5: 'years': unknown key.*valid_years"):
+        parse_method(wrong, "x.toml")
+
+
+@pytest.mark.parametrize("name", shipped_methods())
+def test_a_method_written_out_reads_back_as_itself(name):
+    method = shipped_method(name)
+    read = parse_method(method_text(method), "x.toml")
+    for part in ("definition", "validity", "title", "title_en", "description"):
+        assert getattr(read, part) == getattr(method, part)

@@ -13,7 +13,9 @@ from pipeline.method.definition import Method, shipped_method
 from tests.intake import bring_in
 from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
+from warehouse.editions.compare import Comparison, compare
 from warehouse.editions.publish import Terms, publish
+from warehouse.store.editions import read_edition
 from warehouse.store.store import Store
 
 SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=8, rate_hz=10, seed=5)
@@ -89,3 +91,7 @@ class EditionBench:
 
 def terms(edition: str, valid_from: dt.date = DAY) -> Terms:
     return Terms(edition, valid_from, "besluit van de ALV", valid_from)
+
+
+def diff(store: Store, old: str, new: str) -> Comparison:
+    return compare(store, *(read_edition(store, name) for name in (old, new)))

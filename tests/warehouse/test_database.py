@@ -10,8 +10,9 @@ import pytest
 
 from pipeline.tables.schemas import ABOUT, TABLES
 from pipeline.tables.views import VIEWS
+from pipeline.uncertainty.ensemble import MEMBERS
 from tests.assets.test_machine_faults import mounted
-from tests.conftest import Workbench
+from tests.conftest import METHODS, Workbench
 from warehouse.derive.database import build_database
 from warehouse.derive.inputs import LAKE_ONLY
 
@@ -127,3 +128,15 @@ def test_what_is_counted_is_what_the_tables_hold(built: Workbench):
     checks, assessed = built.table("check_counts"), built.table("assessments")
     assert checks["tows"].sum() == assessed.height
     assert checks["beyond"].sum() == assessed["flagged"].sum()
+
+
+def test_every_curve_has_its_members_about_its_cw(built: Workbench):
+    members = built.store.read("ensemble", METHODS[1])
+    curves = built.table("curves").filter(pl.col("method") == METHODS[1]).drop_nulls("cw_kg_m")
+    found = members.group_by("tow_id").agg(pl.len(), pl.col("cw_kg_m").log().alias("ln").mean())
+    both = curves.join(found, on="tow_id")
+    assert both.height == curves.height > 0
+    assert set(both["len"]) == {MEMBERS}
+    # The interval is 4 to 6 standard deviations wide, the mean of the members has 1 / sqrt(200).
+    width = (both["cw_hi_kg_m"] / both["cw_lo_kg_m"]).log()
+    assert ((both["ln"] - both["cw_kg_m"].log()).abs() / width).max() < 1 / np.sqrt(MEMBERS)

@@ -7,6 +7,7 @@ import pytest
 
 from pipeline.errors import BrokenPromiseError
 from warehouse.store.editions import edition_names, write_folder
+from warehouse.store.files import folder_written_beside
 from warehouse.store.store import Store
 
 CONTENTS = {f"file-{n}": bytes([n]) * 5000 for n in range(6)}
@@ -80,3 +81,21 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(tmp_path):
     store.editions.unlink()
     write_folder(store, "x", lambda: CONTENTS)
     assert edition_names(store) == ["x"]
+
+
+def test_a_folder_is_replaced_whole_and_after_an_error_the_older_one_is_there(tmp_path):
+    page = tmp_path / "site" / "page.html"
+
+    def write(text, error=None):
+        with folder_written_beside(page.parent) as beside:
+            (beside / page.name).write_text(text, encoding="utf-8")
+            if error:
+                raise error
+
+    write("old")
+    with pytest.raises(OSError, match="full"):
+        write("half", OSError("full"))
+    assert page.read_text("utf-8") == "old"
+    write("new")
+    assert page.read_text("utf-8") == "new"
+    assert list(tmp_path.iterdir()) == [page.parent]

@@ -15,11 +15,10 @@ from polars.testing import assert_frame_equal
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import shipped_method
 from pipeline.register.register import LINE
-from tests.warehouse.edition_bench import terms
+from tests.warehouse.edition_bench import diff, terms
 from warehouse.derive.published import published_tables
 from warehouse.editions import publish as publish_module
 from warehouse.editions import sheets
-from warehouse.editions.compare import diff
 from warehouse.editions.making import MADE
 from warehouse.editions.publish import publish_printed
 from warehouse.store.decisions import FILE_NAME

@@ -125,6 +125,22 @@ def test_what_other_code_makes_otherwise_stands_where_the_head_is_known(
     assert not verify(published_copy.store, False, report.head).wrong
 
 
+def test_editions_of_other_code_come_out_equal_where_their_numbers_do(
+    bench_of_editions, monkeypatch
+):
+    bench_of_editions.publish("2014-1", "as-published")
+    with monkeypatch.context() as then:
+        then.setattr("warehouse.editions.publish.code_version", lambda: "0.9.0+other")
+        bench_of_editions.publish("2014-2", "as-published")
+    assert verify(bench_of_editions.store, afresh=False).findings == []
+
+
+def test_an_edition_in_other_words_was_made_by_other_code(published_copy):
+    sealed_anew(folder(published_copy, "2014-2"), texts_version="0")
+    (finding,) = verify(published_copy.store, afresh=False).findings
+    assert (finding.kind, finding.where, finding.wrong) == ("differs", "bericht.md", True)
+
+
 def test_an_edition_of_a_method_with_options_that_are_gone_was_made_by_other_code(published_copy):
     path = folder(published_copy, "2014-2")
     text = (path / "method.toml").read_text(encoding="utf-8")

@@ -69,12 +69,6 @@ def test_changes_are_counted_and_the_largest_stands_above(scenario, built):
     )
 
 
-def test_a_method_against_itself_changes_nothing(scenario):
-    same = Scenario(scenario.before, scenario.before).summary()
-    assert same["same"] == same["lines"] > 0
-    assert (same["median_ratio"], same["gains"], same["loses"]) == (1.0, 0, 0)
-
-
 def test_a_boat_has_its_curves_under_both_methods(scenario, built):
     curves = built.table("curves").drop_nulls("cw_kg_m")
     fsn_no, tow_id = curves.row(0, named=True)["fsn_no"], curves["tow_id"][0]

@@ -145,7 +145,6 @@ def catch_up(store: Store, archive: Path, methods: Sequence[Method], step: Step)
     intake.index(store, archive)
     for season in intake.damaged_seasons(store):
         intake.read_season(store, archive, season)
-        intake.collect_blocks(store, season)
     for before in STEPS[: STEPS.index(step)]:
         for scope in before.stale(store, methods):
             before.make(scope)

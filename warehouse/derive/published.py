@@ -56,8 +56,11 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
 
 
 def decisions_of(store: Store, edition: Edition) -> pl.DataFrame:
-    """The decisions about tows with which an edition was made."""
-    text = (edition_path(store, edition.manifest.edition) / DECISIONS).read_text(encoding="utf-8")
+    """The decisions about tows with which an edition was made; for a draft those of now."""
+    name = edition.manifest.edition
+    if name not in edition_names(store):
+        return decided.decision_table(decided.read_decisions(store.root / decided.FILE_NAME))
+    text = (edition_path(store, name) / DECISIONS).read_text(encoding="utf-8")
     return decided.decision_table(TypeAdapter(tuple[decided.Decision, ...]).validate_json(text))
 
 

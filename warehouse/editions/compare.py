@@ -31,8 +31,7 @@ from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.published import lines_in_time
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
-from warehouse.store.code import code_version
-from warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
+from warehouse.store.editions import CHANGES, MEASURED, Edition
 from warehouse.store.store import Store, archive_root
 
 STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
@@ -56,62 +55,38 @@ class Comparison:
     lines: pl.DataFrame
 
 
-def diff(store: Store, old: str, new: str) -> Comparison:
-    """Compares two published editions.
+def compare(store: Store, old: Edition, new: Edition) -> Comparison:
+    """Compares two editions line by line, with causes whose factors multiply to the change.
 
     With the edition before it an edition was compared when it was published; that is part of it.
-
-    Raises:
-        MissingKnowledgeError: there is no such edition.
-        BrokenPromiseError: a file of it is missing or damaged.
     """
-    before, after = read_edition(store, old), read_edition(store, new)
-    if after.manifest.previous == old:
-        return Comparison(before, after, after.tables[CHANGES])
-    return compare(store, before, after)
-
-
-def compare(store: Store, old: Edition, new: Edition) -> Comparison:
-    """Compares two editions line by line, with causes whose factors multiply to the change."""
-    code = _code_parts(store, old, new)
+    if CHANGES in new.tables and new.manifest.previous == old.manifest.edition:
+        return Comparison(old, new, new.tables[CHANGES])
     steps = _steps(store, old, new)
     printed = _printed_parts(old, new)
-    parts = pl.concat([code, printed, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
-    grounds = _grounds(old, new, steps["tow_id"], printed, code_known=not code.is_empty())
-    lines = compare_lines(old.register, new.register, parts, grounds)
-    names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
-    lines = lines.join(
-        names.unique(LINE, keep="first"), on=LINE, how="left", maintain_order="left"
-    ).sort(LINE)
-    for side, edition in (("old", old), ("new", new)):
-        status = edition.register.select(*LINE, pl.col("status").alias(f"{side}_status"))
-        lines = lines.join(status, on=LINE, how="left", maintain_order="left")
-    return Comparison(old, new, lines)
-
-
-def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
-    """What the code alone changed: the old edition made again by the code of the new one.
-
-    Known where the new edition was made by the code of today and the warehouse still has all
-    inputs of the old one, unchanged.
-    """
-    versions = (old.manifest.code_version, new.manifest.code_version)
-    if old.method is None or versions[0] == versions[1] or versions[1] != code_version():
-        return NO_PARTS
-    if len(unchanged_tows(store, old)) < old.tables["tows"].height:
-        return NO_PARTS
-    from warehouse.editions.making import made_again  # noqa: PLC0415 - much, and seldom needed
-
-    again = made_again(store, old).register.with_columns(pl.lit("again").alias("edition"))
-    changes = register_changes(old.register, again)
-    return _parts("code", changes.with_columns(pl.col("cw_ratio").fill_null(1.0)))
-
-
-def _parts(cause: str, changes: pl.DataFrame) -> pl.DataFrame:
-    """All of what changed as the work of one cause."""
-    return changes.select(
-        *LINE, cause=pl.lit(cause), step=pl.lit(None, pl.String), factor="cw_ratio"
+    parts = pl.concat([printed, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
+    manifests = old.manifest, new.manifest
+    both_towed = all("tows" in edition.tables for edition in (old, new))
+    same = same_tows(old.tables, new.tables) if both_towed else frozenset[str]()
+    ground = grounds(
+        old.register,
+        new.register,
+        same,
+        others=any(len(same) < one.tables["tows"].height for one in (old, new) if both_towed),
+        method=len({m.method_hash for m in manifests}) > 1,
+        code=len({m.code_version for m in manifests}) > 1,
+        separated=steps["tow_id"],
+        computed=printed,
     )
+    lines = compare_lines(old.register, new.register, parts, ground)
+    columns = lines.columns
+    for side, edition in (("old", old), ("new", new)):
+        said = (pl.col(name).alias(f"{side}_{name}") for name in ("name", "status"))
+        mine = edition.register.select(*LINE, *said)
+        lines = lines.join(mine, on=LINE, how="left", maintain_order="left")
+    named = pl.coalesce("new_name", "old_name").alias("name")
+    lines = lines.sort(LINE).select(*columns, named, "old_status", "new_status")
+    return Comparison(old, new, lines)
 
 
 def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
@@ -130,7 +105,9 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
     if moved.is_empty():
         return NO_PARTS
     moved = moved.with_columns(edition=pl.lit("printed"))
-    return _parts("printed", register_changes(old.register, moved).drop_nulls("cw_ratio"))
+    changes = register_changes(old.register, moved).drop_nulls("cw_ratio")
+    step = pl.lit(None, pl.String)
+    return changes.select(*LINE, cause=pl.lit("printed"), step=step, factor="cw_ratio")
 
 
 def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
@@ -165,88 +142,48 @@ def grounds(
     method: bool,
     code: bool,
     separated: Collection[str] = (),
+    computed: pl.DataFrame = NO_PARTS,
 ) -> pl.DataFrame:
-    """Per line of two registers of tows, the `ground` of what known parts do not explain.
+    """Per line of two registers the `ground` of what known parts do not explain.
 
     Args:
-        old, new: the registers.
+        old, new: the registers; a line of which the `basis` is not `MEASURED` is of print.
         same: tows with the same input in both.
         others: any tow has another input.
         method, code: whether these differ.
         separated: tows of which the work of the method is a known part.
+        computed: lines of which the printed tow was computed.
     """
-    pairs = old.select(*LINE, "tow_id").join(
-        new.select(*LINE, "tow_id"), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
+    facts = (*LINE, "tow_id", "tow_date", INPUTS_HASH, "basis")
+    mine = computed.select(LINE).with_columns(is_computed=pl.lit(value=True))
+    pairs = (
+        old.select(facts)
+        .join(new.select(facts), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left")
+        .join(mine, on=LINE, how="left", maintain_order="left")
     )
-    tow = pl.col("tow_id_new")
-    own = ~tow.is_in(list(same))
-    redefined = ~tow.is_in(list(separated)) & method
-    ground = (
-        pl.when(pl.col("tow_id").ne_missing(tow))
-        .then(pl.lit("tow"))
-        .when(redefined & (own | code))
-        .then(pl.lit("unseparated"))
-        .when(redefined)
-        .then(pl.lit("method"))
-        .when(own)
-        .then(pl.lit("input_and_code" if code else "input"))
-        .when(others)
-        .then(pl.lit("code_or_other_input" if code else "other_input"))
-        .otherwise(pl.lit("code" if code else "unexplained"))
-    )
-    return pairs.select(*LINE, ground=ground)
 
+    def moved(name: str) -> pl.Expr:
+        return pl.col(name).ne_missing(pl.col(f"{name}_new"))
 
-def _grounds(
-    old: Edition,
-    new: Edition,
-    separated: Collection[str],
-    printed_parts: pl.DataFrame,
-    *,
-    code_known: bool,
-) -> pl.DataFrame:
-    """The ground of every line, of tows or of print.
-
-    Args:
-        old, new: the editions.
-        separated: tows with a ladder.
-        printed_parts: lines whose printed tow was computed.
-        code_known: what the code changed is a known part.
-    """
-    shared = [*LINE, "tow_date", INPUTS_HASH, "basis"]
-    pairs = old.register.select(shared).join(
-        new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
-    )
-    computed = printed_parts.select(LINE).with_columns(computed=pl.lit(value=True))
-    days = pl.col("tow_date"), pl.col("tow_date_new")
-    of_print = (
-        pl.when(pl.col(INPUTS_HASH).eq_missing(pl.col(f"{INPUTS_HASH}_new")))
-        .then(pl.lit("closed_form"))
-        .when("computed")
-        .then(pl.lit("tow"))
-        .when(days[0] != days[1])
-        .then(pl.lit("printed_and_tow"))
-        .otherwise(pl.lit("printed"))
-    )
-    named = pairs.join(computed, on=LINE, how="left", maintain_order="left")
-    named = named.with_columns(ground=of_print)
-    if "tows" in old.tables and "tows" in new.tables:
-        same = same_tows(old.tables, new.tables)
-        manifests = old.manifest, new.manifest
-        of_tows = grounds(
-            old.register,
-            new.register,
-            same,
-            others=any(edition.tables["tows"].height > len(same) for edition in (old, new)),
-            method=len({m.method_hash for m in manifests}) > 1,
-            code=not code_known and len({m.code_version for m in manifests}) > 1,
-            separated=separated,
-        )
-        measured = pl.all_horizontal(pl.col("basis", "basis_new").eq_missing(MEASURED))
-        of_tow = pl.when(measured).then("of_tows").otherwise("ground")
-        of_tows = of_tows.rename({"ground": "of_tows"})
-        named = named.join(of_tows, on=LINE, maintain_order="left").with_columns(ground=of_tow)
-    return named.select(*LINE, "ground")
+    of_print = pl.any_horizontal(pl.col("basis", "basis_new").ne_missing(MEASURED))
+    own = ~pl.col("tow_id_new").is_in(list(same))
+    redefined = ~pl.col("tow_id_new").is_in(list(separated)) & method
+    holds = {
+        "closed_form": of_print & ~moved(INPUTS_HASH),
+        "tow": pl.when(of_print).then("is_computed").otherwise(moved("tow_id")),
+        "printed_and_tow": of_print & moved("tow_date"),
+        "printed": of_print,
+        "unseparated": redefined & (own | code),
+        "method": redefined,
+        "input_and_code": own & code,
+        "input": own,
+        "code_or_other_input": pl.lit(others and code),
+        "other_input": pl.lit(others),
+        "code": pl.lit(code),
+        "unexplained": pl.lit(value=True),
+    }
+    first = pl.coalesce(pl.when(it).then(pl.lit(ground)) for ground, it in holds.items())
+    return pairs.select(*LINE, ground=first)
 
 
 # Summary

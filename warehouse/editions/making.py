@@ -2,9 +2,15 @@
 
 Which tow counts is decided in `pipeline.register.register`; here the facts of its tow are put
 beside it, and numbers are left out where no valid curve is. Nothing but samples, lists and blocks
-is read: tables that a rebuild made of them are not.
+is read: tables that a rebuild made of them are not. Sheets and texts follow from the tables.
 """
 
+import datetime as dt
+import hashlib
+import io
+import json
+from collections.abc import Collection
+from dataclasses import replace
 from typing import Final
 
 import polars as pl
@@ -12,6 +18,7 @@ import polars as pl
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
+from pipeline.method.writing import method_text
 from pipeline.recompute.recompute import recompute
 from pipeline.register.register import LINE, draft_register
 from pipeline.tables.archive import Boats
@@ -21,7 +28,8 @@ from pipeline.tables.register import Register
 from pipeline.tables.schemas import conform
 from warehouse.derive.graph import members_of
 from warehouse.derive.published import decisions_of
-from warehouse.editions import sheets
+from warehouse.editions import notes, sheets
+from warehouse.editions.compare import compare
 from warehouse.editions.inputs import INPUTS_HASH, JUDGED, tables_of_today
 from warehouse.editions.printed import (
     NOT_REBASED,
@@ -30,9 +38,17 @@ from warehouse.editions.printed import (
     with_carried,
 )
 from warehouse.intake import seasons as intake
+from warehouse.store import decisions as decided
 from warehouse.store.editions import (
+    CHANGES,
+    CSV,
+    DECISIONS,
     INPUTS,
+    MANIFEST,
     MEASURED,
+    METHOD,
+    PARQUET,
+    XLSX,
     Edition,
     Manifest,
     edition_path,
@@ -61,6 +77,7 @@ def recomputed(
     decisions: pl.DataFrame,
     never_towed: pl.DataFrame,
     judged: pl.DataFrame | None = None,
+    counting: Collection[str] = ("valid",),
 ) -> Edition:
     """The edition that a method gives.
 
@@ -72,6 +89,7 @@ def recomputed(
         never_towed: boats with their crews of which lines without a tow are made.
         judged: the tows to take, with what was judged of them; all, as they are judged now, when
             left out.
+        counting: statuses of lines that have numbers.
     """
     today = tables_of_today(store)
     if judged is not None:
@@ -84,7 +102,7 @@ def recomputed(
     draft = draft_register(
         made.curves, tows, never_towed, manifest.valid_from, method.validity, decisions
     )
-    lines = _with_facts(draft, tows)
+    lines = _with_facts(draft, tows, counting)
     if manifest.carried_from is not None:
         printed = read_edition(store, manifest.carried_from)
         lines = with_carried(lines, printed, made.log_factors, manifest.valid_from, method)
@@ -105,6 +123,20 @@ def as_printed(store: Store, manifest: Manifest, path: str) -> Edition:
     return Edition(manifest, {"register": _completed(store, lines, manifest, None)}, None)
 
 
+def with_changes(store: Store, edition: Edition) -> Edition:
+    """The edition with its comparison with the one before, where there is one."""
+    previous = _previous(store, edition)
+    if previous is None:
+        return edition
+    changes = compare(store, previous, edition).lines
+    return replace(edition, tables={**edition.tables, CHANGES: changes})
+
+
+def _previous(store: Store, edition: Edition) -> Edition | None:
+    previous = edition.manifest.previous
+    return None if previous is None else read_edition(store, previous)
+
+
 def made_again(store: Store, edition: Edition) -> Edition:
     """A published edition again, by its own method, decisions and day.
 
@@ -123,10 +155,10 @@ def made_again(store: Store, edition: Edition) -> Edition:
         files = sheets.read_inputs(path)
         if files.is_empty():
             raise BrokenPromiseError("{}/{} names no file", path.name, INPUTS)
-        return as_printed(store, edition.manifest, files["path"][0])
+        return with_changes(store, as_printed(store, edition.manifest, files["path"][0]))
     tows = edition.tables["tows"]
     known = [name for name in JUDGED if name in tows.columns]
-    return recomputed(
+    again = recomputed(
         store,
         edition.manifest,
         edition.method,
@@ -134,15 +166,16 @@ def made_again(store: Store, edition: Edition) -> Edition:
         edition.register.filter(status="never_towed"),
         tows.select("tow_id", *known),
     )
+    return with_changes(store, again)
 
 
-def _with_facts(draft: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Lines with the facts of their tows; numbers only where they are valid."""
+def _with_facts(draft: pl.DataFrame, tows: pl.DataFrame, counting: Collection[str]) -> pl.DataFrame:
+    """Lines with the facts of their tows; numbers only where they count."""
     facts = tows.select("tow_id", *SIZES, INPUTS_HASH)
-    valid = pl.col("status") == "valid"
+    counts = pl.col("status").is_in(list(counting))
     return draft.join(facts, on="tow_id", how="left", maintain_order="left").with_columns(
-        *(pl.when(valid).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
-        pl.when(valid).then(pl.lit(MEASURED)).alias("basis"),
+        *(pl.when(counts).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
+        pl.when(counts).then(pl.lit(MEASURED)).alias("basis"),
     )
 
 
@@ -170,3 +203,49 @@ def _completed(
     coded = full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
     conform("register", coded)
     return coded
+
+
+# Files
+
+
+def sheets_and_texts(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
+    """What people read of an edition, by file name: all of it follows from its tables.
+
+    Args:
+        store: the data folder.
+        edition: the edition, with its comparison with the one before.
+        files: what it was made from, as `input_files` gives it.
+    """
+    manifest = edition.manifest
+    written = notes.texts(edition, _previous(store, edition))
+    if edition.method is not None:
+        decisions = decisions_up_to(store, manifest.published_on)
+        written |= {
+            METHOD: method_text(edition.method),
+            DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
+        }
+    return {
+        CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
+        XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, manifest),
+        INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
+        **{name: text.encode("utf-8") for name, text in written.items()},
+    }
+
+
+def contents_of(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
+    """All files of an edition, last its manifest; takes arguments as `sheets_and_texts`."""
+    contents = sheets_and_texts(store, edition, files)
+    for name, frame in edition.tables.items():
+        target = io.BytesIO()
+        frame.write_parquet(target, compression="zstd")
+        contents[name + PARQUET] = target.getvalue()
+    hashes = {name: hashlib.sha256(c).hexdigest() for name, c in sorted(contents.items())}
+    sealed = edition.manifest.model_copy(update={"files": hashes}).sealed()
+    contents[MANIFEST] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
+    return contents
+
+
+def decisions_up_to(store: Store, day: dt.date) -> tuple[decided.Decision, ...]:
+    """Decisions about tows taken up to a day."""
+    decisions = decided.read_decisions(store.root / decided.FILE_NAME)
+    return tuple(d for d in decisions if d.datum <= day)

@@ -1,72 +1,71 @@
 """The text that goes with an edition: a notice to the members, in Dutch and English.
 
-Filled in from the edition and its comparison with the one before; no number is computed here. What
-it says is in the templates beside this module, the words in `warehouse.editions.words`.
+All words are in a template per language, kept for every version of the words: earlier editions are
+made again with theirs. Here are the facts that it is filled in with, and how a language writes
+numbers and days. No number is computed here.
 """
 
+import datetime as dt
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Final
 
 import jinja2
 
+from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import DECIMALS
 from pipeline.method.definition import COMPLETE
-from pipeline.tables.row import Row
-from warehouse.editions.compare import (
-    Comparison,
-    DiffReport,
-    Group,
-    report,
-)
+from warehouse.editions.compare import Comparison, report
 from warehouse.editions.printed import NOT_REBASED, REBASED
-from warehouse.editions.words import (
-    CHANGES,
-    CREWS,
-    DUTCH,
-    ENGLISH,
-    STATUSES,
-    Language,
-    table,
-)
-from warehouse.store.editions import NOTICE, NOTICE_EN, Edition
+from warehouse.store.editions import CHANGES, NOTICE, NOTICE_EN, Edition
 
 TEMPLATES: Final = Path(__file__).parent / "templates"
-TEXTS: Final = {NOTICE: DUTCH, NOTICE_EN: ENGLISH}
+VERSION: Final = "1"
+"""Of the words: the folder of the templates. Other words come in a new folder; this one stays."""
+
+TEXTS: Final = {NOTICE: "nl", NOTICE_EN: "en"}
 """The texts of an edition, each with its language; a template has the name of its text."""
 
-CAUSE_HEAD: Final = (
-    ("oorzaak", "cause"),
-    ("regels", "lines"),
-    ("mediaan", "median"),
-    ("laagst", "lowest"),
-    ("hoogst", "highest"),
-)
-LARGEST_HEAD: Final = (
-    ("sloep", "boat"),
-    ("naam", "name"),
-    ("ploeg", "crew"),
-    ("Cw oud [kg/m]", "Cw old [kg/m]"),
-    ("Cw nieuw [kg/m]", "Cw new [kg/m]"),
-    ("verschil", "change"),
-    ("in twee uur", "in two hours"),
-)
-UNKNOWN_METHOD: Final = (
-    "zoals destijds gedrukt; welke methode is niet vastgelegd",
-    "as printed at the time; which one is not recorded",
-)
+
+def texts(edition: Edition, previous: Edition | None) -> dict[str, str]:
+    """All texts of an edition as Markdown, by file name, in the words of its version.
+
+    Raises:
+        MissingKnowledgeError: there are no such words.
+    """
+    facts = _facts(edition) | {"changes": None}
+    if previous is not None:
+        facts["changes"] = report(Comparison(previous, edition, edition.tables[CHANGES]))
+    version = edition.manifest.texts_version or VERSION
+    try:
+        templates = {
+            name: _environment(language).get_template(f"{version}/{name}")
+            for name, language in TEXTS.items()
+        }
+    except jinja2.TemplateNotFound as error:
+        raise MissingKnowledgeError("its texts are in words of other code") from error
+    return {name: template.render(facts) + "\n" for name, template in templates.items()}
 
 
-def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
-    """All texts of an edition as Markdown, by file name."""
-    changes = None if previous is None else report(previous)
+def _facts(edition: Edition) -> dict[str, object]:
+    register, method = edition.register, edition.method
+    statuses = register["status"].value_counts().sort("count", "status", descending=True)
     return {
-        name: _template(name).render(_facts(edition, language) | _changes(changes, language)) + "\n"
-        for name, language in TEXTS.items()
+        "about": edition.manifest,
+        "decision": edition.manifest.decision.strip().rstrip("."),
+        "method": method,
+        "statuses": statuses.rows(),
+        "carried": register.filter(basis=REBASED).height,
+        "not_rebased": register.filter(basis=NOT_REBASED).height,
+        "members": "ensemble" in edition.tables,
+        "complete": method is not None and method.interval == COMPLETE,
     }
 
 
 @cache
-def _template(name: str) -> jinja2.Template:
+def _environment(language: str) -> jinja2.Environment:
+    """Templates of a language, which write its numbers and days."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         undefined=jinja2.StrictUndefined,
@@ -74,99 +73,26 @@ def _template(name: str) -> jinja2.Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template(name)
 
+    def written(form: str) -> Callable[[float | None], str]:
+        def write(value: float | None) -> str:
+            return "-" if value is None else format(value, form).replace(".", DECIMALS[language])
 
-def _facts(edition: Edition, language: Language) -> dict[str, object]:
-    manifest = edition.manifest
-    counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
-    carried, as_it_was = (
-        edition.register.filter(basis=basis).height for basis in (REBASED, NOT_REBASED)
-    )
-    return {
-        "edition": manifest.edition,
-        "simulated": manifest.simulated,
-        "decision": manifest.decision.strip().rstrip("."),
-        "published_on": language.day(manifest.published_on),
-        "valid_from": language.day(manifest.valid_from),
-        "code_version": manifest.code_version,
-        "method": _method(edition, language),
-        "statuses": ", ".join(
-            f"{count} {language.word(STATUSES, status)}" for status, count in counts.rows()
-        ),
-        "carried": language.count(carried) if carried else None,
-        "not_rebased": language.count(as_it_was) if as_it_was else None,
-        "carried_from": manifest.carried_from,
-        "members": "ensemble" in edition.tables,
-        "complete": edition.method is not None and edition.method.interval == COMPLETE,
+        return write
+
+    def per_cent(ratio: float | None) -> str:
+        return "-" if ratio is None else written("+z.2f")(100 * (ratio - 1)) + " %"
+
+    def day(value: dt.date) -> str:
+        from babel.dates import format_date  # noqa: PLC0415 - needed where texts are written
+
+        return format_date(value, "d MMMM y", locale=language)
+
+    environment.filters |= {
+        "number": written(".2f"),
+        "per_cent": per_cent,
+        "seconds": lambda value: "-" if value is None else f"{value:+.0f} s",
+        "day": day,
+        "cell": lambda text: text.replace("|", r"\|").replace("\n", " "),
     }
-
-
-def _method(edition: Edition, language: Language) -> str:
-    if edition.method is None:
-        return language.one_of(UNKNOWN_METHOD)
-    method = edition.method
-    return f"{method.titled(language.code)} ({method.name}, {method.content_hash[:12]})"
-
-
-def _changes(difference: DiffReport | None, language: Language) -> dict[str, object]:
-    if difference is None:
-        return {"changes": False}
-    cause_head, largest_head = (
-        tuple(map(language.one_of, head)) for head in (CAUSE_HEAD, LARGEST_HEAD)
-    )
-    unknown = difference.interval_unknown
-    largest = [_largest(line, language) for line in difference.largest]
-    named = [_cause(cause, language) for cause in difference.causes]
-    return {
-        "changes": True,
-        "previous": difference.from_edition,
-        "change_counts": ", ".join(
-            f"{language.count(number)} {language.word(CHANGES, change)}"
-            for change, number in difference.changes.items()
-        ),
-        "causes": table(cause_head, named) if named else "",
-        "gain": _group(difference.gain, language),
-        "loss": _group(difference.loss, language),
-        "known": unknown < difference.changes.get("changed", 0),
-        "exceeding": language.count(difference.exceeds_interval),
-        "unknown": language.count(unknown) if unknown else "",
-        "runs_alone": difference.runs_alone,
-        "largest": table(largest_head, largest) if largest else "",
-        "largest_count": len(largest),
-    }
-
-
-def _group(group: Group, language: Language) -> str:
-    if not group.lines:
-        return language.count(0)
-    of_class = ", ".join(
-        f"{language.word(CREWS, crew)} {number}" for crew, number in group.of_class.items()
-    )
-    median = language.one_of(("mediaan", "median"))
-    return (
-        f"{language.count(group.lines)} ({of_class}; {median} "
-        f"{language.per_cent(group.median_power_ratio)}, "
-        f"{language.seconds(group.median_seconds)})"
-    )
-
-
-def _cause(cause: Row, language: Language) -> tuple[str, ...]:
-    factors = (cause[f"{which}_factor"] for which in ("median", "lowest", "highest"))
-    return (
-        language.cause(cause["cause"], cause["step"]),
-        str(cause["lines"]),
-        *(language.per_cent(factor) for factor in factors),
-    )
-
-
-def _largest(line: Row, language: Language) -> tuple[str, ...]:
-    return (
-        line["fsn_no"],
-        line["name"] or "",
-        f"{line['rowers']}{line['crew_class']}",
-        language.number(line["old_cw_kg_m"]),
-        language.number(line["new_cw_kg_m"]),
-        language.per_cent(line["new_cw_kg_m"] / line["old_cw_kg_m"]),
-        language.seconds(line["gain_in_two_hours_s"]),
-    )
+    return environment

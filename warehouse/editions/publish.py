@@ -6,6 +6,7 @@ it counts, the decision and the day of publication.
 """
 
 import datetime as dt
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,13 +14,19 @@ import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import Method
-from pipeline.register.register import DOUBTED, LINE
+from pipeline.register.register import DOUBTED, LINE, draft_name, reference_day
 from pipeline.tables.row import Row
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
-from warehouse.editions.contents import contents_of, decisions_up_to
 from warehouse.editions.inputs import REGISTER, input_files, listed_inputs
-from warehouse.editions.making import as_printed, recomputed
+from warehouse.editions.making import (
+    as_printed,
+    contents_of,
+    decisions_up_to,
+    recomputed,
+    with_changes,
+)
+from warehouse.editions.notes import VERSION
 from warehouse.editions.printed import printed_path
 from warehouse.editions.verify import chain_head
 from warehouse.store import decisions as decided
@@ -83,12 +90,43 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
     return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
 
 
-def as_decided(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Edition:
-    """The edition that publishing would freeze; raises and takes arguments as `publish`."""
+def as_decided(
+    store: Store,
+    method: Method,
+    terms: Terms,
+    carry: str | None = None,
+    counting: Collection[str] = ("valid",),
+) -> Edition:
+    """The edition that publishing would freeze; raises and takes arguments as `publish`.
+
+    Args:
+        counting: statuses of lines that have numbers.
+    """
     decisions = decided.decision_table(decisions_up_to(store, terms.published_on))
     _check_decided_tows(decisions, store.read("tows"))
     manifest = _manifest(store, terms, method, carry)
-    return recomputed(store, manifest, method, decisions, store.read("listed_boats"))
+    crews = store.read("listed_boats")
+    return recomputed(store, manifest, method, decisions, crews, counting=counting)
+
+
+def drafted(
+    store: Store,
+    method: Method,
+    valid_from: dt.date | None = None,
+    counting: Collection[str] = ("valid",),
+) -> Edition:
+    """The draft of a method as an edition: what publishing it would freeze.
+
+    Args:
+        store: the data folder.
+        method: any method, also one that no rebuild applied.
+        valid_from: the day on which it would begin to count; that on which drafts are judged when
+            left out.
+        counting: statuses of lines that have numbers; with `expired` all of history has.
+    """
+    day = valid_from or reference_day(store.read("tows"), store.read("listed_races"))
+    terms = Terms(draft_name(method.name), day, "", dt.date.today())
+    return as_decided(store, method, terms, counting=counting)
 
 
 def publish_printed(store: Store, season: int, terms: Terms) -> Path:
@@ -178,17 +216,19 @@ def _manifest(store: Store, terms: Terms, method: Method | None, carry: str | No
         simulated=bool(store.read("about_archive")["simulated"][0]),
         carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
+        texts_version=VERSION,
     )
 
 
 def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
     """Writes an edition's folder as the next of the chain."""
+    compared = with_changes(store, edition)
 
     def contents() -> dict[str, bytes]:
         head = chain_head(store)
         number, seal = (0, None) if head is None else (head.number or 0, head.seal)
         place = {"number": number + 1, "after_seal": seal}
         manifest = edition.manifest.model_copy(update=place)
-        return contents_of(store, replace(edition, manifest=manifest), files)
+        return contents_of(store, replace(compared, manifest=manifest), files)
 
     return write_folder(store, edition.manifest.edition, contents)

@@ -20,7 +20,6 @@ import python_calamine
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from pipeline.register.register import NO_EMPTY_THWART
-from warehouse.editions.words import STATUSES
 from warehouse.store.editions import INPUTS, Manifest
 
 REGISTER_SHEET: Final = "register"
@@ -36,12 +35,26 @@ TEXT_STAYS_TEXT: Final = dict.fromkeys(
 
 FieldType = Literal["string", "number", "integer", "date"]
 
-BASIS_WORDS: Final = {
-    "measured": "herrekend",
-    "printed": "gedrukt",
-    "printed_rebased": "gedrukt, omgerekend",
-    "printed_not_rebased": "gedrukt, niet herijkt",
+WORDS: Final = {
+    "status": {
+        "valid": "geldig",
+        "expired": "verlopen",
+        "rejected": "geen kromme",
+        "doubted": "eerst nakijken",
+        "excluded": "uitgesloten",
+        "never_towed": "niet gesleept",
+        "no_valid_curve": "geen geldige kromme",
+    },
+    "basis": {
+        "measured": "herrekend",
+        "printed": "gedrukt",
+        "printed_rebased": "gedrukt, omgerekend",
+        "printed_not_rebased": "gedrukt, niet herijkt",
+    },
+    "empty_thwart": {NO_EMPTY_THWART: "geen"},
 }
+"""Codes by their column in the words that people read. The verification codes of published lines
+are over these words, so they stay."""
 
 
 class Field(NamedTuple):
@@ -215,16 +228,11 @@ def read_xlsx_cells(content: bytes) -> dict[str, list[list[Any]]]:
 
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
     """Codes in the words that people read."""
-    words = {
-        "status": {code: dutch for code, (dutch, _) in STATUSES.items()},
-        "basis": BASIS_WORDS,
-        "empty_thwart": {NO_EMPTY_THWART: "geen"},
-    }
     if "flags" in frame.columns:
         to_look_at = pl.col("flags").list.len() > 0
         frame = frame.with_columns(pl.when(to_look_at).then(pl.lit("ja")).alias("flags"))
     return frame.with_columns(
-        pl.col(column).replace(words[column]) for column in words if column in frame.columns
+        pl.col(column).replace(words) for column, words in WORDS.items() if column in frame.columns
     )
 
 

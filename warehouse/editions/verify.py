@@ -28,16 +28,14 @@ from warehouse.derive.graph import ARCHIVE
 from warehouse.derive.inputs import Scope
 from warehouse.editions import sheets
 from warehouse.editions.compare import parts_of
-from warehouse.editions.contents import contents_of
 from warehouse.editions.inputs import LIST, NOT_INPUT, SAMPLES, input_files, same_tows
-from warehouse.editions.making import made_again
+from warehouse.editions.making import made_again, sheets_and_texts
 from warehouse.intake import seasons as intake
 from warehouse.store.database import open_database
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.editions import (
-    CHANGES,
-    MANIFEST,
     METHOD,
+    NOTICE,
     PARQUET,
     XLSX,
     Edition,
@@ -54,7 +52,7 @@ from warehouse.store.store import Store, archive_root
 SAME_NUMBER: Final = 1e-9
 """Difference up to which a number made again is the same, as a part of the largest of its column.
 
-Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
+Other processors leave other last bits, which come to no more in any table (docs/decisions.md)."""
 
 INPUT_TABLES: Final = ("tows", "tow_runs")
 ROWS: Final = {
@@ -291,7 +289,6 @@ def _read_again(store: Store, archive: Path | None) -> Iterator[Store]:
         intake.index(again, archive)
         for season in intake.listed_seasons(again):
             intake.read_season(again, archive, season)
-            intake.collect_blocks(again, season)
         ARCHIVE.make(Scope(again, ()))
         yield again
 
@@ -310,24 +307,26 @@ def differing(store: Store, checked: CheckedEdition) -> tuple[CheckedEdition, li
         if method is not None and method.content_hash != edition.manifest.method_hash:
             raise MissingKnowledgeError("its method has options that there are no longer")
     except MissingKnowledgeError as error:
-        message = say("it was made by other code: {}", _first_line(error))
-        return checked, [Finding(name, "differs", METHOD, message)]
+        return checked, [_of_other_code(name, METHOD, error)]
     except CANNOT as error:
         return checked, [_not_made(name, error)]
     height = edition.register.height
     try:
         again = made_again(store, edition)
-        inputs = [f for table in INPUT_TABLES for f in _rows(edition, again, table)]
-        lines = list(_rows(edition, again, "register"))
-        others: list[Finding] = []
-        if not inputs and not lines:  # else they follow from these
-            for table, frame in sorted(again.tables.items()):
-                others += _table(edition, table, frame)
-            others += _files(store, edition)
+        of = {t: list(_table(edition, again, t)) for t in ROWS if t in again.tables}
+        found = [finding for findings in of.values() for finding in findings]
+        if not found:  # else the rest follows from it
+            found += [f for t in sorted(again.tables) for f in _table(edition, again, t)]
+            found += _files(store, edition, again)
     except CANNOT as error:
         return replace(checked, lines=height, made_again=0, equal=0), [_not_made(name, error)]
-    counted = replace(checked, lines=height, made_again=height, equal=height - len(lines))
-    return counted, [*inputs, *lines, *others]
+    equal = height - len(of["register"])
+    return replace(checked, lines=height, made_again=height, equal=equal), found
+
+
+def _of_other_code(edition: str, file: str, reason: object) -> Finding:
+    message = say("it was made by other code: {}", _first_line(reason))
+    return Finding(edition, "differs", file, message)
 
 
 def _not_made(name: str, reason: object) -> Finding:
@@ -339,26 +338,35 @@ def _first_line(reason: object) -> str:
     return str(reason).splitlines()[0]
 
 
-def _rows(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
-    """Tows, runs or lines that come out otherwise, each with what it was and is, and why."""
-    if table not in edition.tables:
-        return
-    was, now = edition.tables[table], again.tables[table]
+def _table(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
+    """What comes out otherwise in a table: of those in `ROWS` each row, with what it was and is."""
+    name, now = edition.manifest.edition, again.tables[table]
+    was = edition.tables.get(table, now.clear())
     kind, why = "differs", say("either the code changed since, or the edition did")
     if table in INPUT_TABLES:
         facts = [
-            name
-            for name in was.columns
-            if name in now.columns and name not in NOT_INPUT and not name.endswith("_sha256")
+            fact
+            for fact in was.columns
+            if fact in now.columns and fact not in NOT_INPUT and not fact.endswith("_sha256")
         ]
         was, now = was.select(facts), now.select(facts)
         kind, why = "swapped", say("the lists of the archive say so now")
-    elif _has_other_tows(edition, again):
+    elif table == "register" and _has_other_tows(edition, again):
         why = say("tows that went into it changed")
-    for row in differences(was, now, TABLES[table].primary_key()).iter_rows(named=True):
-        what = ", ".join(f"{n} {_text(row[n])} > {_text(row[f'{n} now'])}" for n in row["columns"])
-        message = say("made again, {}: {}", what, why)
-        yield Finding(edition.manifest.edition, kind, ROWS[table].format(**row), message)
+    bare = was.drop("causes", strict=False), now.drop("causes", strict=False)
+    rows = differences(*bare, TABLES[table].primary_key())
+    if table in ROWS:
+        for row in rows.iter_rows(named=True):
+            changed = (f"{n} {_text(row[n])} > {_text(row[f'{n} now'])}" for n in row["columns"])
+            message = say("made again, {}: {}", ", ".join(changed), why)
+            yield Finding(name, kind, ROWS[table].format(**row), message)
+        return
+    columns = {*rows["columns"].explode()}
+    if "causes" in now.columns and differences(parts_of(was), parts_of(now), LINE).height:
+        columns.add("causes")  # a text with numbers, which are compared as such
+    if columns:
+        message = say("made again, it comes out otherwise in {}", ", ".join(sorted(columns)))
+        yield Finding(name, "differs", table + PARQUET, message)
 
 
 def _has_other_tows(edition: Edition, again: Edition) -> bool:
@@ -366,40 +374,27 @@ def _has_other_tows(edition: Edition, again: Edition) -> bool:
     return tows is not None and len(same_tows(edition.tables, again.tables)) < tows.height
 
 
-def _table(edition: Edition, table: str, now: pl.DataFrame) -> Iterator[Finding]:
-    """A table that comes out otherwise."""
-    was = edition.tables.get(table, now.clear())
-    both = was.drop("causes", strict=False), now.drop("causes", strict=False)
-    names = {*differences(*both, TABLES[table].primary_key())["columns"].explode()}
-    if "causes" in now.columns and differences(parts_of(was), parts_of(now), LINE).height:
-        names.add("causes")  # a text with numbers, which are compared as such
-    if names:
-        message = say("made again, it comes out otherwise in {}", ", ".join(sorted(names)))
-        yield Finding(edition.manifest.edition, "differs", table + PARQUET, message)
-
-
-def _files(store: Store, edition: Edition) -> Iterator[Finding]:
+def _files(store: Store, edition: Edition, again: Edition) -> Iterator[Finding]:
     """Sheets, texts and lists that do not say what the tables of the edition say."""
-    manifest, path = edition.manifest, edition_path(store, edition.manifest.edition)
-    bare = {name: frame for name, frame in edition.tables.items() if name != CHANGES}
-    # Lists are taken as stated: `verify` looks at them.
+    name, path = edition.manifest.edition, edition_path(store, edition.manifest.edition)
+    # Lists are taken as stated: `_swapped` looks at them.
     files = sheets.read_inputs(path).select("path", "sha256", "kind")
-
-    if "tows" in bare:
-        files = input_files(bare["tows"], files.filter(pl.col("kind") != SAMPLES))
-    expected = contents_of(store, Edition(manifest, bare, edition.method), files)
-    if CHANGES + PARQUET in expected:
-        yield from _table(edition, CHANGES, pl.read_parquet(expected[CHANGES + PARQUET]))
-    for file in sorted(manifest.files.keys() - expected.keys()):
+    if "tows" in edition.tables:
+        files = input_files(edition.tables["tows"], files.filter(pl.col("kind") != SAMPLES))
+    try:
+        expected = sheets_and_texts(store, edition, files)
+    except MissingKnowledgeError as error:
+        yield _of_other_code(name, NOTICE, error)
+        return
+    tables = {table + PARQUET for table in again.tables}
+    for file in sorted(edition.manifest.files.keys() - expected.keys() - tables):
         message = say("{} is no longer made; its seal alone says whether it is whole", file)
-        yield Finding(manifest.edition, "notice", file, message, wrong=False)
-    for file in sorted(expected.keys() - {MANIFEST}):
-        if file.endswith(PARQUET):
-            continue
+        yield Finding(name, "notice", file, message, wrong=False)
+    for file, content in sorted(expected.items()):
         found = (path / file).read_bytes() if (path / file).exists() else b""
-        if _is_unlike(file, expected[file], found):
+        if _is_unlike(file, content, found):
             message = say("{} does not say what the tables of the edition say", file)
-            yield Finding(manifest.edition, "differs", file, message)
+            yield Finding(name, "differs", file, message)
 
 
 def _is_unlike(file: str, was: bytes, now: bytes) -> bool:

@@ -8,7 +8,6 @@ files look like is known to `warehouse.archive`, and which sums there are to
 """
 
 import dataclasses
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Final
@@ -16,6 +15,7 @@ from typing import Final
 import numpy as np
 import polars as pl
 
+from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import DefectiveInputError, UnavailableError
 from pipeline.tables.frames import dtypes, frame_of
@@ -47,7 +47,7 @@ LAKE_FORM: Final = {
     "use_dictionary": ["tow_id"],
     "write_statistics": False,
 }
-"""How samples and blocks are packed: measured in docs/decisions/0003."""
+"""How samples and blocks are packed: measured in docs/decisions.md."""
 
 SAMPLE_FACTS: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
 """What the index says of the samples of a tow that can be used."""
@@ -107,15 +107,10 @@ def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFram
     """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
     sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
     frames = [read_parquet(store.blocks_path(season, key)) for key in sound["blocks_key"]]
-    return blocks_of_tows(sound["tow_id"], frames)
-
-
-def blocks_of_tows(tow_id: pl.Series, frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
-    """Blocks of tows one below the other, with the `tow_id` of each."""
     if not frames:
         return pl.DataFrame(schema={"tow_id": pl.String()})
     tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
-    return pl.concat(frames).insert_column(0, tow_id.gather(tow))
+    return pl.concat(frames).insert_column(0, sound["tow_id"].gather(tow))
 
 
 def _bring_in(
@@ -152,8 +147,6 @@ def _bring_in(
             named = samples.select(pl.lit(tow["tow_id"]).alias("tow_id"), pl.all())
             write_parquet(named, path, form=LAKE_FORM)
         if not blocks_path.exists():
-            from pipeline.blocks.sums import block_sums  # noqa: PLC0415 - compiles on import
-
             if samples is None:
                 samples = read_parquet(path, list(SAMPLE_SCHEMA), use_threads=False)
             sums = block_sums(samples, tow["sample_rate_hz"])

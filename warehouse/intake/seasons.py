@@ -46,6 +46,7 @@ UNREADABLE: Final = "unreadable_file"
 READ: Final = ("season_tows", "season_runs", "season_index")
 """What is kept of a season, as the archive was when it was read."""
 SEASON_TABLES: Final = (*READ, "blocks")
+"""What is made when a season is read."""
 
 
 def index(store: Store, root: Path) -> None:
@@ -150,26 +151,17 @@ def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = Non
         season
         for season, made_from in season_fingerprints(store, root).items()
         if wanted is None or season in wanted
-        if any(store.made_from(table, str(season)) != made_from for table in READ)
-        or blocks_are_stale(store, season)
+        if any(store.made_from(table, str(season)) != made_from for table in SEASON_TABLES)
     ]
-
-
-def blocks_are_stale(store: Store, season: int) -> bool:
-    """Whether the table of a season's blocks is not that of its index."""
-    index = store.contents("season_index", str(season))
-    return index is None or store.made_from("blocks", str(season)) != index
 
 
 def damaged_seasons(store: Store) -> list[int]:
     """Seasons that were read, and of which a table is not there any more."""
-    return [
-        season
+    there = {
+        season: {store.made_from(table, str(season)) is not None for table in SEASON_TABLES}
         for season in listed_seasons(store)
-        if 0
-        < sum(store.made_from(t, str(season)) is None for t in SEASON_TABLES)
-        < len(SEASON_TABLES)
-    ]
+    }
+    return [season for season, is_there in there.items() if is_there == {True, False}]
 
 
 def forget_unlisted_seasons(store: Store) -> None:
@@ -181,28 +173,19 @@ def forget_unlisted_seasons(store: Store) -> None:
             store.remove(table, str(season))
 
 
-def read_season(store: Store, root: Path, season: int) -> pl.DataFrame:
-    """Brings one season's samples into the lake; keeps its index and the list it was read by.
+def read_season(store: Store, root: Path, season: int) -> None:
+    """Brings one season's samples and blocks into the lake, and keeps `SEASON_TABLES` of it.
 
-    Returns:
-        The index: where each listed tow's samples and blocks lie, or its fault.
+    They are the list by which it was read, the index (where each listed tow's samples and blocks
+    lie, or its fault), and the blocks of its sound tows together.
     """
     tows, runs = _listed(store, season)
     profile = read_profiles(root).for_season(season)
     season_index = lake.read_season(store, root, tows, runs, profile)
+    blocks = lake.season_blocks(store, season, season_index)
     made_from = lake.season_fingerprint(tows, runs, profile)
-    kept = {"season_tows": tows, "season_runs": runs, "season_index": season_index}
-    for name, frame in kept.items():
+    for name, frame in zip(SEASON_TABLES, (tows, runs, season_index, blocks), strict=True):
         store.write(name, frame, made_from, str(season))
-    return season_index
-
-
-def collect_blocks(store: Store, season: int) -> pl.DataFrame:
-    """Puts the blocks of a season's sound tows together in one table."""
-    made_from = store.contents("season_index", str(season))
-    season_blocks = lake.season_blocks(store, season, store.read("season_index", str(season)))
-    store.write("blocks", season_blocks, made_from or "", str(season))
-    return season_blocks
 
 
 def all_blocks(store: Store, columns: Sequence[str] | None = None) -> pl.DataFrame:

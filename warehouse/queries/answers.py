@@ -22,7 +22,7 @@ from pipeline.tables.row import Row
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.studies import STUDIED_METHOD
 from warehouse.editions.compare import compare
-from warehouse.editions.publish import Terms, as_decided
+from warehouse.editions.publish import drafted
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import no_such_edition
 from warehouse.store.editions import Edition, read_edition
@@ -75,14 +75,13 @@ def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None
 
 def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
     """A published edition, or what publishing a draft would give."""
-    lines = views.table("register").filter(edition=name)
-    if lines.is_empty():
-        raise no_such_edition(name, views.table("register")["edition"].unique())
+    known = views.table("register")["edition"].unique()
+    if name not in known:
+        raise no_such_edition(name, known)
     if not name.startswith(DRAFT):
         return read_edition(views.store, name)
     method = KnownMethods.of(views.store).get(name.removeprefix(DRAFT))
-    terms = Terms(name, valid_from or lines["as_of"][0], "", dt.date.today())
-    return as_decided(views.store, method, terms)
+    return drafted(views.store, method, valid_from)
 
 
 def _lines(views: Views, old: str, new: str, kept: pl.DataFrame) -> pl.DataFrame:

@@ -76,7 +76,6 @@ def assess(store: Store, archive: Path, tow_id: str, method: Method) -> Assessme
             raise _not_usable(tow_id, copy.read("list_faults"))
         season = listed["season"][0]
         intake.read_season(copy, archive, season)
-        intake.collect_blocks(copy, season)
         for step in (ARCHIVE, METHOD):
             for scope in step.scopes(copy, [method]):
                 step.make(scope)

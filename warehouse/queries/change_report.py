@@ -1,35 +1,31 @@
 """What changed since the last report: tows, what is set aside, log factors, lines of the drafts.
 
-A copy of the database that was reported on is kept beside the reports, so a rebuild that was killed
-before its report is reported on by the next. Where and how a report is shown is not decided here.
+The tables that were reported on are kept beside the reports, so a rebuild that was killed before
+its report is reported on by the next. Where and how a report is shown is not decided here.
 """
 
 import json
-import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-import duckdb
 import polars as pl
 
-from pipeline.errors import HerijkError
 from pipeline.recompute.facts import with_boat_types, with_hand_windows
 from pipeline.register.changes import NO_PARTS, compare_lines
 from pipeline.register.register import LINE, draft_name
 from pipeline.tables.row import Row
+from warehouse.derive.database import DATABASE_TABLE
 from warehouse.editions.compare import grounds
-from warehouse.editions.inputs import same_tows
-from warehouse.store.database import open_database
-from warehouse.store.files import written_beside
-from warehouse.store.store import Store
+from warehouse.editions.inputs import INPUTS_HASH, same_tows
+from warehouse.store.code import code_version
+from warehouse.store.editions import MEASURED
+from warehouse.store.files import folder_written_beside
+from warehouse.store.store import DamagedFileError, Store, read_parquet, write_parquet
 
-NEEDED: Final = (
-    *("about", "boats", "tows", "tow_runs", "hand_windows", "quarantine"),
-    *("log_factors", "methods", "register"),
-)
+NEEDED: Final = ("about", "tows", "tow_runs", "quarantine", "log_factors", "methods", "register")
 FAULT: Final = ("path", "tow_id", "line", "reason_code", "message")
 FACTOR: Final = ("method", "season")
 FILES: Final = ("samples_sha256", "second_sha256")
@@ -76,73 +72,75 @@ class ChangeReport:
 
 
 def reported_path(store: Store) -> Path:
-    """The database that was reported on last."""
-    return store.root / "report" / "reported.duckdb"
+    """The folder with the tables of the last report."""
+    return store.root / "report" / "last"
 
 
 def change_report(store: Store) -> ChangeReport:
-    """What changed in the database since the last report."""
-    return _between(store, _state(reported_path(store)), _state(store.database))
+    """What changed in the tables since the last report."""
+    return _between(store, _reported_state(store), store.contents(DATABASE_TABLE))
 
 
 def is_reported(store: Store) -> bool:
-    """Whether the database is the one that was reported on."""
-    return _state(store.database) == _state(reported_path(store))
+    """Whether the tables are those that were reported on."""
+    return _reported_state(store) == store.contents(DATABASE_TABLE)
 
 
 def remember(store: Store) -> None:
     """Keeps what the next report compares with."""
     if not is_reported(store):
-        with written_beside(reported_path(store)) as beside:
-            shutil.copy2(store.database, beside)
+        with folder_written_beside(reported_path(store)) as beside:
+            for name, frame in _today(store).items():
+                write_parquet(frame, beside / f"{name}.parquet")
 
 
-def _state(path: Path) -> tuple[int, int] | None:
-    """What tells a database from another one: size and time; None where there is none."""
-    if not path.exists():
+def _reported_state(store: Store) -> str | None:
+    """The contents of the database that was reported on; None where nothing was."""
+    reported = _reported(store, ("about",))
+    return None if reported is None else str(reported["about"]["database"][0])
+
+
+def _reported(store: Store, names: Sequence[str] = NEEDED) -> Tables | None:
+    """Tables of the last report; None where there is none, or it is damaged."""
+    try:
+        return {name: read_parquet(reported_path(store) / f"{name}.parquet") for name in names}
+    except (FileNotFoundError, DamagedFileError):
         return None
-    return path.stat().st_size, path.stat().st_mtime_ns
+
+
+def _today(store: Store) -> Tables:
+    """What a report compares, of the tables in the lake."""
+    tables = {n: store.read(n) for n in ("boats", "tows", "tow_runs", "hand_windows", "methods")}
+    about = {"code_version": code_version(), "database": store.contents(DATABASE_TABLE)}
+    is_draft = pl.col("edition").str.starts_with(draft_name(""))
+    return {
+        "about": pl.DataFrame([about]),
+        "tows": with_boat_types(tables["tows"], tables["boats"]),
+        "tow_runs": with_hand_windows(tables["tow_runs"], tables["hand_windows"]),
+        "quarantine": store.read("quarantine", columns=FAULT),
+        "log_factors": store.read_all("log_factors", tables["methods"]["method"]),
+        "methods": tables["methods"],
+        "register": store.read("register").filter(is_draft),
+    }
 
 
 @lru_cache(maxsize=1)
 def _between(store: Store, was_state: object, now_state: object) -> ChangeReport:
-    """What changed from one database to another; kept by their states, as several ask."""
-    now = _tables(store.database)
+    """What changed from one state of the tables to another; kept, as several ask."""
+    now = _today(store)
     was = now if was_state == now_state else _reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
     methods = _came_and_went(before["methods"], now["methods"], ("method",), "gone")
+    faults = _came_and_went(before["quarantine"], now["quarantine"], FAULT, "mended")
     return ChangeReport(
         first=was is None,
         tows=_tows(before, now).to_dicts(),
         seasons_gone=sorted({*before["tows"]["season"]} - {*now["tows"]["season"]}),
         methods=[] if was is None else methods.to_dicts(),
-        set_aside=_came_and_went(
-            before["quarantine"], now["quarantine"], FAULT, "mended"
-        ).to_dicts(),
+        set_aside=faults.to_dicts(),
         factors=_factors(before["log_factors"], now["log_factors"]).to_dicts(),
-        lines=_lines(before, now),
+        lines=_lines(before, now, store.read("boats").select("fsn_no", "name")),
     )
-
-
-def _reported(store: Store) -> Tables | None:
-    """Tables of the last report; None where there is none, it is damaged, or of other code."""
-    try:
-        return _tables(reported_path(store))
-    except (HerijkError, duckdb.Error, pl.exceptions.PolarsError):
-        return None
-
-
-def _tables(path: Path) -> Tables:
-    """What a report compares, of a database."""
-    with open_database(path) as db:
-        db.execute("SET threads = 1")
-        tables = {t: pl.DataFrame(db.sql(f'SELECT * FROM "{t}"').pl()) for t in NEEDED}  # noqa: S608
-    draft = pl.col("edition").str.starts_with(draft_name(""))
-    return tables | {
-        "tows": with_boat_types(tables["tows"], tables["boats"]),
-        "tow_runs": with_hand_windows(tables["tow_runs"], tables["hand_windows"]),
-        "register": tables["register"].filter(draft),
-    }
 
 
 def _tows(was: Tables, now: Tables) -> pl.DataFrame:
@@ -196,21 +194,21 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
     return pairs.filter(moved).with_columns(ratio.alias("ratio")).sort(FACTOR)
 
 
-def _lines(was: Tables, now: Tables) -> list[Row]:
-    """Lines that changed, of every draft that there was and is."""
-    same, names = same_tows(was, now), now["boats"].select("fsn_no", "name")
+def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
+    """Lines that changed, of every draft that there was and is, with the boat's name."""
+    same = same_tows(was, now)
     others = any(tables["tows"].height > len(same) for tables in (was, now))
-    versions = [dict(tables["about"].rows()).get("code_version") for tables in (was, now)]
+    code = not was["about"]["code_version"].equals(now["about"]["code_version"])
     hashes = [dict(t["methods"].select("method", "content_hash").rows()) for t in (was, now)]
+    measured = {"basis": pl.lit(MEASURED), INPUTS_HASH: pl.lit(None, pl.String)}
     changed = []
     for method in now["methods"]["method"]:
         old, new = (t["register"].filter(edition=draft_name(method)) for t in (was, now))
         if old.is_empty() or new.is_empty():
             continue
         redefined = hashes[0].get(method) != hashes[1].get(method)
-        ground = grounds(
-            old, new, same, others=others, method=redefined, code=versions[0] != versions[1]
-        )
+        old, new = (lines.with_columns(**measured) for lines in (old, new))
+        ground = grounds(old, new, same, others=others, method=redefined, code=code)
         lines = compare_lines(old, new, NO_PARTS, ground).filter(pl.col("change") != "same")
         named = lines.join(names, on="fsn_no", how="left", maintain_order="left")
         changed += named.sort(LINE).to_dicts()

@@ -1,8 +1,7 @@
-"""Scenarios: what a method does, against another, to register, types, repeats, seasons and a boat.
+"""What a method does, against another, to register, types, repeats, seasons and a boat.
 
-Two drafts side by side as frames for a page, or as a report that a committee looks at before anyone
-publishes. Every number comes from `pipeline`; here rows are joined with names, put in order and
-counted. Nothing is stored.
+Two drafts side by side as frames for a page. Every number comes from `pipeline`; here rows are
+joined with names, put in order and counted. Nothing is stored.
 """
 
 from collections.abc import Callable
@@ -17,17 +16,10 @@ from pipeline import curve
 from pipeline.consistency.compared import beside_their_type
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.curve import VALID_RATIO, s_of_height
-from pipeline.method.definition import Method
 from pipeline.register.changes import compare_lines, largest_first
-from pipeline.register.register import LINE
-from pipeline.studies.ladder import START, ladder
 from pipeline.studies.summaries import season_changes
-from pipeline.tables.row import Row
-from warehouse.editions.compare import NO_STEPS
 from warehouse.queries.chosen_tows import ALL, chosen
-from warehouse.queries.history import Draft, History
-from warehouse.store.editions import Edition
-from warehouse.store.store import Store
+from warehouse.queries.history import Draft
 
 LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
 """Speeds at which a curve is drawn / declared speed."""
@@ -40,7 +32,6 @@ CURVE_COLUMNS: Final = (
     *("method", "tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m"),
     *("cw_hi_kg_m", "runs_used", "status", "flags"),
 )
-MOST_AFFECTED: Final = 15
 
 
 @dataclass(frozen=True)
@@ -160,89 +151,3 @@ def _lines(curves: pl.DataFrame) -> pl.DataFrame:
     drawn = curve.cw(a, s_of_height(a, cw, declared), speed)
     lines = rows.with_columns(speed_m_s=speed, cw_kg_m=drawn, kind=pl.lit("line"))
     return lines.filter(pl.col("cw_kg_m").is_finite())
-
-
-# A re-base: all of history under a method that may not have been used before
-
-
-@dataclass(frozen=True)
-class RebaseReport:
-    """What a method changes against another.
-
-    Attributes:
-        method, method_hash, against: the methods.
-        simulated: whether the archive is.
-        by_season: median factor on Cw of each step, per season, with `total`.
-        changes: number of lines by kind of change.
-        boats: the register lines most affected, with their factors.
-    """
-
-    method: str
-    method_hash: str
-    against: str
-    simulated: bool
-    by_season: list[Row]
-    changes: list[Row]
-    boats: list[Row]
-
-
-def rebase(store: Store, method: Method, against: Method) -> RebaseReport:
-    """Recomputes everything under a method and says what changes against another, and why.
-
-    Raises:
-        MissingKnowledgeError: there is no sound tow, or a method does not cover a season.
-    """
-    history = History.of(store)
-    old, new = (history.under(m) for m in (against, method))
-    links = old.made.tow_instruments, new.made.tow_instruments
-    rungs = ladder(against, method, history.tows, history.blocks, links, history.cache)
-    rungs = rungs.filter(pl.col("step") != START)
-    return _report(new, old.register, against.name, rungs)
-
-
-def against_print(store: Store, method: Method, printed: Edition) -> RebaseReport:
-    """What a method changes against an edition taken over from print: by which steps is unknown.
-
-    Raises:
-        MissingKnowledgeError: there is no sound tow, or the method does not cover a season.
-    """
-    new = History.of(store).under(method)
-    return _report(new, printed.register, printed.manifest.edition, NO_STEPS)
-
-
-def _report(new: Draft, old: pl.DataFrame, against: str, rungs: pl.DataFrame) -> RebaseReport:
-    history, method = new.history, new.method
-    lines = largest_first(compare_lines(old, new.register).drop("causes"))
-    most = lines.drop_nulls("cw_ratio").head(MOST_AFFECTED)
-    for facts, key in (
-        (new.register.select(*LINE, "tow_id"), LINE),
-        (history.boats.select("fsn_no", "name"), "fsn_no"),
-        (rungs.pivot("step", index="tow_id", values="factor"), "tow_id"),
-    ):
-        most = most.join(facts, on=key, how="left", maintain_order="left")
-    return RebaseReport(
-        method=method.name,
-        method_hash=method.content_hash,
-        against=against,
-        simulated=history.simulated,
-        by_season=_by_season(rungs, history.tows),
-        changes=lines["change"].value_counts(sort=True).to_dicts(),
-        boats=most.drop("from_edition", "to_edition").to_dicts(),
-    )
-
-
-def _by_season(rungs: pl.DataFrame, tows: pl.DataFrame) -> list[Row]:
-    """Median factor of each step, and of all together, per season."""
-    factors = rungs.sort("position").pivot("step", index="tow_id", values="factor")
-    steps = [name for name in factors.columns if name != "tow_id"]
-    total = pl.lit(1.0)
-    for step in steps:
-        total = total * pl.col(step)
-    return (
-        factors.join(tows.select("tow_id", "season"), on="tow_id", maintain_order="left")
-        .with_columns(total=total)
-        .group_by("season", maintain_order=True)
-        .agg(pl.col(steps).median(), tows=pl.len(), total=pl.col("total").median())
-        .sort("season")
-        .to_dicts()
-    )

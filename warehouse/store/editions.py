@@ -57,14 +57,14 @@ _LOCK: Final = f"{TEMPORARY_PREFIX}lock"
 class Manifest(BaseModel):
     """What an edition is, by whose decision, and the hashes of all its files.
 
-    Manifests of before say more (digests of tables, of all inputs, of the code of the texts), which
-    their seals cover.
+    Manifests of before say more (digests of tables, of all inputs), which their seals cover.
 
     Attributes:
         kind: `recomputed` from the archive, or `as_printed`: a register as the federation had it.
         method, method_hash: None for a register as printed.
         carried_from: the printed edition of which lines were taken over, if any.
-        previous: the edition that the release notes compare with.
+        previous: the edition that it is compared with.
+        texts_version: in which words its texts are; None for the first.
         number, after_seal: place in the chain of editions, from 1, and seal of the one published
             before; a number of None where there was no chain yet.
         files: SHA-256 of every other file.
@@ -84,6 +84,7 @@ class Manifest(BaseModel):
     simulated: bool
     carried_from: str | None
     previous: str | None
+    texts_version: str | None = None
     number: int | None = None
     after_seal: str | None = None
     files: dict[str, str] = {}

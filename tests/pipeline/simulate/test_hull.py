@@ -14,6 +14,7 @@ from herijk.simulate.hull import (
     true_cw_kg_m,
     water_density_kg_m3,
 )
+from pipeline.steps import friction
 from tests.worlds import nearest_hyperbola
 
 AIR = AirCoefficients()
@@ -24,23 +25,16 @@ def tows():
     return simulate_world(WorldSettings(rate_hz=20)).tows
 
 
-@pytest.mark.parametrize(
-    ("temperature_c", "viscosity_m2_s", "density_kg_m3"),
-    [  # ITTC 7.5-02-01-03 (2011), fresh water; density to 0.02, viscosity to 0.2 %.
-        (5.0, 1.5189e-6, 999.97),
-        (10.0, 1.3065e-6, 999.70),
-        (15.0, 1.1387e-6, 999.10),
-    ],
-)
-def test_fresh_water_is_as_the_ittc_tabulates_it(temperature_c, viscosity_m2_s, density_kg_m3):
-    assert kinematic_viscosity_m2_s(temperature_c) == pytest.approx(viscosity_m2_s, rel=2e-3)
-    assert water_density_kg_m3(temperature_c) == pytest.approx(density_kg_m3, abs=0.02)
-
-
-def test_friction_follows_the_ittc_57_line():
-    # Re = 1e7 gives 0.075 / 25.
-    speed = np.array([1e7 * kinematic_viscosity_m2_s(15.0) / 8.0])
-    assert friction_coefficient(speed, 8.0, 15.0)[0] == pytest.approx(0.003, rel=1e-12)
+@pytest.mark.parametrize("temperature_c", [2.0, 10.0, 25.0])
+def test_water_and_friction_are_those_of_the_method_though_written_apart(temperature_c):
+    speed = np.array([1.5, 2.5, 4.0])
+    viscosity = friction.kinematic_viscosity_m2_s(temperature_c)
+    assert kinematic_viscosity_m2_s(temperature_c) == pytest.approx(viscosity, rel=2e-3)
+    density = friction.water_density_kg_m3(temperature_c)
+    assert water_density_kg_m3(temperature_c) == pytest.approx(density, abs=0.02)
+    reynolds = friction.reynolds_number(speed, 8.0, viscosity)
+    line = friction.ittc57_friction_coefficient(reynolds)
+    assert friction_coefficient(speed, 8.0, temperature_c) == pytest.approx(line, rel=1e-3)
 
 
 def test_colder_water_resists_more_by_the_few_per_cent_that_the_sources_give(tows):

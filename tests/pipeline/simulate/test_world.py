@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from herijk.simulate import Defects, WorldSettings, simulate_world
-from pipeline.errors import HerijkError
 
 
 def none(season):
@@ -89,11 +88,3 @@ def test_alterations_change_cw_and_about_half_is_reported():
     assert np.std(changes) == pytest.approx(0.08, rel=0.2)
     reported = np.mean([t.altered_reported for t in world.tows if t.truth.altered])
     assert 0.35 < reported < 0.65
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"seasons": ()}, {"seasons": (2014, 2012)}, {"tows_per_season": 0}, {"rate_hz": 1}]
-)
-def test_impossible_settings_are_refused(wrong):
-    with pytest.raises(HerijkError):
-        WorldSettings(**wrong)

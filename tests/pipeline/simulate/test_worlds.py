@@ -14,7 +14,6 @@ from herijk.simulate import (
     true_cw_kg_m,
     world_settings,
 )
-from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.simulate.delft import FROUDE, RESIDUARY
 from tests.worlds import nearest_hyperbola
 
@@ -94,40 +93,9 @@ def test_how_far_a_hyperbola_misses_such_hulls(name, low, high):
     assert low < np.median(misses) < high
 
 
-def test_boats_of_a_type_are_identical_where_the_world_says_so():
-    boats = defaultdict(set)
-    for boat in world("identical-delft").boats:
-        if boat.boat_type.name:
-            shape = boat.waterline_length_m, boat.beam_m, boat.weight_kg, boat.roughness
-            boats[boat.boat_type.name].add((*shape, boat.residuary))
-    assert {len(shapes) for shapes in boats.values()} == {1}
-
-
 def test_dropouts_gaps_and_spikes_are_in_the_samples():
     found = world("dropouts", seasons=(2016,), tows_per_season=40)
     samples = pl.concat([simulate_tow(found, tow)[0] for tow in found.tows])
     assert 0 < (samples["log1_m_s"] == 0.0).sum() < 0.01 * samples.height
     assert 0 < samples["force_n"].is_nan().sum() < 0.01 * samples.height
     assert 0 < (samples["force_n"].fill_nan(0.0) > 4000.0).sum() < 20
-
-
-def test_second_files_thwarts_and_freeboards_are_written_as_the_archive_wants_them(tmp_path):
-    for name in ("two-files", "lists"):
-        found = world(name, seasons=(2018,), tows_per_season=16)
-        write_simulated_archive(tmp_path / name, found)
-    two, lists = (
-        pl.read_csv(
-            tmp_path / name / "sleeplijsten" / "sleeplijst_2018.csv",
-            separator=";",
-            infer_schema=False,
-        )
-        for name in ("two-files", "lists")
-    )
-    combined = two.drop_nulls("meetfile2")
-    assert 0 < combined.height < two.height
-    assert set(combined["gebruik runs"]) == {"1,2,3,b4,b5,b6"}
-    names = {file.name.split(".")[0] for file in (tmp_path / "two-files/meetdata_2018").iterdir()}
-    assert names == {*two["meetfile"], *combined["meetfile2"]}
-    assert "lege doft" not in two.columns
-    assert 0 < lists["lege doft"].drop_nulls().len() < lists.height
-    assert lists["vrijboord laagst [m]"].null_count() == 0
