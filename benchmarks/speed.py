@@ -223,7 +223,7 @@ def asked(found: dict[str, Figures]) -> Iterator[tuple[str, str, str, str, bool]
 
 def page(found: dict[str, Figures], world: World, compared: int, repeats: int) -> str:
     """The page of the documentation."""
-    about = machine("numpy", "numba", "polars", "pyarrow")
+    about = machine("numpy", "polars", "pyarrow")
     tows = world.tows(compared).height
     lines = [
         "# Performance",

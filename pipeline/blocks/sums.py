@@ -1,19 +1,14 @@
-"""Adding up a tow's samples: one compiled loop makes the sums of every second.
+"""Adding up a tow's samples: the sums of every second.
 
-What the sums are is in `pipeline.blocks.run_blocks`. The loop is compiled by Numba, second by
-second, so that what it works on stays in the processor's cache. Numba may add the samples of a
-second in the order that suits the processor: another one leaves other last bits
-(docs/decisions/0001). Importing this module compiles the loop, or finds it compiled: import it
-late.
+What the sums are is in `pipeline.blocks.run_blocks`. NumPy adds the samples of a second in the
+order that suits the processor: another one leaves other last bits (docs/decisions.md).
 """
 
-import math
-from collections.abc import Callable
-from typing import Any, Final, ParamSpec, TypeVar
+from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 import polars as pl
-from numba import float32, float64, int64, njit, types
 from numpy.typing import NDArray
 
 from pipeline.arrays import FloatArray, IntArray
@@ -34,6 +29,9 @@ _NOT_MEASURED: Final = {
     "wind_angle_deg": pl.lit(0.0),
 }
 
+BLOCKS_AT_A_TIME: Final = 16
+"""Added up together, so that what is worked on stays in the processor's cache."""
+
 
 def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     """Adds up the samples of one tow per run and second.
@@ -48,8 +46,7 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     Returns:
         One row per run and second: `run`, `second` (0 is the first), `n` (samples; the last
         block of a run may hold fewer, one with samples left out any number down to 0) and the
-        sums of `SUM_NAMES`, float64. A sum depends on the samples of its block alone, not on its
-        neighbours or threads; on another processor its last bits may be others.
+        sums of `SUM_NAMES`, float64. On another processor their last bits may be others.
     """
     number, second, n = _seconds(samples["run"].to_numpy(), sample_rate_hz)
     filled = _filled(samples)
@@ -61,8 +58,15 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
         block = np.repeat(np.arange(len(n)), n)
         n = np.bincount(block[measured], minlength=len(n))
         channels = {name: values[measured] for name, values in channels.items()}
-    sums = np.empty((len(SUM_NAMES), len(n)))
-    _add_up(np.cumsum(n), sums, *channels.values())
+    sums = np.zeros((len(SUM_NAMES), len(n)))
+    known, ends = np.flatnonzero(n), np.cumsum(n)
+    for start in range(0, len(known), BLOCKS_AT_A_TIME):
+        blocks = known[start : start + BLOCKS_AT_A_TIME]
+        mine = slice(ends[blocks[0]] - n[blocks[0]], ends[blocks[-1]])
+        of_samples = _quantities(*(values[mine].astype(np.float64) for values in channels.values()))
+        first = np.cumsum(n[blocks]) - n[blocks]
+        for row, values in enumerate(of_samples):
+            sums[row, blocks] = np.add.reduceat(values, first)
     return pl.DataFrame(
         {
             "run": number,
@@ -99,139 +103,34 @@ def _filled(samples: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-P = ParamSpec("P")
-R = TypeVar("R")
+def _quantities(
+    log1: FloatArray,
+    log2: FloatArray,
+    gps: FloatArray,
+    force: FloatArray,
+    wind: FloatArray,
+    angle_deg: FloatArray,
+) -> Iterator[FloatArray]:
+    """What is added up of every sample, in the order of `SUM_NAMES`.
 
-
-def _compiled(*signature: Any, **options: Any) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Numba's decorator, which has no types.
-
-    Dividing by zero gives infinity, as in NumPy; a sum may be made of several running sums.
+    The squares that air force is proportional to are signed, in m2/s2: `head` is u|u| with
+    u = w cos a, the wind along the course (old rule); `front` and `side` weigh it with |cos a| and
+    |sin a| (oblique rule of 2015). Sources: presentation 2015, "Windweerstand" and "Dwarse
+    tegenwind".
     """
-    decorator: Callable[[Callable[P, R]], Callable[P, R]]
-    decorator = njit(
-        *signature, error_model="numpy", fastmath={"reassoc", "nsz", "contract"}, **options
-    )
-    return decorator
-
-
-Channel = NDArray[np.float32]
-
-
-@_compiled()
-def _total(values: FloatArray) -> float:
-    total = 0.0
-    for i in range(len(values)):  # going over the values themselves takes twice as long
-        total += values[i]
-    return total
-
-
-@_compiled()
-def _dot(one: FloatArray, other: FloatArray) -> float:
-    total = 0.0
-    for i in range(len(one)):
-        total += one[i] * other[i]
-    return total
-
-
-@_compiled()
-def _cos_sin(angle_deg: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Cosine and sine, to 2e-15: from the tangent of a quarter of what is left after whole turns.
-
-    The tangent is the eighth convergent of Lambert's continued fraction,
-    tan x = x / (1 - x^2 / (3 - x^2 / (5 - ...))), as a fraction n / d. Twice the angle of
-    a vector (d, n) is the angle of (d^2 - n^2, 2 n d). A mathematical library looks at one angle
-    at a time, and takes 10 ms more for a tow.
-    """
-    cosine, sine = np.empty_like(angle_deg), np.empty_like(angle_deg)
-    for i in range(len(angle_deg)):
-        turns = np.rint(angle_deg[i] * (1.0 / 360.0))
-        x = (angle_deg[i] - 360.0 * turns) * (math.pi / 720.0)
-        z = x * x
-        n = x * (2027025.0 + z * (-270270.0 + z * (6930.0 + z * -36.0)))
-        d = 2027025.0 + z * (-945945.0 + z * (51975.0 + z * (-630.0 + z)))
-        d2, n2 = d * d, n * n
-        cos_half, sin_half = d2 - n2, 2.0 * n * d  # times d2 + n2
-        scale = 1.0 / ((d2 + n2) * (d2 + n2))
-        cosine[i] = (cos_half * cos_half - sin_half * sin_half) * scale
-        sine[i] = 2.0 * cos_half * sin_half * scale
-    return cosine, sine
-
-
-@_compiled()
-def _air(along: FloatArray, cos: FloatArray, sin: FloatArray) -> tuple[FloatArray, ...]:
-    """The squares that air force is proportional to, in the order of `AIR_SUMS`.
-
-    These are signed, in m2/s2: `head` is u|u| with u = w cos a, the wind along the course (old
-    rule); `front` and `side` weigh it with |cos a| and |sin a| (oblique rule of 2015). Sources:
-    presentation 2015, "Windweerstand" and "Dwarse tegenwind".
-    """
-    head, front = along * np.abs(along), np.abs(cos)
-    ahead, behind = 0.5 * (head + np.abs(head)), 0.5 * (head - np.abs(head))
-    return ahead, behind, ahead * front, behind * front, head * np.abs(sin)
-
-
-@_compiled()
-def _ground_speed(gps: Channel) -> tuple[float, float]:
-    """Sum and number of the samples that have one: the others are not numbers."""
-    total, number = 0.0, 0.0
-    for speed in gps:
-        if np.isfinite(speed):
-            total += np.float64(speed)
-            number += 1.0
-    return total, number
-
-
-def _compiled_once(signature: object) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Compiled now, or as it was kept beside this file or in the user's folder of caches."""
-
-    def decorator(function: Callable[P, R]) -> Callable[P, R]:
-        try:
-            return _compiled(signature, nogil=True, cache=True)(function)
-        except RuntimeError:  # neither folder may be written: two seconds of compiling, each time
-            return _compiled(signature, nogil=True)(function)
-
-    return decorator
-
-
-_SAMPLES: Final = types.Array(float32, 1, "C", readonly=True)
-
-
-@_compiled_once(types.void(int64[::1], float64[:, ::1], *[_SAMPLES] * len(_CHANNELS)))
-def _add_up(
-    ends: IntArray,
-    totals: FloatArray,
-    log1: Channel,
-    log2: Channel,
-    gps: Channel,
-    force: Channel,
-    wind: Channel,
-    angle_deg: Channel,
-) -> None:
-    """Fills `totals`, shape (sums, blocks), in the order of `SUM_NAMES`.
-
-    `ends` says where each block ends, shape (blocks,).
-    """
-    end = 0
-    for block in range(len(ends)):
-        start, end = end, ends[block]
-        f, w = force[start:end].astype(np.float64), wind[start:end].astype(np.float64)
-        v, v2 = log1[start:end].astype(np.float64), log2[start:end].astype(np.float64)
-        cos, sin = _cos_sin(angle_deg[start:end].astype(np.float64))
-        along = w * cos
-        air = _air(along, cos, sin)
-        inverse = 1.0 / (v * v)
-        cw = f * inverse
-        totals[0, block] = _total(f)
-        totals[1, block] = _total(v)
-        totals[2, block] = _total(inverse)
-        totals[3, block] = _total(cw)
-        totals[4, block] = _dot(cw, cw)
-        for k in range(5):
-            totals[5 + k, block] = _dot(air[k], inverse)
-        totals[10, block] = _total(v2)
-        row = 11
-        for values in (*air, w, cos, sin, along, w * sin):
-            totals[row, block] = _total(values)
-            row += 1
-        totals[row, block], totals[row + 1, block] = _ground_speed(gps[start:end])
+    angle = np.radians(angle_deg)
+    cos, sin = np.cos(angle), np.sin(angle)
+    along, front = wind * cos, np.abs(cos)
+    head = along * np.abs(along)
+    ahead = np.maximum(head, 0.0)
+    behind = head - ahead
+    air = ahead, behind, ahead * front, behind * front, head * np.abs(sin)
+    inverse = 1.0 / (log1 * log1)
+    cw = force * inverse
+    yield from (force, log1, inverse, cw, cw * cw)
+    yield from (one * inverse for one in air)
+    yield log2
+    yield from air
+    yield from (wind, cos, sin, along, wind * sin)
+    fix = np.isfinite(gps)
+    yield from (np.where(fix, gps, 0.0), fix.astype(np.float64))

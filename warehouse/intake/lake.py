@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 import polars as pl
 
+from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import DefectiveInputError, UnavailableError
 from pipeline.tables.frames import dtypes, frame_of
@@ -46,7 +47,7 @@ LAKE_FORM: Final = {
     "use_dictionary": ["tow_id"],
     "write_statistics": False,
 }
-"""How samples and blocks are packed: measured in docs/decisions/0003."""
+"""How samples and blocks are packed: measured in docs/decisions.md."""
 
 SAMPLE_FACTS: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
 """What the index says of the samples of a tow that can be used."""
@@ -146,8 +147,6 @@ def _bring_in(
             named = samples.select(pl.lit(tow["tow_id"]).alias("tow_id"), pl.all())
             write_parquet(named, path, form=LAKE_FORM)
         if not blocks_path.exists():
-            from pipeline.blocks.sums import block_sums  # noqa: PLC0415 - compiles on import
-
             if samples is None:
                 samples = read_parquet(path, list(SAMPLE_SCHEMA), use_threads=False)
             sums = block_sums(samples, tow["sample_rate_hz"])
