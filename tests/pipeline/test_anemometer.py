@@ -9,8 +9,8 @@ import pytest
 from herijk.simulate import Defects, WorldSettings
 from pipeline.blocks.run_blocks import AIR_SUMS
 from pipeline.method.definition import shipped_method
+from pipeline.recompute.anemometer import scale_of_seasons
 from pipeline.recompute.recompute import recompute
-from pipeline.steps.anemometer import WindRatio, anemometer_of_seasons
 from tests.worlds import measure
 
 SEASONS = np.repeat([2010.0, 2012.0, 2014.0, 2016.0], 25)
@@ -25,24 +25,30 @@ def ratios(scale, vane_deg=0.0, shared_sd=0.0, seed=1):
         of_tow * (mean + 0.06 * rng.standard_normal(len(SEASONS)))
         for mean in (np.cos(vane), np.sin(vane))
     )
-    return WindRatio(SEASONS, ahead, abeam, np.full(len(SEASONS), shared_sd))
+    numbers = {"season": SEASONS, "ahead": ahead, "abeam": abeam}
+    return pl.DataFrame(numbers).with_columns(shared_sd=pl.lit(shared_sd))
+
+
+def found(ratios):
+    """The ln scale of each season, and its standard deviation."""
+    return scale_of_seasons(ratios).select("ln_scale", "sd").to_numpy().T
 
 
 @pytest.mark.parametrize("vane_deg", [0.0, 20.0])
 def test_one_season_off_stands_alone(vane_deg):
     true = np.log([1.0, 0.7, 1.0, 1.0])
-    found = anemometer_of_seasons(ratios(np.exp(true), vane_deg))
-    assert found.ln_scale == pytest.approx(true, abs=0.04)
-    assert (np.abs(found.ln_scale - true) < 3 * found.sd).all()
-    assert found.sd.max() < 0.02
+    ln_scale, sd = found(ratios(np.exp(true), vane_deg))
+    assert ln_scale == pytest.approx(true, abs=0.04)
+    assert (np.abs(ln_scale - true) < 3 * sd).all()
+    assert sd.max() < 0.02
 
 
 def test_one_anemometer_for_all_seasons_is_known_from_all():
     errors, sds = [], []
     for seed in range(40):
-        found = anemometer_of_seasons(ratios(np.full(4, 0.8), seed=seed))
-        errors.append(found.ln_scale - np.log(0.8))
-        sds.append(found.sd)
+        ln_scale, sd = found(ratios(np.full(4, 0.8), seed=seed))
+        errors.append(ln_scale - np.log(0.8))
+        sds.append(sd)
     assert np.mean(sds) < 0.06 / np.sqrt(25)
     assert np.abs(np.mean(errors)) < 0.005
     assert (np.abs(errors) < 1.96 * np.array(sds)).mean() > 0.85
@@ -50,9 +56,9 @@ def test_one_anemometer_for_all_seasons_is_known_from_all():
 
 def test_a_log_that_is_not_known_says_little_of_the_wind():
     seen = ratios([0.94, 1.0, 1.0, 1.0])
-    by_log = replace(seen, shared_sd=np.where(SEASONS == 2010, 0.06, 0.0))
-    sure, doubted = (anemometer_of_seasons(r) for r in (seen, by_log))
-    assert abs(doubted.ln_scale[0]) < 0.5 * abs(sure.ln_scale[0])
+    by_log = seen.with_columns(shared_sd=pl.when(season=2010).then(0.06).otherwise(0.0))
+    (sure, _), (doubted, _) = map(found, (seen, by_log))
+    assert abs(doubted[0]) < 0.5 * abs(sure[0])
 
 
 def test_an_anemometer_that_reads_too_little_moves_no_curve():
