@@ -52,7 +52,6 @@ CONTENTS = """
 
 *
 nl/*
-decisions/*
 ```
 """
 

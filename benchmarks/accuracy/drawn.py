@@ -19,8 +19,8 @@ from dataclasses import replace
 import numpy as np
 import polars as pl
 
-from benchmarks.accuracy.foreign import FOREIGN
-from benchmarks.accuracy.score import DOUBTED, ESTIMATES, seasons_said
+from benchmarks.accuracy.foreign import CLEAN, FOREIGN
+from benchmarks.accuracy.score import score, table
 from benchmarks.accuracy.worlds import FIRST_SEED, ONLY_FROM_FILES, recomputed, simulated
 from herijk.simulate import WORLDS
 from pipeline.arrays import BoolArray
@@ -73,50 +73,17 @@ def _of_tows(world: Measured, keep: BoolArray) -> Measured:
     return replace(world, **frames, blocks=world.blocks.take(mine))
 
 
-def outcome(world: Measured) -> pl.DataFrame:
-    """Per tow and estimate, how far it is off, and whether that is covered and told."""
-    tables = recomputed(world, equal_boats=False)
-    doubted = list(seasons_said(tables, DOUBTED))
-    curves = tables["curves"].join(world.truth.drop("season"), on="tow_id")
-    told = (pl.col("status") != "accepted") | pl.col("season").is_in(doubted)
-    true = pl.col("cw_at_15c_kg_m")
-    return pl.concat(
-        curves.select(
-            pl.lit(what).alias("estimate"),
-            pl.lit(curves.height).alias("tows"),
-            off=pl.col(cw) / true - 1.0,
-            covered=true.is_between(lo, hi),
-            half=(pl.col(hi) - pl.col(lo)) / (2.0 * pl.col(cw)),
-            told=told,
-        )
-        for what, (cw, lo, hi) in ESTIMATES.items()
-    )
-
-
-def table(tows: pl.DataFrame) -> list[str]:
-    """Lines of the table of docs/accuracy.md, by size of the archive."""
-    tows_in = pl.col("tows")
-    size = pl.when(tows_in <= 50).then(50).when(tows_in <= 150).then(150).otherwise(240)
-    rows = tows.group_by("estimate", size=size, maintain_order=True).agg(
-        pl.len(),
-        pl.col("off").null_count().alias("without"),
-        (pl.col("off") ** 2).mean().sqrt().alias("rmse"),
-        pl.col("covered").mean(),
-        pl.col("half").median(),
-        silent=(~pl.col("covered") & ~pl.col("told")).mean(),
-    )
-    return [
-        f"| up to {r['size']} | {r['estimate']} | {r['len']} | {r['without']} | {r['rmse']:.1%} "
-        f"| {r['covered']:.1%} | {r['half']:.1%} | {r['silent']:.1%} |"
-        for r in rows.sort("size", "estimate", descending=[False, True]).iter_rows(named=True)
-    ]
-
-
 def main() -> None:
-    """Prints the table."""
+    """Prints the table, by size of the archive."""
     archives = int(sys.argv[1]) if len(sys.argv) > 1 else 100
-    draws = (np.random.default_rng(FIRST_DRAW + number) for number in range(archives))
-    print("\n".join(table(pl.concat(outcome(drawn(rng)) for rng in draws))))
+    records = []
+    for number in range(FIRST_DRAW, FIRST_DRAW + archives):
+        world = drawn(np.random.default_rng(number))
+        size = next((most for most in (50, 150) if world.tows.height <= most), 240)
+        tables = recomputed(world, equal_boats=False)
+        found = score(CLEAN, tables, world.truth)
+        records += [{"world": f"up to {size} tows", **row} for row in found]
+    print("\n".join(table(pl.DataFrame(records, infer_schema_length=None).sort("world"))))
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from typing import Final
 import polars as pl
 
 from dashboards.addresses import edition_page, race_path
+from dashboards.site.glossary import words_page
 from dashboards.site.methods import method_pages
 from dashboards.site.parts import (
     Chart,
@@ -23,7 +24,7 @@ from dashboards.site.parts import (
 )
 from dashboards.site.prose import audit_guide, edition_pages, guide_links
 from dashboards.site.races import race_pages
-from dashboards.site.start import ABOUT, MENU, start_page, words_page
+from dashboards.site.start import ABOUT, MENU, start_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season

@@ -22,10 +22,11 @@ from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
 from dashboards.site.charts import charts_script, first_chart, page_json, still, vega_bundle
 from dashboards.site.downloads import copy_sheets
+from dashboards.site.glossary import TERMS, Glossed
 from dashboards.site.pages import method_names, shared_pages
 from dashboards.site.parts import Page
 from dashboards.site.slides import slides_page
-from dashboards.site.start import MENU, TERMS
+from dashboards.site.start import MENU
 from dashboards.speech import Speech
 from pipeline.messages import LANGUAGES
 from warehouse.queries.views import Views
@@ -196,6 +197,7 @@ class Edition:
         """What a template has to know to show the sections of a page."""
         return self._names | {
             "page": page,
+            "glossed": Glossed(self.speech),
             "rows_of": partial(self._cells.rows, page),
             "language": self.speech.language,
         }

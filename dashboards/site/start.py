@@ -1,4 +1,4 @@
-"""The start page: where things stand; and the page of words."""
+"""The start page: where things stand, and where to find what."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -66,95 +66,6 @@ DOORS: Final = (
     ),
 )
 """What people come for: the page of each, its name on the start page, and what it says."""
-
-TERMS: Final = {
-    "tow": (
-        pgettext("glossary", "Tow"),
-        say("Measuring resistance by towing the boat: six runs, three out and three back."),
-    ),
-    "cw": (
-        say("Cw"),
-        say(
-            "Resistance coefficient in kg/m: tow force divided by speed squared. The "
-            "lower, the easier the boat runs. It is not the dimensionless wave-making "
-            "coefficient that naval architects call Cw."
-        ),
-    ),
-    "a": (
-        say("A"),
-        say("Cw at very low speed, in kg/m."),
-    ),
-    "b": (
-        say("B"),
-        say(
-            "The speed in m/s at which the curve's resistance becomes infinite: the lower, "
-            "the faster Cw rises with speed. Cw = A / (1 - (v/B)²)."
-        ),
-    ),
-    "declared": (
-        say("Declared speed"),
-        say("The speed that the crew says it rows; the curve holds from 85 to 115 % of it."),
-    ),
-    "interval": (
-        say("95 % interval"),
-        say(
-            "Where the value lies with 95 % confidence, given all that the uncertainty is made of."
-        ),
-    ),
-    "as_measured": (
-        say("As measured and best estimate"),
-        say("As measured: from the tow itself. Best estimate: from all tows of the archive."),
-    ),
-    "log_factor": (
-        say("Log factor"),
-        say("True speed divided by the speed of the log, in a season."),
-    ),
-    "method": (
-        say("Method"),
-        say(
-            "The agreed way of computing, from measurement to A and B. Every number names its own."
-        ),
-    ),
-    "edition": (
-        say("Edition and draft"),
-        say("A register as decided, which never changes. A draft is not decided."),
-    ),
-    "flag": (
-        say("Flag"),
-        say("Something to look at; it changes no number."),
-    ),
-    "set_aside": (
-        say("Set aside"),
-        say("Not used, with the reason."),
-    ),
-    "e_n": (
-        say("E_n"),
-        say(
-            "Difference of two tows divided by both 95 % intervals together; beyond 1 they "
-            "disagree."
-        ),
-    ),
-    "power": (
-        say("Power per rower"),
-        say("What each rower gives on average, in watts; the crew that gives most wins."),
-    ),
-    "type": (
-        say("Standard speed"),
-        say("The median declared speed of a type, at which boats can be compared."),
-    ),
-    "crew_class": (
-        pgettext("glossary", "Class"),
-        say("H: men, D: women."),
-    ),
-    "verification_code": (
-        pgettext("glossary", "Verification code"),
-        say(
-            "Computed from everything behind a line of an edition: if any of that changes, "
-            "so does the code."
-        ),
-    ),
-}
-"""Words with what they mean."""
 
 
 def start_page(
@@ -246,22 +157,3 @@ def _in_force(editions: pl.DataFrame) -> Headline:
         )
 
     return text
-
-
-def words_page() -> Page:
-    """What the words mean, and how to read a page."""
-    return Page(
-        "words.html",
-        say("Glossary"),
-        [
-            Section(
-                "words_list",
-                say("What the words mean"),
-                say(
-                    "A 95 % interval contains the true value in 19 of 20 cases if it includes all "
-                    "causes; where it does not, the page says so."
-                ),
-                terms=list(TERMS.values()),
-            )
-        ],
-    )

@@ -1,7 +1,7 @@
 """Adding up a tow's samples: the sums of every second.
 
 What the sums are is in `pipeline.blocks.run_blocks`. NumPy adds the samples of a second in the
-order that suits the processor: another one leaves other last bits (docs/decisions/0001).
+order that suits the processor: another one leaves other last bits (docs/decisions.md).
 """
 
 from collections.abc import Iterator

@@ -17,6 +17,7 @@ from dashboards.html import as_json, keep_units
 from dashboards.site.boats import boat_pages
 from dashboards.site.charts import DRAWN
 from dashboards.site.downloads import SHEETS
+from dashboards.site.glossary import Glossed
 from dashboards.site.pages import MENU, method_names, shared_pages
 from dashboards.site.parts import Table, default_method
 from dashboards.site.render import build_pages, build_site
@@ -339,3 +340,13 @@ def test_what_is_shown_first_is_among_what_there_is():
     assert newest_edition([*drafts, "2026-1"], "concept-as-published") == "2026-1"
     assert newest_edition(drafts, "concept-as-published") == "concept-as-published"
     assert newest_edition(drafts, "concept-rebased") == "concept-corrected-2013"
+
+
+def test_a_word_of_the_glossary_opens_its_line_where_it_is_first_used():
+    glossed = Glossed(Speech("nl"))
+    first, again = glossed("Cw <b>bij opgegeven snelheid"), glossed("Cw van 95\u00a0%-interval")
+    assert first.count("popovertarget") == 2
+    assert "&lt;b&gt;" in first
+    assert again.count("popovertarget") == 1
+    assert again.startswith("Cw ")
+    assert [name for name, *_ in glossed.used] == ["cw", "declared", "interval"]

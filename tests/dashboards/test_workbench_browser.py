@@ -5,6 +5,7 @@ Needs Chromium, like the tests of the site.
 
 import pytest
 
+from dashboards.speech import Speech
 from dashboards.workbench.bench import Bench
 from pipeline.method.definition import parse_method
 from tests.conftest import METHODS
@@ -98,7 +99,7 @@ def median(page):
 
 def expected_median(bench, **query):
     ratio = bench.scenario(bench.asked(query)).summary()["median_ratio"]
-    return f"{ratio:.4f}".replace(".", ",")
+    return Speech("nl").per_cent(ratio)
 
 
 def test_it_opens_and_draws_everything(page):
@@ -128,7 +129,7 @@ def test_print_shows_whole_tables_and_which_methods_they_compare(page):
 
 def test_a_number_that_is_typed_changes_all_boats_until_all_is_reset(page, bench):
     before = median(page)
-    assert before == expected_median(bench) == "1,0000"
+    assert before == expected_median(bench) == Speech("nl").per_cent(1)
     change(page, "wind.side", 0.5)
     query = {"wind.side": "0.5"}
     assert median(page) == expected_median(bench, **query) != before

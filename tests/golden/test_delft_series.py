@@ -89,32 +89,3 @@ def test_figures_of_the_series(points, series, row):
     ratio = fitted.b_m_s / hull.hull_speed_m_s(WATERLINE_M)
     ours = ratio.min(), np.median(ratio), ratio.max()
     assert ours == pytest.approx(row.b_over_hull_speed, abs=tolerance)
-
-
-def test_viscosity_moves_the_figures_less_than_allowed(points, series):
-    # The 0.0005 above: half a per cent of viscosity is 0.2 C.
-    chosen = window(points, series, 0.25, 0.30)
-    volume = (WATERLINE_M / series["length_displacement"]) ** 3
-    surface = wetted_surface_m2(volume, series["beam_draught"])
-    speed = points.speed_m_s
-    nu = friction.kinematic_viscosity_m2_s(WATER_C)
-    lines = [
-        friction.ittc57_friction_coefficient(friction.reynolds_number(speed, WATERLINE_M, nu * f))
-        for f in (1.0, 1.005)
-    ]
-    change = 0.5 * friction.water_density_kg_m3(WATER_C) * surface * (lines[1] - lines[0])
-    moved = curve.Points(speed, points.cw_kg_m + change, chosen.used)
-    before, after = curve.fit(chosen).b_m_s, curve.fit(moved).b_m_s
-    assert np.abs(after - before).max() / hull.hull_speed_m_s(WATERLINE_M) < 0.0005
-
-
-def test_hulls_4_and_5_are_the_only_copies(series):
-    resistance = series["residuary_resistance_per_1000_displacement_weight"]
-    scale = np.sqrt((resistance**2).mean(axis=1))
-    apart = np.abs(resistance[:, None] - resistance).max(axis=2) / np.maximum(scale[:, None], scale)
-    pairs = np.argwhere(np.triu(apart < 1e-9, k=1)) + 1
-    assert pairs.tolist() == [[4, 5]]
-    # Not a matter of the tolerance: the next pair differs by more than 3 % of the series.
-    assert (np.triu(apart < 0.03, k=1)).sum() == 1
-    forms = np.stack([series[n][:, 0] for n in ("cp", "length_displacement", "beam_draught")], 1)
-    assert not np.array_equal(forms[3], forms[4]), "their forms differ: a fault of the set"

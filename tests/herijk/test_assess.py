@@ -6,7 +6,6 @@ import pytest
 
 from dashboards.speech import Speech
 from dashboards.statements.tow import statements
-from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import shipped_method
 from tests.conftest import METHODS
 from warehouse.queries.assess import assess
@@ -70,14 +69,10 @@ def test_what_to_do_now(built):
     assert "tow_again" in said(found)
 
 
-def test_a_tow_that_no_list_names(built):
-    with pytest.raises(MissingKnowledgeError, match="no tow 2014-999"):
-        assess(built.store, built.archive, "2014-999", shipped_method(METHOD))
-
-
-def test_the_command(built, herijk):
+def test_the_command_and_a_tow_that_no_list_names(built, herijk):
     tow_id = built.table("tows")["tow_id"][-1]
-    code, out, _ = herijk("assess", tow_id, "--archive", built.archive, "--data", built.data)
-    assert code == 0
-    assert "Provisional: Cw is" in out
-    assert "Its runs" in out
+    folders = ("--archive", built.archive, "--data", built.data)
+    code, out, _ = herijk("assess", tow_id, *folders)
+    assert (code, "Provisional: Cw is" in out, "Its runs" in out) == (0, True, True)
+    code, _, err = herijk("assess", "2014-999", *folders)
+    assert (code, "no tow 2014-999" in err) == (1, True)

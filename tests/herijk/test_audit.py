@@ -27,10 +27,6 @@ def audit(herijk, built):
 EDITION = f"concept-{METHODS[1]}"
 
 
-def minus(text):
-    return text.replace("-", "\N{MINUS SIGN}")
-
-
 def test_the_answer_about_a_boat_is_short_and_has_the_number_of_the_register(audit, built):
     line = built.table("register").filter(edition=EDITION).drop_nulls("cw_kg_m")
     line = line.row(0, named=True)
@@ -40,19 +36,17 @@ def test_the_answer_about_a_boat_is_short_and_has_the_number_of_the_register(aud
     assert len(audit(line["fsn_no"]).splitlines()) < 40
 
 
-def test_steps_show_every_tow_curve_and_run(audit, built):
+def test_steps_show_every_tow_curve_run_and_component(audit, built):
     boat = built.table("tows")["fsn_no"][0]
     out = audit(boat, "--steps")
     curves = built.table("curves").filter(fsn_no=boat).drop_nulls("cw_kg_m")
     for tow_id, method, cw in curves.select("tow_id", "method", "cw_kg_m").rows():
         assert f"Tow {tow_id}: curves" in out
         assert re.search(rf"{method} [^:]*{cw:.2f}", out)
-    points = built.table("run_points").filter(pl.col("tow_id").is_in(curves["tow_id"].to_list()))
-    for speed in points["speed_m_s"]:
+    mine = pl.col("tow_id").is_in(curves["tow_id"].to_list())
+    for speed in built.table("run_points").filter(mine)["speed_m_s"]:
         assert f" {speed:.2f} " in out
-    budget = built.table("uncertainty_budget").filter(
-        pl.col("u_ratio") > 1e-4, pl.col("tow_id").is_in(curves["tow_id"].to_list())
-    )
+    budget = built.table("uncertainty_budget").filter(mine, pl.col("u_ratio") > 1e-4)
     for component, u_ratio in budget.select("component", "u_ratio").rows():
         assert re.search(rf"{re.escape(code(component))} [\w ]+ {100 * u_ratio:.1f} %", out)
     one = audit(boat, "--steps", "--method", "rebased-2015")
@@ -65,7 +59,8 @@ def test_the_steps_of_a_tow_multiply_to_the_total_printed(audit, built):
     fsn_no = built.table("tows").filter(tow_id=tow)["fsn_no"].item()
     total = 100 * (steps.filter(tow_id=tow)["factor"].product() - 1)
     part = audit(fsn_no, "--steps").split(f"Tow {tow}: change of Cw by each step")[1]
-    assert re.search(rf"as-published rebased-2015 {re.escape(minus(f'{total:+.1f}'))} %", part)
+    said = f"{total:+.1f}".replace("-", "\N{MINUS SIGN}")
+    assert re.search(rf"as-published rebased-2015 {re.escape(said)} %", part)
 
 
 def test_the_answer_about_types_has_every_line_with_its_interval_and_n(audit, built):

@@ -62,26 +62,18 @@ def test_a_folder_comes_from_its_option_or_else_from_the_environment(herijk, mon
     ("call", "said"),
     [
         ("rebuild", "Missing option '--archive'"),
-        ("rebuild --archive", "requires an argument"),
         ("rebuild --archive x --seasons 2016:2014", "write a season"),
-        ("rebuild --archive x --fast", "No such option '--fast'"),
         ("simulate", "name the folder"),
         ("simulate x --rate 0", "0 is not in the range"),
-        ("audit", "Missing argument"),
         ("audit a b c", "one or two types"),
-        ("methods show", "Missing argument"),
-        ("recalculate", "No such command 'recalculate'"),
         ("rebuildd", "Did you mean 'rebuild'?"),
-        ("compare a", "Missing argument 'NEW'"),
         ("compare a b --fatigue x", "'x' is not one of 'none', 'known', 'extend'"),
         ("register --as-of 1-6-2014", "write a day as 2026-05-08"),
         ("publish x --valid-from 2014-06-01 --decision d", "give --method NAME, or --printed"),
-        ("publish x --method m --valid-from 2014-06-01", "Missing option '--decision'"),
         (
             "publish x --printed 2014 --carry y --valid-from 2014-06-01 --decision d",
             "--carry goes with --method",
         ),
-        ("due", "No such command 'due'"),
     ],
 )
 def test_wrong_arguments_are_status_2_and_a_sentence(herijk, call, said):
@@ -95,7 +87,6 @@ def test_wrong_arguments_are_status_2_and_a_sentence(herijk, call, said):
     [
         ("rebuild", "Er ontbreekt een optie: '--archive'"),
         ("rebuildd", "Er is geen opdracht 'rebuildd'. Bedoelt u 'rebuild'?"),
-        ("register --frob", "Er is geen optie '--frob'"),
         ("register --as-of gisteren", "schrijf een dag als 2026-05-08"),
         ("compare a b --fatigue x", "'--fatigue': 'x' is niet een van 'none', 'known'"),
     ],

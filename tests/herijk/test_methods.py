@@ -42,13 +42,6 @@ def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeyp
     assert "wind.side" in herijk("compare", "concept-rebased-2015", "ours.toml", *data)[1]
 
 
-def test_editions_and_methods_are_compared_with_each_other(herijk, published):
-    data = ("--data", published.data)
-    report = json.loads(herijk("compare", "2014-1", "rebased", *data, "--json")[1])
-    assert report["effect"]["rows"]
-    assert json.loads(herijk("compare", "rebased", "2014-1", *data, "--json")[1])["options"]
-
-
 def test_a_name_that_is_taken_is_refused(herijk, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert "another" in herijk("methods", "new", "rebased")[2]

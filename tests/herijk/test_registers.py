@@ -86,9 +86,3 @@ def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, published, tmp_path
     assert status == 1
     assert "register.csv" in out
     assert "WRONG" in out
-
-
-def test_verify_without_any_edition_says_so(herijk, built):
-    status, out, _ = herijk("verify", "--data", built.data, "--json")
-    assert (status, json.loads(out)["editions"]) == (0, [])
-    assert "No edition" in herijk("verify", "--data", built.data)[1]

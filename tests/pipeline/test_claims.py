@@ -5,29 +5,19 @@ import pytest
 
 from pipeline.studies import claims
 
-LINE = {"fsn_no": "FSN1", "rowers": 8, "crew_class": "H"}
+LINE = {"fsn_no": "FSN1", "rowers": 8, "crew_class": "H", "a_kg_m": 30.0, "b_m_s": 5.0}
 
 
 def printed(season, cw, speed=2.5):
-    return {
-        **LINE,
-        "season": season,
-        "tow_date": 1,
-        "has_valid_curve": True,
-        "declared_speed_m_s": speed,
-        "a_kg_m": 30.0,
-        "b_m_s": 5.0,
-        "cw_kg_m": cw,
-    }
-
-
-CURVE = {**LINE, "method": "m", "tow_id": "a", "season": 2014, "a_kg_m": 30.0, "b_m_s": 5.0}
+    numbers = {"declared_speed_m_s": speed, "cw_kg_m": cw}
+    return {**LINE, "season": season, "tow_date": 1, "has_valid_curve": True, **numbers}
 
 
 def test_print_is_compared_at_the_printed_speed_by_the_first_register_that_printed_it():
     of_2015, of_2014 = printed(2015, 99.0), printed(2014, 41.0, speed=2.75)
-    curves = pl.DataFrame([CURVE | {"cw_kg_m": 40.0, "declared_speed_m_s": 2.5}])
-    tows = pl.DataFrame([{**LINE, "tow_id": "a", "tow_date": 1}])
+    curve = {"tow_id": "a", "method": "m", "cw_kg_m": 40.0, "declared_speed_m_s": 2.5}
+    curves = pl.DataFrame([LINE | curve | {"season": 2014}])
+    tows = pl.DataFrame([LINE | {"tow_id": "a", "tow_date": 1}])
     found = claims.print_reproduction(pl.DataFrame([of_2015, of_2014]), curves, tows)
     row = found.row(0, named=True)
     assert (row["printed_in"], row["printed_cw_kg_m"]) == (2014, 41.0)

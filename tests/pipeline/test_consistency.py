@@ -199,6 +199,10 @@ def test_a_slow_tow_raced_hard_says_whom_its_curve_favours():
 
 def test_hull_speed_is_that_of_the_truth():
     found = compared_tows(observe(*fleet(19, boats=12, noise=0.002)))
+    for lo, value, hi in (("cw_standard_lo_kg_m", "cw_standard_kg_m", "cw_standard_hi_kg_m"),
+                          ("a_lo_kg_m", "a_kg_m", "a_hi_kg_m")):  # fmt: skip
+        assert (found[lo] < found[value]).all()
+        assert (found[value] < found[hi]).all()
     row = hull_speed_statistics(found).filter(boat_type="all").row(0, named=True)
     assert row["b_ratio_lo"] < 4.6 / (1.25 * 8.2**0.5) < row["b_ratio_hi"]
     assert row["b_is_hull_speed"] is False

@@ -2,6 +2,7 @@
 
 import datetime as dt
 
+import numpy as np
 import polars as pl
 import pytest
 
@@ -15,49 +16,33 @@ PLAIN = RaceRules(fatigue="none")
 
 def register(*lines):
     """Lines of (boat, A, B), eight men, that counted on the day, towed for 2.35 m/s."""
-    rows = [
-        {
-            "fsn_no": boat,
-            "rowers": 8,
-            "crew_class": "H",
-            "empty_thwart": "",
-            "tow_id": None,
-            "tow_date": dt.date(2013, 3, 1),
-            "valid_until": dt.date(2018, 12, 31),
-            "declared_speed_m_s": 2.35,
-            "a_kg_m": a,
-            "b_m_s": b,
-            "cw_kg_m": None if a is None else a if b is None else float(cw(a, s_of_b(b), 2.35)),
-        }
-        for boat, a, b in lines
-    ]
-    numbers = dict.fromkeys(("a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64)
-    return pl.DataFrame(rows, schema_overrides={**numbers, "tow_id": pl.String})
+    schema = {"fsn_no": pl.String, "a_kg_m": pl.Float64, "b_m_s": pl.Float64}
+    found = pl.DataFrame(lines, schema=schema, orient="row")
+    b = found["b_m_s"].fill_null(np.inf).to_numpy()
+    return found.with_columns(
+        rowers=8,
+        crew_class=pl.lit("H"),
+        empty_thwart=pl.lit(""),
+        tow_id=pl.lit(None, pl.String),
+        tow_date=dt.date(2013, 3, 1),
+        valid_until=dt.date(2018, 12, 31),
+        declared_speed_m_s=2.35,
+        cw_kg_m=pl.Series(cw(found["a_kg_m"].to_numpy(), s_of_b(b), 2.35)).fill_nan(None),
+    )
 
 
 def results(*rows):
     """Results of (boat, time [s]), with the current [m] and the penalty [W] where there are."""
-    return pl.DataFrame(
-        [
-            {
-                "race": "HT",
-                "race_date": DAY,
-                "fsn_no": boat,
-                "rowers": 8,
-                "crew_class": "H",
-                "empty_thwart": None,
-                "distance_m": 18400.0,
-                "rowing_time_s": float(time),
-                "stream_m": more[0] if more else None,
-                "penalty_w": more[1] if len(more) > 1 else None,
-            }
-            for boat, time, *more in rows
-        ],
-        schema_overrides={
-            "stream_m": pl.Float64,
-            "penalty_w": pl.Float64,
-            "empty_thwart": pl.String,
-        },
+    names = ("rowing_time_s", "stream_m", "penalty_w")
+    schema = {"fsn_no": pl.String, **dict.fromkeys(names, pl.Float64)}
+    whole = [(boat, *numbers, *(3 - len(numbers)) * [None]) for boat, *numbers in rows]
+    return pl.DataFrame(whole, schema=schema, orient="row").with_columns(
+        race=pl.lit("HT"),
+        race_date=DAY,
+        rowers=8,
+        crew_class=pl.lit("H"),
+        empty_thwart=pl.lit(None, pl.String),
+        distance_m=18400.0,
     )
 
 

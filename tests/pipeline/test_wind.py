@@ -18,22 +18,15 @@ FRONT, SIDE = np.array([3.26]), np.array([9.0])
 SPEED = 2.5
 
 
-def blocks_of(wind_m_s: object, angle_deg: object, seconds: int = 4, rate_hz: int = 5) -> RunBlocks:
+def blocks_of(wind_m_s, angle_deg, seconds=4, rate_hz=5) -> RunBlocks:
     n = seconds * rate_hz
-    values = {"run": 1, "log1_m_s": SPEED, "log2_m_s": SPEED, "gps_m_s": None, "force_n": 250.0}
-    values |= {"wind_speed_m_s": wind_m_s, "wind_angle_deg": angle_deg}
-    samples = pl.DataFrame(
-        {
-            name: pl.Series(np.broadcast_to(v, n)).cast(SAMPLE_SCHEMA[name])
-            if v is not None
-            else pl.Series([None] * n, dtype=SAMPLE_SCHEMA[name])
-            for name, v in values.items()
-        }
+    wind, angle = (pl.Series(np.broadcast_to(x, n)) for x in (wind_m_s, angle_deg))
+    samples = pl.DataFrame({"wind_speed_m_s": wind, "wind_angle_deg": angle}).with_columns(
+        run=1, log1_m_s=SPEED, log2_m_s=SPEED, gps_m_s=None, force_n=250.0
     )
-    blocks = block_sums(samples, rate_hz).with_columns(pl.lit("t").alias("tow_id"))
-    return stack_blocks(
-        blocks, pl.DataFrame({"tow_id": ["t"], "run": pl.Series([1], dtype=pl.Int8)})
-    )
+    blocks = block_sums(samples.select(list(SAMPLE_SCHEMA)).cast(dict(SAMPLE_SCHEMA)), rate_hz)
+    of_tow = blocks.with_columns(tow_id=pl.lit("t"))
+    return stack_blocks(of_tow, of_tow.select("tow_id", "run").unique())
 
 
 def parts(blocks: RunBlocks, model: str) -> AirParts:

@@ -157,8 +157,8 @@ def test_the_summary_names_gainers_losers_and_the_largest(published):
     assert (set(same["change"]), names(same)) == ({"same"}, set())
     found = report(diff(published.store, "2014-1", "2014-2"))
     moved = [r for r in found.rows if r["change"] == "changed"]
-    assert found.gain.lines + found.loss.lines == len(moved)
-    assert found.gain.lines == sum(r["power_ratio"] > 1 for r in moved)
+    assert found.gain["lines"] + found.loss["lines"] == len(moved)
+    assert found.gain["lines"] == sum(r["power_ratio"] > 1 for r in moved)
     sizes = [abs(math.log(r["cw_ratio"])) for r in found.largest]
     assert sizes == sorted(sizes, reverse=True)
     assert sizes[0] == max(abs(math.log(r["cw_ratio"])) for r in moved)

@@ -190,23 +190,6 @@ def grounds(
 
 
 @dataclass(frozen=True)
-class Group:
-    """Lines that gain power for the same race, or lose it.
-
-    Attributes:
-        lines: how many.
-        of_class: how many of each class.
-        median_power_ratio: new / old power for the same race.
-        median_seconds: what the new register gives in a race of two hours [s].
-    """
-
-    lines: int
-    of_class: dict[str, int]
-    median_power_ratio: float | None
-    median_seconds: float | None
-
-
-@dataclass(frozen=True)
 class DiffReport:
     """A comparison of two editions as plain data.
 
@@ -215,7 +198,8 @@ class DiffReport:
         simulated: whether either is of a simulated archive.
         lines: lines in either.
         changes: lines by kind of change.
-        gain, loss: lines to which the new register gives more power for the same race, and less.
+        gain, loss: how many `lines` gain power for the same race or lose it, how many `of_class`,
+            and their `median_power_ratio` and `median_seconds` in a race of two hours.
         exceeds_interval: lines that moved by more than their intervals.
         interval_unknown: lines whose interval is not known.
         runs_alone: editions whose intervals are the spread of the runs alone.
@@ -232,8 +216,8 @@ class DiffReport:
     simulated: bool
     lines: int
     changes: dict[str, int]
-    gain: Group
-    loss: Group
+    gain: Row
+    loss: Row
     exceeds_interval: int
     interval_unknown: int
     runs_alone: list[str]
@@ -293,14 +277,14 @@ def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) ->
     )
 
 
-def _group(lines: pl.DataFrame) -> Group:
+def _group(lines: pl.DataFrame) -> Row:
     power, seconds = lines.select("power_ratio", "gain_in_two_hours_s").median().row(0)
-    return Group(
-        lines=lines.height,
-        of_class={c: lines.filter(crew_class=c).height for c in ("H", "D")},
-        median_power_ratio=power,
-        median_seconds=seconds,
-    )
+    return {
+        "lines": lines.height,
+        "of_class": {c: lines.filter(crew_class=c).height for c in ("H", "D")},
+        "median_power_ratio": power,
+        "median_seconds": seconds,
+    }
 
 
 def parts_of(lines: pl.DataFrame) -> pl.DataFrame:

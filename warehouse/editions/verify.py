@@ -52,7 +52,7 @@ from warehouse.store.store import Store, archive_root
 SAME_NUMBER: Final = 1e-9
 """Difference up to which a number made again is the same, as a part of the largest of its column.
 
-Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
+Other processors leave other last bits, which come to no more in any table (docs/decisions.md)."""
 
 INPUT_TABLES: Final = ("tows", "tow_runs")
 ROWS: Final = {

@@ -47,7 +47,7 @@ LAKE_FORM: Final = {
     "use_dictionary": ["tow_id"],
     "write_statistics": False,
 }
-"""How samples and blocks are packed: measured in docs/decisions/0003."""
+"""How samples and blocks are packed: measured in docs/decisions.md."""
 
 SAMPLE_FACTS: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
 """What the index says of the samples of a tow that can be used."""

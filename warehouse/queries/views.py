@@ -17,6 +17,8 @@ from warehouse.store.editions import edition_names, edition_path, read_manifest,
 from warehouse.store.store import Store
 
 DRAFT: Final = "concept-"
+ALL, NEWEST = "all", "newest"
+"""Which tows of a boat and crew are looked at."""
 
 
 class Views:
