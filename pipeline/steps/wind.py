@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from pipeline.arrays import FloatArray
-from pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks, WindowSums
+from pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks
 from pipeline.hull import AIR_DENSITY_KG_M3
 from pipeline.method.definition import Wind
 
@@ -151,7 +151,6 @@ def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatAr
     )
 
 
-def mean_wind_angle_deg(sums: WindowSums) -> FloatArray:
-    """Circular mean of the vane over each window, shape (runs,), degrees in [0, 360)."""
-    sin, cos = sums.total("wind_sin"), sums.total("wind_cos")
+def mean_angle_deg(sin: FloatArray, cos: FloatArray) -> FloatArray:
+    """Circular mean of the vane by sums or means of its sine and cosine, degrees in [0, 360)."""
     return np.asarray(np.degrees(np.arctan2(sin, cos)) % 360.0, dtype=np.float64)

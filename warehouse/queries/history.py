@@ -78,7 +78,6 @@ class History:
         if len(self.cache) > MOST_CACHED:
             self.cache.clear()
         made = recompute(method, self.tows, self.blocks, self.cache, with_bands=False)
-        self.cache.let_go()
         lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
         edition = pl.lit(draft_name(method.name)).alias("edition")
         return Draft(self, method, made, lines.with_columns(edition))
