@@ -173,6 +173,14 @@ def forget_unlisted_seasons(store: Store) -> None:
             store.remove(table, str(season))
 
 
+def bring_in(store: Store, root: Path) -> None:
+    """Brings all that changed in an archive into the lake, in this process; raises as `index`."""
+    index(store, root)
+    forget_unlisted_seasons(store)
+    for season in stale_seasons(store, root):
+        read_season(store, root, season)
+
+
 def read_season(store: Store, root: Path, season: int) -> None:
     """Brings one season's samples and blocks into the lake, and keeps `SEASON_TABLES` of it.
 
