@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 import polars as pl
 import polars.selectors as cs
+import scipy
 from polars.dataframe.group_by import GroupBy
-from scipy.special import chdtri
 
 from pipeline.arrays import FloatArray
 from pipeline.consistency.observed import Observed
@@ -119,7 +119,9 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: Observed) -> pl.DataFr
     n_pairs, chained = (found[name].cast(pl.Float64).to_numpy() for name in ("n_pairs", "chained"))
     dof = n_pairs / (1.0 + chained / (2.0 * n_pairs))
     ends = {"lo": 0.5 - LEVEL / 2, "hi": 0.5 + LEVEL / 2}
-    wider = {name: pl.Series(np.sqrt(dof / chdtri(dof, end))) for name, end in ends.items()}
+    wider = {
+        name: pl.Series(np.sqrt(dof / scipy.special.chdtri(dof, end))) for name, end in ends.items()
+    }
     return found.select(
         *key,
         pl.col("n_pairs", "n_tows").fill_null(0).cast(pl.Int32),
