@@ -16,7 +16,7 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import shipped_method
 from pipeline.register.register import LINE
 from tests.warehouse.edition_bench import diff, terms
-from warehouse.derive.published import published_tables
+from warehouse.derive.registers import published_tables
 from warehouse.editions import publish as publish_module
 from warehouse.editions import sheets
 from warehouse.editions.making import MADE

@@ -30,7 +30,7 @@ from pipeline.register.replay import RaceRules, race_changes, replay, winner_cha
 from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
-from warehouse.derive.published import lines_in_time
+from warehouse.derive.registers import lines_in_time
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
 from warehouse.store.editions import CHANGES, MEASURED, Edition
 from warehouse.store.store import Store
