@@ -20,7 +20,7 @@ the apparent wind:
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -90,10 +90,6 @@ class RunBlocks:
             self.n[chosen],
             OnDemand(self.sums.keys(), lambda name: self.sums[name][chosen]),
         )
-
-    def with_sums(self, make: Callable[[str], FloatArray]) -> "RunBlocks":
-        """The same runs with other sums, each made when it is asked for."""
-        return replace(self, sums=OnDemand(self.sums.keys(), make))
 
     def block_means(self, name: str) -> FloatArray:
         """Mean of each block, shape (runs, seconds); 0 after the run.
