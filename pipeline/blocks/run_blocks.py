@@ -114,7 +114,7 @@ class RunBlocks:
 
 @dataclass(frozen=True)
 class WindowSums:
-    """Sums over one window of every run, each added up when it is first asked for.
+    """Sums over one window of every run.
 
     Attributes:
         window: blocks that count, shape (runs, seconds).
@@ -126,24 +126,12 @@ class WindowSums:
     @cached_property
     def count(self) -> FloatArray:
         """Samples, shape (runs,)."""
-        return _sum(self.window, self.blocks.n)
-
-    @cached_property
-    def _totals(self) -> OnDemand:
-        blocks, window = self.blocks, self.window
-        return OnDemand(SUM_NAMES, lambda name: _sum(window, blocks[name]))
-
-    def total(self, name: str) -> FloatArray:
-        """Sum over the samples, shape (runs,)."""
-        return self._totals[name]
+        return np.asarray(np.where(self.window, self.blocks.n, 0.0).sum(axis=1), dtype=np.float64)
 
     def mean(self, name: str) -> FloatArray:
         """Mean over the samples, shape (runs,); 0 where the window is empty."""
-        return self.total(name) / np.maximum(self.count, 1.0)
-
-
-def _sum(window: BoolArray, values: FloatArray) -> FloatArray:
-    return np.asarray(np.where(window, values, 0.0).sum(axis=1), dtype=np.float64)
+        total = np.where(self.window, self.blocks[name], 0.0).sum(axis=1)
+        return np.asarray(total / np.maximum(self.count, 1.0), dtype=np.float64)
 
 
 def stack_blocks(

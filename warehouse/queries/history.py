@@ -7,7 +7,7 @@ is `pipeline.recompute.recompute`'s.
 import datetime as dt
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final, Self
+from typing import Self
 
 import polars as pl
 
@@ -23,9 +23,6 @@ from pipeline.register.register import draft_name, draft_register, reference_day
 from warehouse.derive.inputs import observe_trusted
 from warehouse.intake.seasons import run_blocks, typed_tows
 from warehouse.store.store import Store, no_warehouse
-
-MOST_CACHED: Final = 200
-"""Entries of the cache, of 0.4 MB each for a thousand tows."""
 
 
 @dataclass(frozen=True)
@@ -72,8 +69,6 @@ class History:
         Raises:
             MissingKnowledgeError: the method says nothing about a season.
         """
-        if len(self.cache) > MOST_CACHED:
-            self.cache.clear()
         made = recompute(method, self.tows, self.blocks, self.cache, with_bands=False)
         lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
         edition = pl.lit(draft_name(method.name)).alias("edition")
