@@ -35,7 +35,6 @@ class History:
         crews: listed boats with their crews, also those never towed.
         blocks: the runs of `tows`.
         last_day: the day of the last tow or race, on which drafts judge what is valid.
-        simulated: the archive says that it is simulated.
         cache: what was found of the runs so far.
     """
 
@@ -44,7 +43,6 @@ class History:
     crews: pl.DataFrame
     blocks: RunBlocks
     last_day: dt.date
-    simulated: bool
     cache: RunCache = field(default_factory=RunCache)
 
     @classmethod
@@ -63,7 +61,6 @@ class History:
             boats=store.read("boats"),
             crews=store.read("listed_boats"),
             blocks=run_blocks(store),
-            simulated=bool(store.read("about_archive")["simulated"][0]),
         )
 
     def under(self, method: Method) -> "Draft":
