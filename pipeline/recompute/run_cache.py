@@ -50,14 +50,6 @@ class RunCache:
         found: T = self._found[key]
         return found if whole is batch else _rows(found, rows)
 
-    def __len__(self) -> int:
-        """Number of entries."""
-        return len(self._found)
-
-    def clear(self) -> None:
-        """Forgets everything."""
-        self._found.clear()
-
 
 def _rows(of_whole: Any, rows: IntArray) -> Any:
     """The rows of some runs of all arrays of windows, or of means by name."""

@@ -7,12 +7,12 @@ formulas and the coefficients that are searched. Areas are in `pipeline.hull`.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from pipeline.arrays import FloatArray
+from pipeline.arrays import FloatArray, OnDemand
 from pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks
 from pipeline.hull import AIR_DENSITY_KG_M3
 from pipeline.method.definition import Wind
@@ -107,7 +107,7 @@ def with_averaged_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
         source, _, term = name.partition("_")
         return terms[term] * blocks[f"{source}_inv_v2"] if term in AIR_SUMS else blocks[name]
 
-    return blocks.with_sums(made)
+    return replace(blocks, sums=OnDemand(blocks.sums.keys(), made))
 
 
 def _centred_sum(values: FloatArray, width: int) -> FloatArray:

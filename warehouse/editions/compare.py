@@ -30,10 +30,10 @@ from pipeline.register.replay import RaceRules, race_changes, replay, winner_cha
 from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
-from warehouse.derive.published import lines_in_time
+from warehouse.derive.registers import lines_in_time
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
 from warehouse.store.editions import CHANGES, MEASURED, Edition
-from warehouse.store.store import Store, archive_root
+from warehouse.store.store import Store
 
 STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
 NO_STEPS: Final = pl.DataFrame(schema={n: dtypes(CorrectionSteps)[n] for n in STEP_COLUMNS})
@@ -229,7 +229,7 @@ class DiffReport:
         rows: all lines: rows of `register_changes` with the causes that moved each.
         race_rules: how races are worked out, where that was asked.
         races, winners: results of the archive's races under both, and who wins; None where not
-            asked, or where the archive is not there or has no races.
+            asked, or where the archive has no races.
     """
 
     from_edition: str
@@ -285,9 +285,9 @@ def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) ->
         MissingKnowledgeError: the rules ask for what is not known.
     """
     without_races = replace(report(comparison), race_rules=rules)
-    results = pl.DataFrame() if archive_root(store) is None else store.read("listed_races")
-    if results.is_empty():
+    if store.made_from("listed_races") is None or not store.count_rows("listed_races"):
         return without_races
+    results = store.read("listed_races")
     editions = (comparison.old, comparison.new)
     before, after = (replay(lines_in_time(store, one), results, rules) for one in editions)
     members = comparison.new.tables.get("ensemble", pl.DataFrame())
