@@ -6,6 +6,6 @@ If an asset needs an `if` on data, that `if` belongs in `pipeline` or `warehouse
   `archive`, `tables`, `site` and `checks`, with `resources` and the `workers` that help.
 - A rebuild: `rebuild` asks what is `stale`, has it made in one run (`instance`), and `report`
   writes what changed.
-- Without anybody asking: `automation`, by the `settings` in `beheer.toml`; `mail` says how it went.
+- Without anybody asking: `automation`, by the `settings` in `beheer.toml`; it mails how it went.
 - Dagster's page behind the guard: `webserver`.
 """

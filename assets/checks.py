@@ -15,7 +15,6 @@ from pipeline.messages import say
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.derive.inputs import IN_DATABASE
-from warehouse.derive.studies import ladders_that_do_not_multiply
 from warehouse.editions.verify import verify
 from warehouse.queries.change_report import change_report
 from warehouse.store.database import open_database
@@ -64,13 +63,6 @@ def every_tow_has_a_curve_row(setup: Setup) -> dg.AssetCheckResult:
     return _result(lost)
 
 
-def steps_multiply_to_the_total(setup: Setup) -> dg.AssetCheckResult:
-    """The factors of every ladder multiply to its total."""
-    names = [method.name for method in setup.chosen_methods]
-    steps = setup.store.read_all("correction_steps", names)
-    return _result(ladders_that_do_not_multiply(steps))
-
-
 def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
     """No more of the listed tows are set aside than the settings allow."""
     aside = setup.store.read("quarantine").filter(lost="tow")["tow_id"].unique().sort().to_list()
@@ -106,7 +98,6 @@ CHECKS: Final[Sequence[Callable[[Setup], dg.AssetCheckResult]]] = (
     tables_fit_their_schemas,
     every_listed_tow_accounted_for,
     every_tow_has_a_curve_row,
-    steps_multiply_to_the_total,
     few_tows_set_aside,
     log_factors_stayed,
     boats_stayed_within_their_intervals,

@@ -56,27 +56,12 @@ def rebuild(
             logging.getLogger("herijk").info(say("looking at what the archive holds"))
             if is_stale(archive, store, known, seasons):
                 workers.get_ready(dask)
-                checks[:] = make_assets(archive, data, methods, seasons, done)
+                from assets.run import run_assets  # noqa: PLC0415 - see above
+
+                checks[:] = run_assets(archive, data, methods, seasons, done)
 
         mending(store, work, again=lambda: None)
         return write_report(store, done, checks, dt.datetime.now().astimezone())
-
-
-def make_assets(
-    archive: Path,
-    data: Path,
-    methods: Sequence[str],
-    seasons: Collection[int] | None,
-    done: Done,
-) -> "Sequence[dg.AssetCheckEvaluation]":
-    """Has Dagster make assets, and notes what was done; gives what the checks said."""
-    from assets.resources import Setup  # noqa: PLC0415 - see above
-    from assets.run import run_assets  # noqa: PLC0415
-
-    setup = Setup(
-        archive=str(archive), data=str(data), methods=list(methods), seasons=sorted(seasons or ())
-    )
-    return run_assets(setup, done)
 
 
 def check_apart(archive: Path, data: Path) -> None:

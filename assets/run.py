@@ -1,6 +1,7 @@
 """All assets and checks, and the one run in which a rebuild makes them."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from pathlib import Path
 from typing import Final
 
 import dagster as dg
@@ -28,14 +29,27 @@ def assets_of(setup: Setup) -> dg.Definitions:
     )
 
 
-def run_assets(setup: Setup, done: Done) -> Sequence[dg.AssetCheckEvaluation]:
+def run_assets(
+    archive_root: Path,
+    data: Path,
+    methods: Sequence[str],
+    wanted: Collection[int] | None,
+    done: Done,
+) -> Sequence[dg.AssetCheckEvaluation]:
     """Makes, or confirms, all assets in one run, of the seasons that are wanted; raises as they do.
 
-    Seasons can be asked for as a range only: those between confirm that they are fresh.
+    Seasons can be asked for as a range only: those between confirm that they are fresh. What was
+    made anew is noted as `done`.
 
     Returns:
         What the checks said.
     """
+    setup = Setup(
+        archive=str(archive_root),
+        data=str(data),
+        methods=list(methods),
+        seasons=sorted(wanted or ()),
+    )
     job = assets_of(setup).resolve_implicit_global_asset_job_def()
     with instance.instance_of(setup.store) as records:
         instance.end_lost_runs(records, instance.OF_A_COMMAND)

@@ -5,6 +5,7 @@ import logging
 import dagster as dg
 import polars as pl
 
+from assets import workers
 from assets.resources import Setup
 from assets.stale import SITE_CODE, SITE_TABLE, site_is_stale, site_made_from
 from pipeline.messages import say
@@ -24,7 +25,7 @@ def site(setup: Setup) -> dg.MaterializeResult:
         logging.getLogger("herijk").info(say("making the site"))
         from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
 
-        build_site(store)
+        build_site(store, workers.in_parallel)
         store.write(SITE_TABLE, pl.DataFrame(), site_made_from(store))
     index = store.root / "site" / "index.html"
     return dg.MaterializeResult(

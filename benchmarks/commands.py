@@ -55,7 +55,7 @@ _READING: Final = """
 import sys
 from pathlib import Path
 from warehouse.store.store import Store
-from tests.intake import bring_in
+from warehouse.intake.seasons import bring_in
 bring_in(Store(Path(sys.argv[2])), Path(sys.argv[1]))
 """
 

@@ -17,8 +17,7 @@ from dashboards import drawn, labels
 from dashboards.figures import FIGURES, drop
 from dashboards.site.parts import default_method
 from pipeline.messages import speaker
-from warehouse.queries.audit import BoatAudit
-from warehouse.queries.audit_types import TypesAudit
+from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.views import Views
 from warehouse.store.files import written_beside
 from warehouse.store.store import Store
@@ -123,7 +122,7 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: s
 
 
 def _types(report: TypesAudit) -> list[str]:
-    return [one.boat_type for one in report.types]
+    return [one["boat_type"] for one in report.types]
 
 
 def file_name(text: str) -> str:

@@ -295,6 +295,7 @@ CODES: Final[dict[str, Sentence]] = {
     "too_few_repeats": say("too few repeat tows"),
     "no_scatter": say("runs without scatter"),
     "not_settled": say("the search did not settle"),
+    "reproduction": say("from print to recomputed as published"),
     "lost_seconds": say("seconds"),
     "lost_run": say("run"),
     "lost_tow": pgettext("what is lost", "tow"),

@@ -105,7 +105,6 @@ FAILED: Final = {
     ),
     "every_listed_tow_accounted_for": say("listed tows are not accounted for"),
     "every_tow_has_a_curve_row": say("tows have no row among the curves"),
-    "steps_multiply_to_the_total": say("steps do not multiply to the total"),
 }
 """What it means that a check failed."""
 

@@ -22,8 +22,7 @@ from pipeline.messages import Sentence, ngettext, say
 from pipeline.studies.options import SPEEDS, TICKS
 from pipeline.tables.row import Row
 from warehouse.derive.studies import STUDIED_METHOD
-from warehouse.queries.chosen_tows import ALL
-from warehouse.queries.views import Views
+from warehouse.queries.views import ALL, Views
 from warehouse.store.boats import the_boat
 from warehouse.store.unforeseen import Border
 

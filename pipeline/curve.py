@@ -10,7 +10,6 @@ errors a curve is described by C0 = Cw(v0) and q = r / (1 - r) with r = s v0^2, 
 independent: Cw(v) = C0 / (1 - q ((v/v0)^2 - 1)).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Final, NamedTuple, Self
 
@@ -84,15 +83,6 @@ class Points:
         cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))
         mask = np.ones(speed.shape, bool) if used is None else np.atleast_2d(np.asarray(used, bool))
         return cls(speed, cw, mask)
-
-    @classmethod
-    def stack(cls, parts: Sequence[Self]) -> Self:
-        """The points of several batches, all with the same number of points per curve."""
-        return cls(
-            np.concatenate([part.speed_m_s for part in parts]),
-            np.concatenate([part.cw_kg_m for part in parts]),
-            np.concatenate([part.used for part in parts]),
-        )
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ however many tows there are (Woodbury). Where the boat's effect is the only cova
 
 Belongs here: the likelihood of boats, the posterior of the unknowns, the maximum of a restricted
 likelihood over its variances, scores of candidates. Does not: what the numbers, unknowns and
-variances mean (`consistency.mixed`, `season_log.posterior`, `assessment.mean_shift`).
+variances mean (`consistency.mixed`, `season_log.fit`).
 
 Sources: Patterson & Thompson 1971 (REML); Gilmour, Thompson & Cullis 1995 (average information);
 Louis 1982 (information of mixtures).

@@ -36,13 +36,13 @@ from pipeline.errors import DefectiveInputError, HerijkError
 from pipeline.method.definition import parse_method, shipped_methods, shipped_text
 from tests.reason_codes import REASON_CODES
 from warehouse.archive import FileHashes, index_archive
+from warehouse.archive.files.finding import ArchiveFile
 from warehouse.archive.files.list_kinds import TOWS
 from warehouse.archive.lists.tows import readable, with_ids
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.archive.samples.file import read_samples
 from warehouse.archive.sheets.reading import read_list
-from warehouse.archive.spelling.wording import Wording
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.decisions import read_decisions
 from warehouse.store.editions import MANIFEST, read_manifest
@@ -295,8 +295,8 @@ def _xlsx(tow_list: Path) -> bytes:
 
 
 def _read_list(path: Path, _: bytes) -> None:
-    rows, problems = read_list(path.parent, TOWS, path.name, Wording())
-    readable(with_ids(rows), problems, Profiles(), [], [])
+    rows, found = read_list(ArchiveFile(path.name, path, "", 2009, inside=True), TOWS, Profiles())
+    readable(with_ids(rows), found, Profiles(), [], [])
 
 
 _DECISION: Final = b"""[[besluit]]

@@ -25,9 +25,9 @@ from benchmarks.robustness.faults import spoil_bytes, spoil_row, spoil_samples
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.definition import shipped_method
-from tests.intake import bring_in
 from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
+from warehouse.intake.seasons import bring_in
 from warehouse.store.store import Store
 
 WORLD = WorldSettings(seasons=(2009,), tows_per_season=20, rate_hz=20, seed=3)

@@ -103,18 +103,16 @@ def _within_bulk(chart: Drawing, *fields: str) -> Drawing:
 
     That edge is `_lowest` and `_highest`.
     """
+    quartiles: dict[str, Any] = {}
+    known: dict[str, str] = {}
     for field in fields:
         q1, q3 = f"datum.{field}_q1", f"datum.{field}_q3"
         reach = f"({q3} > {q1} ? {BULK} * ({q3} - {q1}) : 0.2 * abs({q1}))"
-        quartiles: dict[str, Any] = {f"{field}_{q}": f"{q}({field})" for q in ("q1", "q3")}
-        ends = {f"{field}_lowest": f"{q1} - {reach}", f"{field}_highest": f"{q3} + {reach}"}
+        quartiles |= {f"{field}_{q}": f"{q}({field})" for q in ("q1", "q3")}
+        known |= {f"{field}_lowest": f"{q1} - {reach}", f"{field}_highest": f"{q3} + {reach}"}
         seen = f"clamp(datum.{field}, datum.{field}_lowest, datum.{field}_highest)"
-        chart = (
-            chart.transform_joinaggregate(**quartiles)
-            .transform_calculate(**ends)
-            .transform_calculate(**{f"{field}_seen": seen})
-        )
-    return chart
+        known[f"{field}_seen"] = seen
+    return chart.transform_joinaggregate(**quartiles).transform_calculate(**known)
 
 
 def _far(x: str, y: str) -> list[alt.Chart]:

@@ -7,7 +7,7 @@ its charts, and the rows of its tables that are not shown at first, once, as a s
 import base64
 import datetime as dt
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache, partial
 from pathlib import Path
 from typing import Final
@@ -73,9 +73,15 @@ POLICY: Final = "; ".join(
 is in the style sheet, because some browsers keep fonts of another folder from such a page."""
 
 
-def build_site(store: Store) -> dict[str, int]:
+Each = Callable[[Callable[[str], None], Sequence[str]], Iterable[object]]
+"""Does a piece of work for each of these: one after the other, as `map` does, or side by side."""
+SHARED: Final = "shared"
+"""What is made once for the pages of all languages."""
+
+
+def build_site(store: Store, each: Each = map) -> dict[str, int]:
     """Makes all pages from the database and swaps them in; gives files and bytes of the site."""
-    return build_pages(store, store.root / "site")
+    return build_pages(store, store.root / "site", each=each)
 
 
 def build_pages(
@@ -83,53 +89,71 @@ def build_pages(
     target: Path,
     as_of: dt.date | None = None,
     bordered: Border | None = None,
+    each: Each = map,
 ) -> dict[str, int]:
     """The same in another folder, and as of a day; what stood in the folder is replaced."""
     bordered = bordered or partial(border, store.root)
     with folder_written_beside(target) as beside:
-        with Views(store, as_of) as views:
-            _write_pages(bordered, views, beside, target.parent == store.root)
-            _write_shared(views, beside)
+        work = partial(_write_part, store, beside, as_of, bordered, target.parent == store.root)
+        list(each(work, (LANGUAGES[1], SHARED, LANGUAGES[0])))
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = sum(f.stat().st_size for f in written)
     return {"files": len(written), "bytes": size}
 
 
+def _write_part(
+    store: Store,
+    folder: Path,
+    as_of: dt.date | None,
+    bordered: Border,
+    by_reports: bool,
+    part: str,
+) -> None:
+    """The pages of one language with the data of all, or what all pages share."""
+    with Views(store, as_of) as views:
+        if part == SHARED:
+            files = shared_files() | {"find.js": _search_script(views)}
+        else:
+            _write_pages(bordered, views, folder, by_reports, part)
+            files = charts_file(part)
+        for name, text in files.items():
+            _put(folder / "static" / name, text)
+
+
 def shared_files() -> dict[str, str]:
-    """Styles and scripts that all pages share, by name."""
+    """Styles and scripts that pages of all languages share, by name."""
     return {
         **{name: (HERE / "static" / name).read_text(encoding="utf-8") for name in OWN_FILES},
         "font.css": fonts.style_sheet(),
         "vega.js": vega_bundle(),
-        **{f"charts-{language}.js": charts_script(language) for language in LANGUAGES},
     }
 
 
-def _write_shared(views: Views, folder: Path) -> None:
-    for name, text in (shared_files() | {"find.js": _search_script(views)}).items():
-        _put(folder / "static" / name, text)
+def charts_file(language: str) -> dict[str, str]:
+    """The script with the figures in one language, by its name."""
+    return {f"charts-{language}.js": charts_script(language)}
 
 
-def _write_pages(border: Border, views: Views, folder: Path, by_reports: bool) -> None:
-    """Writes every page in both languages."""
-    editions = [Edition(views, language) for language in LANGUAGES]
-    methods = method_names(views)
+def _write_pages(
+    border: Border, views: Views, folder: Path, by_reports: bool, language: str
+) -> None:
+    """Writes every page in a language."""
+    edition, methods = Edition(views, language), method_names(views)
     makers = shared_pages(views, by_reports) | {"slides": lambda: [slides_page(views)]}
     for name, make in makers.items():
         with border(f"pages {name}"):
             for page in make():
                 with border(f"page {page.path}"):
-                    _write_page(folder, page, editions)
+                    _write_page(folder, page, edition)
     for fsn_no, make_page in boat_pages(views, methods):
         with border(f"page {fsn_no}"):
-            _write_page(folder, make_page(), editions)
+            _write_page(folder, make_page(), edition)
 
 
-def _write_page(folder: Path, page: Page, editions: Sequence["Edition"]) -> None:
-    for edition in editions:
-        _put(folder / edition.address(page), edition.html(page))
-    if page.data:
+def _write_page(folder: Path, page: Page, edition: "Edition") -> None:
+    _put(folder / edition.address(page), edition.html(page))
+    if page.data and edition.speech.language == LANGUAGES[0]:  # the same in every language
         _put(folder / _data_path(page), _data_script(page))
 
 

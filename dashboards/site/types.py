@@ -30,9 +30,8 @@ from dashboards.speech import Headline
 from dashboards.statements import together
 from dashboards.statements.boat_type import LINES, SPREAD, Slopes, homogeneity, level, slopes
 from pipeline.messages import Sentence, say
-from warehouse.queries.audit_types import WEIGHT_LINE
-from warehouse.queries.chosen_tows import NEWEST
-from warehouse.queries.views import Views
+from warehouse.queries.audit import WEIGHT_LINE
+from warehouse.queries.views import NEWEST, Views
 
 SCATTERS = ("b_weight", "b_speed", "cw_standard_weight", "cw_standard_speed", "a_weight")
 SIDES = ("before", "after")

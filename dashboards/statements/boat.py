@@ -181,7 +181,8 @@ def _change(line: Row) -> Iterator[Statement]:
 
 def _tows(line: Row) -> Iterator[Statement]:
     """Which tows the numbers come from where they are two, and why the newer one counts."""
-    if line["old_tow_id"] == line["tow_id"] or None in (line["old_tow_date"], line["tow_date"]):
+    days = line["old_tow_date"], line["tow_date"]
+    if None in days or days[0] == days[1]:
         return
     wording = (
         say(

@@ -8,7 +8,7 @@ from dashboards.statements import Number, Statement, Value
 from dashboards.statements.boat import interval
 from pipeline.messages import say
 from pipeline.tables.row import Row
-from warehouse.queries.audit_types import apart
+from warehouse.queries.audit import apart
 
 if TYPE_CHECKING:
     from warehouse.queries.assess import Assessment

@@ -19,9 +19,9 @@ from dashboards.workbench.form import CONTROLS, Control
 from pipeline.errors import HerijkError
 from pipeline.method.definition import Method, SeasonSteps, Steps, shipped_methods
 from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
-from warehouse.queries.chosen_tows import ALL, NEWEST
 from warehouse.queries.history import Draft, History
 from warehouse.queries.scenario import Scenario
+from warehouse.queries.views import ALL, NEWEST
 from warehouse.store.editions import edition_names, method_of_edition, read_edition
 from warehouse.store.files import write_new
 from warehouse.store.methods import KnownMethods
@@ -39,7 +39,7 @@ class Asked:
         base: the method to start from.
         against: the method or edition to compare with: the base, unless said otherwise.
         boat: its number.
-        tows: which tows types are judged by; see `chosen_tows`.
+        tows: which tows types are judged by: `ALL`, or the `NEWEST` of each crew.
         at: the first season of the range whose options are shown; "" for all seasons.
         changes: options as they are written in an address, by `step.option`, and of one range of
             seasons alone by `step.option.first`.

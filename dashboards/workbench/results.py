@@ -18,8 +18,8 @@ from dashboards.statements import Change
 from dashboards.statements.season import reproducibility
 from dashboards.workbench.bench import Asked, Bench
 from pipeline.messages import Sentence, say
-from warehouse.queries.chosen_tows import CHOICES
 from warehouse.queries.scenario import CURVE_COLUMNS, Scenario
+from warehouse.queries.views import ALL, NEWEST
 
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "change", "old_cw_kg_m"),
@@ -218,7 +218,7 @@ def _selects(bench: Bench, scenario: Scenario, asked: Asked) -> Sequence[Select]
         Select(
             "tows",
             say("Types judged by tows"),
-            CHOICES,
+            (ALL, NEWEST),
             asked.tows,
             named=lambda tows, speech: speech.say(labels.code(tows)),
             asks=True,

@@ -25,7 +25,7 @@ from dashboards.html import environment
 from dashboards.option_labels import range_in_words, text, value_in_words
 from dashboards.site.charts import page_json
 from dashboards.site.parts import Page
-from dashboards.site.render import Edition, shared_files
+from dashboards.site.render import Edition, charts_file, shared_files
 from dashboards.workbench.bench import Asked, Bench, Saving
 from dashboards.workbench.form import CONTROLS, Control
 from dashboards.workbench.results import BenchCells, results
@@ -58,13 +58,14 @@ ELSEWHERE: Final = "cross-site"
 def application(bench: Bench) -> Starlette:
     """The workbench as a web application."""
     own = {f.name: f.read_text(encoding="utf-8") for f in (HERE / "static").iterdir()}
+    charts = {name: text for each in LANGUAGES for name, text in charts_file(each).items()}
     with Views(bench.store) as views:
         pages = [BenchPage(bench, views, language) for language in LANGUAGES]
     return Starlette(
         routes=[
             *[Route(ADDRESSES[page.language], page.shown) for page in pages],
             *[Route(f"/save/{page.language}", page.save, methods=["POST"]) for page in pages],
-            Route("/static/{name}", _static(shared_files() | own)),
+            Route("/static/{name}", _static(shared_files() | charts | own)),
         ]
     )
 

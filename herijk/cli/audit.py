@@ -20,8 +20,7 @@ from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, tell
 
 if TYPE_CHECKING:
-    from warehouse.queries.audit import BoatAudit
-    from warehouse.queries.audit_types import TypesAudit
+    from warehouse.queries.audit import BoatAudit, TypesAudit
     from warehouse.store.store import Store
 
 

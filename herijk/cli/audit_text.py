@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from math import exp
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
@@ -26,14 +26,13 @@ from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import current_edition
-from warehouse.queries.audit import BoatAudit
-from warehouse.queries.audit_types import OneType, TypesAudit
+from warehouse.queries.audit import WEIGHT_LINE, BoatAudit, TypesAudit
 from warehouse.queries.views import Views
 from warehouse.store.database import no_such_edition
 from warehouse.store.store import Store
 
 if TYPE_CHECKING:
-    from warehouse.editions.lineage import Lineage, LineLineage
+    from warehouse.editions.lineage import Lineage
     from warehouse.queries.assess import Assessment
 
 # A boat
@@ -206,18 +205,18 @@ def lineage_text(report: "Lineage") -> str:
     return "\n\n".join([head, *map(_line_history, report.lines)])
 
 
-def _line_history(line: "LineLineage") -> str:
-    printed = "; ".join(f"{header} {cell}" for header, cell in line.printed.items() if cell)
-    head = tell("Verification code {}", line.code)
-    if line.tow is None:
+def _line_history(line: Row) -> str:
+    printed = "; ".join(f"{header} {cell}" for header, cell in line["printed"].items() if cell)
+    head = tell("Verification code {}", line["code"])
+    if line["tow"] is None:
         return section(head, printed, tell("No tow of the archive is behind this line."))
     runs = "run window_start_s window_end_s speed_m_s cw_kg_m used reason"
     return section(
         head,
         f"  {printed}",
-        tell("Tow {} of {}, from", line.tow["tow_id"], line.tow["tow_date"]),
-        *(f"  {file['path']}  sha256 {file['sha256']}" for file in line.files),
-        table(line.runs, runs),
+        tell("Tow {} of {}, from", line["tow"]["tow_id"], line["tow"]["tow_date"]),
+        *(f"  {file['path']}  sha256 {file['sha256']}" for file in line["files"]),
+        table(line["runs"], runs),
     )
 
 
@@ -237,7 +236,7 @@ def types_text(report: TypesAudit, steps: bool) -> str:
     if steps:
         parts += list(_type_steps(report))
     else:
-        names = " ".join(f'"{one.boat_type}"' for one in report.types)
+        names = " ".join(f'"{one["boat_type"]}"' for one in report.types)
         parts.append(tell("All methods and statistics: herijk audit {} --steps", names))
     return page(parts, report.simulated)
 
@@ -246,15 +245,12 @@ def _named(difference: str) -> str:
     return " / ".join(map(codes, difference.split()))
 
 
-def _facts(of_type: OneType) -> str:
+def _facts(of_type: Row) -> str:
     return tell(
         "{}: {} boats, {} of them towed; {} tows of {} to {}; weight {} to {} kg; declared "
         "speed {} to {} m/s",
-        of_type.boat_type,
-        of_type.n_boats,
-        of_type.n_towed,
-        of_type.n_tows,
-        *(cell(name, getattr(of_type, name)) for name in RANGES),
+        *(of_type[name] for name in ("boat_type", "n_boats", "n_towed", "n_tows")),
+        *(cell(name, of_type[name]) for name in RANGES),
     )
 
 
@@ -264,16 +260,12 @@ RANGES: Final = (
 )
 
 
-def _verdict(of_type: OneType, method: str) -> str:
+def _verdict(of_type: Row, method: str) -> str:
     """Whether they are equal, as the site says it, and which tows stand out."""
-    under = of_type.under[method]
-    tested = {"p_value": None} | under.bends
-    return "\n".join(
-        [
-            homogeneity(pl.DataFrame([tested]))(speech()),
-            level(pl.DataFrame(under.newest), pl.DataFrame(under.weight_line))(speech()),
-        ]
-    )
+    under = of_type["under"][method]
+    line = [row for row in under["lines"] if row.items() >= WEIGHT_LINE.items()]
+    tested, newest, lines = (pl.DataFrame(rows) for rows in (under["bends"], under["newest"], line))
+    return f"{homogeneity(tested)(speech())}\n{level(newest, lines)(speech())}"
 
 
 def _slopes(report: TypesAudit, methods: Sequence[str]) -> str:
@@ -293,14 +285,12 @@ def _slopes(report: TypesAudit, methods: Sequence[str]) -> str:
 
 def _rows(report: TypesAudit, methods: Sequence[str], name: str) -> list[Row]:
     """What the statistics of every type and method have under a name, as rows."""
-    rows = []
-    for one in report.types:
-        for method in methods:
-            found: Any = getattr(one.under[method], name)
-            found = found if isinstance(found, list) else [found]
-            own = {"boat_type": one.boat_type, "method": method}
-            rows += [(row if isinstance(row, dict) else vars(row)) | own for row in found]
-    return rows
+    return [
+        row | {"boat_type": one["boat_type"], "method": method}
+        for one in report.types
+        for method in methods
+        for row in one["under"][method][name]
+    ]
 
 
 STEPS: Final = {

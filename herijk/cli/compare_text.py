@@ -12,7 +12,7 @@ from pipeline.method.variant import Difference, differences
 from pipeline.register.register import draft_name
 from pipeline.register.replay import RaceRules
 from pipeline.tables.row import Row
-from warehouse.editions.compare import DiffReport, Group, compare, report_with_races
+from warehouse.editions.compare import DiffReport, compare, report_with_races
 from warehouse.editions.publish import drafted
 from warehouse.store.editions import Edition, edition_names, read_edition
 from warehouse.store.methods import KnownMethods
@@ -122,14 +122,14 @@ def _line(row: Row) -> Row:
     return row | {"change": change, "in_2_h": in_2_h}
 
 
-def _group(group: Group) -> str:
-    if not group.lines:
+def _group(group: Row) -> str:
+    if not group["lines"]:
         return tell("no lines")
     return tell(
         "{} lines, median {}, {} in two hours",
-        group.lines,
-        cell("power_ratio", group.median_power_ratio),
-        seconds(group.median_seconds),
+        group["lines"],
+        cell("power_ratio", group["median_power_ratio"]),
+        seconds(group["median_seconds"]),
     )
 
 

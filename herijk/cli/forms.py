@@ -17,8 +17,7 @@ from warehouse.editions.lineage import Lineage
 from warehouse.editions.publish import Published
 from warehouse.editions.verify import Verification
 from warehouse.queries.assess import Assessment
-from warehouse.queries.audit import BoatAudit
-from warehouse.queries.audit_types import TypesAudit
+from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.registers import DueReport, RegisterReport
 from warehouse.queries.reports import LogErrorReport
 

@@ -20,7 +20,7 @@ the apparent wind:
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -91,10 +91,6 @@ class RunBlocks:
             OnDemand(self.sums.keys(), lambda name: self.sums[name][chosen]),
         )
 
-    def with_sums(self, make: Callable[[str], FloatArray]) -> "RunBlocks":
-        """The same runs with other sums, each made when it is asked for."""
-        return replace(self, sums=OnDemand(self.sums.keys(), make))
-
     def block_means(self, name: str) -> FloatArray:
         """Mean of each block, shape (runs, seconds); 0 after the run.
 
@@ -114,7 +110,7 @@ class RunBlocks:
 
 @dataclass(frozen=True)
 class WindowSums:
-    """Sums over one window of every run, each added up when it is first asked for.
+    """Sums over one window of every run.
 
     Attributes:
         window: blocks that count, shape (runs, seconds).
@@ -126,24 +122,12 @@ class WindowSums:
     @cached_property
     def count(self) -> FloatArray:
         """Samples, shape (runs,)."""
-        return _sum(self.window, self.blocks.n)
-
-    @cached_property
-    def _totals(self) -> OnDemand:
-        blocks, window = self.blocks, self.window
-        return OnDemand(SUM_NAMES, lambda name: _sum(window, blocks[name]))
-
-    def total(self, name: str) -> FloatArray:
-        """Sum over the samples, shape (runs,)."""
-        return self._totals[name]
+        return np.asarray(np.where(self.window, self.blocks.n, 0.0).sum(axis=1), dtype=np.float64)
 
     def mean(self, name: str) -> FloatArray:
         """Mean over the samples, shape (runs,); 0 where the window is empty."""
-        return self.total(name) / np.maximum(self.count, 1.0)
-
-
-def _sum(window: BoolArray, values: FloatArray) -> FloatArray:
-    return np.asarray(np.where(window, values, 0.0).sum(axis=1), dtype=np.float64)
+        total = np.where(self.window, self.blocks[name], 0.0).sum(axis=1)
+        return np.asarray(total / np.maximum(self.count, 1.0), dtype=np.float64)
 
 
 def stack_blocks(

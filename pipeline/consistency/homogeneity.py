@@ -49,31 +49,22 @@ TINY: Final = 1e-12
 SAME_COLUMN: Final = 1e-9
 """Columns that differ by less, relatively, are one: a single class, or speeds all alike."""
 
-BEND_MARGIN: Final = 1e-3
-"""The minimum lies within this of the one that a plain search gives."""
-
 OWN, PARTIAL, SHARED = "own", "partial", "shared"
 
 
 def shared_bend(boats: Observed) -> float:
     """The one s = 1/B^2 [s2/m2] that fits all boats best, each with its own height."""
     fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
-    lowest, highest = BEND_BOUNDS
-    optimum = scipy.optimize.minimize_scalar(
-        lambda r: _misfit(boats, r / fastest)[0], bounds=BEND_BOUNDS, method="bounded"
-    )
-    below = max(float(optimum.x) - BEND_MARGIN, lowest)
-    above = min(float(optimum.x) + BEND_MARGIN, highest)
 
     def slope(r: float) -> float:
-        return _misfit(boats, r / fastest)[1]
+        return _misfit_slope(boats, r / fastest)
 
-    if slope(below) >= 0.0:
-        return below / fastest
-    if slope(above) <= 0.0:
-        return above / fastest
-    # The least of a smooth function is flat over the root of its rounding; its slope is not.
-    return float(scipy.optimize.brentq(slope, below, above, xtol=1e-15)) / fastest
+    lowest, highest = BEND_BOUNDS
+    if slope(lowest) >= 0.0:
+        return lowest / fastest
+    if slope(highest) <= 0.0:
+        return highest / fastest
+    return float(scipy.optimize.brentq(slope, lowest, highest, xtol=1e-15)) / fastest
 
 
 def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
@@ -85,18 +76,17 @@ def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
     return np.asarray((g * points.cw_kg_m).sum(axis=1) / (g * g).sum(axis=1))
 
 
-def _misfit(boats: Observed, s_s2_m2: float) -> tuple[float, float]:
-    """Residual sum of squares relative to each boat's own Cw, with one s for all, and its slope.
+def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
+    """Slope along s of the squares of all residuals / their boat's Cw, with one s for all.
 
-    A height at its best does not count in the slope along s (envelope theorem).
+    A height at its best does not count in it (envelope theorem).
     """
     points, c0 = boats.points, boats.column("c0_kg_m")[:, None]
     v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
     a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
     fitted = a * points.used / (1.0 - s_s2_m2 * v2)
     residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
-    slope = fitted * v2 / (1.0 - s_s2_m2 * v2)
-    return float(((residual / c0) ** 2).sum()), float((-2.0 * residual * slope / c0**2).sum())
+    return float((-2.0 * residual * fitted * v2 / (1.0 - s_s2_m2 * v2) / c0**2).sum())
 
 
 def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:

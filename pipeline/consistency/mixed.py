@@ -99,8 +99,8 @@ class Problem:
 class Fit:
     """A mixed model at given variances of boat, other and cell, (3,); 0 where there is none.
 
-    What is independent has n + boats rows: deviations from the boat's mean and those means, scaled
-    to a variance of 1. The fixed effects and those of `other` are its unknowns.
+    L y are n + boats independent numbers with a variance of 1: deviations from the means of boats,
+    and those means. The fixed effects and those of `other` are unknowns.
     """
 
     problem: Problem
@@ -128,13 +128,13 @@ class Fit:
         return np.asarray(self._total / (1.0 + self.variances[0] * self._total))
 
     def _independent(self, values: FloatArray) -> FloatArray:
-        """Rows, (n, k), as independent ones of a variance of 1, (n + boats, k)."""
+        """L times rows, (n, k): independent numbers, (n + boats, k)."""
         mean = self.problem.of_boats(self._weight * values) / self._total
         within = np.sqrt(self._weight) * (values - mean[self.problem.boat])
         return np.concatenate([within, np.sqrt(self._of_mean) * mean])
 
     def _as_rows(self, independent: FloatArray) -> FloatArray:
-        """The transpose of `_independent`, (n + boats, k) to (n, k)."""
+        """The transpose of L times independent numbers, (n + boats, k): rows, (n, k)."""
         rows = len(self._weight)
         means = np.sqrt(self._of_mean) * independent[rows:] / self._total
         weighed = self._weight * means[self.problem.boat]
@@ -158,7 +158,7 @@ class Fit:
         return np.linalg.inv(self._information).astype(np.float64)
 
     def _rest(self, values: FloatArray) -> FloatArray:
-        """What the unknowns leave of rows, (n, k), as independent ones, (n + boats, k)."""
+        """What the unknowns leave of L times rows, (n, k), (n + boats, k)."""
         independent = self._independent(values)
         taken = self._covariance @ (self._unknowns.T @ independent)
         return np.asarray(independent - self._unknowns @ taken)
@@ -192,27 +192,24 @@ class Fit:
         The slope of the deviance by a variance that adds K to the covariance is
         tr(P K) - y' P K P y, its average information y' P K P K P y.
         """
-        problem, rows = self.problem, len(self._weight)
-        boat, other = problem.boat[:, None], problem.other
+        problem, boat, other = self.problem, self.problem.boat, self.problem.other
+        taken = self._unknowns @ np.linalg.cholesky(self._covariance)  # P = L' (1 - taken taken') L
+        share = self._weight / self._total[boat]
+        own = self._weight * (1.0 - share) + share**2 * self._of_mean[boat]
+        taken_of_means = (taken[len(boat) :] ** 2).sum(axis=1, keepdims=True)
+        of_boat = (self._of_mean * (1.0 - taken_of_means)).sum()
+        of_other = (self._rest(other) * self._independent(other)).sum()
+        of_cell = own.sum() - (self._as_rows(taken) ** 2).sum()
         pull = self.pull[:, None]
-        taken = self._unknowns @ np.linalg.cholesky(self._covariance)
-        of_means = self._of_mean * (1.0 - (taken[rows:] ** 2).sum(axis=1, keepdims=True))
-        share = self._weight / self._total[problem.boat]
-        of_rows = self._weight * (1.0 - share) + share**2 * self._of_mean[problem.boat]
-        trace = np.array(
-            [
-                of_means.sum(),
-                (self._rest(other) * self._independent(other)).sum(),
-                of_rows.sum() - (self._as_rows(taken) ** 2).sum(),
-            ]
+        felt = np.column_stack([problem.of_boats(pull)[boat], other @ (other.T @ pull), pull])
+        ln_determinants = (
+            np.log1p(self.variances[0] * self._total).sum()
+            - np.log(self._weight).sum()
+            + np.linalg.slogdet(self._information)[1]
         )
-        felt = np.column_stack([problem.of_boats(pull)[boat[:, 0]], other @ (other.T @ pull), pull])
-        spread = 1.0 + self.variances[0] * self._total
         return Likelihood(
-            float(np.log(spread).sum() - np.log(self._weight).sum())
-            + float(np.linalg.slogdet(self._information)[1])
-            + self.misfit,
-            trace - (felt * pull).sum(axis=0),
+            float(ln_determinants) + self.misfit,
+            np.array([of_boat, of_other, of_cell]) - (felt * pull).sum(axis=0),
             felt.T @ self._as_rows(self._rest(felt)),
         )
 

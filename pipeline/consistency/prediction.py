@@ -19,9 +19,7 @@ from pipeline.consistency.observed import (
     newest,
 )
 from pipeline.quantiles import NORMAL, t_quantile
-from pipeline.tables.consistency import PredictedCw, PredictionError
-from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of
+from pipeline.tables.consistency import PredictedCw
 from pipeline.tables.keys import LINE
 
 FEWEST_BOATS_PER_COLUMN: Final = 3
@@ -103,7 +101,7 @@ def _columns(fleet: Observed) -> FloatArray:
     return kept
 
 
-def prediction_error(predicted: pl.DataFrame) -> dy.DataFrame[PredictionError]:
+def prediction_error(predicted: pl.DataFrame) -> pl.DataFrame:
     """Cross-validated error of the prediction, next to the uncertainty of a tow, per method.
 
     Args:
@@ -112,15 +110,10 @@ def prediction_error(predicted: pl.DataFrame) -> dy.DataFrame[PredictionError]:
     Returns:
         Rows of the table `prediction_error`.
     """
-    known = predicted.drop_nulls("ln_ratio")
-    rows = [
-        {
-            "method": method,
-            "n": group.height,
-            "n_boats": group["fsn_no"].n_unique(),
-            "rmse_ratio": float(np.sqrt((group["ln_ratio"].to_numpy() ** 2).mean())),
-            "tow_sd_ratio": float(np.sqrt((group["cw_sd_ratio"].to_numpy() ** 2).mean())),
-        }
-        for (method,), group in known.sort("method").group_by("method", maintain_order=True)
-    ]
-    return frame_of(PredictionError, rows)
+    known = predicted.drop_nulls("ln_ratio").group_by("method", maintain_order=True)
+    return known.agg(
+        n=pl.len(),
+        n_boats=pl.col("fsn_no").n_unique(),
+        rmse_ratio=(pl.col("ln_ratio") ** 2).mean().sqrt(),
+        tow_sd_ratio=(pl.col("cw_sd_ratio") ** 2).mean().sqrt(),
+    )

@@ -8,15 +8,16 @@ from typing import Final
 
 import numpy as np
 import polars as pl
+import polars.selectors as cs
 import scipy
+from polars.dataframe.group_by import GroupBy
 
 from pipeline.arrays import FloatArray
 from pipeline.consistency.observed import Observed
 from pipeline.curve import s_of_height
 from pipeline.history import ERAS
 from pipeline.quantiles import LEVEL
-from pipeline.tables.consistency import RepeatPairs, Reproducibility
-from pipeline.tables.frames import frame_of
+from pipeline.tables.consistency import RepeatPairs
 from pipeline.tables.keys import LINE
 
 ALL_PAIRS: Final = "all"
@@ -92,46 +93,40 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: Observed) -> pl.DataFr
     Returns:
         Rows of the table `reproducibility`, one per method and scope, also where it has no pairs.
     """
-    scopes = [(ALL_PAIRS, -9999, 9999), *((era.name, era.first, era.last) for era in ERAS)]
-    rows = []
-    for method in observed.table["method"].unique().sort():
-        own = repeat_pairs.filter(pl.col("method") == method)
-        runs = observed.table.filter(pl.col("method") == method)
-        rows += [
-            {"method": method, "scope": name}
-            | _spread(own.filter(pl.col("season_before").is_between(first, last)))
-            | _scatter(runs.filter(pl.col("season").is_between(first, last)))
-            for name, first, last in scopes
-        ]
-    return frame_of(Reproducibility, rows)
+    eras = [(era.name, era.first, era.last) for era in ERAS]
+    every = (ALL_PAIRS, -9999, 9999)
+    scopes = pl.DataFrame([every, *eras], ["scope", "first", "last"], orient="row")
+    key, difference, n = ["method", "scope"], pl.col("ln_ratio"), pl.len()
 
+    def of_scopes(rows: pl.DataFrame, season: str) -> GroupBy:
+        there = pl.col(season).is_between("first", "last")
+        return rows.join(scopes, how="cross").filter(there).group_by(key, maintain_order=True)
 
-def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
-    difference = pairs["ln_ratio"].to_numpy()
-    n = len(difference)
-    if n == 0:
-        return {"n_pairs": 0}
-    total = float((difference**2).sum())
-    chained = pairs.join(pairs, left_on="tow_id_before", right_on="tow_id", how="semi").height
-    dof = n / (1.0 + chained / (2.0 * n))
-    low, high = (float(scipy.special.chdtri(dof, 0.5 + end * LEVEL / 2)) for end in (-1, 1))
-    return {
-        "n_pairs": n,
-        "sd_ratio": float(np.sqrt(total / (2 * n))),
-        "lo": float(np.sqrt(total / (2 * n) * dof / low)),
-        "hi": float(np.sqrt(total / (2 * n) * dof / high)),
-        "share_within_1pct": float((np.abs(difference) < 0.01).mean()),
-        "share_within_2pct": float((np.abs(difference) < 0.02).mean()),
+    pairs = of_scopes(repeat_pairs, "season_before").agg(
+        n_pairs=n,
+        sd_ratio=((difference**2).sum() / (2 * n)).sqrt(),
+        chained=pl.col("tow_id_before").is_in(pl.col("tow_id").implode()).sum(),
+        share_within_1pct=(difference.abs() < 0.01).mean(),
+        share_within_2pct=(difference.abs() < 0.02).mean(),
+    )
+    run_variance = pl.col("run_rss_ratio2").sum() / pl.col("run_dof").sum()
+    tows = of_scopes(observed.table, "season").agg(
+        n_tows=n, within_sd_ratio=(run_variance * pl.col("c0_unit_variance").mean()).sqrt()
+    )
+    found = observed.table.select("method").unique(maintain_order=True).join(scopes, how="cross")
+    for part in (pairs, tows):
+        found = found.join(part, on=key, how="left", maintain_order="left")
+    n_pairs, chained = (found[name].cast(pl.Float64).to_numpy() for name in ("n_pairs", "chained"))
+    dof = n_pairs / (1.0 + chained / (2.0 * n_pairs))
+    ends = {"lo": 0.5 - LEVEL / 2, "hi": 0.5 + LEVEL / 2}
+    wider = {
+        name: pl.Series(np.sqrt(dof / scipy.special.chdtri(dof, end))) for name, end in ends.items()
     }
-
-
-def _scatter(tows: pl.DataFrame) -> dict[str, float | int | None]:
-    """Scatter of a single run about its curve, and what it does to the Cw of a tow (s_r)."""
-    if tows.is_empty():
-        return {"n_tows": 0}
-    run = float(tows["run_rss_ratio2"].to_numpy().sum() / tows["run_dof"].to_numpy().sum())
-    unit = float(tows["c0_unit_variance"].to_numpy().mean())
-    return {
-        "n_tows": tows.height,
-        "within_sd_ratio": float(np.sqrt(run * unit)),
-    }
+    return found.select(
+        *key,
+        pl.col("n_pairs", "n_tows").fill_null(0).cast(pl.Int32),
+        "sd_ratio",
+        *((pl.col("sd_ratio") * ratio).alias(name) for name, ratio in wider.items()),
+        cs.starts_with("share_within"),
+        "within_sd_ratio",
+    )

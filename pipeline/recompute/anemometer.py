@@ -1,25 +1,46 @@
-"""The anemometer of each season as all tows show it: estimated, applied to the wind, diagnosed.
+"""The scale of each season's anemometer, by the wind out and back.
 
-The formulas are in `pipeline.steps.anemometer`.
+The wind that a boat feels is the true wind less its own velocity. Out and back the true wind turns
+about the boat and cancels; the boat's own speed is left. So mean apparent wind over boat speed is
+what the anemometer reads of the wind, and needs no resistance and no other boat. A vane that points
+askew turns the mean vector and leaves its length. Here: that ratio per tow, the scale of each
+season with what the other seasons say of it, and its diagnosis. Not here: what wind does to
+resistance (`pipeline.steps.wind`).
 """
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 import polars as pl
+import scipy
 
+from pipeline.arrays import BoolArray, FloatArray
+from pipeline.blocks.batch import Batch
+from pipeline.history import UNKNOWN_LOG_SD
 from pipeline.quantiles import NORMAL
 from pipeline.recompute.computed import Computed
 from pipeline.season_log.diagnosis import ALARM, ALARM_SD, DIAGNOSIS_SCHEMA, SOUND
-from pipeline.steps.anemometer import Anemometer, WindRatio, anemometer_of_seasons
+from pipeline.steps.calibration import mean_over_both_ways
 
 ANEMOMETER: Final = "anemometer_scale"
 """Its name among the instruments of `season_diagnosis`."""
 
 USUAL_SD: Final = 0.05
 """Spread of ln scale of an anemometer about which nothing is known."""
+
+USUAL_TOW_SD: Final = 0.06
+"""Spread of a tow's ratio where no season has two tows: wind changes between out and back."""
+
+ARCHIVE_SD: Final = 0.15
+"""Spread of ln scale of one anemometer used in all seasons (inferred)."""
+
+BETWEEN_SEASONS: Final = np.geomspace(0.001, 0.5, 60)
+"""Standard deviations of ln scale between seasons that are tried."""
+
+USUAL_BETWEEN: Final = 0.02
+"""Scale of their half-Cauchy prior (Gelman 2006): small as a rule, large if something broke."""
 
 
 def with_anemometer(computed: list[Computed]) -> list[Computed]:
@@ -31,23 +52,105 @@ def with_anemometer(computed: list[Computed]) -> list[Computed]:
     asking = [c for c in computed if c.steps.wind.anemometer == "estimated"]
     if not asking:
         return computed
-    each = [
-        WindRatio.of(
-            c.batch, c.windows.mask, c.used, c.means.gps_m_s, c.speed_m_s, c.estimated("ln_sd")
-        )
-        for c in asking
-    ]
-    names = [field.name for field in fields(WindRatio)]
-    scale = anemometer_of_seasons(
-        WindRatio(**{name: np.concatenate([getattr(r, name) for r in each]) for name in names})
-    )
+    scale = scale_of_seasons(pl.concat([_wind_ratios(c) for c in asking]))
     return [_corrected(c, scale) if c.steps.wind.anemometer == "estimated" else c for c in computed]
 
 
-def _corrected(computed: Computed, anemometer: Anemometer) -> Computed:
-    ln_scale, sd = anemometer.of_tows(computed.batch.of_tow("season"))
-    means = computed.means.with_wind(np.exp(ln_scale)[computed.batch.tow])
-    return replace(computed, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
+def _wind_ratios(c: Computed) -> pl.DataFrame:
+    """Apparent wind of each tow over boat speed, mean of out and back.
+
+    Returns:
+        A row per tow: `season`; `ahead` and `abeam`, the two parts of the mean vector, NaN where
+        wind or speed is not known; `shared_sd` of ln boat speed, the part that a season's tows
+        share. Boat speed is that by GPS, or by the log as corrected so far where there is none.
+    """
+    batch, means = c.batch, c.means
+    blows = c.used & (means.wind_m_s > 0) & (c.speed_m_s > 0)
+    blows &= (batch.measured("wind") & batch.trusted)[batch.tow]
+    by_gps = batch.count(blows & np.isfinite(means.gps_m_s)) == batch.count(blows)
+    boat = np.where(by_gps[batch.tow], means.gps_m_s, c.speed_m_s)
+    mean = _both_ways(batch, np.where(blows, boat, 1.0), blows)
+    angle, wind = np.radians(means.wind_angle_deg), means.wind_m_s
+    log_sd = np.nan_to_num(c.estimated("ln_sd"), nan=UNKNOWN_LOG_SD)
+    return batch.tows.select(
+        "season",
+        ahead=pl.Series(_both_ways(batch, wind * np.cos(angle), blows) / mean),
+        abeam=pl.Series(_both_ways(batch, wind * np.sin(angle), blows) / mean),
+        shared_sd=pl.Series(np.where(by_gps, 0.0, log_sd)),
+    )
+
+
+def _both_ways(batch: Batch, values: FloatArray, runs: BoolArray) -> FloatArray:
+    """Mean of out and back, each direction weighing the same; NaN without both."""
+    mean, both = mean_over_both_ways(values, batch.direction, batch.tow, runs, batch.size)
+    return np.where(both, mean, np.nan)
+
+
+def scale_of_seasons(ratios: pl.DataFrame) -> pl.DataFrame:
+    """What the anemometer of every season reads of the wind.
+
+    Normal about that of the archive. Seasons without a tow that tells have what the others let
+    expect. Between seasons the standard deviation is summed over a grid (Rue, Martino & Chopin
+    2009), so that one anemometer of many years is known from all of them, and one odd season does
+    not move the others.
+
+    Args:
+        ratios: per tow `season, ahead, abeam, shared_sd`.
+
+    Returns:
+        Per season, sorted, `ln_scale`, ln(reading / wind), and its `sd`.
+    """
+    parts = pl.col("ahead", "abeam")
+    known = ratios.filter(pl.all_horizontal(parts.is_finite()))
+    means = known.group_by("season", maintain_order=True).agg(
+        parts.mean().name.suffix("_mean"), pl.col("shared_sd").mean(), tows=pl.len()
+    )
+    ahead, abeam = pl.col("ahead_mean"), pl.col("abeam_mean")
+    square = ahead**2 + abeam**2
+    along = (pl.col("ahead") * ahead + pl.col("abeam") * abeam) / square
+    beside = known.join(means, on="season", maintain_order="left")
+    spare = known.height - means.height
+    off = beside.select(((along - 1.0) ** 2).sum()).item()
+    tow_variance = off / spare if spare else USUAL_TOW_SD**2
+    seasons = (
+        ratios.select(pl.col("season").unique().sort())
+        .join(means, on="season", how="left", maintain_order="left")
+        .select(
+            "season",
+            seen=square.sqrt().clip(1e-3).log().fill_null(0.0),
+            noise=(tow_variance / pl.col("tows") + pl.col("shared_sd") ** 2).fill_null(1e6),
+        )
+    )
+    ln_scale, sd = _shrunk(*(seasons[name].to_numpy() for name in ("seen", "noise")))
+    return seasons.select("season", ln_scale=pl.Series(ln_scale), sd=pl.Series(sd))
+
+
+def _shrunk(seen: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Mean and sd of normal numbers about a common mean, whose spread is summed over a grid."""
+    between = BETWEEN_SEASONS[:, None] ** 2
+    weight = 1.0 / (variance + between)
+    precision = weight.sum(axis=1) + ARCHIVE_SD**-2.0
+    mean = (weight * seen).sum(axis=1) / precision
+    ln_density = 0.5 * (np.log(weight).sum(axis=1) - np.log(precision))
+    ln_density -= 0.5 * ((weight * seen**2).sum(axis=1) - precision * mean**2)
+    # The grid is even in the logarithm: its measure is the standard deviation itself.
+    ln_density += np.log(BETWEEN_SEASONS) - np.log1p((BETWEEN_SEASONS / USUAL_BETWEEN) ** 2)
+    chance = scipy.special.softmax(ln_density)[:, None]
+    pull = between * weight
+    value = mean[:, None] + pull * (seen - mean[:, None])
+    own = pull * variance + (1.0 - pull) ** 2 / precision[:, None]
+    average = (chance * value).sum(axis=0)
+    spread = (chance * (own + (value - average) ** 2)).sum(axis=0)
+    return np.asarray(average), np.sqrt(spread)
+
+
+def _corrected(c: Computed, scale: pl.DataFrame) -> Computed:
+    of_tows = c.batch.tows.select("season").join(
+        scale, on="season", how="left", maintain_order="left"
+    )
+    ln_scale, sd = (of_tows[name].to_numpy() for name in ("ln_scale", "sd"))
+    means = c.means.with_wind(np.exp(ln_scale)[c.batch.tow])
+    return replace(c, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
 
 
 def anemometer_diagnosis(computed: Sequence[Computed]) -> pl.DataFrame:

@@ -273,7 +273,8 @@ def _best_per_run(computed: Computed) -> Coefficients:
 def _misfits(computed: Computed, grid: FloatArray) -> FloatArray:
     """Residuals' squares / Cw^2, (coefficients, tows); infinite without a curve of all points."""
     points = [computed.points_of(computed.cw_of(_alike(computed, value))) for value in grid]
-    curves = curve.fit(curve.Points.stack(points))
+    stacked = zip(*((p.speed_m_s, p.cw_kg_m, p.used) for p in points), strict=True)
+    curves = curve.fit(curve.Points(*map(np.concatenate, stacked)))
     scale = curves.cw_at(np.tile(computed.batch.of_tow("declared_speed_m_s"), len(grid)))
     runs = np.tile(computed.batch.count(computed.in_fit), len(grid))
     sound = curves.converged & np.isfinite(scale) & (curves.n_points == runs)

@@ -21,7 +21,9 @@ from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors, estimate_season_factors, first_estimate
 from pipeline.season_log.archive_tows import LOG
 from pipeline.steps.calibration import gps_factor
+from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import LINE
+from pipeline.tables.season_log import TowInstruments
 
 FEWEST_OF_TYPE: Final = 5
 """A type's own bend is taken from so many anchored tows on."""
@@ -34,14 +36,8 @@ LOG_SCATTER: Final = 0.005
 
 GPS: Final = "gps_per_tow"
 
-INSTRUMENT_SCHEMA: Final = {
-    "tow_id": pl.String(),
-    **dict.fromkeys(
-        ("factor", "ln_sd", "dof", "force_factor", "force_zero_n", "bend", "askew_ratio"),
-        pl.Float64(),
-    ),
-}
-"""What is estimated of a tow's instruments, as the table `tow_instruments` declares it."""
+INSTRUMENTS: Final = dtypes(TowInstruments, without=["method"])
+"""What is estimated of a tow's instruments."""
 
 
 def is_estimated(steps: Steps) -> bool:
@@ -98,14 +94,12 @@ def instruments_of(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> pl.
             was estimated.
 
     Returns:
-        A row per tow with the columns of `INSTRUMENT_SCHEMA`, null where nothing is known; such a
+        A row per tow with the columns of `INSTRUMENTS`, null where nothing is known; such a
         load cell has the factor 1 and the zero 0.
     """
     own = batch.tows.select("tow_id", "season", "log1_part")
-    known = pl.DataFrame(schema=INSTRUMENT_SCHEMA) if rows is None else rows
-    joined = own.join(
-        known.select(*INSTRUMENT_SCHEMA), on="tow_id", how="left", maintain_order="left"
-    )
+    known = pl.DataFrame(schema=INSTRUMENTS) if rows is None else rows
+    joined = own.join(known.select(*INSTRUMENTS), on="tow_id", how="left", maintain_order="left")
     # A tow that takes no part in the estimate had the instruments of its season all the same.
     of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
     filled = joined.with_columns(of_season.fill_null(of_season.mean().over("season", "log1_part")))

@@ -39,7 +39,7 @@ def with_estimates(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
         square; not corrected, and 0 where it is unlikely); `ln_sd` and `dof` of what the
         instruments do to ln Cw, per unit of the elasticity 2 + 2 q; `others_ln_ratio`, change of ln
         Cw with the instruments as the other boats alone show them; `measured_ln_cw`, by the tow
-        alone with these corrections; and `best_ln_cw, best_sd, best_lo, best_hi` (95 %), by all.
+        alone with these corrections; and `best_ln_cw, best_lo, best_hi` (95 %), by all.
         And the shares `tow_id, rests_on, weight` of the boat's tows in that, which sum to 1.
     """
     fitted, problem, speed = posterior.fit, posterior.fit.problem, posterior.fit.of_log
@@ -70,7 +70,7 @@ def with_estimates(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
         "dof": fitted.dof(level),
         "others_ln_ratio": np.where(determined, others, np.nan),
         "measured_ln_cw": measured - by_force,
-        **dict(zip(("best_ln_cw", "best_sd", "best_lo", "best_hi"), best.T, strict=True)),
+        **dict(zip(("best_ln_cw", "best_lo", "best_hi"), best.T, strict=True)),
     }
     columns = [pl.Series(name, values).fill_nan(None) for name, values in numbers.items()]
     return problem.tows.frame.drop("boat", "hull", "log_place").with_columns(columns), weights
@@ -106,15 +106,15 @@ def _askew(fitted: Fit) -> FloatArray:
 
 
 def _best(posterior: Posterior) -> tuple[FloatArray, pl.DataFrame]:
-    """Ln Cw of each tow by all, sd and bounds, (tows, 4), and the shares of the boat's tows."""
+    """Ln Cw of each tow by all, with bounds, (tows, 3), and the shares of the boat's tows."""
     fitted, problem = posterior.fit, posterior.fit.problem
-    numbers = np.zeros((len(problem.q), 4))
+    numbers = np.zeros((len(problem.q), 3))
     shares = []
     for group, boats in zip(problem.groups, fitted.boats, strict=True):
         numbers[group.tow], weight = _of_boats(group, boats, fitted)
         tow, other = np.broadcast_arrays(group.tow[:, :, None], group.tow[:, None])
         shares.append(pl.DataFrame({"tow": tow.ravel(), "other": other.ravel(), "weight": weight}))
-    numbers[:, [0, 2, 3]] += (problem.boat_level + level_of_boats(fitted))[:, None]
+    numbers += (problem.boat_level + level_of_boats(fitted))[:, None]
     names, known = problem.tows.frame["tow_id"], posterior.log_known
     listed = pl.concat(shares)
     alone = (pl.col("tow") == pl.col("other")).cast(pl.Float64)
@@ -134,7 +134,7 @@ def _best(posterior: Posterior) -> tuple[FloatArray, pl.DataFrame]:
 
 
 def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, FloatArray]:
-    """Boats with the same number of tows: (boats, tows, 4) numbers, and the shares, flat."""
+    """Boats with the same number of tows: (boats, tows, 3) numbers, and the shares, flat."""
     count, tows = group.tow.shape
     state = fitted.slopes.state[group.tow][..., 0]
     # Covariance of the level at each tow with every number of the boat, per pattern.
@@ -149,11 +149,10 @@ def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, F
     variance = np.maximum(variance + shared, 1e-12)
     weight = np.repeat(boats.weight[:, :, None], tows, axis=2)
     average = (weight * mean).sum(axis=1)
-    spread = (weight * (variance + (mean - average[:, None]) ** 2)).sum(axis=1)
     bounds = _quantiles(weight, mean, np.sqrt(variance))
     on_level = gain.reshape(count, -1, tows, tows, 3)[..., LEVEL]
     shares = np.einsum("bp,bpkl->bkl", boats.weight, on_level)
-    return np.stack([average, np.sqrt(spread), *bounds], axis=2), shares.ravel()
+    return np.stack([average, *bounds], axis=2), shares.ravel()
 
 
 def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:

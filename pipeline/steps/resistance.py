@@ -6,6 +6,7 @@ speed divides every coefficient by k^2, and is applied last (`pipeline.recompute
 runs count and which factor holds is decided elsewhere.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks.batch import Batch
-from pipeline.blocks.run_blocks import RunBlocks, WindowSums
+from pipeline.blocks.run_blocks import SUM_NAMES, RunBlocks, WindowSums
 from pipeline.hull import front_area_m2, side_area_m2
 from pipeline.method.constants import REFERENCE_WATER_C
 from pipeline.method.definition import RunPoint, Steps
@@ -21,10 +22,10 @@ from pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from pipeline.steps.wind import (
     AirParts,
     air_parts,
-    mean_wind_angle_deg,
+    mean_angle_deg,
     with_averaged_wind,
 )
-from pipeline.steps.window import END_SECONDS, end_masks
+from pipeline.steps.window import END_SECONDS, Windows
 
 ADDED_MASS_RATIO: Final = 0.08
 """Water that is accelerated with the boat, as a share of its mass (inferred; method-details, 6)."""
@@ -69,77 +70,53 @@ class RunMeans:
         return replace(self, air=self.air.times(scale**-2.0))
 
 
-@dataclass(frozen=True)
-class OverWindow:
-    """Sums over the window of every run, for means of all kinds.
+def window_means(blocks: RunBlocks, windows: Windows, averaging_s: int) -> dict[str, FloatArray]:
+    """Means over the window of every run of what is summed in blocks, by `SUM_NAMES`, (runs,).
 
-    Attributes:
-        whole: over all of it.
-        first, last: over its two ends.
-        averaged: the blocks by the seconds over which their wind is averaged, as far as asked for.
+    Args:
+        averaging_s: seconds over which the wind of air terms is averaged; 0 takes it as it is.
     """
-
-    whole: WindowSums
-    first: WindowSums
-    last: WindowSums
-    averaged: dict[int, RunBlocks]
-
-    @classmethod
-    def of(
-        cls, blocks: RunBlocks, window: BoolArray, averaged: dict[int, RunBlocks] | None = None
-    ) -> "OverWindow":
-        """Of blocks that count, shape (runs, seconds); `averaged` may serve other windows too."""
-        first, last = (WindowSums(blocks, end) for end in end_masks(window))
-        return cls(WindowSums(blocks, window), first, last, {} if averaged is None else averaged)
-
-    def with_wind(self, averaging_s: int) -> WindowSums:
-        """Over all of it, with the air terms of a wind that is averaged over some seconds."""
-        if not averaging_s:
-            return self.whole
-        if averaging_s not in self.averaged:
-            self.averaged[averaging_s] = with_averaged_wind(self.whole.blocks, averaging_s)
-        return WindowSums(self.averaged[averaging_s], self.whole.window)
+    averaged = with_averaged_wind(blocks, averaging_s) if averaging_s else blocks
+    sums = WindowSums(averaged, windows.mask)
+    return {name: sums.mean(name) for name in SUM_NAMES}
 
 
-def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
+def run_means(
+    batch: Batch, windows: Windows, over: Mapping[str, FloatArray], steps: Steps
+) -> RunMeans:
     """Means of every run over its window.
 
     Args:
-        sums: of its blocks.
+        over: as `window_means` gives them.
         steps: estimator, wind model and inertia of the method.
     """
-    whole, windy = sums.whole, sums.with_wind(steps.wind.averaging_s)
-    speed, ratio = whole.mean("log1_v"), whole.mean("log1_cw")
+    speed, ratio = over["log1_v"], over["log1_cw"]
     square = _or_one(speed) ** 2
     of_ratios = steps.run_point.estimator == "mean_of_ratios"
 
     def air_term(name: str) -> FloatArray:
-        return windy.mean(f"log1_{name}") if of_ratios else windy.mean(name) / square
+        return over[f"log1_{name}"] if of_ratios else over[name] / square
 
-    rise = sums.last.mean("log1_v") - sums.first.mean("log1_v")
-    seconds_apart = np.maximum(whole.window.sum(axis=1) - END_SECONDS, 1)
+    seconds_apart = np.maximum(windows.end_s - windows.start_s - END_SECONDS, 1)
+    fixes = over["gps_n"]
     return RunMeans(
         speed_m_s=speed,
-        gross_kg_m=ratio if of_ratios else whole.mean("force") / square,
-        sd_kg_m=np.sqrt(np.maximum(whole.mean("log1_cw2") - ratio**2, 0.0)),
-        inertia_kg_m=_inertia(batch, steps.run_point, rise / seconds_apart, square),
+        gross_kg_m=ratio if of_ratios else over["force"] / square,
+        sd_kg_m=np.sqrt(np.maximum(over["log1_cw2"] - ratio**2, 0.0)),
+        inertia_kg_m=_inertia(
+            batch, steps.run_point, windows.ends.speed_m_s / seconds_apart, square
+        ),
         air=air_parts(
             steps.wind,
             air_term,
             front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m")),
             side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m")),
         ),
-        gps_m_s=_gps_m_s(whole),
-        log2_m_s=whole.mean("log2_v"),
-        wind_m_s=whole.mean("wind_v"),
-        wind_angle_deg=mean_wind_angle_deg(whole),
+        gps_m_s=np.where(fixes > 0, over["gps"] / np.where(fixes > 0, fixes, 1.0), np.nan),
+        log2_m_s=over["log2_v"],
+        wind_m_s=over["wind_v"],
+        wind_angle_deg=mean_angle_deg(over["wind_sin"], over["wind_cos"]),
     )
-
-
-def _gps_m_s(whole: WindowSums) -> FloatArray:
-    """Mean ground speed of each run over its window, NaN without a fix, shape (runs,)."""
-    fixes = whole.total("gps_n")
-    return np.where(fixes > 0, whole.total("gps") / np.maximum(fixes, 1.0), np.nan)
 
 
 def _inertia(

@@ -7,13 +7,13 @@ formulas and the coefficients that are searched. Areas are in `pipeline.hull`.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from pipeline.arrays import FloatArray
-from pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks, WindowSums
+from pipeline.arrays import FloatArray, OnDemand
+from pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks
 from pipeline.hull import AIR_DENSITY_KG_M3
 from pipeline.method.definition import Wind
 
@@ -107,7 +107,7 @@ def with_averaged_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
         source, _, term = name.partition("_")
         return terms[term] * blocks[f"{source}_inv_v2"] if term in AIR_SUMS else blocks[name]
 
-    return blocks.with_sums(made)
+    return replace(blocks, sums=OnDemand(blocks.sums.keys(), made))
 
 
 def _centred_sum(values: FloatArray, width: int) -> FloatArray:
@@ -151,7 +151,6 @@ def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatAr
     )
 
 
-def mean_wind_angle_deg(sums: WindowSums) -> FloatArray:
-    """Circular mean of the vane over each window, shape (runs,), degrees in [0, 360)."""
-    sin, cos = sums.total("wind_sin"), sums.total("wind_cos")
+def mean_angle_deg(sin: FloatArray, cos: FloatArray) -> FloatArray:
+    """Circular mean of the vane by sums or means of its sine and cosine, degrees in [0, 360)."""
     return np.asarray(np.degrees(np.arctan2(sin, cos)) % 360.0, dtype=np.float64)

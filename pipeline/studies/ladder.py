@@ -40,7 +40,7 @@ def ladder(
     to_method: Method,
     tows: pl.DataFrame,
     blocks: RunBlocks,
-    links: tuple[pl.DataFrame, pl.DataFrame] | None = None,
+    links: tuple[pl.DataFrame | None, pl.DataFrame | None] | None = None,
     cache: RunCache | None = None,
 ) -> pl.DataFrame:
     """The effect of each step on every tow's Cw at the declared speed.
@@ -52,7 +52,7 @@ def ladder(
         from_method, to_method: the ends of the ladder.
         tows: rows of the warehouse's `tows`.
         links: log factors of both methods, where they were estimated before: their rows of the
-            table `tow_instruments`.
+            table `tow_instruments`; None for a method that estimates none.
         cache: what was found before of the same tows; added to.
 
     Returns:

@@ -9,7 +9,6 @@ combinations; here are all.
 
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import polars as pl
@@ -26,36 +25,26 @@ from pipeline.recompute.run_cache import RunCache
 FACTOR: Final = "speed.factor"
 B: Final = "curve.b"
 
-
-@dataclass(frozen=True)
-class Choice:
-    """An option of a step with two of its values."""
-
-    step: str
-    option: str
-    values: tuple[object, object]
-
-
-CHOICES: Final = {
-    FACTOR: Choice("speed", "factor", (1.06, 1 / 0.94)),
-    "run_point.estimator": Choice("run_point", "estimator", ("mean_of_ratios", "ratio_of_means")),
-    "wind.coefficients": Choice("wind", "coefficients", ("fixed", "archive")),
-    "wind.averaging_s": Choice("wind", "averaging_s", (0, 3)),
-    B: Choice("curve", "b", ("capped", "free")),
+CHOICES: Final[dict[str, tuple[object, object]]] = {
+    FACTOR: (1.06, 1 / 0.94),
+    "run_point.estimator": ("mean_of_ratios", "ratio_of_means"),
+    "wind.coefficients": ("fixed", "archive"),
+    "wind.averaging_s": (0, 3),
+    B: ("capped", "free"),
 }
-"""Of judgement, by name."""
+"""Of judgement: two values of an option."""
 
 B_FROM_LENGTH: Final = "b_from_length"
-TICKS: Final = {
-    "optimisation": Choice("wind", "coefficients", ("fixed", "per_run")),
-    "trimming": Choice("window", "rule", ("all", "steady")),
-    "vane": Choice("wind", "averaging_s", (0, 3)),
-    B_FROM_LENGTH: Choice("curve", "b", ("free", "hull speed")),
+TICKS: Final[dict[str, tuple[str, tuple[object, object]]]] = {
+    "optimisation": ("wind.coefficients", ("fixed", "per_run")),
+    "trimming": ("window.rule", ("all", "steady")),
+    "vane": ("wind.averaging_s", (0, 3)),
+    B_FROM_LENGTH: (B, ("free", "hull speed")),
 }
-"""By column: "Optimalisatie", "Afkappen", "WindVaanCorrectie", "B uit sloeplengte"."""
+"""By column, the option and its values without and with the tick: "Optimalisatie", "Afkappen",
+"WindVaanCorrectie", "B uit sloeplengte"."""
 
-SPEED_NAMES: Final = ("as_read", "dgps", "multiply", "divide", "estimated")
-AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED = SPEED_NAMES
+AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED = "as_read", "dgps", "multiply", "divide", "estimated"
 
 SPEEDS: Final = {
     "dgps": (AS_READ, DGPS),
@@ -85,10 +74,11 @@ def option_effects(
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     prescribed = [batch for batch, steps in plans if steps.speed.correction == "prescribed"]
     names = [name for name in CHOICES if name != FACTOR or prescribed]
-    capped = chosen_everywhere(plans, {CHOICES[B]: "capped"})
+    crossed = {name: (name, CHOICES[name]) for name in names if name != B}
+    capped = [(batch, chosen(steps, {B: "capped"})) for batch, steps in plans]
     frames = [
         _curves(one, of_b).with_columns(_flags(flags | {B: of_b is one.free}))
-        for flags, computed in _combinations(capped, names, B, links, cache)
+        for flags, computed in _combinations(capped, crossed, links, cache)
         for one in computed
         for of_b in (one.curves, one.free)
     ]
@@ -117,11 +107,12 @@ def option_curves(
     pairs = batches([method], tows, blocks)
     read = [(speed, batch, way) for batch, (steps,) in pairs for speed, way in speeds(steps)]
     plans = [(batch, way) for _, batch, way in read]
+    crossed = {name: choice for name, choice in TICKS.items() if name != B_FROM_LENGTH}
     frames = [
         _curves(one, of_b).with_columns(
             pl.lit(speed).alias("speed"), *_flags(flags | {B_FROM_LENGTH: of_b is not one.free})
         )
-        for flags, computed in _combinations(plans, list(TICKS), B_FROM_LENGTH, links, cache)
+        for flags, computed in _combinations(plans, crossed, links, cache)
         for (speed, *_), one in zip(read, computed, strict=True)
         for of_b in (one.free, _from_length(one))
     ]
@@ -150,26 +141,24 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
 
 def speeds(steps: Steps) -> Iterator[tuple[str, Steps]]:
     """The log as it reads, and each way in which a season's method makes a true speed of it."""
-    log = Choice("speed", "correction", ("none", steps.speed.correction))
-    gps = Choice("calibration", "rule", ("none", steps.calibration.rule))
-    yield AS_READ, chosen(steps, {log: "none", gps: "none"})
+    as_read, no_gps = {"speed.correction": "none"}, {"calibration.rule": "none"}
+    yield AS_READ, chosen(steps, as_read | no_gps)
     if steps.calibration.rule != "none":
-        yield DGPS, chosen(steps, {log: "none"})
+        yield DGPS, chosen(steps, as_read)
     if steps.speed.correction == "estimated":
         yield ESTIMATED, steps
     if steps.speed.correction == "prescribed":
         # Multiply by 1 + p, or divide by 1 - p.
-        multiply = steps.speed.factor
-        factor = Choice("speed", "factor", (multiply, 1.0 / (2.0 - multiply)))
-        for way, value in zip((MULTIPLY, DIVIDE), factor.values, strict=True):
-            yield way, chosen(steps, {gps: "none", factor: value})
+        yield MULTIPLY, chosen(steps, no_gps)
+        yield DIVIDE, chosen(steps, no_gps | {FACTOR: 1.0 / (2.0 - steps.speed.factor)})
 
 
-def chosen(steps: Steps, values: Mapping[Choice, object]) -> Steps:
-    """The steps of a season with a value for each choice."""
-    for choice, value in values.items():
-        step = getattr(steps, choice.step).model_copy(update={choice.option: value})
-        steps = steps.model_copy(update={choice.step: step})
+def chosen(steps: Steps, values: Mapping[str, object]) -> Steps:
+    """The steps of a season with other values of some options."""
+    for name, value in values.items():
+        step, option = name.split(".")
+        changed = getattr(steps, step).model_copy(update={option: value})
+        steps = steps.model_copy(update={step: changed})
     return steps
 
 
@@ -177,21 +166,17 @@ Plans = list[tuple[Batch, Steps]]
 """Batches with their steps."""
 
 
-def chosen_everywhere(plans: Plans, values: Mapping[Choice, object]) -> Plans:
-    """The same batches with a value for each choice."""
-    return [(batch, chosen(steps, values)) for batch, steps in plans]
-
-
 def _combinations(
-    plans: Plans, names: list[str], of_curve: str, links: pl.DataFrame, cache: RunCache
+    plans: Plans,
+    crossed: Mapping[str, tuple[str, tuple[object, object]]],
+    links: pl.DataFrame,
+    cache: RunCache,
 ) -> Iterator[tuple[dict[str, bool], list[Computed]]]:
-    """All combinations of choices but that of the curve: which are on, and what comes of them."""
-    others = [name for name in names if name != of_curve]
-    known = CHOICES | TICKS
-    for corner in itertools.product((False, True), repeat=len(others)):
-        flags = dict(zip(others, corner, strict=True))
-        values = {known[name]: known[name].values[on] for name, on in flags.items()}
-        yield flags, evaluate(chosen_everywhere(plans, values), cache, links)
+    """All combinations of choices: which are on, and what comes of them."""
+    for corner in itertools.product((False, True), repeat=len(crossed)):
+        flags = dict(zip(crossed, corner, strict=True))
+        values = {crossed[name][0]: crossed[name][1][on] for name, on in flags.items()}
+        yield flags, evaluate([(batch, chosen(one, values)) for batch, one in plans], cache, links)
 
 
 def _from_length(computed: Computed) -> curve.Curves:

@@ -1,4 +1,4 @@
-"""What many tows have in common, and what their instruments said: medians and means.
+"""What many tows have in common, what their instruments said, and what was printed of them.
 
 Frames of the warehouse in, frames out. Counts, and means of what a table already holds, are views
 of the database (`pipeline.tables.views`); statistics with an interval are in
@@ -9,7 +9,10 @@ from typing import Final
 
 import polars as pl
 
+from pipeline.curve import cw
 from pipeline.method.definition import Method
+from pipeline.races.power import curve_of_lines
+from pipeline.tables.keys import LINE
 
 
 def season_changes(curves: pl.DataFrame, first_method: Method) -> pl.DataFrame:
@@ -34,6 +37,53 @@ def season_changes(curves: pl.DataFrame, first_method: Method) -> pl.DataFrame:
             ratio.min().alias("lowest_ratio"),
             ratio.max().alias("highest_ratio"),
         )
+    )
+
+
+def print_reproduction(
+    printed_registers: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
+) -> pl.DataFrame:
+    """Printed A, B and Cw of each tow next to those of each method, at the printed speed.
+
+    Args:
+        printed_registers: lines of registers as printed; of a tow in several the first counts.
+        curves: the table of that name.
+        tows: `tow_id, tow_date` and the line.
+
+    Returns:
+        Rows of the table `print_reproduction`; a printed line without a tow in the archive has
+        none.
+    """
+    of_tow = (
+        printed_registers.filter("has_valid_curve")
+        .sort("season")
+        .join(
+            tows.select("tow_id", "tow_date", *LINE), on=["tow_date", *LINE], maintain_order="left"
+        )
+        .unique("tow_id", keep="first", maintain_order=True)
+        .select(
+            "tow_id",
+            pl.col("season").alias("printed_in"),
+            pl.col("declared_speed_m_s").alias("speed_m_s"),
+            pl.col("a_kg_m").alias("printed_a_kg_m"),
+            pl.col("b_m_s").alias("printed_b_m_s"),
+            pl.col("cw_kg_m").alias("printed_cw_kg_m"),
+        )
+    )
+    compared = (
+        curves.drop_nulls("cw_kg_m")
+        .select(
+            "method", "tow_id", "season", *LINE, "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s"
+        )
+        .join(of_tow, on="tow_id", maintain_order="left")
+    )
+    there = cw(*curve_of_lines(compared), compared["speed_m_s"])
+    known = pl.when(pl.Series(there).is_finite()).then(pl.Series(there))
+    return (
+        compared.with_columns(known.alias("cw_kg_m"))
+        .with_columns((pl.col("printed_cw_kg_m") / pl.col("cw_kg_m")).alias("cw_ratio"))
+        .drop("declared_speed_m_s")
+        .sort("method", "tow_id")
     )
 
 

@@ -62,7 +62,7 @@ class TowRuns(RunList):
 
 
 class HandWindows(PerRun):
-    """Windows that a person gave, one row per run; a method may use them (`by_hand`)."""
+    """Windows that a person gave, one row per run; they go before those that are found."""
 
     start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0, max=600)
     end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1, max=600)

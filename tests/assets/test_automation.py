@@ -13,9 +13,8 @@ from typing import ClassVar
 import dagster as dg
 import pytest
 
-from assets.automation import archive_changed, rebuild_failed
+from assets.automation import archive_changed, rebuild_failed, send_mail
 from assets.definitions import build_defs
-from assets.mail import send_mail
 from assets.settings import Settings, read_settings
 from pipeline.errors import MissingKnowledgeError
 from tests.assets.test_rebuild import samples_files, spoil

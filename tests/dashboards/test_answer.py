@@ -76,7 +76,7 @@ def test_two_tows_are_named_and_an_alteration_between_them():
     text = plain(said())
     assert "proef van 12 maart 2015, het nieuwe uit die van 10 maart 2017: daartussen" in text
     assert "als verbouwd" not in said(altered=False)
-    assert "Het oude getal" not in said(old_tow_id="2017-1")
+    assert "Het oude getal" not in said(old_tow_date=LINE["tow_date"])
 
 
 def test_the_place_in_a_race_is_not_the_place_at_equal_power():

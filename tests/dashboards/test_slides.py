@@ -10,8 +10,7 @@ from dashboards import slide_book
 from dashboards.slides import slide_book as as_pdf
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGES
-from warehouse.queries.chosen_tows import NEWEST
-from warehouse.queries.views import Views
+from warehouse.queries.views import NEWEST, Views
 
 
 @pytest.fixture(scope="module")

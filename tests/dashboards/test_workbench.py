@@ -26,8 +26,8 @@ from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
 from warehouse.editions.compare import compare
 from warehouse.editions.publish import drafted
-from warehouse.queries.chosen_tows import NEWEST
 from warehouse.queries.history import History
+from warehouse.queries.views import NEWEST
 from warehouse.store.store import Store
 
 PARENT = "rebased-2015"

@@ -12,7 +12,7 @@ from pipeline.blocks.run_blocks import SUM_NAMES, WindowSums, stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import BrokenPromiseError
-from pipeline.steps.wind import mean_wind_angle_deg
+from pipeline.steps.wind import mean_angle_deg
 
 EXACT = 1e-12
 
@@ -101,7 +101,8 @@ def test_mean_wind_angle_goes_round_north(angle, spread, seed):
     around = np.mod(angle + np.concatenate([offsets, -offsets]), 64 * 360) / 64  # exact in 32 bits
     samples = samples.with_columns(pl.Series("wind_angle_deg", around, pl.Float32))
     blocks = stacked(samples, 10)
-    found = mean_wind_angle_deg(WindowSums(blocks, blocks.n > 0))[0]
+    sums = WindowSums(blocks, blocks.n > 0)
+    found = mean_angle_deg(sums.mean("wind_sin"), sums.mean("wind_cos"))[0]
     assert abs((found - angle / 64 + 180.0) % 360.0 - 180.0) < 1e-9
 
 

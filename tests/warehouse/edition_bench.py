@@ -10,11 +10,11 @@ import polars as pl
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.definition import Method, shipped_method
-from tests.intake import bring_in
 from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
 from warehouse.editions.compare import Comparison, compare
 from warehouse.editions.publish import Terms, publish
+from warehouse.intake.seasons import bring_in
 from warehouse.store.editions import read_edition
 from warehouse.store.store import Store
 

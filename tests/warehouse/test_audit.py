@@ -1,15 +1,12 @@
 """What is collected about a boat or a type: figures of the tables, and verdicts they bear."""
 
-from dataclasses import replace
-
 import duckdb
 import polars as pl
 import pytest
 
 from pipeline.errors import MissingKnowledgeError
 from tests.conftest import METHODS
-from warehouse.queries.audit import audit
-from warehouse.queries.audit_types import differences
+from warehouse.queries.audit import audit, differences
 
 
 def change(bench, *statements):
@@ -24,7 +21,7 @@ def types_of(bench):
 
 
 def under(bench, boat_type, method="rebased-2015"):
-    return audit(bench.store, [boat_type], method).types[0].under[method]
+    return audit(bench.store, [boat_type], method).types[0]["under"][method]
 
 
 def test_figures_of_a_type_are_those_of_the_tables(built):
@@ -33,55 +30,49 @@ def test_figures_of_a_type_are_those_of_the_tables(built):
         assert report.methods == list(METHODS)
         for method in METHODS:
             own = {"method": method, "boat_type": boat_type}
-            found = report.types[0].under[method]
+            found = report.types[0]["under"][method]
             lines = built.table("type_lines").filter(tows="newest", **own).drop("tows")
-            assert lines.height == len(found.lines)
-            for line in found.lines:
+            assert lines.height == len(found["lines"])
+            for line in found["lines"]:
                 key = {name: line[name] for name in ("quantity", "explaining", "within")}
                 row = lines.row(by_predicate=_where(key), named=True)
                 assert row.items() <= line.items()
             test = built.table("type_homogeneity").filter(**own).row(0, named=True)
-            assert test.items() <= found.bends.items()
+            assert test.items() <= found["bends"][0].items()
             outliers = built.table("type_outliers").filter(**own)
-            assert len(found.outside) == outliers["outside"].sum()
+            assert len(found["outside"]) == outliers["outside"].sum()
 
 
 def _where(key):
     return pl.all_horizontal(*(pl.col(name) == value for name, value in key.items()))
 
 
-@pytest.fixture
-def of(built):
-    """Statistics of two types with the given slopes and verdicts, and nothing else to compare."""
-    any_type = under(built, "Kuikensloep")
-
-    def statistics(slope, bends):
-        return replace(
-            any_type,
-            lines=[
-                {"quantity": "b_m_s", "explaining": "weight_kg", "within": "all", "reason": ""}
-                | slope
-            ],
-            speed_trend={"reason": "few_boats"},
-            eras=[],
-            bends={"equal_possible": bends},
-        )
-
-    return lambda first, second: [statistics(*first), statistics(*second)]
+def of(*types):
+    """Statistics of types with the given slopes and verdicts, and nothing else to compare."""
+    key = {"quantity": "b_m_s", "explaining": "weight_kg", "within": "all", "reason": ""}
+    return [
+        {
+            "lines": [key | slope],
+            "speed_trend": [{"reason": "few_boats"}],
+            "eras": [],
+            "bends": [{"equal_possible": bends}],
+        }
+        for slope, bends in types
+    ]
 
 
 def slope(value, half):
     return {"slope": value, "slope_lo": value - half, "slope_hi": value + half}
 
 
-def test_types_differ_where_their_slopes_lie_further_apart_than_both_intervals(of):
+def test_types_differ_where_their_slopes_lie_further_apart_than_both_intervals():
     # One follows weight and in the other no trend is seen: no difference by that alone.
     assert differences(*of((slope(1.0, 0.9), None), (slope(0.5, 0.9), None))) == []
     assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.3), None))) == ["b_m_s weight_kg"]
     assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.41), None))) == []
 
 
-def test_types_differ_by_a_verdict_only_where_both_have_one(of):
+def test_types_differ_by_a_verdict_only_where_both_have_one():
     same = slope(0.0, 1.0)
     assert differences(*of((same, True), (same, False))) == ["bends"]
     assert differences(*of((same, True), (same, None))) == []
@@ -90,14 +81,14 @@ def test_types_differ_by_a_verdict_only_where_both_have_one(of):
 
 @pytest.mark.parametrize("name", ["Kuikensloep", "kuikensloep", " KUIKEN SLOEP "])
 def test_a_type_is_found_whatever_its_case_and_blanks(built, name):
-    assert audit(built.store, [name]).types[0].boat_type == "Kuikensloep"
+    assert audit(built.store, [name]).types[0]["boat_type"] == "Kuikensloep"
 
 
 def test_boats_without_a_type_have_a_page_without_claims(built):
     found = under(built, "unknown")
-    assert {line["reason"] for line in found.lines} == {"no_type"}
-    assert (found.bends["reason"], found.speed_trend["reason"]) == ("no_type", "no_type")
-    assert found.bends["equal_possible"] is None
+    assert {line["reason"] for line in found["lines"]} == {"no_type"}
+    assert {row["reason"] for row in found["bends"] + found["speed_trend"]} == {"no_type"}
+    assert {row["equal_possible"] for row in found["bends"]} == {None}
 
 
 def test_an_unknown_name_lists_the_types_and_a_boat(built):

@@ -16,7 +16,7 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import shipped_method
 from pipeline.register.register import LINE
 from tests.warehouse.edition_bench import diff, terms
-from warehouse.derive.published import published_tables
+from warehouse.derive.registers import published_tables
 from warehouse.editions import publish as publish_module
 from warehouse.editions import sheets
 from warehouse.editions.making import MADE
@@ -271,6 +271,7 @@ def test_a_printed_register_with_a_line_that_cannot_be_read_is_not_published(wit
     file.write_text(
         file.read_text("utf-8").replace("32,62;5,59;41,63;2,60;2014", "x;5,59;41,63;2,60;2014")
     )
+    with_printed.rebuild(())
     with pytest.raises(MissingKnowledgeError, match=r"2012\.csv: Line 5: column 'A' .*Mend"):
         publish_register_of(with_printed)
     assert not folder(with_printed, "gedrukt-2012").exists()

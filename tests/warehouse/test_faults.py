@@ -11,10 +11,10 @@ from polars.testing import assert_frame_equal
 
 from pipeline.method.definition import shipped_method
 from tests.conftest import METHODS, SMALL, Workbench
-from tests.intake import bring_in
 from warehouse.derive.database import build_database
 from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
+from warehouse.intake.seasons import bring_in
 
 ROWS = 50 * SMALL.rate_hz
 LIST_2009 = "sleeplijsten/sleeplijst_2009.csv"

@@ -7,12 +7,12 @@ from unittest import mock
 import pytest
 
 from pipeline.method.definition import shipped_method
-from tests.intake import bring_in
 from tests.warehouse.edition_bench import DAY
 from warehouse.archive.files import hashes
 from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
 from warehouse.intake import seasons as intake
+from warehouse.intake.seasons import bring_in
 
 
 @pytest.fixture

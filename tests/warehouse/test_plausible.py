@@ -19,13 +19,13 @@ from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.assessment.plausibility import Shift, plausibility
 from pipeline.blocks.batch import Batch
 from pipeline.method.definition import shipped_method
-from tests.intake import bring_in
 from tests.worlds import measure
 from warehouse.derive.graph import ARCHIVE
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
 from warehouse.derive.plausible import with_doubts
 from warehouse.editions.publish import Terms, lines_to_look_at, publish
+from warehouse.intake.seasons import bring_in
 from warehouse.store.editions import read_edition
 from warehouse.store.store import Store
 

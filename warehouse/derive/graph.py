@@ -23,8 +23,7 @@ from pipeline.recompute.results import Recomputed
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register import replay
 from pipeline.register.register import as_ruled
-from pipeline.studies import claims
-from pipeline.studies.summaries import SUMS, season_changes, second_means
+from pipeline.studies.summaries import SUMS, print_reproduction, season_changes, second_means
 from pipeline.tables.register import RaceChanges
 from pipeline.tables.views import VIEWS
 from pipeline.uncertainty.ensemble import tow_ensemble
@@ -134,7 +133,7 @@ STEPS: Final = (
     *_alone("consistency", variance_components, slow_tows, repeat_pairs, era_shifts),
     *_alone("consistency", repeats.reproducibility),
     REGISTERS,
-    *_alone("summaries", race_changes, season_changes, claims.print_reproduction),
+    *_alone("summaries", race_changes, season_changes, print_reproduction),
     DATABASE,
 )
 """Every step comes after those whose tables it reads."""

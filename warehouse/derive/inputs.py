@@ -20,7 +20,7 @@ from pipeline.method.definition import Method
 from pipeline.recompute.run_cache import RunCache
 from pipeline.tables.lake import SEASON_TABLES
 from pipeline.tables.schemas import TABLES
-from warehouse.derive.published import published_made_from, published_tables
+from warehouse.derive.registers import published_made_from, published_tables
 from warehouse.intake import seasons as intake
 from warehouse.store import decisions, unforeseen
 from warehouse.store.database import open_database

@@ -1,14 +1,21 @@
-"""Registers: a draft per method, what changes between them, and the published editions."""
+"""Registers: a draft per method, what changes between them, and the published editions beside them.
+
+Editions are read as they lie; nothing of them is compared or computed again.
+"""
 
 import datetime as dt
 from collections.abc import Mapping, Sequence
 
 import polars as pl
+from pydantic import TypeAdapter
 
 from pipeline.method.definition import Method
+from pipeline.recompute.facts import samples_files
 from pipeline.register import due
 from pipeline.register.changes import register_changes
 from pipeline.register.register import (
+    CURVE_COLUMNS,
+    LINE,
     draft_name,
     draft_register,
     lines_of_all_days,
@@ -17,9 +24,19 @@ from pipeline.register.register import (
 from pipeline.tables.editions import Editions
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import RegisterChanges
-from pipeline.tables.schemas import conform
-from warehouse.derive.published import history_rows, lineage_rows
+from pipeline.tables.schemas import TABLES, conform
+from warehouse.store import decisions as decided
 from warehouse.store.code import code_version
+from warehouse.store.editions import (
+    CHANGES,
+    DECISIONS,
+    Edition,
+    edition_names,
+    edition_path,
+    read_edition,
+    read_manifest,
+)
+from warehouse.store.store import Store
 
 
 def register_tables(
@@ -104,4 +121,102 @@ def _methods(methods: Sequence[Method]) -> pl.DataFrame:
     facts = ("title", "title_en", "interval", "content_hash", "definition")
     return pl.DataFrame(
         [{"method": m.name} | {name: getattr(m, name) for name in facts} for m in methods]
+    )
+
+
+# Published editions
+
+
+def published_made_from(store: Store) -> dict[str, str]:
+    """The seals of all editions: what the rows of `published_tables` are made from."""
+    return {name: read_manifest(store.editions / name).seal for name in edition_names(store)}
+
+
+def published_tables(store: Store) -> dict[str, pl.DataFrame]:
+    """Rows of `editions`, and of the register's tables and `lineage` of every edition.
+
+    Raises:
+        BrokenPromiseError: a file of an edition is missing or damaged.
+    """
+    rows: dict[str, list[pl.DataFrame]] = {
+        name: [] for name in ("editions", "register", "register_history", CHANGES, "lineage")
+    }
+    for name in edition_names(store):
+        edition = read_edition(store, name)
+        rows["editions"].append(_edition_row(edition))
+        rows["register"].append(edition.register)
+        rows["register_history"].append(lines_in_time(store, edition))
+        if CHANGES in edition.tables:
+            rows[CHANGES].append(edition.tables[CHANGES])
+        if edition.method is not None:
+            hashes = {edition.method.name: edition.manifest.method_hash}
+            tows, code_version = edition.tables["tows"], edition.manifest.code_version
+            rows["lineage"].append(lineage_rows(edition.register, tows, hashes, code_version))
+    return {
+        table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
+        for table, frames in rows.items()
+    }
+
+
+def decisions_of(store: Store, edition: Edition) -> pl.DataFrame:
+    """The decisions about tows with which an edition was made; for a draft those of now."""
+    name = edition.manifest.edition
+    if name not in edition_names(store):
+        return decided.decision_table(decided.read_decisions(store.root / decided.FILE_NAME))
+    text = (edition_path(store, name) / DECISIONS).read_text(encoding="utf-8")
+    return decided.decision_table(TypeAdapter(tuple[decided.Decision, ...]).validate_json(text))
+
+
+def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
+    """Rows of `register_history` of an edition: before its lines those that its tows gave earlier.
+
+    So a race of before the edition is computed with the tow that counted then.
+    """
+    lines = edition.register.drop_nulls("cw_kg_m")
+    if edition.method is None:
+        return history_rows(
+            lines, edition.manifest.edition, lines["method"][0] if lines.height else ""
+        )
+    tows = edition.tables["tows"].filter(pl.col("tow_date") <= edition.manifest.valid_from)
+    earlier = lines_of_all_days(
+        edition.tables["curves"], tows, edition.method.validity, decisions_of(store, edition)
+    ).join(lines, on=[*LINE, "tow_id"], how="anti")
+    both = pl.concat([earlier, lines.select(earlier.columns)])
+    return history_rows(both, edition.manifest.edition, edition.method.name)
+
+
+def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame:
+    """Rows of `register_history`: lines in the order in which one goes before another."""
+    return lines.select(
+        pl.lit(edition).alias("edition"),
+        pl.lit(method).alias("method"),
+        *LINE,
+        pl.int_range(1, pl.len() + 1, dtype=pl.Int32).over(LINE).alias("position"),
+        *CURVE_COLUMNS,
+    ).sort(*LINE, "position")
+
+
+def _edition_row(edition: Edition) -> pl.DataFrame:
+    """What an edition says of itself."""
+    about = edition.manifest.model_dump(include=set(TABLES["editions"].column_names()))
+    interval = edition.method and edition.method.interval
+    strings = ("previous", "method", "method_hash", "interval")
+    return pl.DataFrame([about | {"interval": interval}]).cast(dict.fromkeys(strings, pl.String))
+
+
+def lineage_rows(
+    register: pl.DataFrame, tows: pl.DataFrame, hashes: Mapping[str, str | None], code_version: str
+) -> pl.DataFrame:
+    """Rows of the table `lineage`: one per line that has a tow and samples file of it.
+
+    Args:
+        register: rows of `register`.
+        tows: the tows behind them.
+        hashes: content hash of each method.
+        code_version: of the code that made the lines.
+    """
+    lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
+    return lines.join(samples_files(tows), on="tow_id", maintain_order="left").with_columns(
+        method_hash=pl.col("method").replace_strict(hashes, return_dtype=pl.String),
+        code_version=pl.lit(code_version),
     )

@@ -14,7 +14,6 @@ import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
 
 from pipeline.method.definition import Method
-from pipeline.recompute.run_cache import RunCache
 from pipeline.tables.frames import dtypes
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.inputs import (
@@ -149,14 +148,8 @@ class Step:
         return made
 
     def _computed(self, scope: Scope) -> Mapping[str, pl.DataFrame]:
-        arguments = {name: argument(scope, name) for name in self.inputs}
-        try:
-            made = self.compute(**arguments)
-            return {self.outputs[0]: made} if isinstance(made, pl.DataFrame) else made
-        finally:
-            cache = arguments.get("run_cache")
-            if isinstance(cache, RunCache):
-                cache.let_go()
+        made = self.compute(**{name: argument(scope, name) for name in self.inputs})
+        return {self.outputs[0]: made} if isinstance(made, pl.DataFrame) else made
 
     def _tow_ids(self, scope: Scope) -> list[str]:
         """The tows that the step works on, sorted; none where it knows of no tow."""

@@ -29,9 +29,6 @@ Without a speed correction the first is `as-published`."""
 
 JUDGEMENT, TOOL = "judgement", "tool"
 
-MOST_APART: Final = 1e-10
-"""Rounding may make the factors of a ladder and its total so different."""
-
 
 def study_tables(
     method: Method,
@@ -73,17 +70,3 @@ def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.Dat
 def _in_order(first: Method, other: Method) -> tuple[Method, Method]:
     """The two ends of a ladder: what came first in history is its beginning."""
     return (other, first) if other.name == FIRST_PUBLISHED else (first, other)
-
-
-def ladders_that_do_not_multiply(correction_steps: pl.DataFrame) -> list[str]:
-    """Tows of which the factors of a ladder do not multiply to its total, within 1e-10."""
-    ends = (
-        correction_steps.sort("position")
-        .group_by("from_method", "to_method", "tow_id", maintain_order=True)
-        .agg(
-            pl.col("factor").product(),
-            (pl.col("cw_kg_m").last() / pl.col("cw_kg_m").first()).alias("total"),
-        )
-    )
-    apart = (pl.col("factor") / pl.col("total") - 1.0).abs() > MOST_APART
-    return list(ends.filter(apart)["tow_id"].unique().sort())

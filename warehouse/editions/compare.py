@@ -14,14 +14,15 @@ from typing import Final
 import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
-from pipeline.method.definition import RUNS_ALONE
+from pipeline.curve import cw
+from pipeline.method.definition import RUNS_ALONE, Method, shipped_method
+from pipeline.races.power import curve_of_lines
 from pipeline.register.changes import (
     NO_FACTOR,
     NO_PARTS,
     PART_SCHEMA,
     compare_lines,
     largest_first,
-    register_changes,
     steps_of_lines,
 )
 from pipeline.register.register import LINE, NO_EMPTY_THWART
@@ -29,15 +30,19 @@ from pipeline.register.replay import RaceRules, race_changes, replay, winner_cha
 from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
-from warehouse.derive.published import lines_in_time
+from warehouse.derive.registers import lines_in_time
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
 from warehouse.store.editions import CHANGES, MEASURED, Edition
-from warehouse.store.store import Store, archive_root
+from warehouse.store.store import Store
 
 STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
 NO_STEPS: Final = pl.DataFrame(schema={n: dtypes(CorrectionSteps)[n] for n in STEP_COLUMNS})
 CAUSE: Final = pl.Struct({name: PART_SCHEMA[name] for name in ("cause", "step", "factor")})
 LARGEST: Final = 10
+AS_PUBLISHED: Final = "as-published"
+"""The method that does what was done in each season: what is printed is held against it."""
+REPRODUCTION: Final = "reproduction"
+"""From print to the same tow as published: what was printed and cannot be explained."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +67,9 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     """
     if CHANGES in new.tables and new.manifest.previous == old.manifest.edition:
         return Comparison(old, new, new.tables[CHANGES])
-    steps = _steps(store, old, new)
-    printed = _printed_parts(old, new)
+    start = old.method or shipped_method(AS_PUBLISHED)
+    steps = _steps(store, start, old, new)
+    printed = _printed_parts(steps, old, new)
     parts = pl.concat([printed, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
     manifests = old.manifest, new.manifest
     both_towed = all("tows" in edition.tables for edition in (old, new))
@@ -89,32 +95,45 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     return Comparison(old, new, lines)
 
 
-def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
-    """Where another tow counts than the printed one: what the new method makes of the printed tow.
+def _printed_parts(rungs: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
+    """Where another tow counts than the printed one: from print to that tow as published.
 
-    Known where the new edition went by tows and has one of that day and line.
+    Known where the new edition has one tow of that day and line.
+
+    Args:
+        rungs: the ladder from `AS_PUBLISHED`.
+        old, new: the editions; the old one may be printed.
     """
-    if old.method is not None or "curves" not in new.tables:
+    if old.method is not None or rungs.is_empty():
         return NO_PARTS
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
-    tows = new.tables["tows"].select("tow_id", "tow_date", thwart)
-    curves = new.tables["curves"].join(tows, on="tow_id", maintain_order="left")
     day = [*LINE, "tow_date"]
-    same_tow = curves.join(old.register, on=day, how="semi").unique(day, keep="none")
-    moved = same_tow.join(new.register, on="tow_id", how="anti")
-    if moved.is_empty():
-        return NO_PARTS
-    moved = moved.with_columns(edition=pl.lit("printed"))
-    changes = register_changes(old.register, moved).drop_nulls("cw_ratio")
+    printed = (
+        new.tables["tows"]
+        .select("tow_id", *LINE[:-1], thwart, "tow_date", v0="declared_speed_m_s")
+        .join(
+            rungs.filter(position=0).select("tow_id", first="cw_kg_m"),
+            on="tow_id",
+            maintain_order="left",
+        )
+        .join(old.register.drop("tow_id"), on=day, maintain_order="left")
+        .unique(day, keep="none", maintain_order=True)
+        .join(new.register, on="tow_id", how="anti")
+    )
+    before = cw(*curve_of_lines(printed), printed["v0"].to_numpy())
+    known = printed.with_columns(factor=pl.col("first") / pl.Series(before))
     step = pl.lit(None, pl.String)
-    return changes.select(*LINE, cause=pl.lit("printed"), step=step, factor="cw_ratio")
+    return known.filter(pl.col("factor").is_finite()).select(
+        *LINE, cause=pl.lit(REPRODUCTION), step=step, factor="factor"
+    )
 
 
-def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
-    """The ladder from the old to the new method, on the new edition's tows that are still there."""
-    if old.method is None or new.method is None:
-        return NO_STEPS
-    if old.method.content_hash == new.method.content_hash:
+def _steps(store: Store, start: Method, old: Edition, new: Edition) -> pl.DataFrame:
+    """The ladder to the new method, on the new edition's tows that are still there.
+
+    It begins at the old method; from print, at `AS_PUBLISHED`.
+    """
+    if new.method is None or old.manifest.method_hash == new.manifest.method_hash:
         return NO_STEPS
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
 
@@ -126,8 +145,8 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
     blocks = stack_blocks(intake.all_blocks(store), runs)
     before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
-    links = None if before is None or after is None else (before, after)
-    return ladder(old.method, new.method, tows, blocks, links)
+    is_known = after is not None and (before is not None or old.method is None)
+    return ladder(start, new.method, tows, blocks, (before, after) if is_known else None)
 
 
 # What the known parts of a change leave unexplained is named after its ground
@@ -167,11 +186,13 @@ def grounds(
 
     of_print = pl.any_horizontal(pl.col("basis", "basis_new").ne_missing(MEASURED))
     own = ~pl.col("tow_id_new").is_in(list(same))
-    redefined = ~pl.col("tow_id_new").is_in(list(separated)) & method
+    stepped = pl.col("tow_id_new").is_in(list(separated))
+    redefined = ~stepped & method
     holds = {
         "closed_form": of_print & ~moved(INPUTS_HASH),
-        "tow": pl.when(of_print).then("is_computed").otherwise(moved("tow_id")),
+        "tow": pl.when(of_print).then(pl.col("is_computed") & stepped).otherwise(moved("tow_id")),
         "printed_and_tow": of_print & moved("tow_date"),
+        REPRODUCTION: of_print & stepped,
         "printed": of_print,
         "unseparated": redefined & (own | code),
         "method": redefined,
@@ -190,23 +211,6 @@ def grounds(
 
 
 @dataclass(frozen=True)
-class Group:
-    """Lines that gain power for the same race, or lose it.
-
-    Attributes:
-        lines: how many.
-        of_class: how many of each class.
-        median_power_ratio: new / old power for the same race.
-        median_seconds: what the new register gives in a race of two hours [s].
-    """
-
-    lines: int
-    of_class: dict[str, int]
-    median_power_ratio: float | None
-    median_seconds: float | None
-
-
-@dataclass(frozen=True)
 class DiffReport:
     """A comparison of two editions as plain data.
 
@@ -215,7 +219,8 @@ class DiffReport:
         simulated: whether either is of a simulated archive.
         lines: lines in either.
         changes: lines by kind of change.
-        gain, loss: lines to which the new register gives more power for the same race, and less.
+        gain, loss: how many `lines` gain power for the same race or lose it, how many `of_class`,
+            and their `median_power_ratio` and `median_seconds` in a race of two hours.
         exceeds_interval: lines that moved by more than their intervals.
         interval_unknown: lines whose interval is not known.
         runs_alone: editions whose intervals are the spread of the runs alone.
@@ -224,7 +229,7 @@ class DiffReport:
         rows: all lines: rows of `register_changes` with the causes that moved each.
         race_rules: how races are worked out, where that was asked.
         races, winners: results of the archive's races under both, and who wins; None where not
-            asked, or where the archive is not there or has no races.
+            asked, or where the archive has no races.
     """
 
     from_edition: str
@@ -232,8 +237,8 @@ class DiffReport:
     simulated: bool
     lines: int
     changes: dict[str, int]
-    gain: Group
-    loss: Group
+    gain: Row
+    loss: Row
     exceeds_interval: int
     interval_unknown: int
     runs_alone: list[str]
@@ -280,9 +285,9 @@ def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) ->
         MissingKnowledgeError: the rules ask for what is not known.
     """
     without_races = replace(report(comparison), race_rules=rules)
-    results = pl.DataFrame() if archive_root(store) is None else store.read("listed_races")
-    if results.is_empty():
+    if store.made_from("listed_races") is None or not store.count_rows("listed_races"):
         return without_races
+    results = store.read("listed_races")
     editions = (comparison.old, comparison.new)
     before, after = (replay(lines_in_time(store, one), results, rules) for one in editions)
     members = comparison.new.tables.get("ensemble", pl.DataFrame())
@@ -293,14 +298,14 @@ def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) ->
     )
 
 
-def _group(lines: pl.DataFrame) -> Group:
+def _group(lines: pl.DataFrame) -> Row:
     power, seconds = lines.select("power_ratio", "gain_in_two_hours_s").median().row(0)
-    return Group(
-        lines=lines.height,
-        of_class={c: lines.filter(crew_class=c).height for c in ("H", "D")},
-        median_power_ratio=power,
-        median_seconds=seconds,
-    )
+    return {
+        "lines": lines.height,
+        "of_class": {c: lines.filter(crew_class=c).height for c in ("H", "D")},
+        "median_power_ratio": power,
+        "median_seconds": seconds,
+    }
 
 
 def parts_of(lines: pl.DataFrame) -> pl.DataFrame:

@@ -26,35 +26,15 @@ class Lineage:
     Attributes:
         about: what the edition says of itself, but for hashes of its tables and files.
         folder: where it lies.
-        lines: the boat's lines.
+        lines: the boat's lines, each with the `line` itself, as it is `printed` by header, its
+            verification `code`, its `tow`, `path` and `sha256` of its samples `files`, its `runs`
+            (rows of `run_points`) and its `curve`. Where no tow of the archive is behind it the tow
+            and curve are None and the lists empty.
     """
 
     about: Row
     folder: str
-    lines: list["LineLineage"]
-
-
-@dataclass(frozen=True)
-class LineLineage:
-    """What a line was made from.
-
-    Attributes:
-        line: the line.
-        printed: the line as printed, by header.
-        code: its verification code.
-        tow: its tow; None, and nothing in what follows, where no tow of the archive is behind it.
-        files: path and SHA-256 of its samples files.
-        runs: its rows of `run_points`.
-        curve: its row of `curves`.
-    """
-
-    line: Row
-    printed: dict[str, str]
-    code: str | None
-    tow: Row | None
-    files: list[Row]
-    runs: list[Row]
-    curve: Row | None
+    lines: list[Row]
 
 
 def lineage(store: Store, edition: str, boat: str) -> Lineage:
@@ -78,7 +58,7 @@ def lineage(store: Store, edition: str, boat: str) -> Lineage:
     )
 
 
-def _line(edition: Edition, row: Row) -> LineLineage:
+def _line(edition: Edition, row: Row) -> Row:
     def of_tow(table: str) -> list[Row]:
         frame = edition.tables.get(table)
         return [] if frame is None else frame.filter(tow_id=row["tow_id"]).to_dicts()
@@ -86,12 +66,12 @@ def _line(edition: Edition, row: Row) -> LineLineage:
     frame = pl.DataFrame([row], schema=edition.register.schema)
     tow = next(iter(of_tow("tows")), None)
     files = [(tow[f"{n}_path"], tow[f"{n}_sha256"]) for n in ("samples", "second")] if tow else []
-    return LineLineage(
-        line=row,
-        printed=printed(frame, REGISTER_FIELDS).row(0, named=True),
-        code=row[CODE_FIELD.column],
-        tow=tow,
-        files=[{"path": path, "sha256": sha256} for path, sha256 in files if path],
-        runs=of_tow("run_points"),
-        curve=next(iter(of_tow("curves")), None),
-    )
+    return {
+        "line": row,
+        "printed": printed(frame, REGISTER_FIELDS).row(0, named=True),
+        "code": row[CODE_FIELD.column],
+        "tow": tow,
+        "files": [{"path": path, "sha256": sha256} for path, sha256 in files if path],
+        "runs": of_tow("run_points"),
+        "curve": next(iter(of_tow("curves")), None),
+    }

@@ -16,10 +16,9 @@ from pipeline.messages import say
 from pipeline.method.definition import Method
 from pipeline.register.register import LINE, valid_until
 from pipeline.steps.speed import log_factor
-from warehouse.archive import Fault, read_published_registers
 from warehouse.editions.inputs import INPUTS_HASH
 from warehouse.store.editions import Edition
-from warehouse.store.store import Store, archive_root, fingerprint
+from warehouse.store.store import Store, fingerprint
 
 AS_PRINTED, REBASED, NOT_REBASED = "printed", "printed_rebased", "printed_not_rebased"
 PRINTED_METHOD: Final = "as-printed"
@@ -35,17 +34,16 @@ def printed_path(store: Store, season: int) -> str:
         MissingKnowledgeError: the archive holds no such register, or one with a line that cannot be
             read: an edition is kept for ever and must not lack it.
     """
-    registers, faults = _registers(store)
-    paths = registers.filter(pl.col("season") == season)["path"].unique().sort()
+    registers = store.read("printed_registers")
+    paths = registers.filter(season=season)["path"].unique().sort()
     if paths.is_empty():
         known = ", ".join(str(s) for s in registers["season"].unique().sort()) or say("none")
         raise MissingKnowledgeError(
             "the archive holds no readable register printed in {}; it holds: {}", season, known
         )
     path = str(paths[0])
-    unread = next((fault for fault in faults if fault.path == path), None)
-    if unread is not None:
-        raise MissingKnowledgeError("{}: {} Mend the line, or take it out", path, unread.message)
+    for unread in store.read("list_faults").filter(path=path)["message"]:
+        raise MissingKnowledgeError("{}: {} Mend the line, or take it out", path, unread)
     return path
 
 
@@ -53,9 +51,9 @@ def printed_lines(store: Store, path: str) -> pl.DataFrame:
     """The lines of a printed register, each with the hash of what it says.
 
     Raises:
-        MissingKnowledgeError: the archive is not there, or names a line twice.
+        MissingKnowledgeError: it names a line twice.
     """
-    printed = _registers(store)[0].filter(pl.col("path") == path)
+    printed = store.read("printed_registers").filter(path=path)
     double = printed.filter(pl.struct(LINE).is_duplicated())
     if double.height:
         row = double.row(0, named=True)
@@ -103,15 +101,6 @@ def with_carried(
     carried = _carried(printed, log_factors, method).filter(counts & pl.col("cw_kg_m").is_finite())
     taken = carried.join(lines.filter(pl.col("status") == "valid"), on=LINE, how="anti")
     return pl.concat([lines.join(taken, on=LINE, how="anti"), taken], how="diagonal_relaxed")
-
-
-def _registers(store: Store) -> tuple[pl.DataFrame, list[Fault]]:
-    root = archive_root(store)
-    if root is None:
-        raise MissingKnowledgeError(
-            "the archive is not where it was at the last rebuild; rebuild with --archive DIR"
-        )
-    return read_published_registers(root)
 
 
 def _carried(printed: Edition, log_factors: pl.DataFrame, method: Method) -> pl.DataFrame:

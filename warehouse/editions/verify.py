@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-import duckdb
 import polars as pl
 from pydantic import ValidationError
 
@@ -31,7 +30,6 @@ from warehouse.editions.compare import parts_of
 from warehouse.editions.inputs import LIST, NOT_INPUT, SAMPLES, input_files, same_tows
 from warehouse.editions.making import made_again, sheets_and_texts
 from warehouse.intake import seasons as intake
-from warehouse.store.database import open_database
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.editions import (
     METHOD,
@@ -138,7 +136,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
         message = say("the head is {}, and should be {}", found, head)
         findings.append(Finding("", "altered", "chain", message))
     hashes = FileHashes() if afresh else FileHashes.load(store.file_hashes)
-    archive = None if store.made_from("about_archive") is None else archive_root(store)
+    archive = archive_root(store)
     for name, manifest in manifests.items():
         path = store.editions / name
         findings += [*_altered(path, manifest), *_swapped(path, archive, hashes)]
@@ -198,13 +196,9 @@ def _manifests(store: Store) -> tuple[dict[str, Manifest], list[Finding]]:
 
 
 def _missing(store: Store) -> Iterator[Finding]:
-    """Editions that the last rebuild put into the database, and that are gone."""
-    try:
-        with open_database(store.database) as db:
-            known = {name for (name,) in db.sql("SELECT edition FROM editions").fetchall()}
-    except (HerijkError, duckdb.Error):  # not made yet, or damaged
-        return
-    for name in sorted(known - set(edition_names(store))):
+    """Editions that the last rebuild put into the tables, and that are gone."""
+    known = set(store.read("editions")["edition"]) if store.made_from("editions") else set[str]()
+    for name in sorted(known - {*edition_names(store)}):
         yield Finding(name, "altered", name, say("edition {} was published and is gone", name))
 
 
@@ -283,12 +277,11 @@ def _read_again(store: Store, archive: Path | None) -> Iterator[Store]:
         yield store
         return
     with tempfile.TemporaryDirectory() as folder:
-        again = Store(Path(folder), store.editions)
+        again = Store(Path(folder))
+        again.editions.symlink_to(store.editions.resolve())
         if (store.root / DECISIONS).exists():
             shutil.copy(store.root / DECISIONS, again.root)
-        intake.index(again, archive)
-        for season in intake.listed_seasons(again):
-            intake.read_season(again, archive, season)
+        intake.bring_in(again, archive)
         ARCHIVE.make(Scope(again, ()))
         yield again
 

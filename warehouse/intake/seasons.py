@@ -136,23 +136,16 @@ def listed_seasons(store: Store) -> list[int]:
     return seasons
 
 
-def season_fingerprints(store: Store, root: Path) -> dict[int, str]:
-    """What the samples of each listed season are made from, as the archive is today."""
-    profiles = read_profiles(root)
-    return {
-        season: lake.season_fingerprint(*_listed(store, season), profiles.for_season(season))
-        for season in listed_seasons(store)
-    }
-
-
 def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = None) -> list[int]:
     """Listed seasons whose samples or blocks are not those of the archive of today."""
-    return [
-        season
-        for season, made_from in season_fingerprints(store, root).items()
-        if wanted is None or season in wanted
-        if any(store.made_from(table, str(season)) != made_from for table in SEASON_TABLES)
-    ]
+    profiles = read_profiles(root)
+
+    def is_stale(season: int) -> bool:
+        made_from = lake.season_fingerprint(*_listed(store, season), profiles.for_season(season))
+        return any(store.made_from(table, str(season)) != made_from for table in SEASON_TABLES)
+
+    asked = (s for s in listed_seasons(store) if wanted is None or s in wanted)
+    return [season for season in asked if is_stale(season)]
 
 
 def damaged_seasons(store: Store) -> list[int]:
@@ -171,6 +164,14 @@ def forget_unlisted_seasons(store: Store) -> None:
         lake.keep_only(store, season, SeasonIndex.create_empty())
         for table in SEASON_TABLES:
             store.remove(table, str(season))
+
+
+def bring_in(store: Store, root: Path) -> None:
+    """Brings all that changed in an archive into the lake, in this process; raises as `index`."""
+    index(store, root)
+    forget_unlisted_seasons(store)
+    for season in stale_seasons(store, root):
+        read_season(store, root, season)
 
 
 def read_season(store: Store, root: Path, season: int) -> None:

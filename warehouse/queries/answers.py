@@ -161,13 +161,15 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     logs = behind("log_factors").select(
         "method", "season", log_factor="factor", log_lo="lo", log_hi="hi", log_source="source"
     )
-    tows = behind("tows").select("tow_id", "season", "altered", "tow_date")
-    old_tows = tows.select(old_tow_id="tow_id", old_tow_date="tow_date")
+    tows = behind("tows").select("tow_id", "season", "altered")
+    old_days = views.table("register").select(
+        *LINE, from_edition="edition", old_tow_date="tow_date"
+    )
     joined = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .join(known, on="edition", how="left", maintain_order="left")
-        .join(tows.drop("tow_date"), on="tow_id", how="left", maintain_order="left")
-        .join(old_tows, on="old_tow_id", how="left", maintain_order="left")
+        .join(tows, on="tow_id", how="left", maintain_order="left")
+        .join(old_days, on=["from_edition", *LINE], how="left", maintain_order="left")
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
         .join(_best_estimates(behind), on=["method", "tow_id"], how="left", maintain_order="left")
         .join(logs, on=["method", "season"], how="left", maintain_order="left")

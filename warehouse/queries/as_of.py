@@ -15,8 +15,7 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name
 from pipeline.tables.keys import SIZES
 from pipeline.tables.schemas import TABLES, conform
-from warehouse.derive.published import published_tables
-from warehouse.derive.registers import due_of_lines
+from warehouse.derive.registers import due_of_lines, published_tables
 from warehouse.store.editions import CHANGES, edition_names
 from warehouse.store.store import Store
 

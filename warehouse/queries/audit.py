@@ -1,19 +1,20 @@
-"""Everything behind one boat, or behind one type of boat, as plain data.
+"""Everything behind one boat, or behind one or two types of boat: figures, and verdicts on them.
 
 Reads only `warehouse.duckdb`. The statistics are made in `pipeline.consistency`; here rows are
-collected, in `warehouse.queries.audit_types` also judged. How it is said in words is
-`cli.audit_text`.
+collected. A verdict is true, false, or None where the figures do not decide. How it is said in
+words is `cli.audit_text`.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from math import hypot, log
+from typing import Final, TypeAlias
 
 import duckdb
 
+from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.row import Row
-from warehouse.queries.audit_types import TYPE, Audit, TypesAudit, types_audit
 from warehouse.store.boats import boats_named, plain, the_boat
 from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
@@ -21,12 +22,23 @@ from warehouse.store.store import Store
 TYPE_METHODS: Final = ("as-published", "rebased-2015", "rebased")
 """Methods on a type's page when none is asked for: before, by the rules of 2015, and now."""
 
+WEIGHT_LINE: Final = {"quantity": "cw_standard_kg_m", "explaining": "weight_kg", "within": "all"}
+"""The line about which the level of a type is judged."""
 
-@dataclass(frozen=True, kw_only=True)
-class BoatAudit(Audit):
+TYPE: Final = f"coalesce(b.boat_type, '{UNKNOWN_TYPE}')"
+"""A boat's type in a query that calls the table of boats b."""
+
+Statistics: TypeAlias = dict[str, list[Row]]
+"""Rows about a type under a method, by what `_STATISTICS` asks."""
+
+
+@dataclass(frozen=True)
+class BoatAudit:
     """A boat's tows step by step, and its place among its like and in its own history.
 
     Attributes:
+        simulated: whether the archive is.
+        methods: the methods shown.
         boat: its row of `boats`.
         tows: rows of `tows` with `curves` (rows of that table with `interval`, `run_points` and
             `budget`) and `steps`, rows of `correction_steps`.
@@ -38,7 +50,8 @@ class BoatAudit(Audit):
         slow_tows, repeat_pairs, register: rows of those tables.
     """
 
-    about: str = "boat"
+    simulated: bool
+    methods: list[str]
     boat: Row
     tows: list[Row]
     in_type: list[Row]
@@ -49,6 +62,28 @@ class BoatAudit(Audit):
     options: list[Row]
     register: list[Row]
     set_aside: list[Row]
+    about: str = "boat"
+
+
+@dataclass(frozen=True)
+class TypesAudit:
+    """One or two types of boat.
+
+    Attributes:
+        simulated: whether the archive is.
+        methods: the methods shown.
+        types: of each type how many boats and tows there are and how they differ, and `under`: its
+            `Statistics` by method.
+        differences: what differs between them, by method.
+        reproducibility: rows of that table, for all types together.
+    """
+
+    simulated: bool
+    methods: list[str]
+    types: list[Row]
+    differences: dict[str, list[str]]
+    reproducibility: list[Row]
+    about: str = "types"
 
 
 def audit(store: Store, names: Sequence[str], method: str | None = None) -> BoatAudit | TypesAudit:
@@ -75,7 +110,7 @@ def audit(store: Store, names: Sequence[str], method: str | None = None) -> Boat
             if found is None:
                 raise _no_such_type(db, name, list(types.values()))
         known = dict.fromkeys(row["boat_type"] for row in asked.values() if row)
-        return types_audit(db, list(known), of_types)
+        return _types_audit(db, list(known), of_types)
 
 
 def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
@@ -184,4 +219,142 @@ SELECT * FROM quarantine
 WHERE regexp_matches(message, '\b' || regexp_escape(?) || '\b')
    OR starts_with(lower(parse_filename(path)), lower(?) || ' ')
 ORDER BY path, line
+"""
+
+
+# Types
+
+
+def _types_audit(db: duckdb.DuckDBPyConnection, types: list[str], methods: list[str]) -> TypesAudit:
+    audited = [
+        rows(db, _FACTS, name)[0]
+        | {
+            "under": {
+                method: {
+                    asked: rows(db, query, method, name) for asked, query in _STATISTICS.items()
+                }
+                for method in methods
+            }
+        }
+        for name in types
+    ]
+    return TypesAudit(
+        simulated=is_simulated(db),
+        methods=methods,
+        types=audited,
+        differences={m: differences(*(one["under"][m] for one in audited)) for m in methods},
+        reproducibility=rows(db, _REPRODUCIBILITY, methods),
+    )
+
+
+def differences(first: Statistics, *others: Statistics) -> list[str]:
+    """What differs between two types: a slope or shift by more than both intervals, or a verdict.
+
+    One that follows weight and one in which no trend is seen do not differ by that alone.
+
+    Returns:
+        `quantity explaining` of lines, `speed_trend`, the names of eras, `bends`; of one type,
+        nothing.
+    """
+    found = []
+    for second in others:
+        own, other = _intervals(first), _intervals(second)
+        found += [name for name in own if name in other and apart(own[name], other[name])]
+        if {row["equal_possible"] for row in first["bends"] + second["bends"]} == {True, False}:
+            found.append("bends")
+    return found
+
+
+def _intervals(under: Statistics) -> dict[str, tuple[float, float, float]]:
+    """Every slope and shift with its interval; shifts as logarithms."""
+    slopes = [
+        *((f"{line['quantity']} {line['explaining']}", line) for line in under["lines"]),
+        *(("speed_trend", line) for line in under["speed_trend"]),
+    ]
+    return {
+        name: (line["slope"], line["slope_lo"], line["slope_hi"])
+        for name, line in slopes
+        if not line["reason"] and line.get("within", "all") == "all"
+    } | {
+        era["era"]: (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
+        for era in under["eras"]
+        if not era["reason"]
+    }
+
+
+def apart(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
+    """Whether two numbers, each with its interval, differ by more than both (root sum square)."""
+    return abs(one[0] - other[0]) > hypot(*(0.5 * (hi - lo) for _, lo, hi in (one, other)))
+
+
+_FACTS = f"""
+SELECT {TYPE} AS boat_type, count(DISTINCT b.fsn_no) AS n_boats,
+       count(DISTINCT t.fsn_no) AS n_towed, count(t.tow_id) AS n_tows,
+       min(t.season) AS first_season, max(t.season) AS last_season,
+       min(t.weight_kg) AS lightest_kg, max(t.weight_kg) AS heaviest_kg,
+       min(t.declared_speed_m_s) AS slowest_m_s, max(t.declared_speed_m_s) AS fastest_m_s
+FROM boats AS b LEFT JOIN tows AS t USING (fsn_no) WHERE {TYPE} = ? GROUP BY ALL
+"""  # noqa: S608
+
+_FOLLOWS = "CASE WHEN slope IS NOT NULL THEN slope_lo > 0 OR slope_hi < 0 END AS follows"
+"""Whether the interval of a slope leaves out zero."""
+
+_LINES = f"""
+SELECT * EXCLUDE tows, {_FOLLOWS} FROM type_lines
+WHERE method = ? AND boat_type = ? AND tows = 'newest'
+ORDER BY quantity, explaining, within
+"""  # noqa: S608
+
+_TREND = f"SELECT *, {_FOLLOWS} FROM speed_trend WHERE method = ? AND boat_type = ?"  # noqa: S608
+
+_SHARED = """
+SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
+       count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
+       stddev_samp(p.b_m_s) / avg(p.b_m_s) AS b_sd_ratio,
+       max(abs(ln(p.cw_085_kg_m / o.cw_085_kg_m))) AS most_085,
+       max(abs(ln(p.cw_kg_m / o.cw_kg_m))) AS most_100,
+       max(abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_115,
+       arg_max(p.fsn_no, abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_fsn_no
+FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
+WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
+"""
+
+_REPEATS = f"""
+SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
+       count(p.e_n) AS n_e_n, count(*) FILTER (WHERE abs(p.e_n) > 1) AS n_disagree
+FROM repeat_pairs AS p JOIN boats AS b USING (fsn_no) WHERE p.method = ? AND {TYPE} = ?
+"""  # noqa: S608
+
+_PREDICTION = """
+SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
+       sqrt(avg(ln_ratio * ln_ratio)) AS rmse_ratio, avg(ln_ratio) AS mean_ratio,
+       sqrt(avg(cw_sd_ratio * cw_sd_ratio)) AS tow_sd_ratio,
+       count(*) FILTER (WHERE disagrees) AS n_disagree
+FROM predicted_cw WHERE method = ? AND boat_type = ?
+"""
+
+_NAMED = """
+SELECT t.*, b.name FROM {} AS t LEFT JOIN boats AS b USING (fsn_no)
+WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
+"""
+"""Rows of tows for which a column says yes, with the boat's name."""
+
+_STATISTICS: Final = {
+    "lines": _LINES,
+    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ?",
+    "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
+    "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
+    "bends": "SELECT * FROM type_homogeneity WHERE method = ? AND boat_type = ?",
+    "speed_trend": _TREND,
+    "shared": _SHARED,
+    "outside": _NAMED.format("type_outliers", "outside", "abs(deviation_sd) DESC"),
+    "slow_tows": _NAMED.format("slow_tows", "slow", "power_w"),
+    "repeats": _REPEATS,
+    "eras": "SELECT * FROM era_shifts WHERE method = ? AND boat_type = ?",
+    "prediction": _PREDICTION,
+}
+"""What is asked of a type under a method."""
+
+_REPRODUCIBILITY = """
+SELECT * FROM reproducibility WHERE list_contains(?, method) ORDER BY method, scope
 """

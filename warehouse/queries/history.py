@@ -7,7 +7,7 @@ is `pipeline.recompute.recompute`'s.
 import datetime as dt
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final, Self
+from typing import Self
 
 import polars as pl
 
@@ -24,9 +24,6 @@ from warehouse.derive.inputs import observe_trusted
 from warehouse.intake.seasons import run_blocks, typed_tows
 from warehouse.store.store import Store, no_warehouse
 
-MOST_CACHED: Final = 200
-"""Entries of the cache, of 0.4 MB each for a thousand tows."""
-
 
 @dataclass(frozen=True)
 class History:
@@ -38,7 +35,6 @@ class History:
         crews: listed boats with their crews, also those never towed.
         blocks: the runs of `tows`.
         last_day: the day of the last tow or race, on which drafts judge what is valid.
-        simulated: the archive says that it is simulated.
         cache: what was found of the runs so far.
     """
 
@@ -47,7 +43,6 @@ class History:
     crews: pl.DataFrame
     blocks: RunBlocks
     last_day: dt.date
-    simulated: bool
     cache: RunCache = field(default_factory=RunCache)
 
     @classmethod
@@ -66,7 +61,6 @@ class History:
             boats=store.read("boats"),
             crews=store.read("listed_boats"),
             blocks=run_blocks(store),
-            simulated=bool(store.read("about_archive")["simulated"][0]),
         )
 
     def under(self, method: Method) -> "Draft":
@@ -75,10 +69,7 @@ class History:
         Raises:
             MissingKnowledgeError: the method says nothing about a season.
         """
-        if len(self.cache) > MOST_CACHED:
-            self.cache.clear()
         made = recompute(method, self.tows, self.blocks, self.cache, with_bands=False)
-        self.cache.let_go()
         lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
         edition = pl.lit(draft_name(method.name)).alias("edition")
         return Draft(self, method, made, lines.with_columns(edition))

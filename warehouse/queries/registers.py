@@ -42,7 +42,6 @@ class DueReport:
         method: whose curves are used.
         simulated: whether the archive is.
         as_of: day on which validity is judged.
-        asked: whether that day was asked for; else it is that of the last tow or race.
         lines: rows of `due_list` with `name`, `boat_type` and `urgency`.
         retow_choice: rows of that table with `name`, `valid_until` and `tow_speed_m_s`.
     """
@@ -50,7 +49,6 @@ class DueReport:
     method: str
     simulated: bool
     as_of: dt.date
-    asked: bool
     lines: list[Row]
     retow_choice: list[Row]
 
@@ -105,7 +103,6 @@ def due_report(store: Store, method: str, as_of: dt.date | None = None) -> DueRe
         method=method,
         simulated=simulated,
         as_of=lines[0]["as_of"],
-        asked=as_of is not None,
         lines=[line | {"urgency": _urgency(line)} for line in lines],
         retow_choice=choice.filter(method=method).to_dicts(),
     )

@@ -14,12 +14,12 @@ import polars as pl
 
 from pipeline import curve
 from pipeline.consistency.compared import beside_their_type
-from pipeline.consistency.observed import UNKNOWN_TYPE
+from pipeline.consistency.observed import UNKNOWN_TYPE, newest
 from pipeline.curve import VALID_RATIO, s_of_height
 from pipeline.register.changes import compare_lines, largest_first
 from pipeline.studies.summaries import season_changes
-from warehouse.queries.chosen_tows import ALL, chosen
 from warehouse.queries.history import Draft
+from warehouse.queries.views import ALL
 
 LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
 """Speeds at which a curve is drawn / declared speed."""
@@ -78,9 +78,14 @@ class Scenario:
         """Tows of boats of a known type under both methods, as `compared_tows` has them.
 
         Args:
-            tows: which; see `chosen_tows`.
+            tows: `ALL`, or the `NEWEST` of each boat and crew.
         """
-        compared = self._both(lambda draft: beside_their_type(chosen(draft.observed, tows)))
+
+        def of(draft: Draft) -> pl.DataFrame:
+            seen = draft.observed
+            return beside_their_type(seen if tows == ALL else newest(seen))
+
+        compared = self._both(of)
         named = compared.filter(pl.col("boat_type") != UNKNOWN_TYPE).join(
             self._names.drop("boat_type"), on="fsn_no", how="left", maintain_order="left"
         )

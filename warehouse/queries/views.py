@@ -17,6 +17,8 @@ from warehouse.store.editions import edition_names, edition_path, read_manifest,
 from warehouse.store.store import Store
 
 DRAFT: Final = "concept-"
+ALL, NEWEST = "all", "newest"
+"""Which tows of a boat and crew are looked at."""
 
 
 class Views:
@@ -186,7 +188,6 @@ SELECT p.* REPLACE ((wind_angle_deg + 180) % 360 - 180 AS wind_angle_deg),
 FROM run_points AS p JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run
 """,
     "season_diagnosis": SIZED_FAULTS,
-    # Steps of seasons in per cent instead of logarithms.
     # Curves per method, season and status.
     "statuses": """
 SELECT method, CAST(scope AS INTEGER) AS season, code AS status, number

@@ -43,10 +43,9 @@ def table_digest(frame: pl.DataFrame) -> str:
 
 @dataclass(frozen=True)
 class Store:
-    """The data folder; its editions may lie elsewhere."""
+    """The data folder."""
 
     root: Path
-    editions_elsewhere: Path | None = None
 
     @property
     def lake(self) -> Path:
@@ -56,7 +55,7 @@ class Store:
     @property
     def editions(self) -> Path:
         """The published editions, each under its name."""
-        return self.editions_elsewhere or self.root / "editions"
+        return self.root / "editions"
 
     @property
     def database(self) -> Path:
@@ -132,13 +131,9 @@ class Store:
 
 
 def archive_root(store: Store) -> Path | None:
-    """Where the archive was when the warehouse was last rebuilt; None if it is not there now.
-
-    Raises:
-        MissingKnowledgeError: nothing was ever rebuilt in this data folder.
-    """
+    """Where the archive was when the warehouse was last rebuilt; None if it is not there now."""
     if store.made_from("about_archive") is None:
-        raise no_warehouse(store)
+        return None
     root = Path(store.read("about_archive")["root"][0])
     return root if root.is_dir() else None
 

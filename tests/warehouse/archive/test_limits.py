@@ -7,10 +7,11 @@ import pytest
 
 from pipeline.tables.frames import limits
 from warehouse.archive.files import list_kinds
+from warehouse.archive.files.finding import ArchiveFile
 from warehouse.archive.lists.races import read_races
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.sheets.rows import faults_of
-from warehouse.archive.spelling.wording import Wording
 
 TOW = {
     "sleep_id": "2014-001",
@@ -85,10 +86,11 @@ def test_every_kind_of_list_is_tried():
 
 def values_of(name, cells, folder):
     """What a list of one row is read as, and what is wrong in it."""
-    kind, _ = LISTS[name]
-    (folder / "list.csv").write_text(";".join(cells) + "\n" + ";".join(cells.values()) + "\n")
-    rows, problems = read_list(folder, kind, "list.csv", Wording())
-    return rows.drop("cells").row(0, named=True), faults_of(rows, problems)
+    path = folder / "list.csv"
+    path.write_text(";".join(cells) + "\n" + ";".join(cells.values()) + "\n")
+    file = ArchiveFile("list.csv", path, "", 2014, inside=True)
+    rows, found = read_list(file, LISTS[name][0], Profiles())
+    return rows.drop("cells").row(0, named=True), faults_of(rows, found)
 
 
 def limited():

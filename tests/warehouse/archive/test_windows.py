@@ -7,10 +7,10 @@ import polars as pl
 import pytest
 
 from pipeline.method.definition import Method, parse_method
-from tests.intake import bring_in as read_archive
 from tests.warehouse.archive.conftest import TOWS, Archive
 from warehouse.derive.graph import ARCHIVE, METHOD, REGISTERS
 from warehouse.derive.inputs import Scope
+from warehouse.intake.seasons import bring_in as read_archive
 from warehouse.store.store import Store
 
 WINDOWS = "sleeplijsten/vensters_2014.csv"

@@ -16,10 +16,10 @@ from pipeline.tables.lake import ListedTows
 from warehouse.archive.check.headers_and_samples import faults_in_headers, faults_in_samples
 from warehouse.archive.check.settings import settings_for
 from warehouse.archive.faults import OF_A_HEADER, Fault
-from warehouse.archive.files.finding import list_sample_files
-from warehouse.archive.files.names import PARTS
+from warehouse.archive.files.finding import files_of
+from warehouse.archive.files.names import PARTS, SAMPLES
+from warehouse.archive.index.files import missing_lists, strangers
 from warehouse.archive.index.index import ArchiveIndex, index_archive
-from warehouse.archive.index.unread_files import missing_lists, strangers
 from warehouse.archive.lists.races import read_races
 from warehouse.archive.lists.registers import read_published_registers
 from warehouse.archive.profile.definition import Profiles
@@ -127,12 +127,13 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
 
     Where a list is missing that all others need, it can be among the files that nobody reads.
     """
-    lacking = missing_lists(root, profiles)
+    files = files_of(root, profiles.files)
+    lacking = missing_lists(root, files)
     if lacking:
-        return None, [*strangers(root, profiles), *lacking]
+        return None, [*strangers(root, files, profiles.ignore), *lacking]
     index = index_archive(root, quick_hash, profiles)
-    _, in_races = read_races(root, profiles.wording)
-    _, in_registers = read_published_registers(root, profiles.wording)
+    _, in_races = read_races(root, profiles)
+    _, in_registers = read_published_registers(root, profiles)
     unused = {fault.path for fault in index.faults if fault.reason_code == "samples_not_listed"}
     in_headers = list(faults_in_headers(root, index, unused))
     wrong = {fault.path for fault in in_headers}
@@ -143,8 +144,10 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
 
 def _seasons(root: Path, profiles: Profiles, index: ArchiveIndex | None) -> dict[str, int]:
     """The season of each samples file: of its folder, or of the row that names it."""
-    files = list_sample_files(root, profiles.wording.files)
-    return {file.path: file.season for file in files} | (index.seasons if index else {})
+    files = files_of(root, profiles.files)
+    return {file.path: file.season for file in files if file.kind == SAMPLES} | (
+        index.seasons if index else {}
+    )
 
 
 def quick_hash(path: Path) -> str:

@@ -10,8 +10,8 @@ from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from pipeline.tables.row import Row
 from warehouse.archive.faults import Fault, fault_from
-from warehouse.archive.files.finding import ArchiveFile, list_sample_files, path_inside
-from warehouse.archive.files.names import PARTS, as_one_run, kind_of, split_sheet
+from warehouse.archive.files.finding import ArchiveFile, files_of, path_inside
+from warehouse.archive.files.names import PARTS, SAMPLES, as_one_run, kind_of, split_sheet
 from warehouse.archive.index.index import ArchiveIndex
 from warehouse.archive.plausibility.judge import judge_in_files
 from warehouse.archive.profile.definition import Profiles
@@ -28,7 +28,7 @@ def faults_in_headers(root: Path, index: ArchiveIndex, unused: Collection[str]) 
 
     Files that lists which can be read do not name say nothing of their season.
     """
-    for file in list_sample_files(root, index.profiles.wording.files):
+    for file in _sample_files(root, index.profiles):
         if file.path in unused:
             continue
         sheets = [path for path in index.seasons if split_sheet(path)[0] == file.path]
@@ -38,6 +38,10 @@ def faults_in_headers(root: Path, index: ArchiveIndex, unused: Collection[str]) 
                 check_header(path_inside(root, path), index.profiles.for_season(season))
             except DefectiveInputError as error:
                 yield fault_from(error, path)
+
+
+def _sample_files(root: Path, profiles: Profiles) -> list[ArchiveFile]:
+    return [file for file in files_of(root, profiles.files) if file.kind == SAMPLES]
 
 
 def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fault]:
@@ -60,7 +64,7 @@ def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Itera
             yield from of_all or judge_in_files(samples, tow, index.runs, root, profile).faults
         except DefectiveInputError as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
-    for file in list_sample_files(root, index.profiles.wording.files):
+    for file in _sample_files(root, index.profiles):
         season = index.seasons.get(file.path, file.season)
         key = (season, kind_of(file.full_path))
         if key not in done and file.path not in wrong:

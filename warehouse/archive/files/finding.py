@@ -1,4 +1,4 @@
-"""Where the archive's files are: folders, lists, samples, and what is neither.
+"""Where the archive's files are: lists, samples, and what is neither.
 
 No path leads outside the archive.
 """
@@ -6,14 +6,14 @@ No path leads outside the archive.
 import os
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Final
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from warehouse.archive.faults import DefectiveFileError
-from warehouse.archive.files.list_kinds import LIST_KINDS, ListKind
+from warehouse.archive.files.list_kinds import LIST_KINDS
 from warehouse.archive.files.names import (
     LIST_SUFFIXES,
     PROFILE_FILE,
@@ -26,6 +26,10 @@ from warehouse.archive.files.names import (
 _NOT_OURS: Final = re.compile(
     r"~\$.*|thumbs\.db|desktop\.ini|readme.*|lees[ _]?mij.*|.*\.tdms_index", re.IGNORECASE
 )
+_SAMPLES_FOLDER: Final = re.compile(rf"{SAMPLES}(?:[ _-]*([0-9]{{4}}))?", re.IGNORECASE)
+_LIST_FOLDERS: Final = frozenset(kind.folder for kind in LIST_KINDS)
+STRANGER: Final = ""
+"""Kind of a file or folder that nobody reads."""
 
 
 @dataclass(frozen=True)
@@ -33,115 +37,101 @@ class ArchiveFile:
     """A file of the archive.
 
     Attributes:
-        path: posix path relative to the archive.
+        path: posix path relative to the archive; of a list also with its sheet.
         full_path: where it is.
-        season: the year in its name or in the name of its folder.
+        kind: the name of a kind of lists, `SAMPLES`, the profile's name, or `STRANGER`.
+        season: the year in its name or in the name of its folder; 0 where neither tells it.
         inside: it lies in the archive and not, through a link, outside.
     """
 
     path: str
     full_path: Path
+    kind: str
     season: int
     inside: bool
 
 
-def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[ArchiveFile]:
-    """The lists of a kind; season 0 where the name does not tell it.
+def files_of(root: Path, named: Mapping[str, str]) -> list[ArchiveFile]:
+    """The files of an archive, and the folders in it that nobody reads, by their path.
 
-    Hidden files are left out. The order is that of the names.
-
-    Raises:
-        MissingKnowledgeError: one is a folder, a pipe or a link to nothing.
+    Lists are `<folder>/<name>_<jaar>` with a suffix of lists; samples are
+    `meetdata_<jaar>/<meetfile>` with a suffix of samples, also in a folder of their own,
+    `meetdata_<jaar>/<meetfile>/`. Hidden files are left out.
 
     Args:
         root: the archive.
-        kind: which lists.
         named: what other files, sheets and folders stand for, by their path (`[files]`).
+
+    Raises:
+        MissingKnowledgeError: a list is a folder, a pipe or a link to nothing.
     """
-    matches = [(e, m) for e in _entries_of(root, kind.folder) if (m := _match_list(kind, e.name))]
-    for entry, _ in matches:
-        if not entry.is_file():
-            raise MissingKnowledgeError("{} is no file; remove it, or put the file there", entry)
-    files = [_archive_file(root, entry, int(match[1] or 0)) for entry, match in matches]
-    for path, name, season in _named(named):
-        file = root / split_sheet(path)[0]
-        if name == kind.name and file.is_file():
-            files.append(replace(_archive_file(root, file, season), path=path))
-    return sorted(files, key=lambda file: file.path)
+    stands_for = {path: m for path, name in named.items() if (m := STANDS_FOR.fullmatch(name))}
+    places = _folders(root, stands_for)
+    known = {*places, *(root / split_sheet(path)[0] for path in named)}
+    found: dict[str, tuple[str, int]] = {}
+    for folder, (name, season) in places.items():
+        for entry in _files_of_tows(folder) if name == SAMPLES else _entries(folder):
+            kind = _kind_in(name, season, entry)
+            of_entry = {_path_in(root, entry): kind} if kind else _strangers(root, entry, known)
+            found |= {path: of for path, of in of_entry.items() if path not in named}
+    for entry in _entries(root):
+        is_profile = entry.name.casefold() == PROFILE_FILE
+        profile = {entry.name: (PROFILE_FILE, 0)}
+        found |= profile if is_profile else _strangers(root, entry, known)
+    for path, match in stands_for.items():
+        if match[1] != SAMPLES and (root / split_sheet(path)[0]).is_file():
+            found[path] = match[1], int(match[2] or 0)
+    return [_archive_file(root, path, *found[path]) for path in sorted(found)]
 
 
-def _match_list(kind: ListKind, name: str) -> re.Match[str] | None:
-    stem, dot, suffix = name.rpartition(".")
-    is_list = (dot + suffix).casefold() in LIST_SUFFIXES
-    return re.fullmatch(kind.pattern, stem, re.IGNORECASE) if is_list else None
+def _folders(root: Path, stands_for: Mapping[str, re.Match[str]]) -> dict[Path, tuple[str, int]]:
+    """The folders of lists and of samples, each with its name and season."""
+    folders: dict[Path, tuple[str, int]] = {}
+    for entry in _entries(root):
+        name, match = entry.name.casefold(), _SAMPLES_FOLDER.fullmatch(entry.name)
+        if match and entry.is_dir():
+            folders[entry] = SAMPLES, int(match[1] or 0)
+        elif name in _LIST_FOLDERS and (name, 0) not in folders.values():
+            folders[entry] = name, 0
+    for path, match in stands_for.items():
+        if match[1] == SAMPLES:
+            folders[root / path] = SAMPLES, int(match[2] or 0)
+    return folders
 
 
-def _named(named: Mapping[str, str]) -> Iterator[tuple[str, str, int]]:
-    """Gives path, kind and season (0 for none) of what `[files]` names."""
-    for path, stands_for in sorted(named.items()):
-        if match := STANDS_FOR.fullmatch(stands_for):
-            yield path, match[1], int(match[2] or 0)
+def _kind_in(folder: str, season: int, entry: Path) -> tuple[str, int] | None:
+    """The kind of a file in a folder, and its season; None for a stranger.
 
-
-def list_sample_files(root: Path, named: Mapping[str, str]) -> list[ArchiveFile]:
-    """All samples files: `meetdata_<jaar>/<meetfile>` with a suffix of samples.
-
-    Those in a folder of their own, `meetdata_<jaar>/<meetfile>/`, come too. Season 0 are those of
-    a folder without a year.
+    Raises:
+        MissingKnowledgeError: it is a list by its name, but it is no file.
     """
-    return [
-        _archive_file(root, entry, season)
-        for season, folder in _sample_folders(root, named)
-        for entry in _files_of_tows(folder)
-        if sample_suffix(entry.name)
-        and _path_in(root, entry) not in named
-        and not _NOT_OURS.fullmatch(entry.name)
-    ]
+    if folder == SAMPLES:
+        is_samples = sample_suffix(entry.name) and not _NOT_OURS.fullmatch(entry.name)
+        return (SAMPLES, season) if is_samples else None
+    stem, dot, suffix = entry.name.rpartition(".")
+    for kind in LIST_KINDS if (dot + suffix).casefold() in LIST_SUFFIXES else ():
+        match = re.fullmatch(kind.pattern, stem, re.IGNORECASE)
+        if kind.folder == folder and match:
+            if not entry.is_file():
+                raise MissingKnowledgeError(
+                    "{} is no file; remove it, or put the file there", entry
+                )
+            return kind.name, int(match[1] or 0)
+    return None
 
 
-def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
-    """The files and folders of an archive that nobody reads, relative to it."""
-    folders = {kind.folder: _find_folder(root, kind.folder) for kind in LIST_KINDS}
-    strangers = [
-        entry
-        for name, folder in folders.items()
-        for entry in _entries(folder)
-        if not any(_match_list(k, entry.name) for k in LIST_KINDS if k.folder == name)
-    ]
-    sample_folders = {folder for _, folder in _sample_folders(root, named)}
-    for folder in sample_folders:
-        strangers += [entry for entry in _files_of_tows(folder) if not sample_suffix(entry.name)]
-    known = {*folders.values(), *sample_folders, *(root / split_sheet(path)[0] for path in named)}
-    strangers += [
-        entry
-        for entry in _entries(root)
-        if entry not in known and entry.name.casefold() != PROFILE_FILE
-    ]
-    opened = [inner for entry in strangers for inner in _opened(entry, known)]
-    return [_path_in(root, e) for e in opened if not _NOT_OURS.fullmatch(e.name)]
-
-
-def _opened(entry: Path, known: set[Path]) -> list[Path]:
-    """An entry, or what is in it where something in it is known under `[files]`."""
-    if entry in known:
-        return []
+def _strangers(root: Path, entry: Path, known: set[Path]) -> dict[str, tuple[str, int]]:
+    """An entry that nobody reads, or what is in it where something in it is known."""
+    if entry in known or _NOT_OURS.fullmatch(entry.name):
+        return {}
     if not any(path.is_relative_to(entry) for path in known):
-        return [entry]
-    return [inner for child in _entries(entry) for inner in _opened(child, known)]
+        return {_path_in(root, entry): (STRANGER, 0)}
+    inner = (_strangers(root, child, known) for child in _entries(entry))
+    return {path: kind for found in inner for path, kind in found.items()}
 
 
 def _path_in(root: Path, entry: Path) -> str:
     return entry.relative_to(root).as_posix()
-
-
-def _sample_folders(root: Path, named: Mapping[str, str]) -> Iterator[tuple[int, Path]]:
-    for entry in _entries(root):
-        match = re.fullmatch(rf"{SAMPLES}(?:[ _-]*([0-9]{{4}}))?", entry.name, re.IGNORECASE)
-        if match and entry.is_dir():
-            yield int(match[1] or 0), entry
-    for path, name, season in _named(named):
-        if name == SAMPLES and (root / path).is_dir():
-            yield season, root / path
 
 
 def _files_of_tows(folder: Path) -> Iterator[Path]:
@@ -150,16 +140,6 @@ def _files_of_tows(folder: Path) -> Iterator[Path]:
             yield from _entries(entry)
         else:
             yield entry
-
-
-def _entries_of(root: Path, folder: str) -> list[Path]:
-    return _entries(_find_folder(root, folder))
-
-
-def _find_folder(root: Path, name: str) -> Path:
-    """A folder, however its name is capitalised."""
-    alike = [entry for entry in _entries(root) if entry.name.casefold() == name]
-    return alike[0] if alike else root / name
 
 
 def _entries(folder: Path) -> list[Path]:
@@ -192,9 +172,9 @@ def list_misnamed(root: Path) -> list[str]:
     return sorted(os.fsencode(_path_in(root, path)).decode(errors="replace") for path in misnamed)
 
 
-def _archive_file(root: Path, entry: Path, season: int) -> ArchiveFile:
-    inside = _is_inside(root, entry) and entry.is_file()
-    return ArchiveFile(entry.relative_to(root).as_posix(), entry, season, inside)
+def _archive_file(root: Path, path: str, kind: str, season: int) -> ArchiveFile:
+    full = root / split_sheet(path)[0]
+    return ArchiveFile(path, full, kind, season, _is_inside(root, full) and full.is_file())
 
 
 def path_inside(root: Path, relative: str) -> Path:

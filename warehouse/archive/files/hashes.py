@@ -6,7 +6,6 @@ A cache and no more: losing it costs time, never a result.
 import hashlib
 import json
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -58,8 +57,9 @@ class FileHashes:
         Raises:
             OSError: a file cannot be read.
         """
-        parts = path.split(PARTS)
-        return hash_of_parts([hash_of_sheet(self.hash_file, root / part) for part in parts])
+        parts = [split_sheet(part) for part in path.split(PARTS)]
+        hashes = [hash_of_sheet(self.hash_file(root / file), sheet) for file, sheet in parts]
+        return hash_of_parts(hashes)
 
     def hash_file(self, path: Path) -> str:
         """The SHA-256 of a file's content, as hexadecimal text.
@@ -83,10 +83,8 @@ class FileHashes:
         return sha256
 
 
-def hash_of_sheet(hash_file: Callable[[Path], str], path: Path) -> str:
-    """The hash of a file; of a sheet that of its workbook with the name of the sheet."""
-    file, sheet = split_sheet(str(path))
-    sha256 = hash_file(Path(file))
+def hash_of_sheet(sha256: str, sheet: str) -> str:
+    """The hash of a sheet from that of its workbook; of a file without one its own."""
     return hashlib.sha256(f"{sha256}#{sheet}".encode()).hexdigest() if sheet else sha256
 
 

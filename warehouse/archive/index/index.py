@@ -4,8 +4,8 @@ Reading samples belongs to `samples`. A tow falls out at the first check that it
 """
 
 import datetime as dt
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import polars as pl
@@ -13,28 +13,42 @@ import polars as pl
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.tables.declare import dy
-from pipeline.tables.lake import ListedFiles
-from warehouse.archive.faults import Fault
-from warehouse.archive.files.finding import list_files, list_sample_files
+from pipeline.tables.lake import ListedFiles, ListedRuns, ListedTows
+from warehouse.archive.faults import DefectiveFileError, Fault, fault_from
+from warehouse.archive.files.finding import STRANGER, ArchiveFile, files_of
 from warehouse.archive.files.list_kinds import TOWS
-from warehouse.archive.files.names import PROFILE_FILE
-from warehouse.archive.index.hashed_files import Hashes, hash_files, hash_lists
-from warehouse.archive.index.tow_files import (
+from warehouse.archive.files.names import PROFILE_FILE, SAMPLES
+from warehouse.archive.index.files import (
+    Hashes,
+    as_files,
     files_by_name,
     files_meant,
+    hash_files,
+    missing_lists,
     names_of_files,
     not_listed,
+    strangers,
 )
-from warehouse.archive.index.tows import Known, usable_tows
-from warehouse.archive.index.unread_files import missing_lists, strangers
-from warehouse.archive.lists.boats import read_boats
+from warehouse.archive.index.tows import (
+    as_listed,
+    lost_cells,
+    of_days_in_use,
+    of_one_row,
+    runs_of,
+    with_boat,
+    with_files,
+    with_instruments,
+    with_own_samples,
+    within_limits,
+)
+from warehouse.archive.lists.boats import Boats, read_boats
 from warehouse.archive.lists.instruments import lamp_seconds, read_force_checks, read_lamps
-from warehouse.archive.lists.tows import with_ids
+from warehouse.archive.lists.tows import readable, with_ids
 from warehouse.archive.lists.windows import read_windows
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.archive.sheets.reading import read_lists
-from warehouse.archive.spelling.wording import Wording
+from warehouse.archive.sheets.rows import Problem
 
 
 @dataclass(frozen=True)
@@ -55,8 +69,8 @@ class ArchiveIndex:
     """
 
     boats: pl.DataFrame
-    tows: pl.DataFrame
-    runs: pl.DataFrame
+    tows: dy.DataFrame[ListedTows]
+    runs: dy.DataFrame[ListedRuns]
     windows: pl.DataFrame
     faults: tuple[Fault, ...]
     files: dy.DataFrame[ListedFiles]
@@ -82,41 +96,101 @@ def index_archive(
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
     profiles = profiles or read_profiles(root)
-    _check_present(root, profiles)
-    wording = profiles.wording
-    hashes = Hashes(hash_file)
-    unhashed = hash_lists(root, wording.files, hashes)
-    boats = read_boats(root, wording)
-    rows, problems, faults = read_lists(root, TOWS, wording)
-    unread = _unread_seasons(root, wording, faults)
-    year = pl.col("tow_date").dt.year().fill_null(0)
-    season = pl.when(pl.col("season") == 0).then(year).otherwise("season")
-    rows = rows.with_columns(season=season.cast(pl.Int64))
-    faults += [*strangers(root, profiles), *boats.faults]
-    sample_files = list_sample_files(root, wording.files)
-    faults += hash_files(sample_files, hashes)
-    names = names_of_files(rows)
-    by_name = files_by_name(sample_files, names)
-    faults += not_listed(names, sample_files, unread, by_name)
-    tows_listed = with_ids(rows).select("season", "tow_id", "tow_date")
-    faults += [] if unread else _idle_settings(profiles, *map(set, tows_listed))
-    checks, of_checks = read_force_checks(root, wording)
-    lamps, of_lamps = read_lamps(root, wording, tows_listed["tow_id"].drop_nulls())
-    known = Known(problems, profiles, by_name, hashes, boats, checks, lamp_seconds(lamps))
-    usable = usable_tows(rows, known)
-    windows, of_windows = read_windows(
-        root, wording, tows_listed.select("season", "tow_id"), usable.runs
-    )
-    faults += [*usable.faults, *of_checks, *of_lamps, *of_windows]
+    files = files_of(root, profiles.files)
+    lacking = missing_lists(root, files)
+    if lacking:
+        raise MissingKnowledgeError(
+            "The archive at {} cannot be read: {}", root, lacking[0].message
+        )
+    hashes = hash_files((file for file in files if file.kind != STRANGER), hash_file)
+    rows, problems, faults = read_lists(files, TOWS, profiles)
+    unread = {file.season for file in files if file.path in {fault.path for fault in faults}}
+    year = pl.col("tow_date").dt.year().cast(pl.Int64).fill_null(0)
+    rows = rows.with_columns(season=pl.when(pl.col("season") == 0).then(year).otherwise("season"))
+    faults += strangers(root, files, profiles.ignore)
+    read = _Read(profiles, files, hashes, read_boats(files, profiles), problems, unread)
+    index, failures = _index_or_set_aside(rows, read)
+    faults += [*failures, *read.boats.faults, *index.faults]
     told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
-    faults += [fault for fault in unhashed if fault.path not in told]
+    faults += [
+        fault_from(found, path)
+        for path, found in hashes.items()
+        if isinstance(found, DefectiveFileError) and path not in told
+    ]
+    return replace(index, faults=tuple(sorted(faults, key=_fault_order)))
+
+
+@dataclass(frozen=True)
+class _Read:
+    """What is read of an archive before its tows.
+
+    Attributes:
+        files: everything that lies in it.
+        hashes: of its files.
+        boats: the boat lists.
+        problems: what is wrong in the cells of the tow lists.
+        unread: the seasons of tow lists that cannot be read.
+    """
+
+    profiles: Profiles
+    files: list[ArchiveFile]
+    hashes: Hashes
+    boats: Boats
+    problems: list[Problem]
+    unread: set[int]
+
+
+def _index_or_set_aside(rows: pl.DataFrame, read: _Read) -> tuple[ArchiveIndex, list[Fault]]:
+    """The index of the rows; one on which Herijk itself fails is set aside alone."""
+    try:
+        return _index(rows, read), []
+    except BaseException as error:
+        fault_from(error, "")  # raises what is no fault of Herijk
+    failures = {}
+    for row in rows.iter_slices(1):
+        try:
+            _index(row, read)
+        except BaseException as error:
+            of = row.row(0, named=True)
+            failures[of["row"]] = fault_from(error, of["path"], of["cells"]["tow_id"])
+    others = rows.filter(~pl.col("row").is_in([*failures]))
+    return _index(others, read), [*failures.values()]
+
+
+def _index(rows: pl.DataFrame, read: _Read) -> ArchiveIndex:
+    """What rows of tow lists come to, with the faults that are about them."""
+    profiles, files = read.profiles, read.files
+    samples = [file for file in files if file.kind == SAMPLES]
+    faults: list[Fault] = []
+    more = [*read.boats.more]
+    names = names_of_files(rows)
+    by_name = files_by_name(samples, names)
+    faults += not_listed(names, samples, read.unread, by_name)
+    rows = with_ids(rows)
+    listed = rows.select("season", "tow_id", "tow_date")
+    faults += [] if read.unread else _idle_settings(profiles, *map(set, listed))
+    checks, of_checks = read_force_checks(files, profiles)
+    lamps, of_lamps = read_lamps(files, profiles, listed["tow_id"].drop_nulls())
+    own = of_one_row(rows, faults)
+    again = rows.join(own, on="row", how="anti", maintain_order="left")
+    readable(again, read.problems, profiles, more, more)
+    tows, selections, lost = readable(own, read.problems, profiles, faults, more)
+    tows = with_files(tows, by_name, read.hashes, faults)
+    tows = with_own_samples(tows, faults)
+    tows = with_boat(tows, read.boats, profiles, faults, lost)
+    tows = of_days_in_use(tows, profiles, faults)
+    tows = with_instruments(tows, profiles, checks, lamp_seconds(lamps))
+    tows = within_limits(tows, faults)
+    runs = runs_of(tows, selections, profiles)
+    windows, of_windows = read_windows(files, profiles, listed.select("season", "tow_id"), runs)
+    faults += [*lost_cells(tows, lost), *of_checks, *of_lamps, *of_windows]
     return ArchiveIndex(
-        boats=boats.listed,
-        tows=usable.tows,
-        runs=usable.runs,
+        boats=read.boats.listed,
+        tows=as_listed(tows),
+        runs=runs,
         windows=windows,
-        faults=tuple(sorted(faults, key=_fault_order)),
-        files=hashes.frame(),
+        faults=tuple(faults),
+        files=as_files(read.hashes),
         profiles=profiles,
         seasons={
             part.path: season
@@ -124,26 +198,12 @@ def index_archive(
             for file in files_meant(name, season, by_name)
             for part in file.parts
         },
-        more=(*boats.more, *usable.more),
+        more=tuple(more),
     )
-
-
-def _unread_seasons(root: Path, wording: Wording, faults: Iterable[Fault]) -> set[int]:
-    """The seasons of tow lists that cannot be read."""
-    unread = {fault.path for fault in faults}
-    return {file.season for file in list_files(root, TOWS, wording.files) if file.path in unread}
 
 
 def _fault_order(fault: Fault) -> tuple[str, int, str]:
     return fault.path, fault.line or 0, fault.tow_id or ""
-
-
-def _check_present(root: Path, profiles: Profiles) -> None:
-    lacking = missing_lists(root, profiles)
-    if lacking:
-        raise MissingKnowledgeError(
-            "The archive at {} cannot be read: {}", root, lacking[0].message
-        )
 
 
 def _idle_settings(

@@ -1,7 +1,10 @@
-"""The rows of the tow lists held against each other, the files, the boats and the profiles."""
+"""The rows of the tow lists held against each other, the files, the boats and the profiles.
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, replace
+Every check takes rows, and gives those that pass with what it found; the others leave a fault.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -13,21 +16,16 @@ from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedRuns, ListedTows
-from pipeline.tables.row import Row
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.list_kinds import TOWS
-from warehouse.archive.index.hashed_files import Hashes
-from warehouse.archive.index.tow_files import FilesByName, the_file
+from warehouse.archive.index.files import FilesByName, Hashes, hash_samples, the_file
 from warehouse.archive.lists.boats import Boats
 from warehouse.archive.lists.instruments import load_cell_of
-from warehouse.archive.lists.tows import readable, with_ids
 from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.profile.season import Plan, SeasonProfile
+from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.sheets.cells import WrongError
 from warehouse.archive.sheets.rows import (
     PLACE,
-    ROWS_ARE_EQUAL,
-    ROWS_DIFFER,
     Problem,
     cell,
     fault_at,
@@ -35,6 +33,7 @@ from warehouse.archive.sheets.rows import (
     header,
     keep,
     misfits,
+    one_of_each,
     place_of,
 )
 
@@ -49,123 +48,30 @@ _DIMENSIONS: Final = {
 _SAMPLES: Final = ("samples_path", "samples_sha256", "second_path", "second_sha256")
 
 
-@dataclass(frozen=True)
-class Usable:
-    """The tows that can be read, with their runs, and what is wrong with the others.
-
-    Attributes:
-        tows: rows of `ListedTows`.
-        runs: rows of `ListedRuns`.
-        faults: what is set aside, and why.
-        more: what else is wrong in rows that are set aside.
-    """
-
-    tows: pl.DataFrame
-    runs: pl.DataFrame
-    faults: list[Fault]
-    more: list[Fault]
-
-
-@dataclass(frozen=True)
-class Known:
-    """What the rows of the tow lists are held against.
-
-    Attributes:
-        problems: what is wrong in their cells.
-        profiles: `archief.toml`.
-        by_name: the samples files.
-        hashes: what they hold.
-        boats: the boat lists.
-        checks: of the load cell (`ListedForceChecks`).
-        burned: how long a lamp burned, `burned_s` by `tow_id`.
-    """
-
-    problems: Sequence[Problem]
-    profiles: Profiles
-    by_name: FilesByName
-    hashes: Hashes
-    boats: Boats
-    checks: pl.DataFrame
-    burned: pl.DataFrame
-
-
-def usable_tows(rows: pl.DataFrame, known: Known) -> Usable:
-    """The tows that can be read; a row on which Herijk itself fails is set aside alone."""
-    try:
-        return _usable(rows, known)
-    except BaseException as error:
-        fault_from(error, "")  # raises what is no fault of Herijk
-    failures = {}
-    for row in rows.iter_slices(1):
-        try:
-            _usable(row, known)
-        except BaseException as error:
-            of = row.row(0, named=True)
-            failures[of["row"]] = fault_from(error, of["path"], of["cells"]["tow_id"])
-    others = _usable(rows.filter(~pl.col("row").is_in([*failures])), known)
-    return replace(others, faults=[*others.faults, *failures.values()])
-
-
-def _usable(rows: pl.DataFrame, known: Known) -> Usable:
-    faults: list[Fault] = []
-    more: list[Fault] = []
-    profiles = known.profiles
-    rows = with_ids(rows)
-    own = _of_one_row(rows, faults)
-    again = rows.join(own, on="row", how="anti", maintain_order="left")
-    readable(again, known.problems, profiles, more, more)
-    read = readable(own, known.problems, profiles, faults, more)
-    lost = list(read.lost)
-    tows = _with_files(read.rows, known, faults)
-    tows = _with_own_samples(tows, faults)
-    tows = _with_boat(tows, known, faults, lost)
-    tows = _of_days_in_use(tows, profiles, faults)
-    tows = _within_limits(_with_instruments(tows, known), faults)
-    for fault in faults_of(tows, lost):
-        text = say("{what} The cell counts as empty.", what=fault.message)
-        faults.append(replace(fault, message=text, lost="cell"))
-    facts = tows.select("row", "tow_id", "season", pl.col("second_path").is_not_null())
-    runs = [
-        run
-        for row, tow_id, season, has_second in facts.iter_rows()
-        for run in _runs(tow_id, profiles.plan_of(tow_id, season), has_second, read.selections[row])
-    ]
-    return Usable(_as_listed(tows), frame_of(ListedRuns, runs), faults, more)
-
-
-def _of_one_row(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
+def of_one_row(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
     """The rows whose `sleep_id` is their own, and the first of rows that are equal."""
-    same = pl.col("tow_id")
-    place = place_of("line", "path")
-    is_first = same.is_first_distinct()
-    is_equal = pl.col("cells").n_unique().over(same) == 1
-    is_twice = same.is_duplicated() & same.is_not_null()
-    rows = rows.with_columns(
-        is_again=is_twice & is_equal & ~is_first,
-        is_in_doubt=is_twice & ~is_equal,
-        other=pl.when(is_first)
-        .then(place.shift(-1).first().over(same))
-        .otherwise(place.first().over(same)),
-    )
+    tow, place = pl.col("tow_id"), place_of("line", "path")
+    second, first = (other.first().over(tow) for other in (place.shift(-1), place))
+    other = pl.when(tow.is_first_distinct()).then(second).otherwise(first)
     text = say("sleep_id {tow} is also on {where}; {ending}")
-    facts = {"tow": same, "where": pl.col("other")}
-    for unless, ending in (("is_again", ROWS_ARE_EQUAL), ("is_in_doubt", ROWS_DIFFER)):
-        wrong = pl.col(unless)
-        rows = keep(rows, faults, wrong, "duplicate_tow_id", text, **facts, ending=ending)
-    return rows.drop("is_again", "is_in_doubt", "other")
+    facts = {"tow": tow, "where": pl.col("other")}
+    rows = rows.with_columns(other=other)
+    return one_of_each(rows, faults, ["tow_id"], ["cells"], "duplicate_tow_id", text, **facts)
 
 
-def _with_files(rows: pl.DataFrame, known: Known, faults: list[Fault]) -> pl.DataFrame:
+def with_files(
+    rows: pl.DataFrame, by_name: FilesByName, hashes: Hashes, faults: list[Fault]
+) -> pl.DataFrame:
     """The rows whose samples files are there, with their paths and hashes."""
     found = []
     named = rows.select("row", *PLACE, "season", "file", "second_file")
     for row in named.iter_rows(named=True):
         try:
             files = [
-                (file.path, known.hashes.add_samples(file))
+                (file.path, hash_samples(file, hashes))
                 for name in (row["file"], row["second_file"])
                 if name is not None
-                for file in [the_file(name, row["season"], known.by_name)]
+                for file in [the_file(name, row["season"], by_name)]
             ]
         except WrongError as error:
             text = say(error.text, **error.values)
@@ -180,7 +86,7 @@ def _with_files(rows: pl.DataFrame, known: Known, faults: list[Fault]) -> pl.Dat
     return rows.join(files_of, on="row", maintain_order="left")
 
 
-def _with_own_samples(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
+def with_own_samples(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
     """The rows whose samples are their own, by content.
 
     A first file may be the second file of another tow of the same boat: that is how two tows are
@@ -219,7 +125,7 @@ def _with_own_samples(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
     text = say("'{path}' holds the samples that {where} uses already for {boat}.")
     facts = {"path": pl.col("samples_path"), "where": pl.col("where"), "boat": pl.col(boat)}
     is_again = pl.col("row") != pl.col("earliest")
-    return keep(rows, faults, is_again, "duplicate_tow", text, **facts).drop("where")
+    return keep(rows, faults, is_again, "duplicate_tow", text, **facts)
 
 
 def _another(rows: pl.DataFrame, content: str, who: str, users: pl.DataFrame) -> pl.Series:
@@ -237,11 +143,10 @@ def _another(rows: pl.DataFrame, content: str, who: str, users: pl.DataFrame) ->
     return mine.select(another.alias(f"{content} {who}")).to_series()
 
 
-def _with_boat(
-    rows: pl.DataFrame, known: Known, faults: list[Fault], lost: list[Problem]
+def with_boat(
+    rows: pl.DataFrame, boats: Boats, profiles: Profiles, faults: list[Fault], lost: list[Problem]
 ) -> pl.DataFrame:
     """The tows with their boat, and its sizes where those of that day were not written down."""
-    boats = known.boats
     rows = _with_number(rows, boats, faults)
     sizes = boats.listed.unique("fsn_no", maintain_order=True).select(
         pl.col("fsn_no").alias("boat"), pl.col(*_DIMENSIONS, "weight_kg").name.prefix("listed_")
@@ -267,7 +172,7 @@ def _with_boat(
         number = row.pop("row")
         lost.append(Problem(number, "weight_kg", TOWS.reason_code, say(text, **row)))
     has_wind = _by(
-        rows, "season", lambda s: "wind" not in known.profiles.for_season(s).absent, pl.Boolean
+        rows, "season", lambda s: "wind" not in profiles.for_season(s).absent, pl.Boolean
     )
     filled = {key: pl.coalesce(key, f"listed_{key}") for key in _DIMENSIONS}
     weight = pl.when(is_apart.fill_null(value=False)).then(None).otherwise("weight_kg")
@@ -306,7 +211,7 @@ def _with_number(rows: pl.DataFrame, boats: Boats, faults: list[Fault]) -> pl.Da
     return keep(rows, faults, pl.col("boat").is_null(), "unknown_boat", text, boat=named)
 
 
-def _of_days_in_use(rows: pl.DataFrame, profiles: Profiles, faults: list[Fault]) -> pl.DataFrame:
+def of_days_in_use(rows: pl.DataFrame, profiles: Profiles, faults: list[Fault]) -> pl.DataFrame:
     """The rows of days that are not set aside, with the instruments that were on board."""
     reason = _by(rows, "tow_date", profiles.reason_set_aside, pl.String)
     text = say("{day} is set aside in archief.toml: {reason}.")
@@ -336,49 +241,72 @@ def _by(
     return pl.col(key).replace_strict(found, return_dtype=dtype) if found else nothing
 
 
-def _with_instruments(rows: pl.DataFrame, known: Known) -> pl.DataFrame:
-    """The tows with what is known of the load cell and the warning lamps."""
+def with_instruments(
+    rows: pl.DataFrame, profiles: Profiles, checks: pl.DataFrame, burned: pl.DataFrame
+) -> pl.DataFrame:
+    """The tows with what is known of the load cell and the warning lamps.
+
+    Args:
+        rows: the tows.
+        profiles: how long their runs are meant to last.
+        checks: of the load cell (`ListedForceChecks`).
+        burned: how long a lamp burned, as `lamp_seconds` says.
+    """
     days = rows.select("season", "tow_date").unique(maintain_order=True).rows()
     cells = [
-        (season, day, *(load_cell_of(season, day, known.checks) or (None, None)))
-        for season, day in days
+        (season, day, *(load_cell_of(season, day, checks) or (None, None))) for season, day in days
     ]
     schema = {"season": pl.Int64, "tow_date": pl.Date}
     schema |= {"load_cell_ratio": pl.Float64, "load_cell_sd": pl.Float64}
     of_days = pl.DataFrame(cells, schema, orient="row")
     rows = rows.join(of_days, on=["season", "tow_date"], how="left", maintain_order="left")
-    rows = rows.join(known.burned, on="tow_id", how="left", maintain_order="left")
-    plans = (known.profiles.plan_of(*tow) for tow in rows.select("tow_id", "season").rows())
+    rows = rows.join(burned, on="tow_id", how="left", maintain_order="left")
+    plans = (profiles.plan_of(*tow) for tow in rows.select("tow_id", "season").rows())
     planned_s = pl.Series([plan.seconds for plan in plans], dtype=pl.Float64)
     return rows.with_columns(lamp_ratio=pl.col("burned_s") / planned_s)
 
 
-def _within_limits(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
+def within_limits(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
     """The tows within the limits of the table `tows`."""
-    why = {row["tow_id"]: text for row, text in misfits(ListedTows, _as_listed(rows))}
+    why = {row["tow_id"]: text for row, text in misfits(ListedTows, as_listed(rows))}
     is_misfit = pl.col("tow_id").is_in([*why])
     places = rows.filter(is_misfit).select(*PLACE).iter_rows(named=True)
     faults += (fault_at(place, TOWS.reason_code, why[place["of_tow"]]) for place in places)
     return rows.filter(~is_misfit)
 
 
-def _as_listed(rows: pl.DataFrame) -> dy.DataFrame[ListedTows]:
+def as_listed(rows: pl.DataFrame) -> dy.DataFrame[ListedTows]:
+    """The tows with the columns of their table."""
     placed = rows.with_columns(list_path="path", list_line="line")
     return ListedTows.cast(placed.select(ListedTows.column_names()))
 
 
-def _runs(tow_id: str, plan: Plan, has_second: bool, selection: Collection[int]) -> list[Row]:
-    """The runs that a tow is meant to have."""
-    ways_of = {0: plan.directions, SECOND_FILE_OFFSET: plan.second_directions or plan.directions}
-    return [
-        {
-            "tow_id": tow_id,
-            "run": offset + number,
-            "direction": ways[number - 1],
-            "target_speed_ratio": plan.targets[number - 1],
-            "selected": offset + number in selection,
-            "planned_s": plan.seconds,
-        }
-        for offset, ways in list(ways_of.items())[: 1 + has_second]
-        for number in plan.runs
-    ]
+def lost_cells(rows: pl.DataFrame, lost: Sequence[Problem]) -> Iterator[Fault]:
+    """A fault for each cell that a tow does without."""
+    for fault in faults_of(rows, lost):
+        text = say("{what} The cell counts as empty.", what=fault.message)
+        yield replace(fault, message=text, lost="cell")
+
+
+def runs_of(
+    rows: pl.DataFrame, selections: Mapping[int, frozenset[int]], profiles: Profiles
+) -> dy.DataFrame[ListedRuns]:
+    """The runs that the tows are meant to have; those of a second file are 21 and on."""
+    runs = []
+    facts = rows.select("row", "tow_id", "season", pl.col("second_path").is_not_null())
+    for row, tow_id, season, has_second in facts.iter_rows():
+        plan = profiles.plan_of(tow_id, season)
+        ways = {0: plan.directions, SECOND_FILE_OFFSET: plan.second_directions or plan.directions}
+        runs += [
+            {
+                "tow_id": tow_id,
+                "run": offset + number,
+                "direction": ways[offset][number - 1],
+                "target_speed_ratio": plan.targets[number - 1],
+                "selected": offset + number in selections[row],
+                "planned_s": plan.seconds,
+            }
+            for offset in list(ways)[: 1 + has_second]
+            for number in plan.runs
+        ]
+    return frame_of(ListedRuns, runs)

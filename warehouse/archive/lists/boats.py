@@ -1,8 +1,7 @@
 """The boats of the archive: `sloependata.csv`, or several lists of boats."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Final
 
 import polars as pl
@@ -10,12 +9,13 @@ import polars as pl
 from pipeline.messages import say
 from pipeline.tables.lake import ListedBoats
 from warehouse.archive.faults import Fault
+from warehouse.archive.files.finding import ArchiveFile
 from warehouse.archive.files.list_kinds import BOATS
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.reading import CREW, read_lists
 from warehouse.archive.sheets.rows import header, keep, place_of, sound_rows
 from warehouse.archive.spelling.synonyms import NO_TYPE
 from warehouse.archive.spelling.text import fold, fold_word
-from warehouse.archive.spelling.wording import Wording
 
 OF_THE_BOAT: Final = (
     *("ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
@@ -58,14 +58,14 @@ def _bare(fsn_no: str) -> str:
     return fsn_no.removeprefix("FSN").lstrip("0")
 
 
-def read_boats(root: Path, wording: Wording) -> Boats:
+def read_boats(files: Iterable[ArchiveFile], profiles: Profiles) -> Boats:
     """Reads all boat lists; a defective row or an ambiguous boat becomes a fault.
 
     A boat may have a row for each of its names and crews, in one list or in several. Dimensions,
     weight and crew may be empty. Rows that contradict each other cost the boat: nobody can know
     which of them is right.
     """
-    rows, problems, faults = read_lists(root, BOATS, wording)
+    rows, problems, faults = read_lists(files, BOATS, profiles)
     unread = faults[-1] if faults else None
     of_rows: list[Fault] = []
     more: list[Fault] = []

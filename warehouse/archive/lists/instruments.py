@@ -4,7 +4,7 @@ What that does to a tow belongs to `pipeline`.
 """
 
 import datetime as dt
-from pathlib import Path
+from collections.abc import Iterable
 from typing import Final
 
 import numpy as np
@@ -12,11 +12,12 @@ import polars as pl
 
 from pipeline.messages import say
 from warehouse.archive.faults import Fault
+from warehouse.archive.files.finding import ArchiveFile
 from warehouse.archive.files.list_kinds import FORCE_CHECKS, LAMPS
 from warehouse.archive.lists.windows import in_order
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.reading import read_sound
 from warehouse.archive.sheets.rows import check_year, keep, to_table
-from warehouse.archive.spelling.wording import Wording
 
 GRAVITY_M_S2: Final = 9.813
 """In the Netherlands."""
@@ -30,9 +31,11 @@ WEIGHT_SD: Final = 0.001
 FEWEST_READINGS: Final = 3
 
 
-def read_force_checks(root: Path, wording: Wording) -> tuple[pl.DataFrame, list[Fault]]:
+def read_force_checks(
+    files: Iterable[ArchiveFile], profiles: Profiles
+) -> tuple[pl.DataFrame, list[Fault]]:
     """Reads every list of readings of the load cell, and the lines that cannot be read."""
-    rows, faults = read_sound(root, FORCE_CHECKS, wording)
+    rows, faults = read_sound(files, FORCE_CHECKS, profiles)
     rows = check_year(rows, faults, "day", FORCE_CHECKS.reason_code)
     return to_table(FORCE_CHECKS.table, rows, faults, FORCE_CHECKS.reason_code), faults
 
@@ -55,10 +58,10 @@ def load_cell_of(season: int, day: dt.date, checks: pl.DataFrame) -> tuple[float
 
 
 def read_lamps(
-    root: Path, wording: Wording, tow_ids: pl.Series
+    files: Iterable[ArchiveFile], profiles: Profiles, tow_ids: pl.Series
 ) -> tuple[pl.DataFrame, list[Fault]]:
     """Reads every list of lamps, and the lines that cannot be read or are of no listed tow."""
-    rows, faults = read_sound(root, LAMPS, wording)
+    rows, faults = read_sound(files, LAMPS, profiles)
     is_unknown, tow = ~pl.col("tow_id").is_in(tow_ids.implode()), pl.col("tow_id")
     text = say("sleep_id {tow} is not in the tow list of that year.")
     rows = keep(rows, faults, is_unknown, LAMPS.reason_code, text, tow=tow)

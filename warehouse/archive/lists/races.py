@@ -9,24 +9,24 @@ from pipeline.messages import say
 from pipeline.tables.bases import TowFacts
 from pipeline.tables.frames import limits
 from warehouse.archive.faults import Fault
+from warehouse.archive.files.finding import files_of
 from warehouse.archive.files.list_kinds import RACES
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.archive.sheets.reading import read_sound
 from warehouse.archive.sheets.rows import (
-    ROWS_ARE_EQUAL,
-    ROWS_DIFFER,
     cell,
     check_year,
     keep,
+    one_of_each,
     to_table,
 )
-from warehouse.archive.spelling.wording import Wording
 
 _RESULT: Final = ("race", "race_date", "fsn_no", "rowers", "crew_class")
 """What a crew has one result of."""
 
 
-def read_races(root: Path, wording: Wording | None = None) -> tuple[pl.DataFrame, list[Fault]]:
+def read_races(root: Path, profiles: Profiles | None = None) -> tuple[pl.DataFrame, list[Fault]]:
     """Reads every `wedstrijden/<naam>_<jaar>.csv`.
 
     A crew has one result in a race; of equal rows the first counts.
@@ -35,20 +35,16 @@ def read_races(root: Path, wording: Wording | None = None) -> tuple[pl.DataFrame
         One row a result (`ListedRaces`; distances in m, times in s, penalties in W), and the lines
         that cannot be read.
     """
-    rows, faults = read_sound(root, RACES, wording or read_profiles(root).wording)
+    profiles = profiles or read_profiles(root)
+    rows, faults = read_sound(files_of(root, profiles.files), RACES, profiles)
     rows = check_year(rows, faults, "race_date", RACES.reason_code)
     rows = rows.with_columns(season=pl.col("race_date").dt.year().cast(pl.Int64))
     rows = _possible(rows, faults)
     own = [name for name in RACES.table.column_names() if name not in {"path", "line"}]
-    is_again = pl.struct(own).is_first_distinct().not_()
-    for is_twice, ending in (
-        (is_again, ROWS_ARE_EQUAL),
-        (pl.struct(_RESULT).is_duplicated(), ROWS_DIFFER),
-    ):
-        text = say("{boat} {crew} is listed twice for {race}; {ending}")
-        crew = pl.format("{}{}", "rowers", "crew_class")
-        named = {"boat": pl.col("fsn_no"), "crew": crew, "race": pl.col("race"), "ending": ending}
-        rows = keep(rows, faults, is_twice, RACES.reason_code, text, **named)
+    crew = pl.format("{}{}", "rowers", "crew_class")
+    text = say("{boat} {crew} is listed twice for {race}; {ending}")
+    facts = {"boat": pl.col("fsn_no"), "crew": crew, "race": pl.col("race")}
+    rows = one_of_each(rows, faults, _RESULT, own, RACES.reason_code, text, **facts)
     return to_table(RACES.table, rows, faults, RACES.reason_code), faults
 
 

@@ -8,11 +8,12 @@ import polars as pl
 from pipeline.messages import say
 from pipeline.register.register import NO_EMPTY_THWART
 from warehouse.archive.faults import Fault
+from warehouse.archive.files.finding import files_of
 from warehouse.archive.files.list_kinds import REGISTERS
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.reading import read_profiles
 from warehouse.archive.sheets.reading import read_lists
 from warehouse.archive.sheets.rows import cell, header, keep, sound_rows, to_table
-from warehouse.archive.spelling.wording import Wording
 
 NEVER_TOWED_CW: Final = (0.995, 1.005)
 """Published Cw of boats without a valid tow: 1, as printed in two decimals. No hull comes near."""
@@ -25,7 +26,7 @@ _CURVE: Final = ("a_kg_m", "b_m_s", "cw_kg_m")
 
 
 def read_published_registers(
-    root: Path, wording: Wording | None = None
+    root: Path, profiles: Profiles | None = None
 ) -> tuple[pl.DataFrame, list[Fault]]:
     """Reads every `sloepregister/sloepregister_<jaar>.csv`.
 
@@ -33,7 +34,8 @@ def read_published_registers(
         One row per line of a register (`PrintedLines`), and the lines that cannot be read. A boat
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
-    rows, problems, faults = read_lists(root, REGISTERS, wording or read_profiles(root).wording)
+    profiles = profiles or read_profiles(root)
+    rows, problems, faults = read_lists(files_of(root, profiles.files), REGISTERS, profiles)
     is_valid = ~pl.col("cw_kg_m").is_between(*NEVER_TOWED_CW)
     rows = rows.with_columns(has_valid_curve=is_valid)
     never_towed = {*rows.filter(~pl.col("has_valid_curve"))["row"]}

@@ -5,8 +5,7 @@ What a row says by itself. What rows, boats and files say about each other belon
 """
 
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable
 from typing import Final
 
 import polars as pl
@@ -42,28 +41,13 @@ def with_ids(rows: pl.DataFrame) -> pl.DataFrame:
     return rows.with_columns(tow_id=tow_id, of_tow=tow_id)
 
 
-@dataclass(frozen=True)
-class TowRows:
-    """The rows of tow lists that can be read.
-
-    Attributes:
-        rows: a row each.
-        selections: the runs to use, by `row`; those of the second file are 21 and on.
-        lost: what is wrong in cells that a tow can do without, which count as empty.
-    """
-
-    rows: pl.DataFrame
-    selections: Mapping[int, frozenset[int]]
-    lost: list[Problem]
-
-
 def readable(
     rows: pl.DataFrame,
     problems: Iterable[Problem],
     profiles: Profiles,
     faults: list[Fault],
     more: list[Fault],
-) -> TowRows:
+) -> tuple[pl.DataFrame, dict[int, frozenset[int]], list[Problem]]:
     """The rows of which everything that a tow needs can be read; each other leaves a fault.
 
     Args:
@@ -72,6 +56,10 @@ def readable(
         profiles: the runs that the tows are meant to have.
         faults: the first fault of each other row is added.
         more: what else is wrong in it.
+
+    Returns:
+        The rows; the runs to use, by `row`, those of the second file from 21 on; and what is wrong
+        in cells that a tow can do without, which count as empty.
     """
     known: dict[int, list[Problem]] = {}
     for problem in problems:
@@ -105,7 +93,7 @@ def readable(
         lost += [] if found else can_lack
     rows = sound_rows(rows, costly, faults, more)
     rows = check_year(rows, faults, "tow_date", "date_outside_season")
-    return TowRows(rows, selections, lost)
+    return rows, selections, lost
 
 
 def _wrong_id(row: int, tow_id: str | None, named: str) -> Problem | None:

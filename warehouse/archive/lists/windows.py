@@ -4,32 +4,33 @@ Rows are read, and compared with the tows of that year, here. How long a run is,
 its samples are read; `outside_run` is asked then.
 """
 
-from pathlib import Path
+from collections.abc import Iterable
 
 import polars as pl
 
 from pipeline.messages import say
 from warehouse.archive.faults import Fault, at_line
+from warehouse.archive.files.finding import ArchiveFile
 from warehouse.archive.files.list_kinds import WINDOWS
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.reading import read_sound
 from warehouse.archive.sheets.rows import cell, keep, to_table
-from warehouse.archive.spelling.wording import Wording
 
 
 def read_windows(
-    root: Path, wording: Wording, listed: pl.DataFrame, runs: pl.DataFrame
+    files: Iterable[ArchiveFile], profiles: Profiles, listed: pl.DataFrame, runs: pl.DataFrame
 ) -> tuple[pl.DataFrame, list[Fault]]:
     """The windows for tows that are not set aside (`ListedWindows`), and the faulty rows.
 
     Two windows for one run cost both, as nobody can know which is right.
 
     Args:
-        root: the archive.
-        wording: how the lists are worded.
+        files: those of the archive.
+        profiles: how the lists are worded.
         listed: `season` and `tow_id` of every listed tow.
         runs: `tow_id` and `run` of those that are not set aside.
     """
-    rows, faults = read_sound(root, WINDOWS, wording)
+    rows, faults = read_sound(files, WINDOWS, profiles)
     rows = in_order(rows, faults, WINDOWS.reason_code)
     known = listed.unique().with_columns(is_listed=True)
     rows = rows.join(known, on=["season", "tow_id"], how="left", maintain_order="left")

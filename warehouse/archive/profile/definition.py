@@ -6,13 +6,13 @@ the runs, days to set aside.
 
 import datetime as dt
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Annotated, Final, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from pipeline.channels import (
     BACK,
@@ -32,9 +32,9 @@ from warehouse.archive.profile.season import (
 )
 from warehouse.archive.spelling.columns import Column
 from warehouse.archive.spelling.headers import split_header
+from warehouse.archive.spelling.synonyms import HEADERS
 from warehouse.archive.spelling.text import fold, fold_word
 from warehouse.archive.spelling.units import UNITS, find_scale
-from warehouse.archive.spelling.wording import Wording
 
 Channel = Literal["run", "log1", "log2", "gps", "force", "wind_speed", "wind_angle", "time"]
 Absent = Literal["log2", "gps", "wind"]
@@ -94,6 +94,19 @@ def _ways(directions: list[Literal["out", "back"]]) -> tuple[int, ...]:
     return tuple(OUT if way == "out" else BACK for way in directions)
 
 
+def _by(fold_key: Callable[[str], str]) -> Callable[[dict[str, str]], dict[str, str]]:
+    return lambda given: {fold_key(name): value for name, value in given.items()}
+
+
+def _name(header: str) -> str:
+    return split_header(header)[0]
+
+
+def _folded(names: list[str]) -> list[str]:
+    return [fold(name) for name in names]
+
+
+_Ignored = Annotated[list[str], AfterValidator(_folded)]
 _HeaderLines = Annotated[tuple[int, int], BeforeValidator(_lines)]
 
 
@@ -109,7 +122,7 @@ class _ProfileTable(_Strict):
     wind_zero_deg: Annotated[float, Field(ge=-360, le=360, strict=False)] = 0.0
     header: Annotated[str, Field(min_length=1)] | None = None
     header_lines: _HeaderLines | None = None
-    ignore: list[str] = []
+    ignore: _Ignored = []
     directions: _Directions | None = None
 
     @model_validator(mode="after")
@@ -170,8 +183,13 @@ class Profiles(_Strict):
         publication: publisher and licence of what is made from it.
         profile: the season ranges that differ.
         plan: the runs of seasons and tows that differ from the standard.
-        words, headers, ignore, dates, decimals, header_lines, files: see `Wording`, here as they
-            are written.
+        words: the value that a folded word stands for; empty text for nothing.
+        headers: the project's name of a column by a folded other one.
+        ignore: folded names of columns of lists, and of files, that are known and not used.
+        dates: `dmy` or `mdy` by the path of a list, or `*` for all: how 1/3/2015 is meant.
+        decimals: the mark before decimals by the path of a list, or `*` for all.
+        header_lines: the first and the last line of the header, by the path of a list.
+        files: what a file or folder stands for, by its path in the archive: `sleeplijst_2014`.
         set_aside: days whose tows are not used.
         log_replaced: days from which another log was on board.
     """
@@ -180,9 +198,9 @@ class Profiles(_Strict):
     publication: Publication = Publication()
     profile: list[_ProfileTable] = []
     plan: list[_PlanTable] = []
-    words: dict[str, str] = {}
-    headers: dict[str, str] = {}
-    ignore: list[str] = []
+    words: Annotated[dict[str, str], AfterValidator(_by(fold_word))] = {}
+    headers: Annotated[dict[str, str], AfterValidator(_by(_name))] = {}
+    ignore: _Ignored = []
     dates: dict[str, Literal["dmy", "mdy"]] = {}
     decimals: dict[str, Literal[".", ","]] = {}
     header_lines: dict[str, _HeaderLines] = {}
@@ -198,22 +216,21 @@ class Profiles(_Strict):
                 raise ValueError(f"season {first} has two profiles")
         return self
 
-    @cached_property
-    def wording(self) -> Wording:
-        """How the lists of this archive are worded."""
-        return Wording(
-            words={fold_word(word): value for word, value in self.words.items()},
-            headers={split_header(name)[0]: key for name, key in self.headers.items()},
-            ignore=tuple(fold(name) for name in self.ignore),
-            dates=self.dates,
-            decimals=self.decimals,
-            header_lines=self.header_lines,
-            files=self.files,
+    def named(self, columns: Iterable[Column]) -> tuple[Column, ...]:
+        """The columns with the other names that they answer to."""
+        return tuple(
+            replace(c, also=(*c.also, *HEADERS.get(c.key, ()), *self._own_names(c)))
+            for c in columns
         )
+
+    def _own_names(self, column: Column) -> Iterable[str]:
+        own = {fold(column.header), column.key}
+        return (name for name, meant in self.headers.items() if own & {fold(meant), meant})
 
     def ignoring(self, headers: Iterable[str]) -> "Profiles":
         """The same, with more columns that are not used."""
-        return Profiles.model_construct(**dict(self) | {"ignore": [*self.ignore, *headers]})
+        more = {"ignore": [*self.ignore, *map(fold, headers)]}
+        return Profiles.model_construct(**dict(self) | more)
 
     def for_season(self, season: int) -> SeasonProfile:
         """The profile of a season; the project's default where none is given."""
@@ -235,7 +252,7 @@ class Profiles(_Strict):
             wind_zero_deg=table.wind_zero_deg,
             header=table.header,
             header_lines=table.header_lines,
-            ignore=(*self.wording.ignore, *(fold(name) for name in table.ignore)),
+            ignore=(*self.ignore, *table.ignore),
         )
 
     def plan_of(self, tow_id: str, season: int) -> Plan:
@@ -273,7 +290,7 @@ class Profiles(_Strict):
                 unit_given=column.key in table.units,
                 reversed=column.key in table.reversed,
             )
-            for column in self.wording.with_names(SAMPLE_COLUMNS)
+            for column in self.named(SAMPLE_COLUMNS)
             if column.key not in absent
         )
 

@@ -4,7 +4,6 @@ import re
 import unicodedata
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Final
 
 import polars as pl
@@ -14,10 +13,11 @@ from pipeline.messages import say
 from pipeline.tables.frames import dtypes
 from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.contents import read_bytes
-from warehouse.archive.files.finding import list_files, path_inside
+from warehouse.archive.files.finding import ArchiveFile, outside_archive
 from warehouse.archive.files.list_kinds import ListKind
 from warehouse.archive.files.names import split_sheet
 from warehouse.archive.limits import LIST_MAX_BYTES
+from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.cells import Reading, Wrong, read_column
 from warehouse.archive.sheets.rows import PLACE, Problem, sound_rows
 from warehouse.archive.sheets.sheet import Sheet, read_sheets
@@ -32,28 +32,29 @@ from warehouse.archive.spelling.dates import date_order
 from warehouse.archive.spelling.numbers import decimal_mark
 from warehouse.archive.spelling.synonyms import CLASSES, NOTHING
 from warehouse.archive.spelling.text import fold, fold_word, shorten
-from warehouse.archive.spelling.wording import Wording
 
 CREW: Final = ("rowers", "crew_class")
 _CREW: Final = re.compile(r"([0-9]{1,2})\s*([^\W\d_]+)")
 """Rowers and class in one cell: `8H`."""
 
 
-def read_sound(root: Path, kind: ListKind, wording: Wording) -> tuple[pl.DataFrame, list[Fault]]:
+def read_sound(
+    files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles
+) -> tuple[pl.DataFrame, list[Fault]]:
     """The rows of all lists of a kind in which nothing is wrong, and a fault for each other."""
-    rows, problems, faults = read_lists(root, kind, wording)
+    rows, problems, faults = read_lists(files, kind, profiles)
     return sound_rows(rows, problems, faults), faults
 
 
 def read_lists(
-    root: Path, kind: ListKind, wording: Wording
+    files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles
 ) -> tuple[pl.DataFrame, list[Problem], list[Fault]]:
     """All lists of a kind as one frame, what is wrong in its rows, and the lists that are not read.
 
     Args:
-        root: folder of the archive.
+        files: those of the archive.
         kind: which lists.
-        wording: how the lists are worded.
+        profiles: how the lists are worded.
 
     Returns:
         The rows as in `read_list`, with `row` counted over all lists.
@@ -61,27 +62,28 @@ def read_lists(
     frames = [_no_rows(kind)]
     problems: list[Problem] = []
     faults: list[Fault] = []
-    for file in list_files(root, kind, wording.files):
+    for file in files:
+        if file.kind != kind.name:
+            continue
         try:
-            rows, wrong = read_list(root, kind, file.path, wording, sum(map(len, frames)))
+            rows, wrong = read_list(file, kind, profiles, sum(map(len, frames)))
         except BaseException as error:
             faults.append(fault_from(error, file.path))
             continue
-        frames.append(rows.with_columns(season=pl.lit(file.season, pl.Int64)))
+        frames.append(rows)
         problems += wrong
     return pl.concat(frames), problems, faults
 
 
 def read_list(
-    root: Path, kind: ListKind, path: str, wording: Wording, first_row: int = 0
+    file: ArchiveFile, kind: ListKind, profiles: Profiles, first_row: int = 0
 ) -> tuple[pl.DataFrame, list[Problem]]:
     """The rows of a list of the archive; empty ones are left out.
 
     Args:
-        root: folder of the archive.
+        file: the list.
         kind: which list.
-        path: the list, relative to the archive.
-        wording: how the lists of this archive are worded.
+        profiles: how the lists of this archive are worded.
         first_row: number of the first row.
 
     Returns:
@@ -92,22 +94,25 @@ def read_list(
         DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
             it can be a misspelt one, and left out in silence would change numbers.
     """
-    file, name = split_sheet(path)
-    data = read_bytes(path_inside(root, file), LIST_MAX_BYTES)
-    wanted = wording.with_names(kind.columns)
-    suffix = file[file.rfind(".") :].casefold()
-    sheets = read_sheets(data, wanted, suffix, name, wording.header_lines.get(path))
-    cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
-    order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
-    told = wording.decimals.get(path, wording.decimals.get("*", ""))
+    path = file.path
+    if not file.inside:
+        raise outside_archive(path)
+    data = read_bytes(file.full_path, LIST_MAX_BYTES)
+    wanted = profiles.named(kind.columns)
+    suffix, sheet_name = file.full_path.suffix.casefold(), split_sheet(path)[1]
+    sheets = read_sheets(data, wanted, suffix, sheet_name, profiles.header_lines.get(path))
+    cells = {cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields}
+    order = profiles.dates.get(path, profiles.dates.get("*", "")) or date_order(cells)
+    told = profiles.decimals.get(path, profiles.decimals.get("*", ""))
     mark = told or decimal_mark(cells)
     frames, problems = [_no_rows(kind)], list[Problem]()
     for sheet in sheets:
-        found = _columns_of(sheet, wanted, wording)
+        found = _columns_of(sheet, wanted, profiles)
         reading = Reading(found, kind.table, order, mark, bool(told))
-        texts = _texts(sheet, kind, found, wording.words)
+        texts = _texts(sheet, kind, found, profiles.words)
         rows, wrong = _read_rows(sheet, kind, reading, texts, first_row)
-        frames.append(rows.with_columns(path=pl.lit(path)).select(frames[0].columns))
+        where = {"path": pl.lit(path), "season": pl.lit(file.season, pl.Int64)}
+        frames.append(rows.with_columns(**where).select(frames[0].columns))
         problems += wrong
         first_row += len(rows)
     return pl.concat(frames), problems
@@ -135,7 +140,6 @@ def _read_rows(
         row=pl.int_range(first_row, first_row + pl.len(), dtype=pl.Int64),
         sheet=pl.lit(sheet.name),
         of_tow=pl.lit(None, pl.String),
-        season=pl.lit(0, pl.Int64),
         cells=pl.DataFrame(texts).to_struct(),
         headers=pl.struct(written),
     )
@@ -236,11 +240,13 @@ def _about_unknown(unknown: Iterable[str], free: Sequence[Column]) -> str:
     )
 
 
-def _columns_of(sheet: Sheet, wanted: Sequence[Column], wording: Wording) -> dict[str, FoundColumn]:
+def _columns_of(
+    sheet: Sheet, wanted: Sequence[Column], profiles: Profiles
+) -> dict[str, FoundColumn]:
     """The columns of a list; one that nobody knows is a fault."""
     optional = [replace(column, required=False) for column in wanted]
     places = find_columns(sheet.header, optional, sheet.line)
-    strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
+    strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in profiles.ignore]
     _check_named(sheet, {column.index for column in places.values()})
     if strange:
         free = [column for column in wanted if column.key not in places]

@@ -1,6 +1,6 @@
 """The rows of a list in a frame: those that can be used go on, each other leaves a fault."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 import polars as pl
@@ -20,9 +20,6 @@ PLACE: Final[dict[str, pl.DataType]] = {
 }
 """Where a row is: its list, its line, the sheet where a workbook has several; and the tow that is
 lost with it."""
-ROWS_ARE_EQUAL: Final = say("the rows are equal and the first counts.")
-ROWS_DIFFER: Final = say("the rows differ, so neither counts.")
-"""What becomes of rows that are about the same thing."""
 _QUOTED: Final = ("cell", "tow")
 
 
@@ -70,6 +67,39 @@ def keep(
         filled = facts | {name[1:]: _filled(name[1:], row[name]) for name in of_rows}
         faults.append(fault_at(row, code, say(text, **filled)))
     return rows.filter(~is_wrong)
+
+
+def one_of_each(
+    rows: pl.DataFrame,
+    faults: list[Fault],
+    about: Sequence[str],
+    content: Sequence[str],
+    code: str,
+    text: str,
+    **facts: object,
+) -> pl.DataFrame:
+    """One row about each thing: of equal rows the first counts, of others none.
+
+    Args:
+        rows: as in `keep`, as are the others.
+        faults: those of the other rows are added.
+        about: the columns that say what a row is about.
+        content: the columns in which rows can differ.
+        code: reason code.
+        text: the sentence; `ending` says what becomes of the rows.
+        facts: what is filled in.
+    """
+    same = pl.struct(about)
+    is_twice = same.is_duplicated() & pl.all_horizontal(pl.col(about).is_not_null())
+    differ = pl.struct(content).n_unique().over(about) > 1
+    is_again = is_twice & ~same.is_first_distinct() & ~differ
+    rows = rows.with_columns(is_again=is_again, is_in_doubt=is_twice & differ)
+    for unless, ending in (
+        ("is_again", say("the rows are equal and the first counts.")),
+        ("is_in_doubt", say("the rows differ, so neither counts.")),
+    ):
+        rows = keep(rows, faults, pl.col(unless), code, text, **facts, ending=ending)
+    return rows
 
 
 def _filled(name: str, value: object) -> object:

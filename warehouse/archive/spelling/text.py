@@ -100,5 +100,7 @@ def fold_word(text: str) -> str:
 
 def shorten(text: str) -> str:
     """The text, printable and cut to a length that fits in a sentence."""
+    if len(text) <= LONGEST_QUOTE and text.isprintable():
+        return text
     printable = "".join(letter if letter.isprintable() else "?" for letter in text[:LONGEST_QUOTE])
     return printable + ("..." if len(text) > LONGEST_QUOTE else "")

@@ -1,17 +1,90 @@
-"""Which samples files the rows of the tow lists mean."""
+"""The files of an archive: which are not read or not there, their hashes, and which rows mean."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import polars as pl
 
+from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
-from warehouse.archive.faults import Fault, fault_from
-from warehouse.archive.files.finding import ArchiveFile, outside_archive
-from warehouse.archive.files.names import PARTS, SAMPLES, as_one_run, match_key, split_sheet
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
+from pipeline.tables.lake import ListedFiles
+from warehouse.archive.faults import DefectiveFileError, Fault, fault_from
+from warehouse.archive.files.finding import STRANGER, ArchiveFile, list_misnamed, outside_archive
+from warehouse.archive.files.hashes import hash_of_parts, hash_of_sheet
+from warehouse.archive.files.list_kinds import BOATS, TOWS
+from warehouse.archive.files.names import (
+    BOATS_FILE,
+    PACKED,
+    PARTS,
+    SAMPLES,
+    as_one_run,
+    match_key,
+    split_sheet,
+)
 from warehouse.archive.sheets.cells import WrongError
 from warehouse.archive.spelling.text import fold, fold_word, shorten
+
+
+def missing_lists(root: Path, files: Iterable[ArchiveFile]) -> list[Fault]:
+    """What is not there of that without which nothing can be read.
+
+    Raises:
+        MissingKnowledgeError: there is no archive.
+    """
+    if not root.is_dir():
+        raise MissingKnowledgeError(
+            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
+            "meetdata_<jaar>/.",
+            root,
+            BOATS_FILE,
+        )
+    there = {file.kind for file in files}
+    lacking = []
+    if BOATS.name not in there:
+        lacking.append(
+            (BOATS_FILE, say("there is no list of boats: {path} is expected.", path=BOATS_FILE))
+        )
+    if TOWS.name not in there:
+        path = "sleeplijsten/sleeplijst_<jaar>.csv"
+        lacking.append((path, say("there is no list of tows: {path} is expected.", path=path)))
+    return [Fault(path, None, None, "missing_list", said) for path, said in lacking]
+
+
+def strangers(root: Path, files: Iterable[ArchiveFile], ignore: Collection[str]) -> list[Fault]:
+    """What lies in the archive and is not read."""
+    message = say("The name of '{name}' has letters that cannot be read; give it another name.")
+    misnamed = [
+        Fault(path, None, None, "unrecognised_file", say(message, name=path))
+        for path in list_misnamed(root)
+    ]
+    return misnamed + [
+        Fault(file.path, None, None, "unrecognised_file", _about_stranger(root, file.path))
+        for file in files
+        if file.kind == STRANGER and fold(file.path) not in ignore
+    ]
+
+
+def _about_stranger(root: Path, path: str) -> str:
+    """The sentence about what is not read."""
+    kind = Path(path)
+    if kind.suffix.lower() in PACKED:
+        return say("'{path}' is not read: it is packed. Unpack it in its folder.", path=path)
+    return say(
+        "'{path}' is not read: it has another name than the archive's files. Say what it is under "
+        "[files] in archief.toml, or put it under ignore.",
+        path=path,
+        inside=_lists_inside(root, path),
+    )
+
+
+def _lists_inside(root: Path, path: str) -> list[str]:
+    """The first files in a folder, each of which can be a list."""
+    inner = sorted(file for file in (root / path).rglob("*") if not file.is_dir())
+    return [file.relative_to(root).as_posix() for file in inner[:3]]
 
 
 @dataclass(frozen=True)
@@ -51,7 +124,7 @@ def without_own_folder(name: str, season: int) -> str:
     return own if fold(folder.rpartition("/")[2]) == fold(f"{SAMPLES}_{season}") else name
 
 
-def files_by_name(sample_files: Iterable[ArchiveFile], names: Iterable[Named]) -> FilesByName:
+def files_by_name(samples: Iterable[ArchiveFile], names: Iterable[Named]) -> FilesByName:
     """The samples by season and the name they answer to.
 
     Files that are a run each answer together to what their names have in common, unless a row
@@ -60,7 +133,7 @@ def files_by_name(sample_files: Iterable[ArchiveFile], names: Iterable[Named]) -
     named = {(season, match_key(without_own_folder(name, season))) for season, name in names}
     by_name: FilesByName = defaultdict(list)
     by_run: dict[tuple[int, str], dict[int, list[ArchiveFile]]] = defaultdict(dict)
-    for file in sample_files:
+    for file in samples:
         key = (file.season, match_key(file.full_path.name))
         by_name[key].append(SamplesFile((file,)))
         run = as_one_run(file.full_path.name)
@@ -93,7 +166,7 @@ def _sheet_in(book: ArchiveFile, sheet: str) -> SamplesFile:
 
 def not_listed(
     names: Iterable[Named],
-    sample_files: list[ArchiveFile],
+    samples: Iterable[ArchiveFile],
     unread_seasons: Collection[int],
     by_name: FilesByName,
 ) -> list[Fault]:
@@ -109,7 +182,7 @@ def not_listed(
         for part in file.parts
     }
     faults = []
-    for file in sample_files:
+    for file in samples:
         if file.path in named:
             continue
         if not file.inside:
@@ -144,3 +217,50 @@ def the_file(name: str, season: int, by_name: FilesByName) -> SamplesFile:
     if outside:
         raise outside_archive(outside[0].path)
     return candidates[0]
+
+
+Hashes = dict[str, tuple[str, int] | DefectiveFileError]
+"""SHA-256 and size in bytes of a file, or why it cannot be read, by its path in the archive."""
+
+
+def hash_files(files: Iterable[ArchiveFile], hash_file: Callable[[Path], str]) -> Hashes:
+    """The hashes of the files that lie inside the archive."""
+    return {file.path: _hash(file, hash_file) for file in files if file.inside}
+
+
+def _hash(
+    file: ArchiveFile, hash_file: Callable[[Path], str]
+) -> tuple[str, int] | DefectiveFileError:
+    path = Path(split_sheet(str(file.full_path))[0])
+    try:
+        return hash_file(path), path.stat().st_size
+    except OSError as error:
+        text = say(
+            "'{name}' cannot be read or unpacked: {error}.", name=file.path, error=error.strerror
+        )
+        return DefectiveFileError("unreadable_file", text, None, file.path)
+
+
+def hash_samples(file: SamplesFile, hashes: Hashes) -> str:
+    """The hash of samples, which is noted too; of several files one of their hashes.
+
+    Raises:
+        DefectiveFileError: `unreadable_file`.
+    """
+    known = []
+    for part in file.parts:
+        book, sheet = split_sheet(part.path)
+        found = hashes[book]
+        if isinstance(found, DefectiveFileError):
+            raise found
+        known.append((hash_of_sheet(found[0], sheet), found[1]))
+        hashes[part.path] = known[-1]
+    sha256 = hash_of_parts([sha256 for sha256, _ in known])
+    hashes[file.path] = sha256, sum(size for _, size in known)
+    return sha256
+
+
+def as_files(hashes: Hashes) -> dy.DataFrame[ListedFiles]:
+    """Every file that was read."""
+    read = ((path, *h) for path, h in sorted(hashes.items()) if isinstance(h, tuple))
+    return frame_of(ListedFiles, read)
