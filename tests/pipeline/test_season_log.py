@@ -155,9 +155,28 @@ def test_boats_that_age_apart_are_seen_to_drift_and_their_best_estimates_hold():
     assert np.mean(held) > 0.9  # no normal drift: 92 % in eight worlds
 
 
-def test_the_search_comes_to_rest_where_a_step_of_the_fleet_only_looks_likely():
-    found = estimated(replace(CLEAN, day_sd=0.015), 4)[1]
-    assert "not settled" not in set(found.diagnosis["verdict"])
+RESTLESS = {
+    "a step of the fleet that looks likely until it is fitted": (replace(CLEAN, day_sd=0.015), 4),
+    "a new log at one place after the other": (
+        replace(
+            HARD,
+            tows_a_season=27,
+            boats=71,
+            tow_noise=0.002,
+            wander=0.01,
+            altered_share=0.0,
+            gps_season_error=0.02,
+            log_change=(2010, 9, 0.03),
+        ),
+        298,
+    ),
+}
+"""Archives in which the search went round and round, or reached its limit of steps."""
+
+
+@pytest.mark.parametrize(("setup", "seed"), RESTLESS.values(), ids=RESTLESS)
+def test_the_search_comes_to_rest(setup, seed):
+    assert "not settled" not in set(estimated(setup, seed)[1].diagnosis["verdict"])
 
 
 @pytest.mark.parametrize(
@@ -173,6 +192,17 @@ def test_a_search_that_does_not_come_to_rest_says_so_of_every_season(
     assert found.diagnosis["alarm"].all()
     assert set(found.steps["cause"]) == {"not told"}
     assert set(found.factors["source"]) == {"not settled"}
+
+
+def test_a_boat_altered_unreported_hardly_moves_a_thin_network():
+    tows = simulate(replace(CLEAN, boats=20, tows_a_season=6), 3).tows
+    boat = tows.filter(IN_2010)["fsn_no"][0]
+    mine = (pl.col("fsn_no") == boat) & (pl.col("season") > 2010)
+    moved = pl.col("ln_cw") + pl.when(mine).then(math.log(1.15)).otherwise(0.0)
+    before = estimate_season_factors(tows).factors
+    after = estimate_season_factors(tows.with_columns(moved)).factors
+    assert ((after["factor"] - before["factor"]).abs() < 0.005).all()
+    assert before["factor"].is_between(after["lo"], after["hi"]).all()
 
 
 def test_a_season_without_any_repeat_or_gps_is_not_determined():
