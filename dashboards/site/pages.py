@@ -29,7 +29,7 @@ from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
 from pipeline.messages import Sentence, say
-from warehouse.derive.studies import JUDGEMENT
+from warehouse.derive.studies import FIRST_PUBLISHED, JUDGEMENT
 from warehouse.queries.answers import line_changes, newest_edition
 from warehouse.queries.views import Views
 
@@ -56,13 +56,9 @@ def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Itera
     }
 
 
-AS_PRINTED: Final = "as-published-2014"
-"""A method that only reproduces what was first printed of 2014; pages do not compare it."""
-
-
 def method_names(views: Views) -> list[str]:
-    """Names of the methods, in the order of the database."""
-    return [name for name in views.table("methods")["method"] if name != AS_PRINTED]
+    """Names of the methods, in the order of the database, but for how 2014 was first printed."""
+    return [name for name in views.table("methods")["method"] if name != FIRST_PUBLISHED]
 
 
 REGISTER_COLUMNS = (

@@ -1,6 +1,6 @@
 """A method: what each step of it does here and on what authority, the vote, and one boat."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 import polars as pl
@@ -200,33 +200,32 @@ ESTIMATES: Final = {
 
 def _vote(method: Method, first: Method) -> list[Statement]:
     """What a meeting decides with this method: its changes by status, and the register's rule."""
-    by_status: dict[str, dict[str, list[Value]]] = {status: {} for status in VOTED}
-    for one in differences(method, first):
-        words = _words(one.step, one.option, one.after)
-        named = Statement("option", say("{option}: {after}"), words)
-        status = basis_of(one.step, one.option, one.after).status
-        by_status[status].setdefault(one.step, []).append(named)
-    found = [
-        Statement(status, VOTED[status], {"options": [_of_step(*one) for one in options.items()]})
-        for status, options in by_status.items()
-        if options
-    ]
     rule = method.validity
     years: dict[str, Value] = {"years": rule.valid_years}
-    return [*found, Statement("register_rule", ESTIMATES[rule.estimate], years, rule.estimate)]
+    decided = Statement("register_rule", ESTIMATES[rule.estimate], years, rule.estimate)
+    return [*_by_status(method, first, _of_step), decided]
 
 
 def voted_steps(views: Views, name: str) -> list[Statement]:
     """By status the steps in which a method differs from the first, for where room is scarce."""
     first, method = _ends(views, name)
-    steps: dict[str, dict[str, Value]] = {status: {} for status in VOTED}
+    return _by_status(method, first, lambda step, _: text(f"step.{step}"))
+
+
+def _by_status(
+    method: Method, first: Method, shown: Callable[[str, list[Value]], Value]
+) -> list[Statement]:
+    """What changes by status: of each step its name and options, as they are shown."""
+    changed: dict[str, dict[str, list[Value]]] = {status: {} for status in VOTED}
     for one in differences(method, first):
+        words = _words(one.step, one.option, one.after)
+        named = Statement("option", say("{option}: {after}"), words)
         status = basis_of(one.step, one.option, one.after).status
-        steps[status][one.step] = text(f"step.{one.step}")
+        changed[status].setdefault(one.step, []).append(named)
     return [
-        Statement(status, VOTED[status], {"options": list(named.values())})
-        for status, named in steps.items()
-        if named
+        Statement(status, VOTED[status], {"options": [shown(*one) for one in steps.items()]})
+        for status, steps in changed.items()
+        if steps
     ]
 
 
