@@ -3,10 +3,11 @@
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
+from operator import mul
 from typing import Final, NamedTuple
 
 from dashboards import labels
-from dashboards.pictures import waterfall_picture
 from dashboards.speech import Speech
 from dashboards.statements import Change, EditionName, Number, Statement, Value, number, told
 from dashboards.statements.edition import NEGLIGIBLE, causes_of_line
@@ -30,6 +31,21 @@ class Block(NamedTuple):
 
     title: Sentence
     statements: Sequence[Statement]
+
+
+class Bar(NamedTuple):
+    """A row of the picture that leads from an old number to the new one.
+
+    Attributes:
+        kind: `number`, which is a mark; `more` or `less`, a bar.
+        start, width: in per cent of the room.
+    """
+
+    kind: str
+    name: Sentence
+    value: Number | Change
+    start: float
+    width: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -67,16 +83,37 @@ class Answer:
         """Which crew it is about."""
         return crew_name(self.line, speech)
 
-    def waterfall(self, speech: Speech) -> str:
-        """What each cause did to the number, as a picture; nothing where it did not change."""
-        line = self.line
+    @property
+    def waterfall(self) -> list[Bar]:
+        """What each cause did to the number; nothing where it did not change.
+
+        The axis need not begin at zero: both numbers are marks on it, and only changes have a
+        length.
+        """
+        line, old = self.line, self.line["old_cw_kg_m"]
         if line["cw_ratio"] is None or line["change"] == "same":
-            return ""
-        old = line["old_cw_kg_m"]
-        title = speech.say("From the old number to the new, Cw in kg/m")
-        caption = f"{title}: {line['name']} {self.crew(speech)}"
-        causes = [(speech.say(name), factor) for name, factor in causes_of_line(line)]
-        return waterfall_picture((old, old * line["cw_ratio"]), causes, speech, caption)
+            return []
+        causes, new = causes_of_line(line), old * line["cw_ratio"]
+        ends = list(accumulate((factor for _, factor in causes), mul, initial=old))
+        room = 0.25 * (max(ends) - min(ends)) or 0.01 * old
+        places = [
+            100 * (end - min(ends) + room) / (max(ends) - min(ends) + 2 * room)
+            for end in (*ends, new)
+        ]
+        return [
+            Bar("number", say("was"), Number(old), places[0]),
+            *(
+                Bar(
+                    "more" if factor > 1 else "less",
+                    name,
+                    Change(factor),
+                    min(span),
+                    max(span) - min(span),
+                )
+                for (name, factor), *span in zip(causes, places, places[1:], strict=False)
+            ),
+            Bar("number", say("becomes"), Number(new), places[-1]),
+        ]
 
 
 def answers_by_boat(views: Views, edition: str, only: str | None = None) -> dict[str, list[Answer]]:

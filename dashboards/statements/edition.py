@@ -148,7 +148,7 @@ class Effect(NamedTuple):
         lines: how many are compared.
         median, lowest, highest: Cw new / old.
         seconds: median gain over a race of two hours [s].
-        beyond: how many change by more than their uncertainty; None where that is not known.
+        beyond: how many change by more than their uncertainty, where that is known.
     """
 
     of: tuple[str, ...]
@@ -157,7 +157,7 @@ class Effect(NamedTuple):
     lowest: Change
     highest: Change
     seconds: Number
-    beyond: int | None
+    beyond: int | Sentence
 
 
 def effects(lines: pl.DataFrame, *by: str) -> list[Effect]:
@@ -189,7 +189,7 @@ def effects(lines: pl.DataFrame, *by: str) -> list[Effect]:
             Change(row["lowest"]),
             Change(row["highest"]),
             Number(row["seconds"], 0, "s", sign="+"),
-            row["beyond"],
+            say("not known") if row["beyond"] is None else row["beyond"],
         )
         for row in found.to_dicts()
     ]
