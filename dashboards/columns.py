@@ -1,5 +1,6 @@
 """How a value is written in the column of a name: the same on pages and in the terminal."""
 
+import datetime as dt
 import json
 import re
 from typing import Any, Final
@@ -41,8 +42,10 @@ def written(name: str, value: Any, speech: Speech) -> str:
     if name == "causes":
         return causes(json.loads(value) if isinstance(value, str) else value, speech)
     several = re.split(", ?", value) if name in CODES and isinstance(value, str) else value
+    if isinstance(value, dt.date):
+        return str(value)
     if not isinstance(several, list | tuple):
-        return str(speech.words(several))
+        return speech.words(several)
     word = {"candidates": labels.candidate}.get(name, labels.code if name in CODES else str)
     return ", ".join(speech.words(word(one)) for one in several if one != "")
 
