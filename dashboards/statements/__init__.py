@@ -9,12 +9,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from string import Formatter
 from types import MappingProxyType
-from typing import Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from dashboards.columns import digits_of, ends_of, unit_of
 from dashboards.speech import Headline, Speech
 from pipeline.messages import Sentence
-from pipeline.tables.row import Row
 
 
 @dataclass(frozen=True)
@@ -99,30 +98,30 @@ def _spoken(value: Value, speech: Speech) -> object:
     return value(speech) if callable(value) else value
 
 
-NO_ROW: Final[Mapping[str, object]] = MappingProxyType({})
+NO_ROW: Final[Mapping[str, Any]] = MappingProxyType({})
 
 
 def told(
     kind: str,
     wording: Sentence,
-    row: Mapping[str, object] = NO_ROW,
+    row: Mapping[str, Any] = NO_ROW,
     *rests_on: str,
     verdict: str = "",
     **values: Value,
 ) -> Statement:
-    """A statement about a row: what its wording names is a column of the row, or is given."""
+    """A statement about a row: what its wording names is given, or else a value of the row."""
     names = [name for _, name, _, _ in Formatter().parse(wording.template) if name]
     said = {name: values[name] if name in values else _value(row, name) for name in names}
     return Statement(kind, wording, said, verdict, rests_on)
 
 
-def _value(row: Mapping[str, object], column: str) -> Value:
-    value: Value = row[column]  # type: ignore[assignment]  # tables hold no others
+def _value(row: Mapping[str, Any], column: str) -> Value:
+    value: Value = row[column]
     return number(row, column) if isinstance(value, float) else value
 
 
 def number(
-    row: Row | Mapping[str, object], column: str, digits: int | None = None, sign: str = ""
+    row: Mapping[str, Any], column: str, digits: int | None = None, sign: str = ""
 ) -> Number:
     """The number of a column, as its name says: with its unit, its decimals and its interval."""
     low, high = (row.get(end) for end in ends_of(column))

@@ -104,7 +104,7 @@ def _log_unknown(changed: pl.DataFrame) -> Iterator[Statement]:
     editions: Value = first
     if unknown[1:]:
         both: dict[str, Value] = {"old": first, "and": say(" and "), "new": last}
-        editions = told("both", say("{old}{and}{new}"), **both)
+        editions = told("both", say("{old}{and}{new}"), both)
     wording = say(
         " The uncertainty of {editions} leaves out the error of the log: it is really larger."
     )

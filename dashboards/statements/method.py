@@ -118,13 +118,10 @@ def _steps(method: Method, first: Method, ladder: pl.DataFrame) -> list[Step]:
 def _rule(one: Difference) -> Statement:
     """What an option is set to, what it was, and where that comes from."""
     before: list[Value] = [_value(one.option, value) for value in one.before]
-    return told(
-        "rule",
-        say("{option}, {seasons}: {after}; it was: {before} ({status}: {source})."),
-        seasons=range_in_words(one.first, one.last),
-        before=before,
-        **_words(one.step, one.option, one.after),
-    )
+    wording = say("{option}, {seasons}: {after}; it was: {before} ({status}: {source}).")
+    words = _words(one.step, one.option, one.after)
+    seasons = range_in_words(one.first, one.last)
+    return told("rule", wording, words, seasons=seasons, before=before)
 
 
 def _kept(method: Method, step: str, changed: Sequence[Difference]) -> Iterator[Statement]:
@@ -135,7 +132,7 @@ def _kept(method: Method, step: str, changed: Sequence[Difference]) -> Iterator[
     option = next(iter(options.model_fields))  # type: ignore[attr-defined]
     value = getattr(getattr(method.ranges[-1].steps, step), option)
     wording = say("{option}: {after}, as it was ({status}: {source}).")
-    yield told("kept", wording, **_words(step, option, value))
+    yield told("kept", wording, _words(step, option, value))
 
 
 def _words(step: str, option: str, value: object) -> dict[str, Value]:
@@ -179,7 +176,7 @@ def _effect(row: Row) -> Statement:
         "It changes {moved} of {tows} tows: median {median}, largest {largest} (tow {tow})."
     )
     changes = {name: Change(row[name]) for name in ("median", "largest")}
-    return told("effect", wording, row, *LADDER, **changes)
+    return told("effect", wording, row | changes, *LADDER)
 
 
 VOTED: Final = {
@@ -220,7 +217,7 @@ def _by_status(
     changed: dict[str, dict[str, list[Value]]] = {status: {} for status in VOTED}
     for one in differences(method, first):
         words = _words(one.step, one.option, one.after)
-        named = told("option", say("{option}: {after}"), **words)
+        named = told("option", say("{option}: {after}"), words)
         status = basis_of(one.step, one.option, one.after).status
         changed[status].setdefault(one.step, []).append(named)
     return [

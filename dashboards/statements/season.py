@@ -23,7 +23,7 @@ def log_factors(rows: pl.DataFrame) -> Statement | None:
         if off["lo"] is None
         else say("The log was furthest off in {season}: {by} (95 %: {low} to {high}).")
     )
-    return told("log_off", wording, off, "log_factors", **by)
+    return told("log_off", wording, off | by, "log_factors")
 
 
 def changes(rows: pl.DataFrame, method: str) -> Statement | None:
@@ -73,4 +73,4 @@ def reproducibility(rows: pl.DataFrame, method: str) -> Statement | None:
     }
     per_cent = {name: Number(100 * ratio, digits, "%") for name, (ratio, digits) in ratios.items()}
     named = {"method": labels.method(method), "first": labels.method(first)}
-    return told("reproducibility", wording, now, "reproducibility", **per_cent, **named)
+    return told("reproducibility", wording, now | per_cent | named, "reproducibility")

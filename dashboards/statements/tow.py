@@ -52,7 +52,7 @@ def _expected(tow: "Assessment") -> Iterator[Statement]:
         )
         ends = {name: Number(like[name]) for name in ("median", "lowest", "highest")}
         people = labels.crew(tow.tow["crew_class"])
-        yield told("like_boats", wording, tow.tow, "curves", n=like["n"], people=people, **ends)
+        yield told("like_boats", wording, tow.tow | like | ends, "curves", people=people)
 
 
 def _advice(tow: "Assessment") -> Iterator[Statement]:
