@@ -17,6 +17,7 @@ from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
 
 from herijk.cli.main import app
+from herijk.cli.speaking import ENGLISH
 from pipeline import errors
 from pipeline.messages import CATALOGUES, DOMAIN
 from pipeline.tables.schemas import ABOUT, TABLES, summary_of
@@ -85,8 +86,9 @@ def in_template(source: bytes) -> Iterator[Text]:
 
 def in_help(command) -> Iterator[Text]:
     """What a command says of itself, of its options and of the commands below it."""
-    for text in (command.help, *(getattr(option, "help", None) for option in command.params)):
-        yield " ".join((text or "").split()), None
+    for described in (command, *command.params):
+        text = ENGLISH.get(described) or getattr(described, "help", None) or ""
+        yield " ".join(text.split()), None
     for inner in getattr(command, "commands", {}).values():
         yield from in_help(inner)
 
