@@ -71,7 +71,7 @@ def report_pages(
         Section(
             f"report_{name}",
             _TITLES[name],
-            tables=[Table(name, frame, _COLUMNS[name], _TITLES[name])],
+            tables=[Table(name, frame, _COLUMNS[name])],
         )
         if frame.height
         else Section(f"report_{name}", _TITLES[name], empty=say("Nothing."))
