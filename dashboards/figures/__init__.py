@@ -87,8 +87,7 @@ def _ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     axis = alt.Axis(labelExpr=named(STEP_ORDER, say), labelAngle=-45, orient="top")
     order = alt.EncodingSortField("position", order="ascending")
     base = alt.Chart(frame).encode(
-        alt.X("step:N", title=None, sort=order, axis=axis),
-        alt.Y("season:O", title=None),
+        alt.X("step:N", title=None, sort=order, axis=axis), alt.Y("season:O", title=None)
     )
     shades = alt.Scale(
         domain=[0.8, 1.0, 1.2], range=[OKABE_ITO[5], "#ffffff", OKABE_ITO[4]], clamp=True,

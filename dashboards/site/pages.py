@@ -208,10 +208,7 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         for section in SEASON_CHARTS
         if frames[section.name].height
     ]
-    told = (
-        *listed(LINKS, "season_links", links, LINK_COLUMNS),
-        *_season_diagnosis(views),
-    )
+    told = (*listed(LINKS, "season_links", links, LINK_COLUMNS), *_season_diagnosis(views))
     return Page(
         "seasons.html",
         say("Seasons"),
@@ -459,9 +456,7 @@ def _season_diagnosis(views: Views) -> list[Section]:
 
 def _set_aside(views: Views) -> Section:
     section = Section(
-        "set_aside",
-        say("Set aside"),
-        say("Files, lines and tows not used, with the reason."),
+        "set_aside", say("Set aside"), say("Files, lines and tows not used, with the reason.")
     )
     if not views.has("quarantine"):
         return replace(section, empty=say("Nothing was set aside."))

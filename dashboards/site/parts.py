@@ -223,11 +223,7 @@ def draft_of(methods: Sequence[str]) -> str:
     return draft_name(default_method(methods))
 
 
-METHOD_SELECTORS: Final = {
-    "method": say("Method"),
-    "before": say("Before"),
-    "after": say("After"),
-}
+METHOD_SELECTORS: Final = {"method": say("Method"), "before": say("Before"), "after": say("After")}
 
 
 def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "") -> Select:

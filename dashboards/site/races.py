@@ -32,12 +32,7 @@ def race_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
 
 
 def _race(
-    path: str,
-    name: str,
-    rows: pl.DataFrame,
-    editions: Sequence[str],
-    chosen: str,
-    chances: Chances,
+    path: str, name: str, rows: pl.DataFrame, editions: Sequence[str], chosen: str, chances: Chances
 ) -> Page:
     now = rows.filter(to_edition=chosen)
     follows = ["to_edition"]

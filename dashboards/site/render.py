@@ -103,12 +103,7 @@ def build_pages(
 
 
 def _write_part(
-    store: Store,
-    folder: Path,
-    as_of: dt.date | None,
-    bordered: Border,
-    by_reports: bool,
-    part: str,
+    store: Store, folder: Path, as_of: dt.date | None, bordered: Border, by_reports: bool, part: str
 ) -> None:
     """The pages of one language with the data of all, or what all pages share."""
     with Views(store, as_of) as views:
