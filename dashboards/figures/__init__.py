@@ -13,7 +13,6 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
-from dashboards.colours import OKABE_ITO
 from dashboards.figures import boat, slides, style
 from dashboards.figures.charts import (
     CHANGE,
@@ -26,7 +25,7 @@ from dashboards.figures.charts import (
     curves,
     scatter,
 )
-from dashboards.figures.style import WIDTH, Column, Drawing, named, tips
+from dashboards.figures.style import OKABE_ITO, WIDTH, Column, Drawing, named, tips
 from pipeline.history import ERAS
 from pipeline.messages import Say, say
 from pipeline.studies.ladder import STEP_ORDER
@@ -192,7 +191,7 @@ FIGURES: Final[dict[str, Figure]] = {
         facet=("scope", lambda say: named(SCOPES, say)),
     ),
     "budget": bars(
-        "component", ("u_ratio", say("Standard uncertainty / Cw")), COMPONENTS, None
+        "component", ("u_ratio", say("Standard uncertainty / Cw")), COMPONENTS
     ),
     "options": bars(
         "option", ("median_ratio", CHANGE), JUDGED, ("lo_ratio", "hi_ratio")
