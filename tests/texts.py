@@ -17,7 +17,6 @@ from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
 
 from herijk.cli.main import app
-from herijk.cli.speaking import ENGLISH
 from pipeline import errors
 from pipeline.messages import CATALOGUES, DOMAIN
 from pipeline.tables.schemas import ABOUT, TABLES, summary_of
@@ -87,8 +86,8 @@ def in_template(source: bytes) -> Iterator[Text]:
 def in_help(command) -> Iterator[Text]:
     """What a command says of itself, of its options and of the commands below it."""
     for described in (command, *command.params):
-        text = ENGLISH.get(described) or getattr(described, "help", None) or ""
-        yield " ".join(text.split()), None
+        text = getattr(described, "english", getattr(described, "help", ""))
+        yield " ".join((text or "").split()), None
     for inner in getattr(command, "commands", {}).values():
         yield from in_help(inner)
 

@@ -42,16 +42,12 @@ def speak(language: str) -> None:
     os.environ["LANGUAGE"] = language  # where gettext looks first
 
 
-ENGLISH: Final[dict[object, str]] = {}
-"""What commands and their parameters say of themselves, before it is put in another language."""
-
-
 def in_words(command: click.Command) -> None:
     """Puts what a command, its parameters and the commands below it say of themselves in words."""
     described: Any
     for described in (command, *command.params):
-        english = ENGLISH.setdefault(described, " ".join((described.help or "").split()))
-        described.help = tell(english)
+        described.english = getattr(described, "english", " ".join((described.help or "").split()))
+        described.help = tell(described.english)
     if shown := command.get_help_option(click.Context(command)):
         shown.help = tell(HELP)
     for inner in getattr(command, "commands", {}).values():
