@@ -8,11 +8,16 @@ all is declared in `pipeline.tables`, so a column that comes or goes is no conce
 import re
 import tempfile
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import polars as pl
 import pytest
 
+from dashboards.site.boats import boat_pages
+from dashboards.site.pages import method_names, shared_pages
+from dashboards.site.slides import slides_page
+from dashboards.statements import Change, Number, Statement
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.seen import Seen
 from pipeline.blocks.batch import Batch
@@ -27,6 +32,8 @@ from tests.conftest import METHODS, Workbench, build_small
 from tests.pipeline.consistency_fleet import consistency_tables, fleet
 from tests.pipeline.season_worlds import HARD, simulate
 from tests.worlds import measure, recompute_world
+from warehouse.queries.views import Views
+from warehouse.store.store import Store
 
 LINES = ROOT / "tests" / "data" / "golden-tables.txt"
 SAME = 1e-6
@@ -76,6 +83,32 @@ def of_logs() -> dict[str, pl.DataFrame]:
     """Season factors of a hard archive, and what is doubted in it."""
     found = estimate_season_factors(simulate(HARD, 1002).tows)
     return frames(found) | {"retow_choice": retow_choice(found)}
+
+
+def of_statements(store: Store) -> dict[str, pl.DataFrame]:
+    """What every page says: the numbers and verdicts of each kind of statement."""
+    made: dict[str, list[dict[str, object]]] = {}
+    real = Statement.__init__
+
+    def noted(self: Statement, *parts: object, **named: object) -> None:
+        real(self, *parts, **named)  # type: ignore[arg-type]
+        row = {"verdict": self.verdict}
+        for name, value in self.values.items():
+            match value:
+                case Number():
+                    row |= {name: value.value, f"{name}_low": value.low, f"{name}_high": value.high}
+                case Change():
+                    row[name] = value.ratio
+                case int():
+                    row[name] = value
+        made.setdefault(self.kind, []).append(row)
+
+    with mock.patch.object(Statement, "__init__", noted), Views(store) as views:
+        pages = [page for make in shared_pages(views, by_reports=True).values() for page in make()]
+        pages += [make() for _, make in boat_pages(views, method_names(views))]
+        pages.append(slides_page(views))
+    assert len(pages) > len(made) > 20
+    return {kind: pl.DataFrame(rows, infer_schema_length=None) for kind, rows in made.items()}
 
 
 MADE = {
@@ -134,16 +167,20 @@ def test_the_numbers_of_tables_stay(world):
     assert changed(lines(world, MADE[world]())) == {}
 
 
-def test_the_numbers_of_a_rebuilt_archive_stay(built):
-    assert changed(lines("built", built.tables())) == {}
+def of_archive(bench: Workbench) -> dict[str, str]:
+    """Lines of a rebuilt archive, and of the pages about it."""
+    return lines("built", bench.tables()) | lines("statements", of_statements(bench.store))
+
+
+def test_the_numbers_of_a_rebuilt_archive_and_its_pages_stay(built):
+    assert changed(of_archive(built)) == {}
 
 
 def write_anew() -> None:
     """Writes the lines of today."""
     with tempfile.TemporaryDirectory() as folder:
         build_small(Path(folder))
-        bench = Workbench(Path(folder) / "archive", Path(folder) / "data")
-        now = lines("built", bench.tables())
+        now = of_archive(Workbench(Path(folder) / "archive", Path(folder) / "data"))
     for world, make in MADE.items():
         now |= lines(world, make())
     LINES.write_text("".join(f"{where}: {said}\n" for where, said in now.items()), "utf-8")
