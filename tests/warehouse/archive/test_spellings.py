@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import DefectiveInputError
 from tests.reason_codes import REASON_CODES
-from tests.warehouse.archive.conftest import HEADER, TOWS, Archive, Scan
+from tests.warehouse.archive.conftest import HEADER
 from warehouse.archive import SeasonProfile
 from warehouse.archive.samples import text_files
 from warehouse.archive.samples.file import read_samples
@@ -120,14 +120,6 @@ def test_gps_may_be_absent_throughout(tmp_path: Path, gps: str) -> None:
     samples, _ = read_samples(path, PROFILE)
     assert samples["gps_m_s"].null_count() == len(ROWS)
     assert samples.drop("gps_m_s").equals(EXPECTED.drop("gps_m_s"))
-
-
-@pytest.mark.parametrize("name", [" EERSTE  boot 8h 2014 ", "Eerste boot 8h 2014.CSV"])
-def test_meetfile_is_matched_forgivingly(archive: Archive, good_scan: Scan, name: str) -> None:
-    archive.replace(TOWS, "eerste boot 8h 2014", name)
-    scan = archive.scan()
-    assert scan.faults == []
-    assert scan.index.tows.equals(good_scan.index.tows)
 
 
 @given(st.text(max_size=12))
