@@ -175,7 +175,8 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, instruments: pl.DataFr
     scale, zero_n = (
         instruments[name].to_numpy()[batch.tow] for name in ("force_factor", "force_zero_n")
     )
-    means = means.with_force(scale, zero_n)
+    as_voted = np.full(len(batch.tow), steps.force.ratio)
+    means = means.with_force(as_voted, np.zeros(len(batch.tow))).with_force(scale, zero_n)
     estimated = instruments["factor"].cast(pl.Float64).to_numpy()
     known = log_factor(steps.speed, batch.of_tow("speed_correction_ratio"), estimated)
     reasons = _reasons(batch, steps, windows, means)

@@ -21,6 +21,7 @@ from pipeline.recompute.season_factors import is_estimated
 
 STEP_ORDER: Final = (
     "speed",
+    "force",
     "window",
     "runs",
     "calibration",
