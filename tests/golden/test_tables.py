@@ -17,7 +17,8 @@ import pytest
 from dashboards.site.boats import boat_pages
 from dashboards.site.pages import method_names, shared_pages
 from dashboards.site.slides import slides_page
-from dashboards.statements import Change, Number, Statement
+from dashboards.speech import Speech
+from dashboards.statements import Statement
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.seen import Seen
 from pipeline.blocks.batch import Batch
@@ -86,29 +87,23 @@ def of_logs() -> dict[str, pl.DataFrame]:
 
 
 def of_statements(store: Store) -> dict[str, pl.DataFrame]:
-    """What every page says: the numbers and verdicts of each kind of statement."""
-    made: dict[str, list[dict[str, object]]] = {}
-    real = Statement.__init__
+    """What every page says: the numbers in the English of each kind of statement, in order."""
+    said: dict[str, list[dict[str, object]]] = {}
+    real, english = Statement.__init__, Speech("en")
 
     def noted(self: Statement, *parts: object, **named: object) -> None:
         real(self, *parts, **named)  # type: ignore[arg-type]
-        row = {"verdict": self.verdict}
-        for name, value in self.values.items():
-            match value:
-                case Number():
-                    row |= {name: value.value, f"{name}_low": value.low, f"{name}_high": value.high}
-                case Change():
-                    row[name] = value.ratio
-                case int():
-                    row[name] = value
-        made.setdefault(self.kind, []).append(row)
+        text = self(english).replace("\N{MINUS SIGN}", "-")
+        numbers = enumerate(map(float, re.findall(r"-?\d+(?:\.\d+)?", text)), start=1)
+        row = {"verdict": self.verdict} | {str(place): number for place, number in numbers}
+        said.setdefault(self.kind, []).append(row)
 
     with mock.patch.object(Statement, "__init__", noted), Views(store) as views:
         pages = [page for make in shared_pages(views, by_reports=True).values() for page in make()]
         pages += [make() for _, make in boat_pages(views, method_names(views))]
         pages.append(slides_page(views))
-    assert len(pages) > len(made) > 20
-    return {kind: pl.DataFrame(rows, infer_schema_length=None) for kind, rows in made.items()}
+    assert len(pages) > len(said) > 20
+    return {kind: pl.DataFrame(rows, infer_schema_length=None) for kind, rows in said.items()}
 
 
 MADE = {
