@@ -89,6 +89,11 @@ class Speed(_Options):
         1.2,
     )
 
+    @property
+    def prescribed(self) -> float:
+        """True speed / log speed where nothing else is known."""
+        return 1.0 if self.correction == "none" else self.factor
+
 
 class Calibration(_Options):
     """The factor that brings the log to ground speed."""
