@@ -180,7 +180,7 @@ def samples_reader(profiles: Profiles, header: bytes) -> Callable[[Path, bytes],
     """Reads samples, and compares them with an independent reading where the header is whole."""
 
     def read(path: Path, data: bytes) -> None:
-        samples = read_samples(path, profiles.for_season(2009), sample_rate_hz=20)
+        samples, _ = read_samples(path, profiles.for_season(2009), sample_rate_hz=20)
         assert samples.schema == pl.Schema(SAMPLE_SCHEMA)
         plain = _unpacked(path, data)
         if plain is None or plain.split(b"\n")[0].rstrip(b"\r") != header:

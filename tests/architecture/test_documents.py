@@ -50,8 +50,9 @@ def reason_codes_given():
                 texts.add(node.value)
             if isinstance(node, ast.Call):
                 named = [k.value for k in node.keywords if k.arg == "reason_code"]
-                is_error = ast.unparse(node.func).startswith("Defective")
-                codes = [*named, *node.args[:is_error]]
+                called = ast.unparse(node.func).rpartition(".")[2]
+                is_first = called.startswith("Defective") or called in ("lost", "lose_of_all")
+                codes = [*named, *node.args[:is_first], *node.args[1 : 2 * (called == "lose")]]
                 given |= {code.value for code in codes if isinstance(code, ast.Constant)}
     return given, texts
 

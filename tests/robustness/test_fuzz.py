@@ -15,8 +15,8 @@ def test_a_reader_that_guesses_is_noticed(monkeypatch):
     original = fuzz.read_samples
 
     def guessing(*arguments, **options):
-        samples = original(*arguments, **options)
-        return samples.with_columns(samples["log1_m_s"] * 1.001)
+        samples, line_of = original(*arguments, **options)
+        return samples.with_columns(samples["log1_m_s"] * 1.001), line_of
 
     monkeypatch.setattr(fuzz, "read_samples", guessing)
     assert fuzz.fuzz(70, seed=2, tell=lambda line: None).failures != []

@@ -21,7 +21,7 @@ from pipeline.blocks.tows import Tows
 from pipeline.recompute.computed import Computed
 from tests.architecture.repository import PACKAGES
 from tests.conftest import METHODS, Workbench, shared
-from warehouse.archive.plausibility.run import Run
+from warehouse.archive.plausibility.judgement import Judgement
 
 TINY = WorldSettings(seasons=(2010, 2014), tows_per_season=11, rate_hz=10, seed=5)
 TOW = "2014-004"
@@ -30,19 +30,19 @@ ROOMS = (pipeline, warehouse.archive)
 TODAY = ("first_seen", "code_version", "content_hash")
 
 
-def tows_in(value, path):
+def tows_in(value):
     """Whether a value that a function is given is about the tow."""
     if isinstance(value, pl.DataFrame):
         return "tow_id" in value.columns and TOW in value["tow_id"]
     if isinstance(value, Computed):
-        return tows_in(value.tows, path)
+        return tows_in(value.tows)
     if isinstance(value, Tows):
-        return tows_in(value.frame, path)
+        return tows_in(value.frame)
     if isinstance(value, dict):
         return value.get("tow_id") == TOW
-    if isinstance(value, Run):
-        return value.path == path
-    return isinstance(value, list | tuple) and any(tows_in(part, path) for part in value)
+    if isinstance(value, Judgement):
+        return value.tow["tow_id"] == TOW
+    return isinstance(value, list | tuple) and any(tows_in(part) for part in value)
 
 
 def functions():
@@ -61,12 +61,12 @@ def functions():
 
 
 @contextmanager
-def failing(module, name, path, called):
+def failing(module, name, called):
     """Inside, a function raises where it works on the tow, wherever it was imported to."""
     function = getattr(importlib.import_module(module), name)
 
     def raises(*arguments, **named):
-        if any(tows_in(value, path) for value in (*arguments, *named.values())):
+        if any(tows_in(value) for value in (*arguments, *named.values())):
             called.append(name)
             raise ZeroDivisionError(f"planted in {name}")
         return function(*arguments, **named)
@@ -117,11 +117,6 @@ def without(tiny, tmp_path_factory):
     return comparable(bench)
 
 
-@pytest.fixture
-def path_of_tow(tiny):
-    return tiny.table("tows").filter(tow_id=TOW)["samples_path"][0]
-
-
 def check_without(bench, expected):
     found = comparable(bench)
     assert found.keys() == expected.keys()
@@ -141,12 +136,10 @@ def check_without(bench, expected):
         ("pipeline.assessment.assess", "assess"),
     ],
 )
-def test_a_failing_tow_is_set_aside_and_the_rest_goes_on(
-    module, name, tiny, without, path_of_tow, tmp_path
-):
+def test_a_failing_tow_is_set_aside_and_the_rest_goes_on(module, name, tiny, without, tmp_path):
     bench = Workbench(tiny.archive, tmp_path / "data")
     called = []
-    with failing(module, name, path_of_tow, called):
+    with failing(module, name, called):
         report = bench.rebuild((*METHODS, "rebased"))
     assert called
     faults = bench.table("quarantine")
@@ -179,10 +172,10 @@ def test_a_failing_method_costs_its_rows_alone(tiny, tmp_path):
     assert [c.severity for c in report.checks] == ["ERROR"]
 
 
-def test_a_tow_is_tried_again_when_its_row_changes(tiny, path_of_tow, tmp_path):
+def test_a_tow_is_tried_again_when_its_row_changes(tiny, tmp_path):
     bench = Workbench(tmp_path / "archive", tmp_path / "data")
     write_simulated_archive(bench.archive, simulate_world(TINY))
-    with failing("pipeline.assessment.assess", "assess", path_of_tow, []):
+    with failing("pipeline.assessment.assess", "assess", []):
         bench.rebuild()
     assert TOW not in bench.table("tows")["tow_id"]
     bench.rebuild()
@@ -200,16 +193,14 @@ def test_a_tow_is_tried_again_when_its_row_changes(tiny, path_of_tow, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(SEEDED))
-def test_wherever_a_tow_fails_the_tables_are_those_without_it(
-    number, tiny, without, path_of_tow, tmp_path
-):
+def test_wherever_a_tow_fails_the_tables_are_those_without_it(number, tiny, without, tmp_path):
     """Of the functions that were given the tow at all; others are drawn until one was."""
     draw = random.Random(number)
     names = sorted(functions())
     for module, name in draw.sample(names, len(names)):
         bench = Workbench(tiny.archive, tmp_path / f"{module}.{name}")
         called = []
-        with failing(module, name, path_of_tow, called):
+        with failing(module, name, called):
             bench.rebuild()
         if called:
             check_without(bench, without)

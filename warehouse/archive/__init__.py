@@ -1,6 +1,6 @@
 """The federation's archive of plain files: the only place that reads it.
 
-`index_archive` says what is there, `read_tow_samples` and `judge_in_files` read one tow.
+`index_archive` says what is there, `read_tow_samples` and `judge_samples` read one tow.
 Everything that cannot be used becomes a `Fault` with a reason code; the format and the codes are
 described in `docs/archive.md`.
 """
@@ -10,7 +10,7 @@ from warehouse.archive.files.hashes import FileHashes
 from warehouse.archive.index.index import ArchiveIndex, index_archive
 from warehouse.archive.lists.races import read_races
 from warehouse.archive.lists.registers import read_published_registers
-from warehouse.archive.plausibility.judge import judge_in_files
+from warehouse.archive.plausibility.judge import judge_samples
 from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.samples.tow import read_tow_samples
@@ -24,7 +24,7 @@ __all__ = [
     "SeasonProfile",
     "fault_from",
     "index_archive",
-    "judge_in_files",
+    "judge_samples",
     "read_published_registers",
     "read_races",
     "read_tow_samples",

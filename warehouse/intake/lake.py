@@ -26,7 +26,7 @@ from warehouse.archive import (
     FileHashes,
     SeasonProfile,
     fault_from,
-    judge_in_files,
+    judge_samples,
     read_tow_samples,
 )
 from warehouse.archive.samples.resolution import steps_of
@@ -135,11 +135,10 @@ def _bring_in(
     try:
         samples = None
         if facts is None or not path.exists():
-            whole = read_tow_samples(root, tow, profile)
-            judged = judge_in_files(whole, tow, runs, root, profile)
-            samples = judged.samples
+            whole, place = read_tow_samples(root, tow, profile)
+            samples, faults = judge_samples(whole, place, tow, runs)
             facts = {
-                "losses": [fault.as_row() for fault in judged.faults],
+                "losses": [fault.as_row() for fault in faults],
                 "wind_read": samples["wind_speed_m_s"].null_count() == 0,
                 **steps_of(samples),
             }

@@ -16,7 +16,7 @@ from warehouse.archive import (
     FileHashes,
     fault_from,
     index_archive,
-    judge_in_files,
+    judge_samples,
     read_tow_samples,
 )
 
@@ -77,8 +77,8 @@ class Archive:
         for tow in index.tows.iter_rows(named=True):
             try:
                 profile = index.profiles.for_season(tow["season"])
-                samples = read_tow_samples(self.root, tow, profile)
-                judged = judge_in_files(samples, tow, index.runs, self.root, profile)
+                samples, place = read_tow_samples(self.root, tow, profile)
+                judged = judge_samples(samples, place, tow, index.runs)
             except DefectiveInputError as error:
                 faults.append(fault_from(error, tow["samples_path"], tow["tow_id"]))
             else:

@@ -68,7 +68,7 @@ def judged() -> pl.DataFrame:
         tow_id = pl.lit(f"{boat} {number + BOATS:03}").alias("tow_id")
         tow = listed_tows[boat].with_columns(tow_id)
         runs = run_rows(tow).with_columns(planned_s=50.0)
-        found = judge_samples(samples, tow.row(0, named=True), runs)
+        found = judge_samples(samples, lambda row: ("x.csv", row + 2), tow.row(0, named=True), runs)
         lost = ",".join(sorted({str(fault.lost) for fault in found.faults}))
         planted.append((tow["tow_id"][0], kind, length_s, lost))
         tows.append(tow)

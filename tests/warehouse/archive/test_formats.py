@@ -237,7 +237,7 @@ def test_a_header_beside_the_file(tmp_path: Path) -> None:
     columns = tuple(c for c in plain.columns if not c.key.startswith("wind"))
     with pytest.raises(DefectiveInputError, match="Not found in the header"):
         read_samples(tmp_path / "x.txt", plain)
-    found = read_samples(tmp_path / "x.txt", SeasonProfile(2014, columns, header=header))
+    found, _ = read_samples(tmp_path / "x.txt", SeasonProfile(2014, columns, header=header))
     assert found["force_n"].to_list() == [200, 210]
     assert found["wind_speed_m_s"].null_count() == 2
 

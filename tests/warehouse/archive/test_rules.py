@@ -3,18 +3,20 @@
 import numpy as np
 import pytest
 
-from warehouse.archive.faults import DefectiveFileError, Fault
-from warehouse.archive.plausibility.mix_ups import check_mix_ups, without_other_units
-from warehouse.archive.plausibility.rules import RUN_RULES, apply_rules, without_stuck_gps
-from warehouse.archive.plausibility.run import SPARE, Run
+from warehouse.archive.faults import DefectiveFileError
+from warehouse.archive.plausibility.judgement import SPARE, Judgement, Run
+from warehouse.archive.plausibility.mix_ups import check_mix_ups, leave_out_other_units
+from warehouse.archive.plausibility.rules import (
+    RULES,
+    apply_rules,
+    clipped_percent,
+    held_s,
+    leave_out_stuck_gps,
+    mean,
+)
 
 RATE_HZ = 20
-TOW = {
-    "tow_id": "2015-001",
-    "samples_path": "a.csv",
-    "second_path": None,
-    "sample_rate_hz": RATE_HZ,
-}
+TOW = {"tow_id": "2015-001"}
 SPEED_M_S = 2.4
 
 
@@ -30,42 +32,46 @@ def sound(number: int = 1, intended_m_s: float = SPEED_M_S, **changed: np.ndarra
         "wind_angle": (180, 15),
     }
     channels = {key: rng.normal(*of, rows).astype(np.float32) for key, of in usual.items()}
-    return Run(TOW, number, 0, intended_m_s, 50.0, channels | changed)
+    return Run(number, 0, RATE_HZ, intended_m_s, 50.0, channels | changed)
 
 
-def broken(measure: str, channel: str, code: str) -> Run:
-    """A run that breaks one rule: stuck, clipped, turned round, or with a mean that cannot be."""
-    values = sound().channels[channel].copy()
-    if measure == "held":
-        values[: 25 * RATE_HZ] = values[0]
-    elif measure == "clipped_percent":
-        values = np.minimum(values, np.float32(235))
-    elif code == "negative_force":
-        values = -values
-    else:
-        values *= 100 if channel == "force" else 10
-    return sound(**{channel: values})
+def judged(*runs: Run) -> Judgement:
+    """Runs of a tow of which nothing was said yet."""
+    return Judgement(TOW, lambda row: ("a.csv", row + 2), len(runs), list(runs))
+
+
+BREAKS = {
+    held_s: lambda values, rule: np.where(np.arange(1000) < 25 * RATE_HZ, values[0], values),
+    clipped_percent: lambda values, rule: np.minimum(values, np.float32(235)),
+    mean: lambda values, rule: values * (
+        -1 if rule.reason_code == "negative_force" else 100 if rule.channel == "force" else 10
+    ),
+}  # fmt: skip
+"""How what is measured comes out of its limits: a rule that measures something else needs one."""
 
 
 def test_a_sound_run_breaks_no_rule():
-    faults: list[Fault] = []
-    run = sound()
-    assert apply_rules(run, faults) is run
-    assert not faults
+    judgement = judged(sound())
+    apply_rules(judgement, judgement.runs[0])
+    assert not judgement.faults
 
 
-@pytest.mark.parametrize("rule", RUN_RULES, ids=lambda r: f"{r.channel} {r.measure} {r.limits}")
+@pytest.mark.parametrize("rule", RULES, ids=lambda r: f"{r.channel} {r.measure.__name__}")
 def test_each_rule_costs_the_run_or_the_spare_channel(rule):
-    faults: list[Fault] = []
-    kept = apply_rules(broken(rule.measure, rule.channel, rule.reason_code), faults)
-    assert [fault.reason_code for fault in faults] == [rule.reason_code]
+    run = sound()
+    low, high = rule.limits.times(SPEED_M_S, SPEED_M_S)
+    assert low <= rule.measure(run, rule.channel)[0] < high
+    values = BREAKS[rule.measure](run.channels[rule.channel], rule).astype(np.float32)
+    judgement = judged(sound(**{rule.channel: values}))
+    run = judgement.runs[0]
+    apply_rules(judgement, run)
+    (fault,) = judgement.faults
+    assert fault.reason_code == rule.reason_code
     if rule.channel in SPARE:
-        assert faults[0].lost == "seconds"
-        assert kept is not None
-        assert np.isnan(kept.channels[rule.channel]).all()
+        assert (fault.lost, judgement.runs) == ("seconds", [run])
+        assert np.isnan(run.channels[rule.channel]).all()
     else:
-        assert faults[0].lost == "run"
-        assert kept is None
+        assert (fault.lost, judgement.runs) == ("run", [])
 
 
 def gps_lost(*runs: tuple[float, float]) -> list[int]:
@@ -76,10 +82,10 @@ def gps_lost(*runs: tuple[float, float]) -> list[int]:
         if held:
             channels["gps"] = np.full(1000, held, np.float32)
         steady.append(sound(number, intended, **channels))
-    faults: list[Fault] = []
-    kept = without_stuck_gps(steady, faults)
-    lost = [run.number for run in kept if np.isnan(run.channels["gps"]).all()]
-    assert [fault.run for fault in faults] == lost
+    judgement = judged(*steady)
+    leave_out_stuck_gps(judgement)
+    lost = [run.number for run in judgement.runs if np.isnan(run.channels["gps"]).all()]
+    assert [fault.run for fault in judgement.faults] == lost
     return lost
 
 
@@ -98,15 +104,13 @@ def test_a_gps_that_holds_one_value_is_stuck_only_where_the_speed_differed(runs,
 @pytest.mark.parametrize(("times", "unit"), [(3.6, "km/h"), (1.9438, "kn"), (0.53, "another unit")])
 def test_a_column_in_another_unit_is_lost_once_for_all_runs(times, unit):
     runs = [sound(number, speed) for number, speed in enumerate((2.2, 2.4, 2.6), start=1)]
-    runs = [
-        sound(run.number, run.intended_m_s, log2=run.channels["log2"] * np.float32(times))
-        for run in runs
-    ]
-    faults: list[Fault] = []
-    kept, gone = without_other_units(runs, faults)
-    assert gone == ["log2"]
-    assert np.isnan([run.statistics["log2"].mean for run in kept]).all()
-    assert [(fault.run, unit in fault.message) for fault in faults] == [(None, True)]
+    for run in runs:
+        run.channels["log2"] *= np.float32(times)
+    judgement = judged(*runs)
+    leave_out_other_units(judgement)
+    assert all("log2" not in run.channels for run in judgement.runs)
+    (fault,) = judgement.faults
+    assert (fault.run, fault.line, unit in fault.message) == (None, 1, True)
 
 
 @pytest.mark.parametrize(
@@ -121,8 +125,9 @@ def test_a_column_in_another_unit_is_lost_once_for_all_runs(times, unit):
 )
 def test_a_mix_up_costs_the_tow_and_sound_runs_have_none(changed, code):
     runs = [sound(number) for number in (1, 2, 3)]
-    check_mix_ups(runs)
-    mixed = [sound(run.number, **changed(run.channels)) for run in runs]
+    check_mix_ups(judged(*runs))
+    judgement = judged(*(sound(run.number, **changed(run.channels)) for run in runs))
+    leave_out_other_units(judgement)
     with pytest.raises(DefectiveFileError) as error:
-        check_mix_ups(without_other_units(mixed, [])[0])
+        check_mix_ups(judgement)
     assert error.value.reason_code == code

@@ -87,7 +87,7 @@ SPELLINGS: dict[str, Callable[[str], bytes]] = {
 def test_spelling_reads_to_the_same_frame(tmp_path: Path, spelling: str) -> None:
     path = tmp_path / "x.csv"
     path.write_bytes(SPELLINGS[spelling](PLAIN))
-    assert read_samples(path, PROFILE).equals(EXPECTED)
+    assert read_samples(path, PROFILE)[0].equals(EXPECTED)
 
 
 @pytest.mark.parametrize(
@@ -104,7 +104,7 @@ def test_units_are_converted(
     path = tmp_path / "x.csv"
     path.write_text(PLAIN.replace(header, f"{header.partition(' ')[0]} [{unit}]"))
     expected = (EXPECTED[column].cast(pl.Float64()) * factor).to_list()
-    assert read_samples(path, PROFILE)[column].to_list() == pytest.approx(expected, rel=1e-6)
+    assert read_samples(path, PROFILE)[0][column].to_list() == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize("gps", ["absent", "empty"])
@@ -117,7 +117,7 @@ def test_gps_may_be_absent_throughout(tmp_path: Path, gps: str) -> None:
     else:
         split[1:] = [[*line[:3], "", *line[4:]] for line in split[1:]]
     path.write_text("\n".join(";".join(line) for line in split))
-    samples = read_samples(path, PROFILE)
+    samples, _ = read_samples(path, PROFILE)
     assert samples["gps_m_s"].null_count() == len(ROWS)
     assert samples.drop("gps_m_s").equals(EXPECTED.drop("gps_m_s"))
 
@@ -178,7 +178,7 @@ def test_spoiled_bytes_are_read_or_set_aside_and_nothing_else(
     path = tmp_path_factory.getbasetemp() / "spoiled.csv"
     path.write_bytes(content)
     try:
-        frame = read_samples(path, PROFILE)
+        frame, _ = read_samples(path, PROFILE)
     except DefectiveInputError as error:
         code = error.reason_code
     else:

@@ -13,13 +13,9 @@ from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files.finding import ArchiveFile, files_of, path_inside
 from warehouse.archive.files.names import PARTS, SAMPLES, as_one_run, kind_of, split_sheet
 from warehouse.archive.index.index import ArchiveIndex
-from warehouse.archive.plausibility.judge import judge_in_files
+from warehouse.archive.plausibility.judge import judge_samples
 from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.samples.file import (
-    check_header,
-    rate_in_times,
-    read_samples,
-)
+from warehouse.archive.samples.file import check_header, read_samples
 from warehouse.archive.samples.tow import read_tow_samples
 
 
@@ -58,10 +54,10 @@ def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Itera
         done.add(key)
         profile = index.profiles.for_season(tow["season"])
         try:
-            samples = read_tow_samples(root, tow, profile)
+            samples, place = read_tow_samples(root, tow, profile)
             others = (_other_rate(samples, tow, index), _other_plan(samples, tow, index))
             of_all = [fault for fault in others if fault is not None]
-            yield from of_all or judge_in_files(samples, tow, index.runs, root, profile).faults
+            yield from of_all or judge_samples(samples, place, tow, index.runs).faults
         except DefectiveInputError as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
     for file in _sample_files(root, index.profiles):
@@ -75,17 +71,13 @@ def faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Itera
 def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> Iterator[Fault]:
     """Reads a samples file that no sound row names, and looks which runs are in it.
 
-    Its rate is that of its times: what a list says that cannot be read yet is not known.
+    What a list says of its rate cannot be read yet, so its times need agree with none.
     """
-    profile = profiles.for_season(season)
     named = as_one_run(file.full_path.name)
     path = path_inside(root, file.path)
     try:
-        samples = read_samples(
-            path,
-            profile,
-            sample_rate_hz=round(rate_in_times(path, profile) or profile.sample_rate_hz),
-            run=named[1] if named else None,
+        samples, _ = read_samples(
+            path, profiles.for_season(season), run=named[1] if named else None
         )
     except DefectiveInputError as error:
         yield fault_from(error, file.path)

@@ -1,7 +1,5 @@
 """Samples that are left out: no number, dropped out, or further off than can be."""
 
-from collections.abc import Collection
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -10,19 +8,18 @@ from numpy.typing import NDArray
 
 from pipeline.arrays import BoolArray
 from pipeline.messages import say
-from warehouse.archive.faults import Fault
-from warehouse.archive.plausibility.rules import EXTREMES, apply_rules
-from warehouse.archive.plausibility.run import (
+from warehouse.archive.plausibility.judgement import (
     COLUMN_OF,
     SPARE,
     SPEEDS,
     Array,
     Cost,
+    Judgement,
     Run,
-    second_means,
     stretches,
     what_it_holds,
 )
+from warehouse.archive.plausibility.rules import EXTREMES
 
 LEFT_OUT_S: Final = 2.0
 """Longest time in all of a run in which what the run point needs may be left out; as long again for
@@ -45,76 +42,64 @@ GUST_M_S: Final = 4.0
 
 def usual_resistance_kg_m(runs: list[Run]) -> float:
     """Force / speed squared of a typical run, which a fault over most of one does not move."""
-    each = [run.statistics["force"].median / run.intended_m_s**2 for run in runs]
+    each = [run.measured["force"].median / run.intended_m_s**2 for run in runs]
     return abs(float(np.nanmedian(each))) if np.isfinite(each).any() else np.nan
 
 
-def judge_run(
-    run: Run, usual_kg_m: float, gone: Collection[str], faults: list[Fault]
-) -> Run | None:
-    """The run without the samples that cannot be, or None where too much or all of it is wrong.
+def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
+    """Takes the samples of a run that cannot be, and the run where that is too much of it.
 
     Args:
+        judgement: what is left of the tow.
         run: as measured.
         usual_kg_m: usual force over speed squared.
-        gone: channels that all runs lost; that is said before.
-        faults: those of the run are added.
     """
     usual_n = usual_kg_m * run.intended_m_s**2
-    wrong = {key: _wrong(run, key, usual_n) for key in run.channels if key not in gone}
-    no_row = np.logical_and.reduce([np.isnan(values) for values in run.channels.values()])
+    wrong = {key: _wrong(run, key, usual_n) for key in run.channels}
     needed = np.logical_or.reduce([mask for key, mask in wrong.items() if key not in SPARE])
     most = LEFT_OUT_S * run.rate_hz
     cost: Cost = "run" if needed.sum() > most else "seconds"
-    found = [_of_samples(run, None, no_row, cost)] if no_row.any() else []
-    channels = dict(run.channels)
+    no_row = np.logical_and.reduce([np.isnan(values) for values in run.channels.values()])
+    if no_row.any():
+        seconds = float(no_row.sum()) / run.rate_hz
+        what = say("rows lack fields, or their times jump back, for {:.3g} s in all", seconds)
+        judgement.lose(run, "broken_row", what, cost, int(no_row.argmax()), seconds)
     for key, mask in wrong.items():
         own = mask & ~no_row
-        if own.any():
-            of_spare: Cost = "column" if own.sum() > most else "seconds"
-            of_channel = of_spare if key in SPARE else cost
-            found.append(_of_samples(run, key, own, of_channel))
-            is_gone = of_channel == "column"
-            channels[key] = np.where(own | is_gone, np.float32(np.nan), channels[key])
-    run = replace(run, channels=channels) if found else run
-    kept = None if cost == "run" else apply_rules(run, found)
-    faults += [fault for fault in found if kept is not None or fault.lost == "run"]
-    return kept
-
-
-def _of_samples(run: Run, key: str | None, mask: BoolArray, cost: Cost) -> Fault:
-    """The fault of samples of one channel, or of all without one, named by the first of them."""
-    row = int(mask.argmax())
-    seconds = float(mask.sum()) / run.rate_hz
-    if key is None:
-        what = say("rows lack fields, or their times jump back, for {:.3g} s in all", seconds)
-        return run.fault("broken_row", what, cost, row, seconds)
-    what = say(
-        "column '{column}' {} and is wrong for {:.3g} s in all",
-        what_it_holds(run.channels[key][row]),
-        seconds,
-        column=COLUMN_OF[key],
-    )
-    return run.fault(_reason(run, key, row), what, cost, row, seconds)
+        count = float(own.sum())
+        if not count or (cost == "run" and key in SPARE):
+            continue
+        row, values = int(own.argmax()), run.channels[key]
+        what = say(
+            "column '{column}' {} and is wrong for {:.3g} s in all",
+            what_it_holds(values[row]),
+            count / run.rate_hz,
+            column=COLUMN_OF[key],
+        )
+        is_gone = key in SPARE and count > most
+        of_channel: Cost = "column" if is_gone else cost
+        judgement.lose(run, _reason(run, key, row), what, of_channel, row, count / run.rate_hz)
+        run.channels[key] = np.where(own | is_gone, np.float32(np.nan), values)
 
 
 def _reason(run: Run, key: str, row: int) -> str:
+    """The reason code of a channel, by the first of its wrong samples."""
     value = run.channels[key][row]
     if not np.isfinite(value):
         return "bad_number"
     if key in SPEEDS and value <= DROPOUT_M_S:
         return "gps_dropout" if key == "gps" else "log_dropout"
-    pushes = FORCE_SPIKE_RATIO[0] * abs(run.statistics["force"].median)
+    pushes = FORCE_SPIKE_RATIO[0] * abs(run.measured["force"].median)
     return "negative_force" if key == "force" and pushes <= value < 0 else "implausible_value"
 
 
 def _wrong(run: Run, key: str, usual_n: float) -> BoolArray:
     """Samples of a channel that are no number, have dropped out or cannot be."""
-    values, median = run.channels[key], run.statistics[key].median
+    values, median = run.channels[key], run.measured[key].median
     if key in SPEEDS:
         return _wrong_speed(values, median, run.rate_hz, SPIKE_RATIO[key])
     if key == "force":
-        return _wrong_force(values, usual_n, run.rate_hz)
+        return _wrong_force(run, values, usual_n)
     least, most = EXTREMES[key]
     if key == "wind_speed":
         most = min(most, GUST_RATIO * abs(median) + GUST_M_S)
@@ -151,20 +136,16 @@ def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
     return np.asarray(each[second], dtype=np.float64)
 
 
-def _wrong_force(values: Array, usual_n: float, rate_hz: int) -> BoolArray:
+def _wrong_force(run: Run, values: Array, usual_n: float) -> BoolArray:
     low, high = (ratio * usual_n for ratio in FORCE_SPIKE_RATIO)
     wrong = _outside(values, low, high)
-    if (np.abs(values) <= FORCE_DEAD_RATIO * usual_n).any():
-        wrong |= _dead(values, FORCE_DEAD_RATIO * usual_n, max(int(FORCE_DEAD_S * rate_hz), 3))
-    means = second_means(np.where(wrong, np.float32(np.nan), values), rate_hz)
+    near_zero = FORCE_DEAD_RATIO * usual_n
+    if (np.abs(values) <= near_zero).any():
+        starts, lengths = stretches(values[1:] != values[:-1])
+        least = max(int(FORCE_DEAD_S * run.rate_hz), 3)
+        wrong |= np.repeat((lengths >= least) & (np.abs(values[starts]) <= near_zero), lengths)
+    means = run.second_means(np.where(wrong, np.float32(np.nan), values))
     if (means < 0).any():  # single negative samples are the surge of the tow line
-        second = np.minimum(np.arange(len(values)) // rate_hz, len(means) - 1)
+        second = np.minimum(np.arange(len(values)) // run.rate_hz, len(means) - 1)
         wrong |= (means < 0)[second]
     return wrong
-
-
-def _dead(values: Array, most: float, samples: int) -> BoolArray:
-    """Stretches of at least so many equal samples near zero."""
-    starts, lengths = stretches(values[1:] != values[:-1])
-    dead = (lengths >= samples) & (np.abs(values[starts]) <= most)
-    return np.asarray(np.repeat(dead, lengths))

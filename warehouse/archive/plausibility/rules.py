@@ -1,20 +1,22 @@
 """The rules on a channel: what is measured of it, between which limits that lies, what is said.
 
-A rule is a row. One of `RUN_RULES` costs the run, or of log 2 and the GPS that channel in it; one
-of `TOW_RULES` costs the tow, or that channel in all of its runs.
+A rule is a row of `RULES`. A run that breaks one is lost; of log 2 and the GPS, that channel in it.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 
-from pipeline.messages import say
-from warehouse.archive.faults import Fault
-from warehouse.archive.plausibility.run import COLUMN_OF, SPARE, Run, second_means
+from pipeline.messages import Sentence, say
+from warehouse.archive.plausibility.judgement import COLUMN_OF, SPARE, Judgement, Run, stretches
 
 GPS_MUST_MOVE_M_S: Final = 0.15
 """A GPS that holds one value is suspect only where the boat's speed differed more than this."""
+VANE_TURNS_M_S: Final = 0.5
+CLIPPED_TIMES: Final = 3.0
+"""Samples at the highest value, times those at the next one, where coarse steps explain them."""
 EXTREMES: Final = {"wind_speed": (0.0, 40.0), "wind_angle": (-180.0, 360.0)}
 """Between which every sample lies."""
 
@@ -44,22 +46,54 @@ USUAL: Final = {
 }
 """Where the mean of a run lies, and the median of a typical one."""
 
+Found = tuple[float, int]
+"""What was measured, and the row of the run where it begins."""
+
+
+def mean(run: Run, channel: str) -> Found:
+    """Of the samples that are numbers."""
+    return float(np.nanmean(run.channels[channel], dtype=np.float64)), 0
+
+
+def held_s(run: Run, channel: str) -> Found:
+    """The longest stretch of one value; cups may stand still, and a vane needs wind."""
+    values = run.channels[channel]
+    changes = values[1:] != values[:-1]
+    least_wind_m_s = {"wind_speed": 0.0, "wind_angle": VANE_TURNS_M_S}.get(channel)
+    if least_wind_m_s is None or "wind_speed" not in run.channels:
+        starts, lengths = stretches(changes)
+    else:
+        moves = run.channels["wind_speed"] > least_wind_m_s
+        starts, lengths = stretches(changes | np.diff(moves))
+        lengths = lengths * moves[starts]
+    longest = int(lengths.argmax())
+    return float(lengths[longest]) / run.rate_hz, int(starts[longest])
+
+
+def clipped_percent(run: Run, channel: str) -> Found:
+    """Samples at the highest value, 0 where coarse steps explain them."""
+    values = run.channels[channel]
+    at_end = values == np.fmax.reduce(values)
+    below = np.nanmax(values, where=~at_end & np.isfinite(values), initial=-np.inf)
+    is_coarse = at_end.sum() <= CLIPPED_TIMES * (values == below).sum()
+    return (0.0 if is_coarse else 100.0 * float(at_end.mean())), int(at_end.argmax())
+
 
 @dataclass(frozen=True)
 class Rule:
     """What can be true of a channel in a run.
 
     Attributes:
-        measure: attribute of `Statistics`: a number, or one with the row where it begins.
-        what: said where the measure is outside the limits: `{found}` is the measure, `{low}` and
-            `{high}` are the limits, `{value}` is the sample with which it begins.
+        measure: what is measured, and in which row of the run it begins.
+        what: said where that is outside the limits: `{found}` is the measure, `{low}` and `{high}`
+            are the limits, `{value}` is the sample with which it begins.
     """
 
     reason_code: str
     channel: str
-    measure: str
+    measure: Callable[[Run, str], Found]
     limits: Limits
-    what: str
+    what: Sentence
 
 
 _STUCK: Final = say(
@@ -74,69 +108,61 @@ _CLIPPED: Final = say(
     "load cell at the end of its range"
 )
 
-RUN_RULES: Final = (
-    Rule("stuck_channel", "log1", "held", Limits(0, 5), _STUCK),
-    Rule("stuck_channel", "log2", "held", Limits(0, 5), _STUCK),
-    Rule("stuck_channel", "force", "held", Limits(0, 5), _STUCK),
-    Rule("stuck_channel", "wind_speed", "held", Limits(0, 10), _STUCK),
-    Rule("stuck_channel", "wind_angle", "held", Limits(0, 20), _STUCK),
-    Rule("implausible_speed", "log1", "mean", USUAL["log1"], _MEAN),
-    Rule("implausible_value", "log2", "mean", USUAL["log2"], _MEAN),
-    Rule("implausible_value", "gps", "mean", USUAL["gps"], _MEAN),
-    Rule("negative_force", "force", "mean", Limits(0, np.inf), _NEGATIVE),
-    Rule("implausible_value", "force", "mean", USUAL["force"], _MEAN),
-    Rule("implausible_value", "wind_speed", "mean", USUAL["wind_speed"], _MEAN),
-    Rule("saturated_force", "force", "clipped_percent", Limits(0, 2), _CLIPPED),
+RULES: Final = (
+    Rule("stuck_channel", "log1", held_s, Limits(0, 5), _STUCK),
+    Rule("stuck_channel", "log2", held_s, Limits(0, 5), _STUCK),
+    Rule("stuck_channel", "force", held_s, Limits(0, 5), _STUCK),
+    Rule("stuck_channel", "wind_speed", held_s, Limits(0, 10), _STUCK),
+    Rule("stuck_channel", "wind_angle", held_s, Limits(0, 20), _STUCK),
+    Rule("implausible_speed", "log1", mean, USUAL["log1"], _MEAN),
+    Rule("implausible_value", "log2", mean, USUAL["log2"], _MEAN),
+    Rule("implausible_value", "gps", mean, USUAL["gps"], _MEAN),
+    Rule("negative_force", "force", mean, Limits(0, np.inf), _NEGATIVE),
+    Rule("implausible_value", "force", mean, USUAL["force"], _MEAN),
+    Rule("implausible_value", "wind_speed", mean, USUAL["wind_speed"], _MEAN),
+    Rule("saturated_force", "force", clipped_percent, Limits(0, 2), _CLIPPED),
 )
 
 
-def apply_rules(run: Run, faults: list[Fault]) -> Run | None:
-    """The run without the spare channels that break a rule; None where another channel does."""
-    for rule in RUN_RULES:
-        if (broken := _broken(rule, run)) is None:
+def apply_rules(judgement: Judgement, run: Run) -> None:
+    """Takes what breaks a rule: the run, or a spare channel; without numbers one breaks none."""
+    log1_m_s, _ = mean(run, "log1")
+    known = {key for key, values in run.channels.items() if np.isfinite(values).any()}
+    for rule in RULES:
+        if rule.channel not in known:
             continue
-        what, row = broken
+        found, row = rule.measure(run, rule.channel)
+        low, high = rule.limits.times(run.intended_m_s, log1_m_s)
+        if low <= found < high:
+            continue
+        value, column = run.channels[rule.channel][row], COLUMN_OF[rule.channel]
+        what = say(rule.what, column=column, value=value, found=found, low=low, high=high)
         if rule.channel not in SPARE:
-            faults.append(run.fault(rule.reason_code, what, "run", row))
-            return None
-        faults.append(run.fault(rule.reason_code, what, "column", row))
-        run = run.without(rule.channel)
-    return run
+            judgement.lose(run, rule.reason_code, what, "run", row)
+            return
+        judgement.lose(run, rule.reason_code, what, "column", row)
+        run.channels[rule.channel] = np.full_like(run.channels[rule.channel], np.nan)
+        known.remove(rule.channel)
 
 
-def _broken(rule: Rule, run: Run) -> tuple[str, int] | None:
-    """What is said of a rule that the run breaks, and its row; without numbers it breaks none."""
-    statistics = run.statistics.get(rule.channel)
-    if statistics is None or np.isnan(statistics.mean):
-        return None
-    measured = getattr(statistics, rule.measure)
-    found, row = measured if isinstance(measured, tuple) else (measured, 0)
-    low, high = rule.limits.times(run.intended_m_s, run.statistics["log1"].mean)
-    if low <= found < high:
-        return None
-    value, column = run.channels[rule.channel][row], COLUMN_OF[rule.channel]
-    return say(rule.what, column=column, value=value, found=found, low=low, high=high), row
-
-
-def without_stuck_gps(runs: list[Run], faults: list[Fault]) -> list[Run]:
-    """The runs without a GPS that holds one value while the speed changed, or at another speed.
+def leave_out_stuck_gps(judgement: Judgement) -> None:
+    """Takes a GPS that holds one value while the speed changed, or at another speed.
 
     It has a fix a second in steps of 0.01 m/s, so of a steady boat it may well hold one value.
     """
     alike: dict[float, list[Run]] = {}
-    for run in runs:
-        gps = run.statistics.get("gps")
-        if gps is not None and gps.held[0] == run.seconds:
-            alike.setdefault(gps.extremes[1], []).append(run)
-    stuck = {run.number for held in alike.values() if _speed_differs(held) for run in held}
-    for run in runs:
-        if run.number in stuck:
-            what = say("gps holds {:.6g} throughout, at other speeds too", run.channels["gps"][0])
-            faults.append(run.fault("stuck_channel", what, "column"))
-    return [run.without("gps") if run.number in stuck else run for run in runs]
+    for run in judgement.runs:
+        gps = run.channels.get("gps")
+        if gps is not None and (gps == gps[0]).all():
+            alike.setdefault(float(gps[0]), []).append(run)
+    for run in [run for held in alike.values() if _speed_differs(held) for run in held]:
+        gps = run.channels["gps"]
+        what = say("gps holds {:.6g} throughout, at other speeds too", gps[0])
+        judgement.lose(run, "stuck_channel", what, "column")
+        run.channels["gps"] = np.full_like(gps, np.nan)
 
 
 def _speed_differs(runs: list[Run]) -> bool:
-    seconds = [second_means(run.channels["log1"], run.rate_hz) for run in runs]
+    seconds = [run.second_means(run.channels["log1"]) for run in runs]
     moved_m_s = max(np.nanmax(means) - np.nanmin(means) for means in seconds)
     return len({run.intended_m_s for run in runs}) > 1 or bool(moved_m_s > GPS_MUST_MOVE_M_S)

@@ -26,9 +26,9 @@ def next_line(row: int) -> int:
     return max(row + 2, 1)
 
 
-def read_binary(path: Path, profile: SeasonProfile, most_rows: int | None = None) -> pl.DataFrame:
+def read_binary(path: Path, profile: SeasonProfile) -> pl.DataFrame:
     """The wanted columns of a Parquet or TDMS file as Float64, as `read_text` does."""
-    frame = read_tdms(path, most_rows) if kind_of(path) == ".tdms" else _read_parquet(path, profile)
+    frame = read_tdms(path) if kind_of(path) == ".tdms" else _read_parquet(path, profile)
     if frame.is_empty():
         raise DefectiveInputError("unreadable_file", say("There are no samples in the file."))
     columns = find_columns(frame.columns, profile.columns)

@@ -1,21 +1,19 @@
 """Reading one samples file, or only what its start says."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import Final
 
 import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
-from pipeline.errors import DefectiveInputError
 from warehouse.archive.files.contents import not_whole
 from warehouse.archive.files.names import kind_of
 from warehouse.archive.profile.season import SeasonProfile
 from warehouse.archive.samples.binary_files import BINARY, next_line, read_binary
 from warehouse.archive.samples.columns import check_nothing_misspelt
 from warehouse.archive.samples.frame import (
+    LineOf,
     check_runs,
     to_schema,
     with_checked_times,
@@ -25,16 +23,13 @@ from warehouse.archive.samples.labview import read_tdms
 from warehouse.archive.samples.text_files import HEAD_BYTES, body_of, read_text
 from warehouse.archive.spelling.columns import find_columns
 
-_FOR_A_RATE: Final = 500
-"""Samples from which the rate is seen."""
-
 
 def read_samples(
     path: Path,
     profile: SeasonProfile,
     sample_rate_hz: int | None = None,
     run: int | None = None,
-) -> pl.DataFrame:
+) -> tuple[pl.DataFrame, LineOf]:
     """Reads one samples file.
 
     Args:
@@ -44,24 +39,25 @@ def read_samples(
         run: the run that the file is, where it is one of several.
 
     Returns:
-        A frame with the columns of `SAMPLE_SCHEMA`, one row per sample in the order of the file.
-        What was not measured is null throughout: a GPS that is absent or empty, and what the
-        profile declares absent. Wind angles are brought to [0, 360); one outside -180..360 cannot
-        be an angle and is left as it is, for `judge_samples` to find.
+        A frame with the columns of `SAMPLE_SCHEMA`, one row per sample in the order of the file,
+        and the line of each row. What was not measured is null throughout: a GPS that is absent or
+        empty, and what the profile declares absent. Wind angles are brought to [0, 360); one
+        outside -180..360 cannot be an angle and is left as it is, for `judge_samples` to find.
 
     Raises:
         DefectiveInputError: the first fault that costs the whole file, with its line.
     """
+    line_of: LineOf = next_line
     if kind_of(path) in BINARY:
-        raw, line_of = read_binary(path, profile), next_line
+        raw = read_binary(path, profile)
     else:
         body = body_of(path, profile)
-        raw, line_of = read_text(body), body.line
+        raw, line_of = read_text(body), body.line_of
     samples = to_schema(with_runs(raw, run), line_of, profile.wind_zero_deg)
     check_runs(samples["run"], line_of)
     if "time" in raw.columns:
-        return with_checked_times(samples, raw["time"], sample_rate_hz, line_of)
-    return samples
+        samples = with_checked_times(samples, raw["time"], sample_rate_hz, line_of)
+    return samples, line_of
 
 
 def check_header(path: Path, profile: SeasonProfile) -> None:
@@ -85,21 +81,3 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
     if kind == ".tdms":
         return read_tdms(path, most_rows=0).columns
     return body_of(path, profile, HEAD_BYTES).header
-
-
-def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
-    """The samples per second at the start of a file; None where it has no times to say."""
-    try:
-        if kind_of(path) in BINARY:
-            frame = read_binary(path, profile, _FOR_A_RATE)
-        else:
-            body = body_of(path, profile, HEAD_BYTES)
-            if "time" not in body.columns:
-                return None
-            frame = read_text(replace(body, data=body.data[: body.data.rfind(b"\n") + 1]))
-    except DefectiveInputError:
-        return None
-    if "time" not in frame.columns:
-        return None
-    step = frame["time"][:_FOR_A_RATE].fill_nan(None).diff().median()
-    return 1.0 / step if isinstance(step, float) and step > 0 else None

@@ -87,7 +87,7 @@ def _is_number(cell: str) -> bool:
     return bool(re.fullmatch(r"\s*[+-]?[0-9.,]+(?:[eE][+-]?[0-9]+)?\s*", cell)) or not cell.strip()
 
 
-def read_tdms(path: Path, most_rows: int | None) -> pl.DataFrame:
+def read_tdms(path: Path, most_rows: int | None = None) -> pl.DataFrame:
     """The channels of a TDMS file as columns; each group is a run where none is named.
 
     Args:

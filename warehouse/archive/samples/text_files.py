@@ -9,7 +9,7 @@ import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -49,13 +49,24 @@ _THOUSAND: Final = {
 
 
 @dataclass(frozen=True)
-class Body:
+class Lines:
+    """Lines in a file: of its header, and of its rows; `places` where these do not follow on."""
+
+    header: int
+    first: int
+    places: Sequence[int] = ()
+
+    def __call__(self, row: int) -> int:
+        """Line in the file of a row, counted from 0; of the header where it is negative."""
+        if row < 0:
+            return self.header
+        return self.places[row] if row < len(self.places) else self.first + row
+
+
+class Body(NamedTuple):
     """The text below the header, and what the header says of it.
 
     Attributes:
-        header_line: line in the file of the header.
-        first_line: that of the first row.
-        places: lines of the rows where they do not follow each other, else empty.
         clock: the time is written as a time of day.
     """
 
@@ -63,21 +74,8 @@ class Body:
     delimiter: str
     header: Sequence[str]
     columns: Mapping[str, FoundColumn]
-    header_line: int
-    first_line: int
-    places: Sequence[int] = ()
+    line_of: Lines
     clock: bool = False
-
-    @property
-    def width(self) -> int:
-        """Number of columns."""
-        return len(self.header)
-
-    def line(self, row: int) -> int:
-        """Line in the file of a row, counted from 0; of the header where it is negative."""
-        if row < 0:
-            return self.header_line
-        return self.places[row] if row < len(self.places) else self.first_line + row
 
 
 def body_of(path: Path, profile: SeasonProfile, start: int | None = None) -> Body:
@@ -156,7 +154,7 @@ def find_body(data: bytes, profile: SeasonProfile) -> Body:
         header = [*header, "run"]
         columns = {**columns, "run": FoundColumn(len(header) - 1, "run", Scale())}
     clock = _is_clock(data, delimiter, columns.get("time"))
-    return Body(data, delimiter, header, columns, line, first_line, rows, clock)
+    return Body(data, delimiter, header, columns, Lines(line, first_line, rows), clock)
 
 
 def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int]] | None:
@@ -218,7 +216,7 @@ def _read_fast(body: Body) -> pl.DataFrame | None:
         wanted.get(index, f"ignored {index}"): number
         if index in wanted and not (body.clock and wanted[index] == "time")
         else pl.String()
-        for index in range(body.width)
+        for index in range(len(body.header))
     }
     try:
         frame = pl.read_csv(
@@ -260,7 +258,7 @@ def _read_carefully(body: Body) -> pl.DataFrame:
     if body.delimiter == ",":
         lines = lines.str.replace_all(_QUOTED_DECIMAL_COMMA, '"$1.$2"')
     fields = lines.str.split(body.delimiter)
-    whole = fields.list.len() == body.width
+    whole = fields.list.len() == len(body.header)
     columns: dict[str, pl.Series] = {}
     for key, column in body.columns.items():
         cells = fields.list.get(column.index, null_on_oob=True)
