@@ -14,6 +14,7 @@ TEXTS: Final[dict[str, Sentence]] = {
     "workbench": say("Workbench"),
     # Steps
     "step.speed": say("Speed"),
+    "step.force": say("Tow force"),
     "step.calibration": say("Calibration on GPS"),
     "step.window": say("Window"),
     "step.wind": say("Wind"),
@@ -26,6 +27,7 @@ TEXTS: Final[dict[str, Sentence]] = {
     # Options
     "speed.correction": say("Error of the log"),
     "speed.factor": say("Prescribed factor"),
+    "force.ratio": say("Load cell reading / true force"),
     "calibration.rule": say("GPS factor"),
     "window.rule": say("Which part of a run"),
     "wind.model": say("Wind model"),

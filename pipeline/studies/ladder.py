@@ -20,6 +20,7 @@ from pipeline.recompute.run_cache import RunCache
 
 STEP_ORDER: Final = (
     "speed",
+    "force",
     "window",
     "runs",
     "calibration",
