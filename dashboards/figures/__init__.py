@@ -152,6 +152,7 @@ WIND: Final = (
 
 FIGURES: Final[dict[str, Figure]] = {
     "resistance_curve": curves(_black, style.directions),
+    "certificate_curve": curves(_black, _black),
     "curves_compared": curves(_of_method, _points_of_method),
     "traces": boat.traces,
     "out_and_back": scatter(
@@ -208,14 +209,3 @@ FIGURES: Final[dict[str, Figure]] = {
     },
 }  # fmt: skip
 """Every figure by name."""
-
-
-def drop(part: object, *keys: str) -> None:
-    """Takes out of a specification what a picture cannot keep: links, tooltips."""
-    if isinstance(part, dict):
-        for key in keys:
-            part.pop(key, None)
-    for inner in (
-        part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
-    ):
-        drop(inner, *keys)

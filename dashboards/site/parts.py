@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from dashboards import labels
 from dashboards.addresses import boat_path
-from dashboards.speech import Headline, Speech
+from dashboards.speech import Headline, Speech, Text
 from dashboards.statements.boat import Answer
 from pipeline.messages import Sentence, say
 from pipeline.register.register import draft_name
@@ -83,10 +83,6 @@ class Chart:
     caption: Sentence
     follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
     says: Headline | None = None
-
-
-Text = str | Headline
-"""A sentence or a statement, or a text that is data."""
 
 
 @dataclass(frozen=True)
