@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
+from pipeline.blocks.batch import Batch
 
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.seen import Seen
-from pipeline.blocks.batch import Batch
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.observed import observe
 from pipeline.consistency.tables import line_tables
