@@ -57,7 +57,7 @@ def with_two_files() -> dict[str, pl.DataFrame]:
     )
     made = recompute(shipped_method("rebased"), world.tows, world.blocks)
     seen = vars(Seen(Tows.of(world.tows, world.blocks)))
-    arrays = {name: pl.Series(values) for name, values in seen.items() if name != "batch"}
+    arrays = {name: pl.Series(values) for name, values in seen.items() if name != "tows"}
     return frames(made) | {"seen": pl.DataFrame(arrays).fill_nan(None)}
 
 
