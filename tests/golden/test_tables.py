@@ -21,7 +21,7 @@ from dashboards.speech import Speech
 from dashboards.statements import Statement
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.seen import Seen
-from pipeline.blocks.batch import Batch
+from pipeline.blocks.tows import Tows
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.observed import observe
 from pipeline.consistency.tables import line_tables
@@ -64,8 +64,8 @@ def with_two_files() -> dict[str, pl.DataFrame]:
         world_settings("two-files", seasons=(2010, 2014), tows_per_season=8, rate_hz=10, seed=3)
     )
     made = recompute(shipped_method("rebased"), world.tows, world.blocks)
-    seen = vars(Seen(Batch.of(world.tows, world.blocks)))
-    arrays = {name: pl.Series(values) for name, values in seen.items() if name != "batch"}
+    seen = vars(Seen(Tows.of(world.tows, world.blocks)))
+    arrays = {name: pl.Series(values) for name, values in seen.items() if name != "tows"}
     return frames(made) | {"seen": pl.DataFrame(arrays).fill_nan(None)}
 
 
