@@ -74,15 +74,6 @@ TEXTS: Final[dict[str, Sentence]] = {
 }
 
 
-UNITS: Final = {"_m_s": "m/s", "_s": "s", "_c": "°C", "_sd": "sd", "_ratio": "", "": ""}
-"""Unit of an option by the ending of its name, as in columns."""
-
-
-def unit_of(option: str) -> str:
-    """The unit of an option; empty where it has none."""
-    return next(unit for ending, unit in UNITS.items() if option.endswith(ending))
-
-
 def text(key: str) -> Sentence:
     """The text of a key; one without a text is called as it is."""
     return TEXTS.get(key) or say("{}", key.rpartition(".")[2])

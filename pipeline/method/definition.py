@@ -92,6 +92,11 @@ class Speed(_Options):
         1.2,
     )
 
+    @property
+    def prescribed(self) -> float:
+        """True speed / log speed where nothing else is known."""
+        return 1.0 if self.correction == "none" else self.factor
+
 
 class Force(_Options):
     """What is known to be wrong with the tow force of a season."""

@@ -8,14 +8,20 @@ all is declared in `pipeline.tables`, so a column that comes or goes is no conce
 import re
 import tempfile
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import polars as pl
 import pytest
 
+from dashboards.site.boats import boat_pages
+from dashboards.site.pages import method_names, shared_pages
+from dashboards.site.slides import slides_page
+from dashboards.speech import Speech
+from dashboards.statements import Statement
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.seen import Seen
-from pipeline.blocks.batch import Batch
+from pipeline.blocks.tows import Tows
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.observed import observe
 from pipeline.consistency.tables import line_tables
@@ -27,6 +33,8 @@ from tests.conftest import METHODS, Workbench, build_small
 from tests.pipeline.consistency_fleet import consistency_tables, fleet
 from tests.pipeline.season_worlds import HARD, simulate
 from tests.worlds import measure, recompute_world
+from warehouse.queries.views import Views
+from warehouse.store.store import Store
 
 LINES = ROOT / "tests" / "data" / "golden-tables.txt"
 SAME = 1e-6
@@ -56,8 +64,8 @@ def with_two_files() -> dict[str, pl.DataFrame]:
         world_settings("two-files", seasons=(2010, 2014), tows_per_season=8, rate_hz=10, seed=3)
     )
     made = recompute(shipped_method("rebased"), world.tows, world.blocks)
-    seen = vars(Seen(Batch.of(world.tows, world.blocks)))
-    arrays = {name: pl.Series(values) for name, values in seen.items() if name != "batch"}
+    seen = vars(Seen(Tows.of(world.tows, world.blocks)))
+    arrays = {name: pl.Series(values) for name, values in seen.items() if name != "tows"}
     return frames(made) | {"seen": pl.DataFrame(arrays).fill_nan(None)}
 
 
@@ -76,6 +84,26 @@ def of_logs() -> dict[str, pl.DataFrame]:
     """Season factors of a hard archive, and what is doubted in it."""
     found = estimate_season_factors(simulate(HARD, 1002).tows)
     return frames(found) | {"retow_choice": retow_choice(found)}
+
+
+def of_statements(store: Store) -> dict[str, pl.DataFrame]:
+    """What every page says: the numbers in the English of each kind of statement, in order."""
+    said: dict[str, list[dict[str, object]]] = {}
+    real, english = Statement.__init__, Speech("en")
+
+    def noted(self: Statement, *parts: object, **named: object) -> None:
+        real(self, *parts, **named)  # type: ignore[arg-type]
+        text = self(english).replace("\N{MINUS SIGN}", "-")
+        numbers = enumerate(map(float, re.findall(r"-?\d+(?:\.\d+)?", text)), start=1)
+        row = {"verdict": self.verdict} | {str(place): number for place, number in numbers}
+        said.setdefault(self.kind, []).append(row)
+
+    with mock.patch.object(Statement, "__init__", noted), Views(store) as views:
+        pages = [page for make in shared_pages(views, by_reports=True).values() for page in make()]
+        pages += [make() for _, make in boat_pages(views, method_names(views))]
+        pages.append(slides_page(views))
+    assert len(pages) > len(said) > 20
+    return {kind: pl.DataFrame(rows, infer_schema_length=None) for kind, rows in said.items()}
 
 
 MADE = {
@@ -121,12 +149,14 @@ def differs(was: str, now: str) -> bool:
     return n != m or any(abs(a - b) > SAME * size for a, b in zip(before, after, strict=True))
 
 
-def changed(now: dict[str, str]) -> dict[str, tuple[str, str]]:
-    """What is otherwise than it was."""
+def changed(now: dict[str, str], whole: str | None = None) -> dict[str, tuple[str, str]]:
+    """What is otherwise than it was; of a `whole` world also what is gone."""
     kept = dict(line.split(": ", 1) for line in LINES.read_text("utf-8").splitlines())
     both = [where for where in now if where in kept]
     assert len(both) > 0.9 * len(now)
-    return {w: (kept[w], now[w]) for w in both if differs(kept[w], now[w])}
+    gone = {where for where in kept.keys() - now.keys() if where.split()[0] == whole}
+    found = {w: (kept[w], now[w]) for w in both if differs(kept[w], now[w])}
+    return found | {where: (kept[where], "") for where in gone}
 
 
 @pytest.mark.parametrize("world", MADE)
@@ -134,16 +164,20 @@ def test_the_numbers_of_tables_stay(world):
     assert changed(lines(world, MADE[world]())) == {}
 
 
-def test_the_numbers_of_a_rebuilt_archive_stay(built):
-    assert changed(lines("built", built.tables())) == {}
+def of_archive(bench: Workbench) -> dict[str, str]:
+    """Lines of a rebuilt archive, and of the pages about it."""
+    return lines("built", bench.tables()) | lines("statements", of_statements(bench.store))
+
+
+def test_the_numbers_of_a_rebuilt_archive_and_its_pages_stay(built):
+    assert changed(of_archive(built), whole="statements") == {}
 
 
 def write_anew() -> None:
     """Writes the lines of today."""
     with tempfile.TemporaryDirectory() as folder:
         build_small(Path(folder))
-        bench = Workbench(Path(folder) / "archive", Path(folder) / "data")
-        now = lines("built", bench.tables())
+        now = of_archive(Workbench(Path(folder) / "archive", Path(folder) / "data"))
     for world, make in MADE.items():
         now |= lines(world, make())
     LINES.write_text("".join(f"{where}: {said}\n" for where, said in now.items()), "utf-8")
