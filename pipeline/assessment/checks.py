@@ -7,8 +7,8 @@ in the table of docs/method-details.md, 10.
 Severity says what a check asks of people. `refuse`: the tow gives nothing to register. `look`:
 somebody must decide, as the curve may be wrong, or rest on a boat that is not what the papers say;
 of sound tows 2 to 3 in a hundred get there (docs/accuracy.md). `note`: worth knowing when someone
-looks. Most sound tows of some season exceed it (log 2), or the method already acted on it (runs that do not count),
-or it is a property of how the curve may be used.
+looks. Most sound tows of some season exceed it (log 2), or the method already acted on it (runs
+that do not count), or it is a property of how the curve may be used.
 """
 
 from typing import Final, NamedTuple, TypeAlias
