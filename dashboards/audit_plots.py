@@ -9,12 +9,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
-import altair as alt
 import polars as pl
 from markupsafe import Markup
 
 from dashboards import drawn, labels
-from dashboards.figures import FIGURES, drop
 from dashboards.site.parts import default_method
 from pipeline.messages import speaker
 from warehouse.queries.audit import BoatAudit, TypesAudit
@@ -106,18 +104,17 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: s
     about = _about(report)
     of = [plot.of] if plot.of else about
     caption = say(labels.FIGURES[plot.figure])
-    title = alt.Title(
-        f"{caption} · {', '.join(of)}",
-        subtitle=[say(labels.SIMULATED)] if report.simulated else [],
-    )
-    spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
-    drop(spec, "href")
+    spec = drawn.specification(plot.figure, language)
+    spec["title"] = {
+        "text": f"{caption} · {', '.join(of)}",
+        "subtitle": [say(labels.SIMULATED)] if report.simulated else [],
+    }
     for parameter in spec.get("params", []):
         if parameter["name"] == "chosen":
             parameter["value"] = about[0]
     path = folder / f"{file_name(f'{plot.figure} {plot.of}')}.svg"
     with written_beside(path) as beside:
-        beside.write_text(drawn.svg(spec, language), encoding="utf-8")
+        beside.write_text(drawn.svg(spec, plot.rows, language), encoding="utf-8")
     return path
 
 

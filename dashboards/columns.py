@@ -1,5 +1,6 @@
 """How a value is written in the column of a name: the same on pages and in the terminal."""
 
+import datetime as dt
 import json
 import re
 from typing import Any, Final
@@ -16,6 +17,12 @@ DIGITS: Final = (
 )  # fmt: skip
 """Decimals shown by the ending of a column's name; 4 otherwise."""
 
+UNITS: Final = {
+    "_kg_m": "kg/m", "_m_s": "m/s", "_kg": "kg", "_m": "m", "_s": "s", "_w": "W", "_n": "N",
+    "_c": "°C", "_deg": "°", "_sd": "sd", "_percent": "%",
+}  # fmt: skip
+"""Unit of a number by the ending of the name of its column or option; others have none."""
+
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "within", "severity", "check", "shared", "kind", "scope"),
@@ -31,17 +38,35 @@ def written(name: str, value: Any, speech: Speech) -> str:
     if isinstance(value, bool):
         return speech.say("yes" if value else "no")
     if isinstance(value, float):
-        return speech.number(value, digits(name))
+        return speech.number(value, digits_of(name))
     if name == "causes":
         return causes(json.loads(value) if isinstance(value, str) else value, speech)
     several = re.split(", ?", value) if name in CODES and isinstance(value, str) else value
+    if isinstance(value, dt.date):
+        return str(value)
     if not isinstance(several, list | tuple):
-        return str(speech.words(several))
+        return speech.words(several)
     word = {"candidates": labels.candidate}.get(name, labels.code if name in CODES else str)
     return ", ".join(speech.words(word(one)) for one in several if one != "")
 
 
-def digits(name: str) -> int:
+def unit_of(name: str) -> str:
+    """The unit of what has this name; empty where it has none."""
+    return UNITS.get(_ending(name), "")
+
+
+def ends_of(name: str) -> tuple[str, str]:
+    """The columns with the lower and upper end of the interval of a column."""
+    ending = _ending(name)
+    stem = name.removesuffix(ending)
+    return f"{stem}_lo{ending}", f"{stem}_hi{ending}"
+
+
+def _ending(name: str) -> str:
+    return next((ending for ending in UNITS if name.endswith(ending)), "")
+
+
+def digits_of(name: str) -> int:
     """Decimals of a number in the column of this name."""
     return next((shown for ending, shown in DIGITS if name.endswith(ending)), 4)
 

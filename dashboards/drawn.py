@@ -1,15 +1,24 @@
-"""Charts drawn without a browser, with the font of the pages: the same on every machine."""
+"""Charts as Vega-Lite, and drawn without a browser in the font of the pages.
+
+They are the same on every machine.
+"""
 
 import json
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Final
+from functools import cache
+from typing import Any, Final
 
 import altair as alt
+import polars as pl
 import vl_convert
+from altair.utils.schemapi import debug_mode
 
 from dashboards import fonts
+from dashboards.figures import FIGURES
+from pipeline.messages import speaker
 
 VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
 """The version of the charts."""
@@ -55,13 +64,42 @@ CONFIG: Final = {
 """What all charts look like: the title of an axis at the side lies above it."""
 
 
-def svg(spec: dict[str, object], language: str) -> str:
-    """A chart as SVG, its numbers as people of a language write them."""
-    return str(
-        vl_convert.vegalite_to_svg(
-            json.dumps(spec, default=str),
-            vl_version=VEGA_LITE,
-            config=CONFIG,
-            format_locale=LOCALES[language],
-        )
+def specification(figure: str, language: str) -> dict[str, Any]:
+    """A figure's Vega-Lite without data: it draws a dataset called `rows`."""
+    return dict(json.loads(_specification(figure, language)))
+
+
+@cache
+def _specification(figure: str, language: str) -> str:
+    # Validating takes as long as all else of a small site; the tests of figures do it.
+    with debug_mode(False):
+        empty = FIGURES[figure](pl.DataFrame({"kind": ["x"]}), speaker(language))
+        spec: dict[str, Any] = empty.to_dict(validate=False)
+    (placeholder,) = spec.pop("datasets")
+    spec.pop("$schema")
+    return json.dumps(spec | {"config": CONFIG}).replace(f'"{placeholder}"', '"rows"')
+
+
+def svg(spec: dict[str, Any], rows: pl.DataFrame, language: str) -> str:
+    """A chart of these rows as SVG, its numbers as people of a language write them."""
+    _drop(spec, "href", "tooltip")
+    drawn = vl_convert.vegalite_to_svg(
+        json.dumps(spec | {"datasets": {"rows": rows.to_dicts()}}, default=str),
+        vl_version=VEGA_LITE,
+        format_locale=LOCALES[language],
     )
+    # Names of clipping areas from 0: Vega counts on from one picture to the next.
+    names = dict.fromkeys(re.findall(r'id="(clip\d+)"', drawn))
+    places = {name: f"clip{place}" for place, name in enumerate(names)}
+    return re.sub(r"\bclip\d+\b", lambda name: places[name[0]], drawn)
+
+
+def _drop(part: object, *keys: str) -> None:
+    """Takes out of a specification what a picture cannot keep."""
+    if isinstance(part, dict):
+        for key in keys:
+            part.pop(key, None)
+    for inner in (
+        part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
+    ):
+        _drop(inner, *keys)

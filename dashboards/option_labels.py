@@ -14,6 +14,7 @@ TEXTS: Final[dict[str, Sentence]] = {
     "workbench": say("Workbench"),
     # Steps
     "step.speed": say("Speed"),
+    "step.force": say("Tow force"),
     "step.calibration": say("Calibration on GPS"),
     "step.window": say("Window"),
     "step.wind": say("Wind"),
@@ -26,6 +27,7 @@ TEXTS: Final[dict[str, Sentence]] = {
     # Options
     "speed.correction": say("Error of the log"),
     "speed.factor": say("Prescribed factor"),
+    "force.ratio": say("Load cell reading / true force"),
     "calibration.rule": say("GPS factor"),
     "window.rule": say("Which part of a run"),
     "wind.model": say("Wind model"),
@@ -70,15 +72,6 @@ TEXTS: Final[dict[str, Sentence]] = {
     "choice.True": say("yes"),
     "choice.False": say("no"),
 }
-
-
-UNITS: Final = {"_m_s": "m/s", "_s": "s", "_c": "°C", "_sd": "sd", "_ratio": "", "": ""}
-"""Unit of an option by the ending of its name, as in columns."""
-
-
-def unit_of(option: str) -> str:
-    """The unit of an option; empty where it has none."""
-    return next(unit for ending, unit in UNITS.items() if option.endswith(ending))
 
 
 def text(key: str) -> Sentence:

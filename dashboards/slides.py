@@ -6,7 +6,6 @@ from typing import Any, Final
 
 from dashboards import drawn, labels
 from dashboards.documents import pdf
-from dashboards.figures import FIGURES
 from dashboards.html import keep_units
 from dashboards.slide_book import Slide, slides
 from dashboards.speech import Speech
@@ -51,15 +50,14 @@ def slide_book(
 
 
 def _page(slide: Slide, speech: Speech) -> dict[str, Any]:
-    say = speech.say
-    spec: dict[str, Any] = FIGURES[slide.figure](slide.rows, say).to_dict(validate=False)
+    spec = drawn.specification(slide.figure, speech.language)
     if "facet" in spec:
         spec["spec"] |= PANEL
     else:
         spec |= WIDE if isinstance(spec.get("height"), int) else {"width": WIDE["width"]}
     return {
-        "finding": keep_units(say(slide.finding)),
-        "chart": drawn.svg(spec, speech.language),
+        "finding": keep_units(speech.say(slide.finding)),
+        "chart": drawn.svg(spec, slide.rows, speech.language),
         "notes": [keep_units(speech.words(note)) for note in slide.notes],
-        "source": say(SOURCE, table=slide.source),
+        "source": speech.say(SOURCE, table=slide.source),
     }

@@ -21,8 +21,10 @@ class Speech:
         self.decimal = DECIMALS[language]
         self._marks = str.maketrans({".": self.decimal, "-": MINUS})
 
-    def words(self, what: "str | Headline") -> str:
+    def words(self, what: "Text") -> str:
         """A sentence or a statement in this language; any other text is data, and stays."""
+        if isinstance(what, dt.date):
+            return self.day(what)
         return what(self) if callable(what) else str(spoken(what, self.language))
 
     def text(self, text: str) -> Markup:
@@ -63,3 +65,5 @@ def duration(seconds: float) -> str:
 
 Headline: TypeAlias = Callable[[Speech], str]
 """What a section shows in one sentence, in the language of a page."""
+Text: TypeAlias = Headline | str | int | dt.date
+"""A sentence or a statement; or a text, count or day that is data."""

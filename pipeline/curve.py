@@ -257,15 +257,15 @@ def fit_capped(points: Points, free: Curves, b_cap_m_s: ArrayLike) -> Curves:
     s_min = np.broadcast_to(s_of_b(b_cap_m_s), free.s_s2_m2.shape)
     too_flat = free.converged & (free.s_s2_m2 < s_min)
     capped = _fit_given_s(points, s_min)
-    chosen = _where(too_flat, capped, free)
-    return replace(chosen, b_capped=too_flat & capped.converged)
+    made = chosen(too_flat, capped, free)
+    return replace(made, b_capped=too_flat & capped.converged)
 
 
-def _where(chosen: BoolArray, one: Curves, other: Curves) -> Curves:
+def chosen(where: BoolArray, one: Curves, other: Curves) -> Curves:
     """The chosen curves of the one, and those of the other elsewhere."""
     return Curves(
         *(
-            np.where(chosen, getattr(one, field.name), getattr(other, field.name))
+            np.where(where, getattr(one, field.name), getattr(other, field.name))
             for field in fields(Curves)
         )
     )
@@ -291,7 +291,7 @@ def _fit_given_s(points: Points, s: FloatArray) -> Curves:
     flat = _flat(points)
     rss, a, valid = _profile(_arrange(points), s)
     valid &= flat.n_points > 0
-    return _where(valid, replace(flat, a_kg_m=a, s_s2_m2=s, rss_kg2_m2=rss, converged=valid), flat)
+    return chosen(valid, replace(flat, a_kg_m=a, s_s2_m2=s, rss_kg2_m2=rss, converged=valid), flat)
 
 
 def _arrange(points: Points, rows: slice = slice(None)) -> tuple[FloatArray, ...]:

@@ -175,7 +175,7 @@ def shared(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], ob
     return folder
 
 
-def _build(root: Path) -> None:
+def build_small(root: Path) -> None:
     write_simulated_archive(root / "archive", simulate_world(SMALL))
     Workbench(root / "archive", root / "data").rebuild(whole=True)
 
@@ -183,7 +183,7 @@ def _build(root: Path) -> None:
 @pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Workbench:
     """The small archive, rebuilt once; read only."""
-    root = shared(tmp_path_factory, "built", _build)
+    root = shared(tmp_path_factory, "built", build_small)
     return Workbench(root / "archive", root / "data")
 
 

@@ -34,7 +34,7 @@ from benchmarks.accuracy.score import EQUAL_BOATS, Record, score, table
 from herijk.simulate import WORLDS, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.assessment.plausibility import plausibility
-from pipeline.blocks.batch import Batch
+from pipeline.blocks.tows import Tows
 from pipeline.consistency.homogeneity import type_homogeneity
 from pipeline.consistency.observed import observe
 from pipeline.method.definition import shipped_method
@@ -122,7 +122,7 @@ def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataF
 
 def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
     """Tables of an archive as a rebuild makes them; where asked, whether equal boats are alike."""
-    tows = with_doubts(archive.tows, plausibility(Batch.of(archive.tows, archive.blocks)))
+    tows = with_doubts(archive.tows, plausibility(Tows.of(archive.tows, archive.blocks)))
     made = recompute(shipped_method(METHOD), tows, archive.blocks, with_bands=False)
     tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
     if equal_boats:

@@ -5,15 +5,17 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field
 from typing import Final
 
+import polars as pl
 import segno
 
-from dashboards import labels
+from dashboards import drawn, labels
 from dashboards.addresses import boat_path
 from dashboards.documents import pdf
-from dashboards.pictures import curve_picture
-from dashboards.speech import Speech
+from dashboards.speech import Speech, Text
+from dashboards.statements import EditionName, number, told
 from dashboards.statements.boat import crew_name, interval
-from pipeline.messages import pgettext, say
+from pipeline.messages import Sentence, pgettext, say
+from pipeline.method.definition import COMPLETE, RUNS_ALONE
 from pipeline.tables.row import Row
 from warehouse.queries.documents import certificate_lines, curve_of
 from warehouse.queries.views import Views
@@ -26,6 +28,17 @@ READING: Final = (
         "The power is what each rower gives on average at that speed, in still water and still air."
     ),
 )
+
+
+MEASURES: Final = {
+    "a_kg_m": 3, "b_m_s": 3, "declared_speed_m_s": 2, "waterline_length_m": 2, "beam_m": 2,
+    "bow_height_m": 2, "weight_kg": 0,
+}  # fmt: skip
+"""Measures of a line, with their decimals."""
+HEADLINE: Final = say("Cw {cw_kg_m} kg/m at {declared_speed_m_s} m/s")
+NOT_KNOWN: Final = "\u2013"
+SIZE: Final = {"width": 340, "height": 190}
+"""Of the curve [px]."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +103,7 @@ def certificates(
 
 
 def _one(line: Row, issued: Issued, speech: Speech) -> dict[str, object]:
-    say, number = speech.say, speech.number
+    say, words = speech.say, speech.words
     code = line["verification_code"] or ""
     crew, curve = crew_name(line, speech), curve_of(line)
     return {
@@ -98,23 +111,25 @@ def _one(line: Row, issued: Issued, speech: Speech) -> dict[str, object]:
         "subtitle": " · ".join(filter(None, (line["fsn_no"], line["boat_type"], crew))),
         "code": code,
         "qr": _qr(line, code, issued.site),
-        "headline": say(
-            "Cw {cw} kg/m at {speed} m/s",
-            cw=number(line["cw_kg_m"], 2),
-            speed=number(line["declared_speed_m_s"], 2),
-        ),
+        "headline": words(told("certified", HEADLINE, line)),
         "interval": _interval(line, speech),
         "validity": _validity(line, issued.day, speech),
-        "left": _numbers(line, speech),
+        "left": [
+            (
+                labels.unbroken(say(labels.column(column))),
+                NOT_KNOWN if line[column] is None else words(number(line, column, digits)),
+            )
+            for column, digits in MEASURES.items()
+        ],
         "right": _terms(line, issued.issuer, speech),
         "others": [_other(other, speech) for other in line["others"]],
-        "curve": str(curve_picture(curve, line, speech, crew)),
+        "curve": _picture(line, curve, speech.language),
         "curve_note": say(
             "Cw against speed, from A and B; the bar is the interval at the declared speed"
         ),
         "curve_alt": f"{say('Resistance curve')} {line['fsn_no']} {crew}",
         "powers": [
-            [number(speed, 2), number(cw, 2), number(power, 1)] for speed, cw, power in curve
+            [words(number(row, column)) for column in row] for row in curve.iter_rows(named=True)
         ],
         "checking": say(
             "Look {fsn_no} up in the register of edition {edition}: the same verification "
@@ -127,6 +142,18 @@ def _one(line: Row, issued: Issued, speech: Speech) -> dict[str, object]:
             edition=line["edition"],
         ),
     }
+
+
+def _picture(line: Row, curve: pl.DataFrame, language: str) -> str:
+    """The curve, and the interval of Cw at the declared speed."""
+    ends = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+    declared = {"speed_m_s": line["declared_speed_m_s"]} | {name: line[name] for name in ends}
+    kinds = {"line": curve, "declared": pl.DataFrame([declared])}
+    rows = [rows.with_columns(kind=pl.lit(kind)) for kind, rows in kinds.items()]
+    spec = drawn.specification("certificate_curve", language) | SIZE
+    interval = COMPLETE if line["log_known"] else RUNS_ALONE
+    drawn_rows = pl.concat(rows, how="diagonal_relaxed").with_columns(interval=pl.lit(interval))
+    return drawn.svg(spec, drawn_rows, language)
 
 
 def _qr(line: Row, code: str, site: str) -> str:
@@ -155,14 +182,11 @@ OTHERS: Final = (say("Crew"), say("Cw [kg/m]"), say("Speed [m/s]"), say("Valid u
 
 def _other(line: Row, speech: Speech) -> list[str]:
     """Another crew of the boat: its number, or why it has none."""
-    numbers = [line["cw_kg_m"], line["declared_speed_m_s"]]
-    until = line["valid_until"]
+    names, until = ("cw_kg_m", "declared_speed_m_s"), line["valid_until"]
+    numbers = (NOT_KNOWN if line[name] is None else number(line, name) for name in names)
     known = line["cw_kg_m"] is not None and until is not None
-    return [
-        crew_name(line, speech),
-        *("\u2013" if value is None else speech.number(value, 2) for value in numbers),
-        speech.day(until) if known else speech.say(labels.code(line["status"])),
-    ]
+    last = until if known else labels.code(line["status"])
+    return [crew_name(line, speech), *map(speech.words, (*numbers, last))]
 
 
 def _interval(line: Row, speech: Speech) -> str:
@@ -171,45 +195,28 @@ def _interval(line: Row, speech: Speech) -> str:
     return interval(line, line["log_known"])(speech)
 
 
-def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:
-    return [
-        _fact(line, column, digits, speech)
-        for column, digits in (
-            ("a_kg_m", 3), ("b_m_s", 3), ("declared_speed_m_s", 2), ("waterline_length_m", 2),
-            ("beam_m", 2), ("bow_height_m", 2), ("weight_kg", 0),
-        )
-    ]  # fmt: skip
-
-
-def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str]:
-    """A measure with its unit, by the heading of its column."""
-    name = labels.unbroken(speech.say(labels.column(column)))
-    value = line[column]
-    return name, "\u2013" if value is None else speech.number(value, digits)
-
-
 def _terms(line: Row, issuer: str, speech: Speech) -> list[tuple[str, str]]:
-    say = speech.say
-    method = say(labels.method(line["method"])) if line["method"] else None
+    """From which tow and by which method, on whose decision, and how long it holds."""
+    method: Text | None = line["method"] and labels.method(line["method"])
     if line["basis"] == "printed_rebased":
-        method = f"{method} ({say(labels.code('printed_rebased'))})"
-    before = None
+        method = say("{} ({})", method, labels.code("printed_rebased"))
+    before: Text | None = None
     if line["old_cw_kg_m"] is not None:
-        cw = f"{speech.number(line['old_cw_kg_m'], 2)}\u00a0kg/m"
-        before = f"{cw} ({speech.edition(line['from_edition'])})"
-    rows = [
+        wording, edition = (
+            say("{old_cw_kg_m}\u00a0kg/m ({edition})"),
+            EditionName(line["from_edition"]),
+        )
+        before = told("before", wording, line, edition=edition)
+    rows: list[tuple[Sentence, Text | None]] = [
         (say("Tow of"), line["tow_date"]),
-        (say(labels.column("tow_id")), line["tow_id"]),
+        (labels.column("tow_id"), line["tow_id"]),
         (say("Cw before"), before),
-        (say(labels.column("valid_from")), line["valid_from"]),
-        (say(pgettext("certificate", "Valid until")), line["valid_until"]),
-        (say(labels.column("edition")), speech.edition(line["edition"])),
-        (say(labels.column("method")), method),
-        (say("Issued by"), issuer or None),
-        (say(labels.column("decision")), line["decision"]),
-        (say(labels.column("empty_thwart")), line["empty_thwart"] or say(labels.code("none"))),
+        (labels.column("valid_from"), line["valid_from"]),
+        (pgettext("certificate", "Valid until"), line["valid_until"]),
+        (labels.column("edition"), EditionName(line["edition"])),
+        (labels.column("method"), method),
+        (say("Issued by"), issuer),
+        (labels.column("decision"), line["decision"]),
+        (labels.column("empty_thwart"), line["empty_thwart"] or labels.code("none")),
     ]
-    days = {name: speech.day(value) for name, value in rows if isinstance(value, dt.date)}
-    return [
-        (name, days.get(name, "\u2013" if value is None else str(value))) for name, value in rows
-    ]
+    return [(speech.say(name), speech.words(value or NOT_KNOWN)) for name, value in rows]

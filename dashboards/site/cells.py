@@ -11,7 +11,7 @@ from markupsafe import Markup, escape
 
 from dashboards import labels
 from dashboards.addresses import boat_path, type_path
-from dashboards.columns import digits, written
+from dashboards.columns import digits_of, written
 from dashboards.site.parts import Page, Table, is_chosen
 from dashboards.speech import Speech, duration
 from pipeline.messages import LANGUAGES
@@ -84,7 +84,7 @@ class Cells:
             return [f"<td class=t>{'' if v is None else duration(v)}</td>" for v in column]
         if column.dtype.is_float():
             values = [math.nan if v is None else v for v in column.to_list()]
-            return [f"<td>{text}</td>" for text in self.speech.numbers(values, digits(name))]
+            return [f"<td>{text}</td>" for text in self.speech.numbers(values, digits_of(name))]
         if column.dtype.is_integer() and name != "direction":
             return [f"<td>{'' if v is None else v}</td>" for v in column.to_list()]
         empty = "<td class=t></td>"

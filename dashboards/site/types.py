@@ -18,7 +18,6 @@ from dashboards.site.parts import (
     Section,
     Select,
     Table,
-    Text,
     default_method,
     listed,
     methods_select,
@@ -26,7 +25,7 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.slide_book import Book
-from dashboards.speech import Headline
+from dashboards.speech import Headline, Text
 from dashboards.statements import together
 from dashboards.statements.boat_type import LINES, SPREAD, Slopes, homogeneity, level, slopes
 from pipeline.messages import Sentence, say

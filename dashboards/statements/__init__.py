@@ -7,8 +7,11 @@ terminal, in documents, in mail and in `--json`.
 import datetime as dt
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from string import Formatter
+from types import MappingProxyType
+from typing import Any, Final, TypeAlias
 
+from dashboards.columns import digits_of, ends_of, unit_of
 from dashboards.speech import Headline, Speech
 from pipeline.messages import Sentence
 
@@ -93,6 +96,37 @@ def _spoken(value: Value, speech: Speech) -> object:
     if isinstance(value, Sentence):
         return speech.say(value)
     return value(speech) if callable(value) else value
+
+
+NO_ROW: Final[Mapping[str, Any]] = MappingProxyType({})
+
+
+def told(
+    kind: str,
+    wording: Sentence,
+    row: Mapping[str, Any] = NO_ROW,
+    *rests_on: str,
+    verdict: str = "",
+    **values: Value,
+) -> Statement:
+    """A statement about a row: what its wording names is given, or else a value of the row."""
+    names = [name for _, name, _, _ in Formatter().parse(wording.template) if name]
+    said = {name: values[name] if name in values else _value(row, name) for name in names}
+    return Statement(kind, wording, said, verdict, rests_on)
+
+
+def _value(row: Mapping[str, Any], column: str) -> Value:
+    value: Value = row[column]
+    return number(row, column) if isinstance(value, float) else value
+
+
+def number(
+    row: Mapping[str, Any], column: str, digits: int | None = None, sign: str = ""
+) -> Number:
+    """The number of a column, as its name says: with its unit, its decimals and its interval."""
+    low, high = (row.get(end) for end in ends_of(column))
+    shown = digits_of(column) if digits is None else digits
+    return Number(row[column], shown, unit_of(column), low, high, sign)
 
 
 def together(statements: Sequence[Statement], between: str = "") -> Headline:

@@ -3,12 +3,13 @@
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
+from operator import mul
 from typing import Final, NamedTuple
 
 from dashboards import labels
-from dashboards.pictures import waterfall_picture
 from dashboards.speech import Speech
-from dashboards.statements import Change, EditionName, Number, Statement, Value
+from dashboards.statements import Change, EditionName, Number, Statement, Value, number, told
 from dashboards.statements.edition import NEGLIGIBLE, causes_of_line
 from dashboards.statements.race import place_in_race
 from pipeline.messages import Sentence, say
@@ -30,6 +31,21 @@ class Block(NamedTuple):
 
     title: Sentence
     statements: Sequence[Statement]
+
+
+class Bar(NamedTuple):
+    """A row of the picture that leads from an old number to the new one.
+
+    Attributes:
+        kind: `number`, which is a mark; `more` or `less`, a bar.
+        start, width: in per cent of the room.
+    """
+
+    kind: str
+    name: Sentence
+    value: Number | Change
+    start: float
+    width: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -67,16 +83,37 @@ class Answer:
         """Which crew it is about."""
         return crew_name(self.line, speech)
 
-    def waterfall(self, speech: Speech) -> str:
-        """What each cause did to the number, as a picture; nothing where it did not change."""
-        line = self.line
+    @property
+    def waterfall(self) -> list[Bar]:
+        """What each cause did to the number; nothing where it did not change.
+
+        The axis need not begin at zero: both numbers are marks on it, and only changes have a
+        length.
+        """
+        line, old = self.line, self.line["old_cw_kg_m"]
         if line["cw_ratio"] is None or line["change"] == "same":
-            return ""
-        old = line["old_cw_kg_m"]
-        title = speech.say("From the old number to the new, Cw in kg/m")
-        caption = f"{title}: {line['name']} {self.crew(speech)}"
-        causes = [(speech.say(name), factor) for name, factor in causes_of_line(line)]
-        return waterfall_picture((old, old * line["cw_ratio"]), causes, speech, caption)
+            return []
+        causes, new = causes_of_line(line), old * line["cw_ratio"]
+        ends = list(accumulate((factor for _, factor in causes), mul, initial=old))
+        room = 0.25 * (max(ends) - min(ends)) or 0.01 * old
+        places = [
+            100 * (end - min(ends) + room) / (max(ends) - min(ends) + 2 * room)
+            for end in (*ends, new)
+        ]
+        return [
+            Bar("number", say("was"), Number(old), places[0]),
+            *(
+                Bar(
+                    "more" if factor > 1 else "less",
+                    name,
+                    Change(factor),
+                    min(span),
+                    max(span) - min(span),
+                )
+                for (name, factor), *span in zip(causes, places, places[1:], strict=False)
+            ),
+            Bar("number", say("becomes"), Number(new), places[-1]),
+        ]
 
 
 def answers_by_boat(views: Views, edition: str, only: str | None = None) -> dict[str, list[Answer]]:
@@ -109,72 +146,54 @@ def headline(line: Row) -> Statement:
     """The number of a line and by how much it changes, or why there is none."""
     rests_on = ("register", "register_changes")
     if line["cw_kg_m"] is None:
-        status = labels.code(line["status"])
-        return Statement("no_number", say("No valid number: {status}."), {"status": status})
-    new = Number(line["cw_kg_m"], low=line["cw_lo_kg_m"], high=line["cw_hi_kg_m"])
+        wording = say("No valid number: {status}.")
+        return told("no_number", wording, status=labels.code(line["status"]))
     if line["cw_ratio"] is None:
-        return Statement("cw", say("Cw is {new} kg/m."), {"new": new}, rests_on=rests_on)
+        return told("cw", say("Cw is {cw_kg_m} kg/m."), line, *rests_on)
     ratio = line["cw_kg_m"] / line["old_cw_kg_m"]  # of the two that are shown, each at its speed
     if abs(ratio - 1) <= NEGLIGIBLE:
-        wording = say("Cw stays {new} kg/m.")
-        return Statement("cw", wording, {"new": new}, "same", rests_on)
+        return told("cw", say("Cw stays {cw_kg_m} kg/m."), line, *rests_on, verdict="same")
     wording = (
-        say("Cw goes from {old} to {new} kg/m: {by} % lower.")
+        say("Cw goes from {old_cw_kg_m} to {cw_kg_m} kg/m: {by} % lower.")
         if ratio < 1
-        else say("Cw goes from {old} to {new} kg/m: {by} % higher.")
+        else say("Cw goes from {old_cw_kg_m} to {cw_kg_m} kg/m: {by} % higher.")
     )
-    old, by = Number(line["old_cw_kg_m"]), Number(100 * abs(ratio - 1), 1, "%")
-    verdict = "lower" if ratio < 1 else "higher"
-    return Statement("cw", wording, {"new": new, "old": old, "by": by}, verdict, rests_on)
+    by, verdict = Number(100 * abs(ratio - 1), 1, "%"), "lower" if ratio < 1 else "higher"
+    return told("cw", wording, line, *rests_on, verdict=verdict, by=by)
 
 
 def _power(line: Row) -> Iterator[Statement]:
     """What it asks of each rower."""
-    if line["new_power_w"] is None:
-        return
-    yield Statement(
-        "power",
-        say("That asks {power} W of each rower at {speed} m/s."),
-        {
-            "power": Number(line["new_power_w"], 0, "W"),
-            "speed": Number(line["declared_speed_m_s"], unit="m/s"),
-        },
-        rests_on=("register",),
-    )
+    if line["new_power_w"] is not None:
+        wording = say("That asks {power} W of each rower at {declared_speed_m_s} m/s.")
+        yield told("power", wording, line, "register", power=number(line, "new_power_w", 0))
 
 
 def _change(line: Row) -> Iterator[Statement]:
     """Compared with what, why, and what it is worth in a race."""
     if line["cw_ratio"] is None:
         return
-    yield Statement(
+    yield told(
         "compared",
         say("Compared: \u201c{new}\u201d with \u201c{old}\u201d."),
-        {"new": EditionName(line["edition"]), "old": EditionName(line["from_edition"])},
+        new=EditionName(line["edition"]),
+        old=EditionName(line["from_edition"]),
     )
     yield from _tows(line)
     if line["old_declared_speed_m_s"] != line["declared_speed_m_s"]:
-        yield Statement(
-            "declared_speed",
-            say(
-                "The declared speed is another one: {new} instead of {old} m/s. At the old "
-                "speed Cw changes by {by}; what follows is about that."
-            ),
-            {
-                "old": Number(line["old_declared_speed_m_s"], unit="m/s"),
-                "new": Number(line["declared_speed_m_s"], unit="m/s"),
-                "by": Change(line["cw_ratio"]),
-            },
+        wording = say(
+            "The declared speed is another one: {declared_speed_m_s} instead of "
+            "{old_declared_speed_m_s} m/s. At the old speed Cw changes by {by}; what follows is "
+            "about that."
         )
+        yield told("declared_speed", wording, line, by=Change(line["cw_ratio"]))
     if line["change"] == "same":
         return
     each: list[Value] = [
-        Statement("cause", say("{name} {by}"), {"name": name, "by": Change(factor)})
+        told("cause", say("{name} {by}"), name=name, by=Change(factor))
         for name, factor in causes_of_line(line)
     ]
-    yield Statement(
-        "causes", say("Why: {causes}."), {"causes": each}, rests_on=("register_changes",)
-    )
+    yield told("causes", say("Why: {causes}."), line, "register_changes", causes=each)
     if line["gain_in_two_hours_s"] is not None:
         yield two_hours(line["gain_in_two_hours_s"])
 
@@ -186,15 +205,17 @@ def _tows(line: Row) -> Iterator[Statement]:
         return
     wording = (
         say(
-            "The old number comes from the tow of {old}, the new one from that of {new}: the boat "
-            "was reported as altered in between."
+            "The old number comes from the tow of {old_tow_date}, the new one from that of "
+            "{tow_date}: the boat was reported as altered in between."
         )
         if line["altered"]
-        else say("The old number comes from the tow of {old}, the new one from that of {new}.")
+        else say(
+            "The old number comes from the tow of {old_tow_date}, the new one from that of "
+            "{tow_date}."
+        )
     )
-    values: dict[str, Value] = {"old": line["old_tow_date"], "new": line["tow_date"]}
     verdict = "altered" if line["altered"] else ""
-    yield Statement("two_tows", wording, values, verdict, ("tows", "register"))
+    yield told("two_tows", wording, line, "tows", "register", verdict=verdict)
 
 
 def two_hours(seconds: float) -> Statement:
@@ -204,8 +225,8 @@ def two_hours(seconds: float) -> Statement:
         if seconds > 0
         else say("For the same power the crew has to row a race of two hours {seconds} s faster.")
     )
-    values = {"seconds": Number(abs(seconds), 0, "s")}
-    return Statement("two_hours", wording, values, rests_on=("register_changes",))
+    by = Number(abs(seconds), 0, "s")
+    return told("two_hours", wording, {}, "register_changes", seconds=by)
 
 
 def _certainty(line: Row) -> Iterator[Statement]:
@@ -216,9 +237,9 @@ def _certainty(line: Row) -> Iterator[Statement]:
         return
     exceeds, of_one_tow = line["exceeds_interval"], line["old_tow_id"] == line["tow_id"]
     verdict = {True: "beyond", False: "within", None: "not known"}[exceeds]
-    yield Statement("exceeds", VERDICTS[exceeds][of_one_tow], verdict=verdict)
+    yield told("exceeds", VERDICTS[exceeds][of_one_tow], verdict=verdict)
     if exceeds is not None and not line["old_log_known"]:
-        yield Statement(
+        yield told(
             "old_log_unknown",
             say(
                 "The uncertainty of the old number leaves out the error of the log: it is too "
@@ -229,17 +250,14 @@ def _certainty(line: Row) -> Iterator[Statement]:
 
 def interval(line: Row, log_known: bool) -> Statement:
     """The interval of Cw, and whether the error of the log is in it."""
-    wording = (
-        say("With 95 % confidence Cw lies between {low} and {high} kg/m.")
-        if log_known
-        else say(
-            "The scatter of the runs alone leaves Cw between {low} and {high} kg/m; the "
-            "error of the log comes on top of that and is not known under this method."
-        )
+    if log_known:
+        wording = say("With 95 % confidence Cw lies between {cw_lo_kg_m} and {cw_hi_kg_m} kg/m.")
+        return told("interval", wording, line, "curves", verdict="complete")
+    wording = say(
+        "The scatter of the runs alone leaves Cw between {cw_lo_kg_m} and {cw_hi_kg_m} kg/m; the "
+        "error of the log comes on top of that and is not known under this method."
     )
-    ends = {"low": Number(line["cw_lo_kg_m"]), "high": Number(line["cw_hi_kg_m"])}
-    verdict = "complete" if log_known else "runs_alone"
-    return Statement("interval", wording, ends, verdict, ("curves",))
+    return told("interval", wording, line, "curves", verdict="runs_alone")
 
 
 UNKNOWN_VERDICT: Final = say(
@@ -268,62 +286,44 @@ def _best(line: Row) -> Iterator[Statement]:
     """What the whole archive makes of the tow, and of its difference from the last one."""
     if line["cw_best_kg_m"] is None or line["own_weight"] is None:
         return
-    low, high = line["cw_best_lo_kg_m"], line["cw_best_hi_kg_m"]
-    yield Statement(
-        "best_estimate",
-        say(
-            "The best estimate from all tows of the archive is {best} kg/m ({low} to "
-            "{high}); {share} % of it rests on this tow."
-        ),
-        {
-            "best": Number(line["cw_best_kg_m"], low=low, high=high),
-            "low": Number(low),
-            "high": Number(high),
-            "share": Number(100 * line["own_weight"], 0, "%"),
-        },
-        rests_on=("curves", "best_estimate_weights"),
+    wording = say(
+        "The best estimate from all tows of the archive is {cw_best_kg_m} kg/m ({cw_best_lo_kg_m} "
+        "to {cw_best_hi_kg_m}); {share} % of it rests on this tow."
     )
+    share = Number(100 * line["own_weight"], 0, "%")
+    yield told("best_estimate", wording, line, "curves", "best_estimate_weights", share=share)
     if line["best_moved_ratio"] is not None and abs(line["moved_ratio"] - 1) >= NEGLIGIBLE:
-        yield Statement(
-            "since_last_tow",
-            say(
-                "Against the tow of {before} Cw at equal speed is {moved}; by the best "
-                "estimate {kept}. What differs between the two comes from measuring rather "
-                "than from the boat."
-            ),
-            {
-                "before": line["season_before"],
-                "moved": Change(line["moved_ratio"]),
-                "kept": Change(line["best_moved_ratio"]),
-            },
-            rests_on=("repeat_pairs",),
+        wording = say(
+            "Against the tow of {season_before} Cw at equal speed is {moved}; by the best "
+            "estimate {kept}. What differs between the two comes from measuring rather "
+            "than from the boat."
         )
+        moved, kept = Change(line["moved_ratio"]), Change(line["best_moved_ratio"])
+        yield told("since_last_tow", wording, line, "repeat_pairs", moved=moved, kept=kept)
 
 
 def _log(line: Row) -> Iterator[Statement]:
     """What is known of the log of its season."""
-    if line["log_source"] == "estimated":
-        factor, low, high = (line[f"log_{part}"] for part in ("factor", "lo", "hi"))
-        yield Statement(
-            "log_read",
-            say(
-                "In {season} the log read {by} % too low (95 %: {low} to {high}); that is "
-                "corrected."
-            )
-            if factor > 1
-            else say(
-                "In {season} the log read {by} % too high (95 %: {low} to {high}); that is "
-                "corrected."
-            ),
-            {
-                "season": line["season"],
-                "by": Number(100 * abs(1 - 1 / factor), 1, "%"),
-                "low": Change(1 / high),
-                "high": Change(1 / low),
-            },
-            "low" if factor > 1 else "high",
-            ("log_factors",),
+    if line["log_source"] != "estimated":
+        return
+    factor = line["log_factor"]
+    wording = (
+        say("In {season} the log read {by} % too low (95 %: {low} to {high}); that is corrected.")
+        if factor > 1
+        else say(
+            "In {season} the log read {by} % too high (95 %: {low} to {high}); that is corrected."
         )
+    )
+    yield told(
+        "log_read",
+        wording,
+        line,
+        "log_factors",
+        verdict="low" if factor > 1 else "high",
+        by=Number(100 * abs(1 - 1 / factor), 1, "%"),
+        low=Change(1 / line["log_hi"]),
+        high=Change(1 / line["log_lo"]),
+    )
 
 
 def _faults(faults: Sequence[Row]) -> Iterator[Statement]:
@@ -356,22 +356,17 @@ FAULTS: Final = {
 
 def _fault(fault: Row) -> Statement:
     """What may be wrong with one instrument."""
-    chance = fault["p_fault"]
-    values: dict[str, Value] = {
-        "instrument": labels.code(fault["instrument"]),
-        "season": fault["season"],
-        "chance": "" if chance is None else Number(100 * chance, 0, "%"),
-        "size": Statement(
-            "size",
-            say("{size}\u00a0{unit}"),
-            {
-                "size": Number(fault["size"], 1, fault["unit"], sign="+"),
-                "unit": fault["unit"],
-            },
-        ),
-    }
-    verdict = fault["verdict"]
-    return Statement("fault", FAULTS[verdict], values, verdict, ("season_diagnosis",))
+    chance, size = fault["p_fault"], Number(fault["size"], 1, fault["unit"], sign="+")
+    return told(
+        "fault",
+        FAULTS[fault["verdict"]],
+        fault,
+        "season_diagnosis",
+        verdict=fault["verdict"],
+        instrument=labels.code(fault["instrument"]),
+        chance="" if chance is None else Number(100 * chance, 0, "%"),
+        size=told("size", say("{size}\u00a0{unit}"), fault, size=size),
+    )
 
 
 def _place(line: Row) -> Iterator[Statement]:
@@ -379,68 +374,45 @@ def _place(line: Row) -> Iterator[Statement]:
     if line["new_type_place"] is None or not line["boat_type"] or line["type_size"] < LEAST_RANKED:
         return
     same = line["old_type_place"] in (None, line["new_type_place"])
-    yield Statement(
-        "place_in_type",
+    wording = (
         say(
-            "At equal power per rower this boat ranks {place} of {size} of type {type} by "
-            "speed ({people})."
+            "At equal power per rower this boat ranks {new_type_place} of {type_size} of type "
+            "{boat_type} by speed ({people})."
         )
         if same
         else say(
-            "At equal power per rower this boat now ranks {place} of {size} of type {type} "
-            "by speed ({people}); it was {old}."
-        ),
-        {
-            "place": line["new_type_place"],
-            "old": line["old_type_place"] or "",
-            "size": line["type_size"],
-            "type": line["boat_type"],
-            "people": labels.crew(line["crew_class"]),
-        },
-        "same" if same else "moved",
-        ("register_changes",),
+            "At equal power per rower this boat now ranks {new_type_place} of {type_size} of type "
+            "{boat_type} by speed ({people}); it was {old_type_place}."
+        )
     )
+    people, verdict = labels.crew(line["crew_class"]), "same" if same else "moved"
+    yield told("place_in_type", wording, line, "register_changes", verdict=verdict, people=people)
 
 
 def _validity(line: Row) -> Iterator[Statement]:
     """Until when it counts."""
     if line["valid_until"] is not None:
-        valid = line["status"] == "valid"
-        yield Statement(
-            "validity",
-            say("The tow of {tow} counts up to and including {until}.")
-            if valid
-            else say("The tow of {tow} counted up to and including {until}."),
-            {"until": line["valid_until"], "tow": line["tow_date"]},
-            line["status"],
-            ("register",),
+        wording = (
+            say("The tow of {tow_date} counts up to and including {valid_until}.")
+            if line["status"] == "valid"
+            else say("The tow of {tow_date} counted up to and including {valid_until}.")
         )
+        yield told("validity", wording, line, "register", verdict=line["status"])
 
 
 def _next_tow(line: Row) -> Iterator[Statement]:
     """At what speed to tow next."""
     if line["tow_speed_m_s"] is not None:
-        yield Statement(
-            "next_tow",
-            say("Next tow: at {speed} m/s ({reason})."),
-            {
-                "speed": Number(line["tow_speed_m_s"], unit="m/s"),
-                "reason": labels.code(line["speed_reason"]),
-            },
-            rests_on=("due_list",),
-        )
+        wording, reason = say("Next tow: at {tow_speed_m_s} m/s ({reason})."), line["speed_reason"]
+        yield told("next_tow", wording, line, "due_list", reason=labels.code(reason))
 
 
 def _objection(line: Row) -> Statement:
-    code = line["verification_code"]
     asked: Value = ""
-    if code:
-        asked = Statement("code", say(" and verification code {code}"), {"code": code})
-    return Statement(
-        "objection",
-        say(
-            "Is something wrong? Tell the committee, and name {fsn_no}{code}. How the "
-            "number was made is shown below."
-        ),
-        {"fsn_no": line["fsn_no"], "code": asked},
+    if line["verification_code"]:
+        asked = told("code", say(" and verification code {verification_code}"), line)
+    wording = say(
+        "Is something wrong? Tell the committee, and name {fsn_no}{code}. How the "
+        "number was made is shown below."
     )
+    return told("objection", wording, line, code=asked)

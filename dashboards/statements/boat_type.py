@@ -9,7 +9,7 @@ import polars as pl
 import scipy
 
 from dashboards import labels
-from dashboards.statements import Number, Statement, Value
+from dashboards.statements import Number, Statement, Value, told
 from pipeline.consistency.homogeneity import LEVEL
 from pipeline.messages import say
 from pipeline.quantiles import NORMAL
@@ -41,10 +41,10 @@ BENDS: Final = {
 def homogeneity(test: pl.DataFrame) -> Statement:
     """Whether the boats of a type have equal curves, as their row of `type_homogeneity` says."""
     if test.is_empty() or test["p_value"][0] is None:
-        return Statement("bends", say("Too few boats to tell whether they are equal."))
+        return told("bends", say("Too few boats to tell whether they are equal."))
     verdict, wording = BENDS[test["equal_possible"][0]]
-    values = {"n": test["n"][0], "p": Number(test["p_value"][0], unit="")}
-    return Statement("bends", wording, values, verdict, ("homogeneity",))
+    p = Number(test["p_value"][0], unit="")
+    return told("bends", wording, {}, "homogeneity", verdict=verdict, n=test["n"][0], p=p)
 
 
 def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
@@ -59,7 +59,7 @@ def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
     """
     spread = None if line.is_empty() else line["residual_sd_ratio"][0]
     if spread is None:
-        return Statement("level", say("Too few boats to compare their level."), verdict="few")
+        return told("level", say("Too few boats to compare their level."), verdict="few")
     known = tows.drop_nulls("cw_standard_kg_m")
     half = pl.col("cw_standard_hi_kg_m") - pl.col("cw_standard_lo_kg_m")
     ratio = known.select(half / (2 * NORMAL * pl.col("cw_standard_kg_m"))).to_series()
@@ -84,17 +84,22 @@ def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
             "{spread} % about their weight line. Their uncertainty is not known.{outside}"
         )
     )
-    values: dict[str, Value] = {
-        "speed": Number(known["standard_speed_m_s"][0], unit="m/s"),
-        "lowest": Number(float(known["cw_standard_kg_m"].to_numpy().min()), 1),
-        "highest": Number(float(known["cw_standard_kg_m"].to_numpy().max()), 1),
-        "n": line["n"][0],
-        "spread": Number(100 * spread, 1, "%"),
-        "noise": "" if noise is None else Number(100 * noise, 1, "%"),
-        "outside": _outside([tow for tow in known.to_dicts() if tow["outside"]]),
-    }
-    verdict = "not known" if noise is None else "differ" if differ else "equal"
-    return Statement("level", wording, values, verdict, ("compared_tows", "type_lines"))
+    cw = known["cw_standard_kg_m"].to_numpy()
+    return told(
+        "level",
+        wording,
+        {},
+        "compared_tows",
+        "type_lines",
+        verdict="not known" if noise is None else "differ" if differ else "equal",
+        speed=Number(known["standard_speed_m_s"][0], unit="m/s"),
+        lowest=Number(float(cw.min()), 1),
+        highest=Number(float(cw.max()), 1),
+        n=line["n"][0],
+        spread=Number(100 * spread, 1, "%"),
+        noise="" if noise is None else Number(100 * noise, 1, "%"),
+        outside=_outside([tow for tow in known.to_dicts() if tow["outside"]]),
+    )
 
 
 def _outside(tows: list[Row]) -> Value:
@@ -102,14 +107,15 @@ def _outside(tows: list[Row]) -> Value:
     if not tows:
         return ""
     named: list[Value] = [
-        Statement(
+        told(
             "boat_outside",
             say("{fsn_no} ({candidates})") if tow["candidates"] else say("{fsn_no}"),
-            {"fsn_no": tow["fsn_no"], "candidates": list(map(labels.candidate, tow["candidates"]))},
+            tow,
+            candidates=list(map(labels.candidate, tow["candidates"])),
         )
         for tow in tows
     ]
-    return Statement("outside", say(" These stand out: {boats}."), {"boats": named})
+    return told("outside", say(" These stand out: {boats}."), boats=named)
 
 
 QUANTITIES: Final = ("b_m_s", "a_kg_m", "cw_standard_kg_m")
@@ -169,7 +175,7 @@ def slope(line: Row | None) -> Statement:
     """The slope of a line with its 95 % interval, and whether that leaves out zero."""
     if line is None or line["slope"] is None:
         reason = labels.code(line["reason"] if line else "few_boats")
-        return Statement("slope", say("{reason}"), {"reason": reason}, "not known")
+        return told("slope", say("{reason}"), verdict="not known", reason=reason)
     low, high = line["slope_lo"], line["slope_hi"]
     wording, verdict = say("no trend: {slope} ({low} to {high})"), "none"
     if low > 0:
@@ -177,17 +183,17 @@ def slope(line: Row | None) -> Statement:
     elif high < 0:
         wording, verdict = say("falls: {slope} ({low} to {high})"), "falls"
     digits = max(0, 1 - floor(log10(max(abs(low), abs(high)) or 1.0)))  # two that say something
-    values = {"slope": Number(line["slope"], digits, line["explaining"], low, high)}
+    slope = Number(line["slope"], digits, line["explaining"], low, high)
     ends = {"low": Number(low, digits), "high": Number(high, digits)}
-    return Statement("slope", wording, values | ends, verdict, ("type_lines",))
+    return told("slope", wording, {}, "type_lines", verdict=verdict, slope=slope, **ends)
 
 
 def _spread(line: Row | None) -> Statement:
     """How far the tows lie from their line, and what share of their spread it explains."""
     if line is None or line["residual_sd_ratio"] is None:
-        return Statement("spread", say("not known"), verdict="not known")
-    values: dict[str, Value] = {"spread": Number(100 * line["residual_sd_ratio"], 1, "%")}
+        return told("spread", say("not known"), verdict="not known")
+    spread = Number(100 * line["residual_sd_ratio"], 1, "%")
     if line["r2"] is None:
-        return Statement("spread", say("{spread} %"), values, rests_on=("type_lines",))
-    wording = say("{spread} % (R² {r2})")
-    return Statement("spread", wording, values | {"r2": Number(line["r2"])}, "", ("type_lines",))
+        return told("spread", say("{spread} %"), {}, "type_lines", spread=spread)
+    wording, r2 = say("{spread} % (R² {r2})"), Number(line["r2"])
+    return told("spread", wording, {}, "type_lines", spread=spread, r2=r2)

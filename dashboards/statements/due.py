@@ -4,7 +4,7 @@ import datetime as dt
 
 import polars as pl
 
-from dashboards.statements import Number, Statement
+from dashboards.statements import Number, Statement, told
 from pipeline.messages import say
 
 MONTHS_AHEAD = dt.timedelta(days=365)
@@ -15,19 +15,13 @@ WORTH = 0.9
 def due(lines: pl.DataFrame) -> Statement:
     """How many have to tow within a year."""
     as_of, until = lines.select(pl.col("as_of").max()).item(), pl.col("valid_until")
-    return Statement(
-        "due",
-        say(
-            "Crews that have to tow within a year of {day}: {soon}; tows that have expired "
-            "by that day: {over}."
-        ),
-        {
-            "soon": lines.filter(until.is_between(as_of, as_of + MONTHS_AHEAD)).height,
-            "over": lines.filter(until < as_of).height,
-            "day": as_of,
-        },
-        rests_on=("due_list",),
+    wording = say(
+        "Crews that have to tow within a year of {day}: {soon}; tows that have expired "
+        "by that day: {over}."
     )
+    soon = lines.filter(until.is_between(as_of, as_of + MONTHS_AHEAD)).height
+    over = lines.filter(until < as_of).height
+    return told("due", wording, {}, "due_list", day=as_of, soon=soon, over=over)
 
 
 def retow(choice: pl.DataFrame) -> Statement:
@@ -35,15 +29,14 @@ def retow(choice: pl.DataFrame) -> Statement:
     ends = pl.col("factor_sd_before_ratio").max(), pl.col("factor_sd_after_ratio").min()
     before, after = choice.select(ends).row(0)
     worth = after < WORTH * before
-    return Statement(
-        "retow",
+    wording = (
         say("These tows bring the uncertainty of the log factors from {before} to {after} %.")
         if worth
         else say(
             "For that alone it is not worth it: these tows bring the uncertainty of the "
             "log factors from {before} to {after} %."
-        ),
-        {"before": Number(100 * before, unit="%"), "after": Number(100 * after, unit="%")},
-        "worth it" if worth else "not worth it",
-        ("retow_choice",),
+        )
     )
+    verdict = "worth it" if worth else "not worth it"
+    ratios = {"before": Number(100 * before, unit="%"), "after": Number(100 * after, unit="%")}
+    return told("retow", wording, {}, "retow_choice", verdict=verdict, **ratios)

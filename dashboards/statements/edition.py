@@ -10,7 +10,7 @@ import polars as pl
 
 from dashboards import labels
 from dashboards.speech import Headline
-from dashboards.statements import Change, EditionName, Number, Statement, Value, together
+from dashboards.statements import Change, EditionName, Number, Statement, Value, together, told
 from pipeline.messages import Sentence, say
 from pipeline.tables.row import Row
 
@@ -20,16 +20,10 @@ NEGLIGIBLE: Final = 5e-4
 
 def register(lines: pl.DataFrame) -> Statement:
     """How many lines have a curve, and on which day that was judged."""
-    return Statement(
-        "register",
-        say("{known} of {lines} lines have a valid curve on {day}."),
-        {
-            "lines": lines.height,
-            "known": lines["cw_kg_m"].drop_nulls().len(),
-            "day": lines.select(pl.col("as_of").max()).item(),
-        },
-        rests_on=("register",),
-    )
+    wording = say("{known} of {lines} lines have a valid curve on {day}.")
+    known = lines["cw_kg_m"].drop_nulls().len()
+    day = lines.select(pl.col("as_of").max()).item()
+    return told("register", wording, {}, "register", known=known, lines=lines.height, day=day)
 
 
 def causes_of_line(line: Row) -> list[tuple[Sentence, float]]:
@@ -52,16 +46,13 @@ def _changes(lines: pl.DataFrame) -> Iterator[Statement]:
     if lines.height:
         old, new = (EditionName(lines[f"{side}_edition"][0]) for side in ("from", "to"))
         wording = say("From \u201c{old}\u201d to \u201c{new}\u201d: ")
-        yield Statement("from_to", wording, {"old": old, "new": new})
-    yield Statement(
-        "changed_lines",
-        say("{changed} of {lines} lines change"),
-        {"changed": changed.height, "lines": lines.height},
-        rests_on=("register_changes",),
-    )
+        yield told("from_to", wording, old=old, new=new)
+    counts = {"changed": changed.height, "lines": lines.height}
+    wording = say("{changed} of {lines} lines change")
+    yield told("changed_lines", wording, counts, "register_changes")
     yield from _beyond_interval(changed)
     yield from _main_cause(changed)
-    yield Statement("stop", say("."))
+    yield told("stop", say("."))
     yield from _log_unknown(changed)
 
 
@@ -70,21 +61,16 @@ def _beyond_interval(changed: pl.DataFrame) -> Iterator[Statement]:
     known = changed["exceeds_interval"].drop_nulls()
     if known.is_empty():
         if changed.height:
-            yield Statement(
-                "beyond_unknown",
-                say("; whether by more than the uncertainty is not known of any"),
-            )
+            wording = say("; whether by more than the uncertainty is not known of any")
+            yield told("beyond_unknown", wording)
         return
-    yield Statement(
-        "beyond",
-        say("; {beyond} by more than the uncertainty"),
-        {"beyond": int(known.sum()) or labels.code("none")},
-        rests_on=("register_changes",),
-    )
+    wording = say("; {beyond} by more than the uncertainty")
+    beyond = int(known.sum()) or labels.code("none")
+    yield told("beyond", wording, {}, "register_changes", beyond=beyond)
     unknown = changed.height - known.len()
     if unknown:
         wording = say(", and of {unknown} that is not known")
-        yield Statement("beyond_unknown_of", wording, {"unknown": unknown})
+        yield told("beyond_unknown_of", wording, unknown=unknown)
 
 
 def _main_cause(changed: pl.DataFrame) -> Iterator[Statement]:
@@ -101,7 +87,7 @@ def _main_cause(changed: pl.DataFrame) -> Iterator[Statement]:
         if most[0][0] == labels.code("printed")
         else say("; most often mainly: {cause}")
     )
-    yield Statement("main_cause", wording, {"cause": most[0][0]}, rests_on=("register_changes",))
+    yield told("main_cause", wording, {}, "register_changes", cause=most[0][0])
 
 
 def _log_unknown(changed: pl.DataFrame) -> Iterator[Statement]:
@@ -115,12 +101,14 @@ def _log_unknown(changed: pl.DataFrame) -> Iterator[Statement]:
     if not unknown:
         return
     first, last = unknown[0], unknown[-1]
-    both: dict[str, Value] = {"old": first, "and": say(" and "), "new": last}
-    yield Statement(
-        "log_unknown",
-        say(" The uncertainty of {editions} leaves out the error of the log: it is really larger."),
-        {"editions": Statement("both", say("{old}{and}{new}"), both) if unknown[1:] else first},
+    editions: Value = first
+    if unknown[1:]:
+        both: dict[str, Value] = {"old": first, "and": say(" and "), "new": last}
+        editions = told("both", say("{old}{and}{new}"), both)
+    wording = say(
+        " The uncertainty of {editions} leaves out the error of the log: it is really larger."
     )
+    yield told("log_unknown", wording, editions=editions)
 
 
 def undecided(lines: pl.DataFrame, flagged: pl.Series) -> list[Statement]:
@@ -131,31 +119,24 @@ def undecided(lines: pl.DataFrame, flagged: pl.Series) -> list[Statement]:
         flagged: tows with a flag under the method of the new one.
     """
     unknown = int(lines["exceeds_interval"].null_count())
+    wording = (
+        say(
+            "Lines of which it cannot be told whether the change is larger than the "
+            "uncertainty: {unknown}."
+        )
+        if unknown
+        else say("Of every line it can be told whether the change is larger than the uncertainty.")
+    )
     voted = lines.drop_nulls("new_cw_kg_m")["new_tow_id"]
+    of_flags = say(
+        "Lines with a flag that the committee still has to look at: {flagged} of "
+        "{lines}. Old numbers often have too small an uncertainty: the error of the "
+        "log is not in it."
+    )
+    counts = {"flagged": int(voted.is_in(flagged.implode()).sum()), "lines": voted.len()}
     return [
-        Statement(
-            "undecided",
-            say(
-                "Lines of which it cannot be told whether the change is larger than the "
-                "uncertainty: {unknown}."
-            )
-            if unknown
-            else say(
-                "Of every line it can be told whether the change is larger than the uncertainty."
-            ),
-            {"unknown": unknown},
-            rests_on=("register_changes",),
-        ),
-        Statement(
-            "flagged",
-            say(
-                "Lines with a flag that the committee still has to look at: {flagged} of "
-                "{lines}. Old numbers often have too small an uncertainty: the error of the "
-                "log is not in it."
-            ),
-            {"flagged": int(voted.is_in(flagged.implode()).sum()), "lines": voted.len()},
-            rests_on=("flagged_boats",),
-        ),
+        told("undecided", wording, {}, "register_changes", unknown=unknown),
+        told("flagged", of_flags, counts, "flagged_boats"),
     ]
 
 
@@ -167,7 +148,7 @@ class Effect(NamedTuple):
         lines: how many are compared.
         median, lowest, highest: Cw new / old.
         seconds: median gain over a race of two hours [s].
-        beyond: how many change by more than their uncertainty; None where that is not known.
+        beyond: how many change by more than their uncertainty, where that is known.
     """
 
     of: tuple[str, ...]
@@ -176,7 +157,7 @@ class Effect(NamedTuple):
     lowest: Change
     highest: Change
     seconds: Number
-    beyond: int | None
+    beyond: int | Sentence
 
 
 def effects(lines: pl.DataFrame, *by: str) -> list[Effect]:
@@ -199,6 +180,7 @@ def effects(lines: pl.DataFrame, *by: str) -> list[Effect]:
             pl.when(beyond.count() > 0).then(beyond.sum()).alias("beyond"),
         )
         .sort(by, descending=[name == "crew_class" for name in by])
+        .filter(pl.col("lines") > 0)  # without `by` there is a row of nothing
     )
     return [
         Effect(
@@ -208,7 +190,7 @@ def effects(lines: pl.DataFrame, *by: str) -> list[Effect]:
             Change(row["lowest"]),
             Change(row["highest"]),
             Number(row["seconds"], 0, "s", sign="+"),
-            row["beyond"],
+            say("not known") if row["beyond"] is None else row["beyond"],
         )
         for row in found.to_dicts()
     ]

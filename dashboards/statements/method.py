@@ -6,9 +6,10 @@ from typing import Final, NamedTuple
 import polars as pl
 
 from dashboards import labels
-from dashboards.option_labels import range_in_words, text, unit_of, value_in_words
+from dashboards.columns import unit_of
+from dashboards.option_labels import range_in_words, text, value_in_words
 from dashboards.speech import Headline
-from dashboards.statements import Change, Number, Statement, Value
+from dashboards.statements import Change, Number, Statement, Value, number, told
 from dashboards.statements.edition import NEGLIGIBLE
 from pipeline.messages import Sentence, ngettext, pgettext, say
 from pipeline.method.definition import COMPLETE, Method, Steps, basis_of
@@ -117,12 +118,10 @@ def _steps(method: Method, first: Method, ladder: pl.DataFrame) -> list[Step]:
 def _rule(one: Difference) -> Statement:
     """What an option is set to, what it was, and where that comes from."""
     before: list[Value] = [_value(one.option, value) for value in one.before]
-    return Statement(
-        "rule",
-        say("{option}, {seasons}: {after}; it was: {before} ({status}: {source})."),
-        _words(one.step, one.option, one.after)
-        | {"seasons": range_in_words(one.first, one.last), "before": before},
-    )
+    wording = say("{option}, {seasons}: {after}; it was: {before} ({status}: {source}).")
+    words = _words(one.step, one.option, one.after)
+    seasons = range_in_words(one.first, one.last)
+    return told("rule", wording, words, seasons=seasons, before=before)
 
 
 def _kept(method: Method, step: str, changed: Sequence[Difference]) -> Iterator[Statement]:
@@ -133,7 +132,7 @@ def _kept(method: Method, step: str, changed: Sequence[Difference]) -> Iterator[
     option = next(iter(options.model_fields))  # type: ignore[attr-defined]
     value = getattr(getattr(method.ranges[-1].steps, step), option)
     wording = say("{option}: {after}, as it was ({status}: {source}).")
-    yield Statement("kept", wording, _words(step, option, value))
+    yield told("kept", wording, _words(step, option, value))
 
 
 def _words(step: str, option: str, value: object) -> dict[str, Value]:
@@ -172,13 +171,12 @@ def _effects(ladder: pl.DataFrame) -> dict[str, Statement]:
 
 def _effect(row: Row) -> Statement:
     if not row["moved"]:
-        return Statement("no_effect", say("It changes no tow of this archive."), rests_on=LADDER)
-    return Statement(
-        "effect",
-        say("It changes {moved} of {tows} tows: median {median}, largest {largest} (tow {tow})."),
-        row | {"median": Change(row["median"]), "largest": Change(row["largest"])},
-        rests_on=LADDER,
+        return told("no_effect", say("It changes no tow of this archive."), {}, *LADDER)
+    wording = say(
+        "It changes {moved} of {tows} tows: median {median}, largest {largest} (tow {tow})."
     )
+    changes = {name: Change(row[name]) for name in ("median", "largest")}
+    return told("effect", wording, row | changes, *LADDER)
 
 
 VOTED: Final = {
@@ -201,8 +199,8 @@ ESTIMATES: Final = {
 def _vote(method: Method, first: Method) -> list[Statement]:
     """What a meeting decides with this method: its changes by status, and the register's rule."""
     rule = method.validity
-    years: dict[str, Value] = {"years": rule.valid_years}
-    decided = Statement("register_rule", ESTIMATES[rule.estimate], years, rule.estimate)
+    wording, years = ESTIMATES[rule.estimate], rule.valid_years
+    decided = told("register_rule", wording, verdict=rule.estimate, years=years)
     return [*_by_status(method, first, _of_step), decided]
 
 
@@ -219,11 +217,11 @@ def _by_status(
     changed: dict[str, dict[str, list[Value]]] = {status: {} for status in VOTED}
     for one in differences(method, first):
         words = _words(one.step, one.option, one.after)
-        named = Statement("option", say("{option}: {after}"), words)
+        named = told("option", say("{option}: {after}"), words)
         status = basis_of(one.step, one.option, one.after).status
         changed[status].setdefault(one.step, []).append(named)
     return [
-        Statement(status, VOTED[status], {"options": [shown(*one) for one in steps.items()]})
+        told(status, VOTED[status], options=[shown(*one) for one in steps.items()])
         for status, steps in changed.items()
         if steps
     ]
@@ -231,8 +229,7 @@ def _by_status(
 
 def _of_step(step: str, options: list[Value]) -> Statement:
     """Options of a step, in brackets."""
-    words: dict[str, Value] = {"step": text(f"step.{step}"), "options": options}
-    return Statement("step", say("{step} ({options})"), words)
+    return told("step", say("{step} ({options})"), step=text(f"step.{step}"), options=options)
 
 
 def _uncertainty(views: Views, method: Method) -> list[Statement]:
@@ -247,26 +244,17 @@ def _uncertainty(views: Views, method: Method) -> list[Statement]:
             "In this archive the runs of a tow scatter by \u00b1{width} % of Cw (median of {tows} "
             "tows); the error of the log comes on top of that."
         )
-        return [Statement("runs_alone", wording, {"width": width, "tows": known.height})]
+        return [told("runs_alone", wording, width=width, tows=known.height)]
     parts = views.table("uncertainty_budget").filter(method=method.name)
     largest = parts.group_by("component", maintain_order=True).agg(pl.col("u_ratio").median())
     by_size = largest.sort("u_ratio", "component")["component"].reverse()
-    return [
-        Statement(
-            "interval_width",
-            say(
-                "In this archive the 95 % interval of Cw is \u00b1{width} % (median of {tows} "
-                "tows), most of it from: {first}; then: {second}."
-            ),
-            {
-                "width": width,
-                "tows": known.height,
-                "first": labels.code(by_size[0]),
-                "second": labels.code(by_size[1]),
-            },
-            rests_on=("curves", "uncertainty_budget"),
-        )
-    ]
+    wording = say(
+        "In this archive the 95 % interval of Cw is \u00b1{width} % (median of {tows} "
+        "tows), most of it from: {first}; then: {second}."
+    )
+    first, second = map(labels.code, by_size[:2])
+    values = {"width": width, "tows": known.height, "first": first, "second": second}
+    return [told("interval_width", wording, values, "curves", "uncertainty_budget")]
 
 
 class Worked(NamedTuple):
@@ -329,37 +317,27 @@ def _typical(ladder: pl.DataFrame) -> str | None:
 
 
 def _tow(boat: Row, curve: Row) -> Statement:
-    return Statement(
-        "worked_tow",
-        say("{name} ({fsn_no}), {rowers} rowers ({people}), towed on {day}: {runs} that count."),
-        {
-            **{name: boat[name] for name in ("name", "fsn_no", "rowers")},
-            "people": labels.crew(boat["crew_class"]),
-            "day": boat["tow_date"],
-            "runs": ngettext("1 run", "{n} runs", curve["runs_used"]),
-        },
-        rests_on=("tows", "curves"),
+    wording = say(
+        "{name} ({fsn_no}), {rowers} rowers ({people}), towed on {tow_date}: {runs} that count."
     )
+    runs = ngettext("1 run", "{n} runs", curve["runs_used"])
+    people = labels.crew(boat["crew_class"])
+    return told("worked_tow", wording, boat, "tows", "curves", people=people, runs=runs)
 
 
 def _force(run: Row) -> Statement:
-    speed, gross = run["speed_m_s"], run["gross_cw_kg_m"]
-    return Statement(
+    return told(
         "worked_run",
         say(
-            "Run {run}, from {start} to {end} s: {force} N at {speed} m/s, the speed of the log "
-            "times {factor}. Force divided by speed squared is {gross} kg/m."
+            "Run {run}, from {window_start_s} to {window_end_s} s: {force} N at {speed_m_s} m/s, "
+            "the speed of the log times {factor}. Force divided by speed squared is "
+            "{gross_cw_kg_m} kg/m."
         ),
-        {
-            "run": run["run"],
-            "start": Number(run["window_start_s"], 0, "s"),
-            "end": Number(run["window_end_s"], 0, "s"),
-            "force": Number(gross * speed**2, 0, "N"),
-            "speed": Number(speed, 3, "m/s"),
-            "factor": Number(run["speed_factor"], 3, "1"),
-            "gross": Number(gross),
-        },
-        rests_on=("run_points",),
+        run,
+        "run_points",
+        force=Number(run["gross_cw_kg_m"] * run["speed_m_s"] ** 2, 0, "N"),
+        speed_m_s=number(run, "speed_m_s", 3),
+        factor=Number(run["speed_factor"], 3, "1"),
     )
 
 
@@ -374,56 +352,36 @@ CORRECTIONS: Final = (
 
 def _corrections(run: Row) -> Statement:
     parts: list[Value] = [
-        Statement(
-            "correction", say("{name} {by}"), {"name": name, "by": Number(sign * by, sign="+")}
-        )
+        told("correction", say("{name} {by}"), name=name, by=Number(sign * by, sign="+"))
         for name, column, sign in CORRECTIONS
         if (by := run[column])
     ]
-    return Statement(
-        "worked_corrections",
-        say("Corrected for {parts}, it is {cw} kg/m."),
-        {"parts": parts or labels.code("none"), "cw": Number(run["cw_kg_m"])},
-        rests_on=("run_points",),
-    )
+    wording = say("Corrected for {parts}, it is {cw_kg_m} kg/m.")
+    named = parts or labels.code("none")
+    return told("worked_corrections", wording, run, "run_points", parts=named)
 
 
 def _curve(curve: Row) -> Iterator[Statement]:
-    yield Statement(
-        "worked_curve",
-        say(
-            "Through the runs goes the curve with A {a} kg/m and B {b} m/s: at the declared "
-            "{speed} m/s that is Cw = A / (1 \u2212 (v/B)\u00b2) = {cw} kg/m."
-        ),
-        {
-            "a": Number(curve["a_kg_m"]),
-            "b": Number(curve["b_m_s"], unit="m/s"),
-            "speed": Number(curve["declared_speed_m_s"], unit="m/s"),
-            "cw": Number(curve["cw_kg_m"]),
-        },
-        rests_on=("curves",),
+    wording = say(
+        "Through the runs goes the curve with A {a_kg_m} kg/m and B {b_m_s} m/s: at the declared "
+        "{declared_speed_m_s} m/s that is Cw = A / (1 \u2212 (v/B)\u00b2) = {cw_kg_m} kg/m."
     )
-    yield Statement(
-        "worked_power",
-        say("To row that speed asks {power} W of each rower: Cw v\u00b3 / n."),
-        {"power": Number(curve["power_w"], 0, "W")},
-        rests_on=("curves",),
-    )
+    yield told("worked_curve", wording, curve, "curves")
+    wording = say("To row that speed asks {power} W of each rower: Cw v\u00b3 / n.")
+    yield told("worked_power", wording, {}, "curves", power=number(curve, "power_w", 0))
 
 
 def _change(ladder: pl.DataFrame) -> Statement:
     causes: list[Value] = [
-        Statement(
+        told(
             "worked_cause",
             say("{step} {by}"),
-            {"step": labels.code(row["step"]), "by": Change(row["factor"])},
+            step=labels.code(row["step"]),
+            by=Change(row["factor"]),
         )
         for row in ladder.to_dicts()
         if abs(row["factor"] - 1) >= NEGLIGIBLE
     ]
-    return Statement(
-        "worked_change",
-        say("As first published it was {old} kg/m. From there: {causes}."),
-        {"old": Number(ladder["cw_kg_m"][0]), "causes": causes or labels.code("none")},
-        rests_on=LADDER,
-    )
+    wording = say("As first published it was {old} kg/m. From there: {causes}.")
+    old, named = Number(ladder["cw_kg_m"][0]), causes or labels.code("none")
+    return told("worked_change", wording, {}, *LADDER, old=old, causes=named)

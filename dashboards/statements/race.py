@@ -1,13 +1,13 @@
 """What becomes of races under another edition: who wins, how likely another does, who moves."""
 
 from collections.abc import Iterator, Mapping
-from typing import Final, TypeAlias, cast
+from typing import TypeAlias, cast
 
 import polars as pl
 
 from dashboards import labels
 from dashboards.speech import Headline, duration
-from dashboards.statements import EditionName, Statement, Value, together
+from dashboards.statements import EditionName, Statement, Value, together, told
 from pipeline.messages import in_per_cent, say
 from pipeline.races.race import FATIGUE_REFERENCE
 from pipeline.tables.row import Row
@@ -16,37 +16,35 @@ Chances: TypeAlias = Mapping[tuple[str, str], float | None]
 """How likely another winner is, by race with its day and class."""
 
 
-PLACE_MOVED: Final = say(
-    "{race} {day}: place {new} of the {size} crews that both editions rank; it was {old}."
-)
-PLACE_KEPT: Final = say(
-    "{race} {day}: place {new} of the {size} crews that both editions rank, as before."
-)
-
-
 def place_in_race(race: Row) -> Statement:
     """The place of a crew in a race under both editions; a row of `own_races`."""
-    values: dict[str, Value] = {"race": race["race"], "day": race["race_date"]}
     if race["new_rank"] is None:
         why: list[Value] = [
-            Statement(
+            told(
                 "no_place",
                 say("{edition}: {remark}"),
-                {"edition": EditionName(race[edition]), "remark": labels.code(race[remark])},
+                edition=EditionName(race[edition]),
+                remark=labels.code(race[remark]),
             )
             for edition, remark in (("from_edition", "old_remark"), ("to_edition", "new_remark"))
             if race[remark]
         ]
-        wording = say("{race} {day}: there are no two places to compare ({why}).")
-        return Statement("race_place", wording, values | {"why": why}, "not ranked")
+        wording = say("{race} {race_date}: there are no two places to compare ({why}).")
+        return told("race_place", wording, race, verdict="not ranked", why=why)
     moved = race["old_rank"] != race["new_rank"]
-    return Statement(
-        "race_place",
-        PLACE_MOVED if moved else PLACE_KEPT,
-        values | {"size": race["race_size"], "old": race["old_rank"], "new": race["new_rank"]},
-        "moved" if moved else "same",
-        ("race_changes",),
+    wording = (
+        say(
+            "{race} {race_date}: place {new_rank} of the {race_size} crews that both editions "
+            "rank; it was {old_rank}."
+        )
+        if moved
+        else say(
+            "{race} {race_date}: place {new_rank} of the {race_size} crews that both editions "
+            "rank, as before."
+        )
     )
+    verdict = "moved" if moved else "same"
+    return told("race_place", wording, race, "race_changes", verdict=verdict)
 
 
 def winners(rows: pl.DataFrame, chances: Chances) -> Headline:
@@ -65,25 +63,20 @@ def _winner(rows: pl.DataFrame, chances: Chances) -> Iterator[Statement]:
     if not old or not new:
         return
     crew_class, same = rows["crew_class"][0], old[0] == new[0]
-    yield Statement(
-        "winner",
+    wording = (
         say("Among the {people} {new} wins, as before.")
         if same
-        else say("Among the {people} {new} wins instead of {old}."),
-        {"people": labels.crew(crew_class), "old": old[0], "new": new[0]},
-        "same" if same else "another",
-        ("race_changes",),
+        else say("Among the {people} {new} wins instead of {old}.")
     )
+    named = {"people": labels.crew(crew_class), "old": old[0], "new": new[0]}
+    verdict = "same" if same else "another"
+    yield told("winner", wording, {}, "race_changes", verdict=verdict, **named)
     if not same:
         yield from stretched_fatigue(rows.drop_nulls("new_rank")["rowing_time_s"])
     chance = chances.get((f"{rows['race'][0]} {rows['race_date'][0]}", crew_class))
     if chance is not None and not few:  # who else might have won is not known of the others
-        yield Statement(
-            "winner_chance",
-            say(" Chance that another wins than before: {chance}."),
-            {"chance": in_per_cent(chance)},
-            rests_on=("ensemble",),
-        )
+        wording = say(" Chance that another wins than before: {chance}.")
+        yield told("winner_chance", wording, {}, "ensemble", chance=in_per_cent(chance))
 
 
 def _few_places(rows: pl.DataFrame) -> Iterator[Statement]:
@@ -91,8 +84,7 @@ def _few_places(rows: pl.DataFrame) -> Iterator[Statement]:
     powers = rows.select(pl.any_horizontal(pl.col("old_power_w", "new_power_w").is_not_null()))
     known, placed = int(powers.to_series().sum()), rows["new_rank"].count()
     if placed < known:
-        yield Statement(
-            "few_places",
+        wording = (
             say(
                 "Among the {people} only {number} of {all} crews have a valid line on that day "
                 "in both editions; the places are among these. "
@@ -101,9 +93,10 @@ def _few_places(rows: pl.DataFrame) -> Iterator[Statement]:
             else say(
                 "Among the {people} none of {all} crews has a valid line on that day in both "
                 "editions: there are no places to compare. "
-            ),
-            {"people": labels.crew(rows["crew_class"][0]), "number": placed, "all": known},
+            )
         )
+        people = labels.crew(rows["crew_class"][0])
+        yield told("few_places", wording, people=people, number=placed, all=known)
 
 
 def stretched_fatigue(times_s: pl.Series) -> Iterator[Statement]:
@@ -112,11 +105,8 @@ def stretched_fatigue(times_s: pl.Series) -> Iterator[Statement]:
     if times_s.is_between(first, last).all():
         return
     low, high = (duration(cast(float, time)) for time in (times_s.min(), times_s.max()))
-    yield Statement(
-        "fatigue",
-        say(
-            " Where another wins, that rests in part on the correction for fatigue, which "
-            "was made for 2 to 3 hours and is used outside them here ({low} to {high})."
-        ),
-        {"low": low, "high": high},
+    wording = say(
+        " Where another wins, that rests in part on the correction for fatigue, which "
+        "was made for 2 to 3 hours and is used outside them here ({low} to {high})."
     )
+    yield told("fatigue", wording, low=low, high=high)

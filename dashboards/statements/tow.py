@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from dashboards import labels
-from dashboards.statements import Number, Statement, Value
+from dashboards.statements import Number, Statement, told
 from dashboards.statements.boat import interval
 from pipeline.messages import say
 from pipeline.tables.row import Row
@@ -25,24 +25,16 @@ def statements(tow: "Assessment", log_known: bool) -> list[Statement]:
     """
     advice = list(_advice(tow))
     said = [*_number(tow, log_known), *_expected(tow), *advice]
-    return said if advice else [*said, Statement("let_go", say("Good: let go."), verdict="good")]
+    return said if advice else [*said, told("let_go", say("Good: let go."), verdict="good")]
 
 
 def _number(tow: "Assessment", log_known: bool) -> Iterator[Statement]:
     curve = tow.curve
     if curve["cw_kg_m"] is None:
-        yield Statement("provisional", say("These runs give no curve."), verdict="none")
+        yield told("provisional", say("These runs give no curve."), verdict="none")
         return
-    yield Statement(
-        "provisional",
-        say("Provisional: Cw is {cw} kg/m at {speed} m/s ({method})."),
-        {
-            "cw": Number(curve["cw_kg_m"], low=curve["cw_lo_kg_m"], high=curve["cw_hi_kg_m"]),
-            "speed": Number(curve["declared_speed_m_s"], unit="m/s"),
-            "method": labels.method(tow.method),
-        },
-        rests_on=("curves",),
-    )
+    wording = say("Provisional: Cw is {cw_kg_m} kg/m at {declared_speed_m_s} m/s ({method}).")
+    yield told("provisional", wording, curve, "curves", method=labels.method(tow.method))
     if curve["cw_lo_kg_m"] is not None and curve["cw_hi_kg_m"] is not None:
         yield interval(curve, log_known)
 
@@ -51,28 +43,16 @@ def _expected(tow: "Assessment") -> Iterator[Statement]:
     """What this boat's last tow and the other boats of its type have at that speed."""
     last, like = tow.own_before, tow.of_type
     if last is not None:
-        yield Statement(
-            "own_before",
-            say("Its tow of {day} gives {cw} kg/m at that speed."),
-            {"day": last["tow_date"], "cw": Number(last["cw_kg_m"])},
-            rests_on=("curves",),
-        )
+        wording = say("Its tow of {tow_date} gives {cw_kg_m} kg/m at that speed.")
+        yield told("own_before", wording, last, "curves")
     if like["n"] and tow.tow["boat_type"]:
-        ends = {name: Number(like[name]) for name in ("median", "lowest", "highest")}
-        yield Statement(
-            "like_boats",
-            say(
-                "The {n} other crews of type {type} ({people}) have {median} kg/m there "
-                "({lowest} to {highest})."
-            ),
-            {
-                "n": like["n"],
-                "type": tow.tow["boat_type"],
-                "people": labels.crew(tow.tow["crew_class"]),
-                **ends,
-            },
-            rests_on=("curves",),
+        wording = say(
+            "The {n} other crews of type {boat_type} ({people}) have {median} kg/m there "
+            "({lowest} to {highest})."
         )
+        ends = {name: Number(like[name]) for name in ("median", "lowest", "highest")}
+        people = labels.crew(tow.tow["crew_class"])
+        yield told("like_boats", wording, tow.tow | like | ends, "curves", people=people)
 
 
 def _advice(tow: "Assessment") -> Iterator[Statement]:
@@ -80,32 +60,30 @@ def _advice(tow: "Assessment") -> Iterator[Statement]:
     for run in tow.runs:
         yield from _run(run)
     if tow.curve["cw_kg_m"] is None:
-        yield Statement("tow_again", say("Tow the boat again."), verdict="again")
+        yield told("tow_again", say("Tow the boat again."), verdict="again")
     last = tow.own_before
     if last is not None and _apart(tow.curve, last):
-        yield Statement(
-            "differs_from_last",
-            say(
-                "That is {by} % from its last tow, more than the uncertainty of both: look at the "
-                "line, the trim and the bottom before you let go."
-            ),
-            {"by": Number(100 * (tow.curve["cw_kg_m"] / last["cw_kg_m"] - 1), 1, "%", sign="+")},
-            "differs",
-            ("curves",),
+        wording = say(
+            "That is {by} % from its last tow, more than the uncertainty of both: look at the "
+            "line, the trim and the bottom before you let go."
         )
+        by = _off(tow.curve["cw_kg_m"] / last["cw_kg_m"])
+        yield told("differs_from_last", wording, {}, "curves", verdict="differs", by=by)
 
 
 def _run(run: Row) -> Iterator[Statement]:
     """A run that has to be towed again, and why."""
-    values: dict[str, Value] = {"run": run["run"]}
     if run["cw_kg_m"] is None:
         wording = say("Run {run} has no steady window: tow it again.")
-        yield Statement("run_lost", wording, values, "again", ("run_points",))
+        yield told("run_lost", wording, run, "run_points", verdict="again")
     elif run["fitted_cw_kg_m"] and abs(run["cw_kg_m"] / run["fitted_cw_kg_m"] - 1) > RUN_OFF:
-        off = 100 * (run["cw_kg_m"] / run["fitted_cw_kg_m"] - 1)
         wording = say("Run {run} is {by} % off the curve of the others: tow it again.")
-        values |= {"by": Number(off, 1, "%", sign="+")}
-        yield Statement("run_off", wording, values, "again", ("run_points",))
+        by = _off(run["cw_kg_m"] / run["fitted_cw_kg_m"])
+        yield told("run_off", wording, run, "run_points", verdict="again", by=by)
+
+
+def _off(ratio: float) -> Number:
+    return Number(100 * (ratio - 1), 1, "%", sign="+")
 
 
 def _apart(new: Row, old: Row) -> bool:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import floor, log10
 from typing import Any, Final
 
-from dashboards.option_labels import unit_of
+from dashboards.columns import unit_of
 from pipeline.method.definition import SeasonSteps, Steps
 
 POSITIONS: Final = 100

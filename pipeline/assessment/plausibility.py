@@ -20,7 +20,7 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.assessment.mean_shift import Candidates, Observations, find_shifts
 from pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
-from pipeline.blocks.batch import Batch
+from pipeline.blocks.tows import Tows
 from pipeline.messages import say
 from pipeline.tables.keys import LINE
 
@@ -143,17 +143,17 @@ class Shift:
         return self.quantity == "force" and abs(self.size) > GROSS
 
 
-def plausibility(batch: Batch) -> tuple[Shift, ...]:
+def plausibility(tows: Tows) -> tuple[Shift, ...]:
     """Judges every tow beside all others.
 
     Args:
-        batch: all tows of the archive with their runs, in one batch.
+        tows: all tows of the archive with their runs.
 
     Returns:
         Shifts of force, wind and speed that the other tows rule out, the clearest first; then
         single tows that are only unusual.
     """
-    seen = Seen(batch)
+    seen = Seen(tows)
     return (
         *_in_radians(seen),
         *_turned(seen),
@@ -178,8 +178,8 @@ _GROUPS: Final = ("tow", "day", "season", "archive")
 
 def _in_radians(seen: Seen) -> Iterator[Shift]:
     """Tows whose wind angles are radians; a season, where most of its tows are."""
-    tows, whose = seen.batch.tows["tow_id"].to_numpy(), seen.batch.of_tow("season")
-    for season in seen.batch.seasons:
+    tows, whose = (seen.tows.frame[name].to_numpy() for name in ("tow_id", "season"))
+    for season in np.unique(whose).tolist():
         mine = whose == season
         written_so = mine & seen.in_radians
         if written_so.sum() >= FEWEST and written_so.sum() > 0.5 * mine.sum():
@@ -197,7 +197,7 @@ def _turned(seen: Seen) -> Iterator[Shift]:
     felt = (1.0 + seen.wind_ahead) + 1j * seen.wind_abeam
     low, high = _TURNED_WIND
     known = (np.abs(felt) > low) & (np.abs(felt) < high)  # NaN is not
-    tows = seen.batch.tows
+    tows = seen.tows.frame
     turned: set[str] = set()
     for kind, key, places in _groups(tows, ("season", "tow")):
         mine = places[known[places]]
@@ -301,7 +301,7 @@ def _of_one(
 ) -> list[Shift]:
     """Shifts of one observed quantity."""
     there = np.isfinite(values)
-    tows = seen.batch.tows.filter(pl.Series(there))
+    tows = seen.tows.frame.filter(pl.Series(there))
     if tows.is_empty():
         return []
     groups = _groups(tows, kinds)
@@ -316,7 +316,7 @@ def _of_force(seen: Seen) -> list[Shift]:
     """Shifts of the force's gain, and of its zero, which changes the bend in its own way."""
     known = np.isfinite(seen.level) & np.isfinite(seen.bend) & (seen.force_n > 0)
     alone = pl.when(pl.Series(seen.has_gps)).then(0).otherwise("season").alias("log_alone")
-    tows = seen.batch.tows.with_columns(alone).filter(pl.Series(known))
+    tows = seen.tows.frame.with_columns(alone).filter(pl.Series(known))
     if tows.is_empty():
         return []
     level = _observed(tows, seen.level[known], LEVEL)
@@ -349,7 +349,7 @@ def _shifts(
         np.array([GROSS if quantity in _WITH_UNITS else np.inf for quantity in quantities]),
     )
     look = min(LOOK.get(quantity, np.inf) for quantity in quantities)
-    tow_ids = seen.batch.tows["tow_id"].filter(pl.Series(there))
+    tow_ids = seen.tows.frame["tow_id"].filter(pl.Series(there))
     air_share, stands_still = seen.air_share[there], seen.wind_stands_still[there]
     shifts = []
     for found in find_shifts(observed, candidates, LIMIT, look):

@@ -10,9 +10,8 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import WindowSums
-from pipeline.channels import BACK, OUT
+from pipeline.blocks.tows import Tows
 from pipeline.hull import AIR_DENSITY_KG_M3, front_area_m2
 
 POWER_W: Final = {"H": 80.0, "D": 47.5}
@@ -48,7 +47,7 @@ class Seen:
     """What the selected runs of each tow show, arrays of shape (tows,); NaN where nothing is shown.
 
     Attributes:
-        batch: the tows.
+        tows: the tows.
         has_gps: whether any tow of its season has GPS.
         level: ln Cw at the declared speed less what power, class, weight and length predict;
             the log as the season's GPS corrects it, where there is one.
@@ -62,115 +61,108 @@ class Seen:
         wind_stands_still: the anemometer shows no wind through a whole run, and some in another.
     """
 
-    def __init__(self, batch: Batch) -> None:
-        self.batch = batch
-        whole = WindowSums(batch.blocks, batch.blocks.n > 0)
+    def __init__(self, tows: Tows) -> None:
+        self.tows = tows
+        whole = WindowSums(tows.blocks, tows.blocks.n > 0)
         mean = {
             name: whole.mean(name)
             for name in ("force", "log1_v", "log1_cw", "wind_x", "wind_y", "wind_v")
-        } | {"air": _air_kg_m(batch, whole)}
-        good = batch.selected & (mean["log1_v"] > 0) & (mean["log1_cw"] > 0)
-        speed = np.log(np.where(good, mean["log1_v"], 1.0) / batch.of_run("declared_speed_m_s"))
+        } | {"air": _air_kg_m(tows, whole)}
+        good = tows.selected & (mean["log1_v"] > 0) & (mean["log1_cw"] > 0)
+        speed = np.log(np.where(good, mean["log1_v"], 1.0) / tows.of_run("declared_speed_m_s"))
         # A force or wind in another unit may leave less than nothing of the water's part.
         water = np.maximum(mean["log1_cw"] - mean["air"], LEAST_WATER * mean["log1_cw"])
         ln_cw = np.log(np.where(good, water, 1.0))
-        level, bend, bend_sd = _line(batch, speed, ln_cw, good)
-        ln_gps = _season_gps(batch, mean["log1_v"], good)
+        level, bend, bend_sd = _line(tows, speed, ln_cw, good)
+        ln_gps = _season_gps(tows, mean["log1_v"], good)
         windy = good.copy()
-        if "wind_measured" in batch.tows.columns:
-            windy &= batch.tows["wind_measured"].to_numpy()[batch.tow]
+        if "wind_measured" in tows.frame.columns:
+            windy &= tows.frame["wind_measured"].to_numpy()[tows.tow]
         speed_m_s = np.where(good, mean["log1_v"], 1.0)
         self.has_gps = np.isfinite(ln_gps)
         by_gps = (2.0 + USUAL_BEND) * np.nan_to_num(ln_gps)
-        self.level = level - by_gps - _expected_level(batch)
+        self.level = level - by_gps - _expected_level(tows)
         self.bend, self.bend_sd = bend - USUAL_BEND, bend_sd
-        self.force_n = batch.mean(mean["force"], good)
-        self.air_share = batch.mean(mean["air"] / np.where(good, mean["log1_cw"], 1.0), good)
-        self.wind_ahead = _both_ways(batch, mean["wind_x"] / speed_m_s, windy) - 1.0
-        self.wind_abeam = _both_ways(batch, mean["wind_y"] / speed_m_s, windy)
-        self.speed = _median(batch, speed - np.log(batch.target_speed_ratio), good)
+        self.force_n = tows.mean(mean["force"], good)
+        self.air_share = tows.mean(mean["air"] / np.where(good, mean["log1_cw"], 1.0), good)
+        self.wind_ahead = tows.mean_of_ways(mean["wind_x"] / speed_m_s, windy) - 1.0
+        self.wind_abeam = tows.mean_of_ways(mean["wind_y"] / speed_m_s, windy)
+        self.speed = _median(tows, speed - np.log(tows.target_speed_ratio), good)
         too_far_ahead = self.wind_ahead > TOO_MUCH_AHEAD
-        self.in_radians = _angles_in_radians(batch, windy) & too_far_ahead
+        self.in_radians = _angles_in_radians(tows, windy) & too_far_ahead
         still, blows = mean["wind_v"] < NO_WIND_M_S, mean["wind_v"] >= NO_WIND_M_S
-        self.wind_stands_still = batch.any(windy & still) & batch.any(windy & blows)
+        self.wind_stands_still = tows.any(windy & still) & tows.any(windy & blows)
 
 
-def _season_gps(batch: Batch, log_m_s: FloatArray, runs: BoolArray) -> FloatArray:
+def _season_gps(tows: Tows, log_m_s: FloatArray, runs: BoolArray) -> FloatArray:
     """Median ln(GPS / log 1) of the tows of each tow's season; NaN without, shape (tows,).
 
     Plain GPS says little of one tow and enough of a season.
     """
-    fixes = batch.blocks["gps_n"].sum(axis=1)
-    gps = batch.blocks["gps"].sum(axis=1) / np.maximum(fixes, 1.0)
+    fixes = tows.blocks["gps_n"].sum(axis=1)
+    gps = tows.blocks["gps"].sum(axis=1) / np.maximum(fixes, 1.0)
     there = runs & (fixes > 0) & (gps > 0)
-    ratio = _both_ways(
-        batch, np.log(np.where(there, gps, 1.0) / np.where(there, log_m_s, 1.0)), there
+    ratio = tows.mean_of_ways(
+        np.log(np.where(there, gps, 1.0) / np.where(there, log_m_s, 1.0)), there
     )
-    tows = batch.tows.select("season", ratio=pl.Series(ratio).fill_nan(None))
-    return tows.select(pl.col("ratio").median().over("season"))["ratio"].to_numpy()
+    ratios = tows.frame.select("season", ratio=pl.Series(ratio).fill_nan(None))
+    return ratios.select(pl.col("ratio").median().over("season"))["ratio"].to_numpy()
 
 
-def _air_kg_m(batch: Batch, whole: WindowSums) -> FloatArray:
+def _air_kg_m(tows: Tows, whole: WindowSums) -> FloatArray:
     """Most of the air's part of Cw, shape (runs,)."""
-    front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
+    front = front_area_m2(tows.of_run("beam_m"), tows.of_run("bow_height_m"))
     felt = sum(whole.mean(f"log1_head_{way}") for way in ("ahead", "behind"))
     return np.asarray(0.5 * AIR_DENSITY_KG_M3 * DRAG * front * felt)
 
 
 def _line(
-    batch: Batch, x: FloatArray, y: FloatArray, runs: BoolArray
+    tows: Tows, x: FloatArray, y: FloatArray, runs: BoolArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Least squares line through each tow's runs: value at x = 0, slope, sd of the slope."""
-    middle_x, middle_y = batch.mean(x, runs), batch.mean(y, runs)
-    dx = np.where(runs, x - middle_x[batch.tow], 0.0)
-    wide = np.bincount(batch.tow, dx**2, batch.size)
+    middle_x, middle_y = tows.mean(x, runs), tows.mean(y, runs)
+    dx = np.where(runs, x - middle_x[tows.tow], 0.0)
+    wide = np.bincount(tows.tow, dx**2, tows.size)
     known = wide > 1e-6
-    slope = np.bincount(batch.tow, dx * y, batch.size) / np.where(known, wide, 1.0)
+    slope = np.bincount(tows.tow, dx * y, tows.size) / np.where(known, wide, 1.0)
     slope = np.where(known, slope, np.nan)
     level = middle_y - np.where(known, slope, USUAL_BEND) * middle_x
-    level = np.where(batch.any(runs), level, np.nan)
+    level = np.where(tows.any(runs), level, np.nan)
     return level, slope, RUN_SCATTER / np.sqrt(np.where(known, wide, 1.0))
 
 
-def _expected_level(batch: Batch) -> FloatArray:
+def _expected_level(tows: Tows) -> FloatArray:
     """The ln Cw that size alone predicts, at the level that the archive's median power gives."""
-    size = _ln_size(batch)
-    power = np.array([POWER_W[c] for c in batch.tows["crew_class"]])
-    by_power = np.log(power * batch.of_tow("rowers") / batch.of_tow("declared_speed_m_s") ** 3)
-    return np.asarray(size + np.median(by_power - size)) if batch.size else size
+    size = _ln_size(tows)
+    power = np.array([POWER_W[c] for c in tows.frame["crew_class"]])
+    by_power = np.log(power * tows.of_tow("rowers") / tows.of_tow("declared_speed_m_s") ** 3)
+    return np.asarray(size + np.median(by_power - size)) if tows.size else size
 
 
-def _ln_size(batch: Batch) -> FloatArray:
+def _ln_size(tows: Tows) -> FloatArray:
     """Half ln(displacement x waterline length), which wetted surface follows."""
-    displacement = batch.of_tow("weight_kg") + batch.of_tow("crew_weight_kg")
-    ln = 0.5 * np.log(displacement * batch.of_tow("waterline_length_m"))
+    displacement = tows.of_tow("weight_kg") + tows.of_tow("crew_weight_kg")
+    ln = 0.5 * np.log(displacement * tows.of_tow("waterline_length_m"))
     known = np.isfinite(ln)
     return np.where(known, ln, np.median(ln[known]) if known.any() else 0.0)
 
 
-def _both_ways(batch: Batch, values: FloatArray, runs: BoolArray) -> FloatArray:
-    """Mean of out and back, each direction weighing the same; NaN without both."""
-    ways = [runs & (batch.direction == way) for way in (OUT, BACK)]
-    middle = 0.5 * sum(batch.mean(values, way) for way in ways)
-    return np.where(batch.any(ways[0]) & batch.any(ways[1]), middle, np.nan)
-
-
-def _median(batch: Batch, values: FloatArray, runs: BoolArray) -> FloatArray:
+def _median(tows: Tows, values: FloatArray, runs: BoolArray) -> FloatArray:
     """Median of each tow's marked runs; NaN without any."""
-    rows = np.where(batch.by_tow(runs) > 0, batch.by_tow(values), np.nan)
-    none = ~batch.any(runs)
+    rows = np.where(tows.by_tow(runs) > 0, tows.by_tow(values), np.nan)
+    none = ~tows.any(runs)
     rows[none] = 0.0
     return np.where(none, np.nan, np.nanmedian(rows, axis=1))
 
 
-def _angles_in_radians(batch: Batch, windy: BoolArray) -> BoolArray:
+def _angles_in_radians(tows: Tows, windy: BoolArray) -> BoolArray:
     """Whether every second of a tow has a mean wind angle that lies where radians do.
 
     In still air, and where it blows along the course, degrees do so too.
     """
-    n: FloatArray = np.maximum(batch.blocks.n, 1.0)
-    cos, sin = batch.blocks["wind_cos"] / n, batch.blocks["wind_sin"] / n
+    n: FloatArray = np.maximum(tows.blocks.n, 1.0)
+    cos, sin = tows.blocks["wind_cos"] / n, tows.blocks["wind_sin"] / n
     angle = np.degrees(np.arctan2(sin, cos))
     there = (angle >= -0.5 * RADIANS) & (angle <= RADIANS) & (np.hypot(sin, cos) > LEAST_RESULTANT)
-    outside = windy & ((batch.blocks.n > 0) & ~there).any(axis=1)
-    return batch.any(windy) & ~batch.any(outside)
+    outside = windy & ((tows.blocks.n > 0) & ~there).any(axis=1)
+    return tows.any(windy) & ~tows.any(outside)

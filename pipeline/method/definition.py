@@ -63,14 +63,17 @@ def _option(
     ge: float | None = None,
     le: float | None = None,
     but: Mapping[str, Basis] = MappingProxyType({}),
+    added: bool = False,
 ) -> Any:
     """An option with its basis, and that of values that come from elsewhere.
 
-    Without a default every method has to name it.
+    Without a default every method has to name it. One that was added after editions had been
+    published is no part of a definition at its default: methods keep their hash.
     """
     of_values: dict[str, JsonValue] = {value: [*other] for value, other in but.items()}
     basis: dict[str, JsonValue] = {"status": status, "source": source, "but": of_values}
-    return Field(default=default, ge=ge, le=le, json_schema_extra=basis)
+    left_out = (lambda value: bool(value == default)) if added else None
+    return Field(default=default, ge=ge, le=le, json_schema_extra=basis, exclude_if=left_out)
 
 
 class Speed(_Options):
@@ -88,6 +91,25 @@ class Speed(_Options):
         0.85,
         1.2,
     )
+
+    @property
+    def prescribed(self) -> float:
+        """True speed / log speed where nothing else is known."""
+        return 1.0 if self.correction == "none" else self.factor
+
+
+class Force(_Options):
+    """What is known to be wrong with the tow force of a season."""
+
+    ratio: float = _option(
+        "proposed",
+        say("this project: a fault that was found, applied knowingly; appendix 4"),
+        1.0,
+        0.8,
+        1.25,
+        added=True,
+    )
+    """Load cell reading / true force."""
 
 
 class Calibration(_Options):
@@ -151,14 +173,8 @@ class Unrecorded(_Options):
     Expected: the wind and water of other tows, and the log's factor by other tows.
     """
 
-    rule: Literal["as_is", "expected"] = Field(
-        default="as_is",
-        exclude_if=lambda value: value == "as_is",
-        json_schema_extra={
-            "status": "inferred",
-            "source": say("this project; appendix 4 to 6"),
-            "but": {},
-        },
+    rule: Literal["as_is", "expected"] = _option(
+        "inferred", say("this project; appendix 4 to 6"), "as_is", added=True
     )
 
 
@@ -201,6 +217,7 @@ class Steps(_Options):
     """The option of every step, for one season."""
 
     speed: Speed
+    force: Force
     calibration: Calibration
     window: Window
     wind: Wind

@@ -8,7 +8,6 @@ season with what the other seasons say of it, and its diagnosis. Not here: what 
 resistance (`pipeline.steps.wind`).
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -16,13 +15,11 @@ import numpy as np
 import polars as pl
 import scipy
 
-from pipeline.arrays import BoolArray, FloatArray
-from pipeline.blocks.batch import Batch
+from pipeline.arrays import FloatArray
 from pipeline.history import UNKNOWN_LOG_SD
 from pipeline.quantiles import NORMAL
 from pipeline.recompute.computed import Computed
 from pipeline.season_log.diagnosis import ALARM, ALARM_SD, DIAGNOSIS_SCHEMA, SOUND
-from pipeline.steps.calibration import mean_over_both_ways
 
 ANEMOMETER: Final = "anemometer_scale"
 """Its name among the instruments of `season_diagnosis`."""
@@ -43,17 +40,22 @@ USUAL_BETWEEN: Final = 0.02
 """Scale of their half-Cauchy prior (Gelman 2006): small as a rule, large if something broke."""
 
 
-def with_anemometer(computed: list[Computed]) -> list[Computed]:
-    """The batches with their wind as it was, where their method asks to estimate the anemometer.
+def with_anemometer(c: Computed) -> Computed:
+    """The tows with their wind as it was, where their steps ask to estimate the anemometer.
 
-    Args:
-        computed: all batches; the scale of a season is drawn towards that of the archive.
+    The scale of a season is drawn towards that of the archive.
     """
-    asking = [c for c in computed if c.steps.wind.anemometer == "estimated"]
-    if not asking:
-        return computed
-    scale = scale_of_seasons(pl.concat([_wind_ratios(c) for c in asking]))
-    return [_corrected(c, scale) if c.steps.wind.anemometer == "estimated" else c for c in computed]
+    asked = c.plan.option("wind.anemometer") == "estimated"
+    if not asked.any():
+        return c
+    scale = scale_of_seasons(_wind_ratios(c).filter(asked))
+    of_tows = c.tows.frame.select("season").join(
+        scale, on="season", how="left", maintain_order="left"
+    )
+    ln_scale, sd = (of_tows[name].to_numpy() for name in ("ln_scale", "sd"))
+    ln_scale, sd = np.where(asked, ln_scale, 0.0), np.where(asked, sd, np.nan)
+    means = c.means.with_wind(np.exp(ln_scale)[c.tows.tow])
+    return replace(c, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
 
 
 def _wind_ratios(c: Computed) -> pl.DataFrame:
@@ -64,26 +66,20 @@ def _wind_ratios(c: Computed) -> pl.DataFrame:
         wind or speed is not known; `shared_sd` of ln boat speed, the part that a season's tows
         share. Boat speed is that by GPS, or by the log as corrected so far where there is none.
     """
-    batch, means = c.batch, c.means
+    tows, means = c.tows, c.means
     blows = c.used & (means.wind_m_s > 0) & (c.speed_m_s > 0)
-    blows &= (batch.measured("wind") & batch.trusted)[batch.tow]
-    by_gps = batch.count(blows & np.isfinite(means.gps_m_s)) == batch.count(blows)
-    boat = np.where(by_gps[batch.tow], means.gps_m_s, c.speed_m_s)
-    mean = _both_ways(batch, np.where(blows, boat, 1.0), blows)
+    blows &= (tows.measured("wind") & tows.trusted)[tows.tow]
+    by_gps = tows.count(blows & np.isfinite(means.gps_m_s)) == tows.count(blows)
+    boat = np.where(by_gps[tows.tow], means.gps_m_s, c.speed_m_s)
+    mean = tows.mean_of_ways(np.where(blows, boat, 1.0), blows)
     angle, wind = np.radians(means.wind_angle_deg), means.wind_m_s
     log_sd = np.nan_to_num(c.estimated("ln_sd"), nan=UNKNOWN_LOG_SD)
-    return batch.tows.select(
+    return tows.frame.select(
         "season",
-        ahead=pl.Series(_both_ways(batch, wind * np.cos(angle), blows) / mean),
-        abeam=pl.Series(_both_ways(batch, wind * np.sin(angle), blows) / mean),
+        ahead=pl.Series(tows.mean_of_ways(wind * np.cos(angle), blows) / mean),
+        abeam=pl.Series(tows.mean_of_ways(wind * np.sin(angle), blows) / mean),
         shared_sd=pl.Series(np.where(by_gps, 0.0, log_sd)),
     )
-
-
-def _both_ways(batch: Batch, values: FloatArray, runs: BoolArray) -> FloatArray:
-    """Mean of out and back, each direction weighing the same; NaN without both."""
-    mean, both = mean_over_both_ways(values, batch.direction, batch.tow, runs, batch.size)
-    return np.where(both, mean, np.nan)
 
 
 def scale_of_seasons(ratios: pl.DataFrame) -> pl.DataFrame:
@@ -144,19 +140,10 @@ def _shrunk(seen: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatAr
     return np.asarray(average), np.sqrt(spread)
 
 
-def _corrected(c: Computed, scale: pl.DataFrame) -> Computed:
-    of_tows = c.batch.tows.select("season").join(
-        scale, on="season", how="left", maintain_order="left"
-    )
-    ln_scale, sd = (of_tows[name].to_numpy() for name in ("ln_scale", "sd"))
-    means = c.means.with_wind(np.exp(ln_scale)[c.batch.tow])
-    return replace(c, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
-
-
-def anemometer_diagnosis(computed: Sequence[Computed]) -> pl.DataFrame:
+def anemometer_diagnosis(c: Computed) -> pl.DataFrame:
     """Rows of `season_diagnosis`: the anemometer of every season where it was estimated."""
-    tows = pl.concat(
-        [c.batch.tows.select("season", estimate=c.wind_ln_scale, sd=c.wind_ln_sd) for c in computed]
+    tows = c.tows.frame.select(
+        "season", estimate=pl.Series(c.wind_ln_scale), sd=pl.Series(c.wind_ln_sd)
     )
     seasons = (
         tows.filter(pl.col("sd").is_finite())

@@ -7,7 +7,7 @@ if its log factors are right.
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Final
 
 import numpy as np
@@ -42,7 +42,7 @@ def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     if not pooled:
         return curve.own_scatter(c.free)
     residual, used, on_curve = _residuals(c)
-    ratio, dof = residual_scatter(residual, used, c.batch.of_tow("season"))
+    ratio, dof = residual_scatter(residual, used, c.of_season)
     known = np.isfinite(ratio) & used.any(axis=1)
     height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
     return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
@@ -67,21 +67,21 @@ def files_log_sd(c: Computed) -> FloatArray:
     half as far. Pooled over the season's combined tows; 0 for others, and where each is calibrated.
     """
     ratio, used, _ = _residuals(c)
-    second = c.batch.by_tow(c.batch.in_second_file.astype(np.float64)) > 0
+    second = c.tows.by_tow(c.tows.in_second_file.astype(np.float64)) > 0
     files = [used & ~second, used & second]
     combined = files[0].any(axis=1) & files[1].any(axis=1) & ~c.calibrated
     of_first, of_second = (
         np.where(mine, ratio, 0.0).sum(axis=1) / np.maximum(mine.sum(axis=1), 1) for mine in files
     )
-    r = np.clip(c.free.s_s2_m2 * c.batch.of_tow("declared_speed_m_s") ** 2, -1.0, MOST_BENT)
+    r = np.clip(c.free.s_s2_m2 * c.tows.of_tow("declared_speed_m_s") ** 2, -1.0, MOST_BENT)
     apart = np.where(combined, of_second - of_first, 0.0) * (1.0 - r) / 2.0
-    season = np.unique(c.batch.of_tow("season"), return_inverse=True)[1]
-    square = np.bincount(season, apart**2) / np.maximum(np.bincount(season, combined), 1)
-    return np.where(combined, 0.5 * np.sqrt(square[season]), 0.0)
+    count = np.maximum(np.bincount(c.of_season, combined), 1)
+    square = np.bincount(c.of_season, apart**2) / count
+    return np.where(combined, 0.5 * np.sqrt(square[c.of_season]), 0.0)
 
 
 def facts_of(
-    computed: Sequence[Computed], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
+    c: Computed, estimated: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
     """What the budget of every tow asks, at some speeds.
 
@@ -89,7 +89,7 @@ def facts_of(
     elasticity there.
 
     Args:
-        computed: all batches of a method.
+        c: all tows under a method.
         estimated: its season factors, if it has estimated ones.
         speed_ratios: those speeds / declared speed.
 
@@ -99,21 +99,19 @@ def facts_of(
         `misfit_variance`, 0 where no season factors are estimated: such a method is taken at its
         word.
     """
-    scatters = [scatter_of(c, estimated is not None) for c in computed]
-    each = list(zip(computed, scatters, strict=True))
-    tows = pl.concat([_terms_of_tows(c, estimated, scatter) for c, scatter in each])
+    scatter = scatter_of(c, pooled=estimated is not None)
+    tows = _terms_of_tows(c, estimated, scatter)
     boat = tows["fsn_no"].rank("dense").to_numpy().astype(np.int64) - 1
-    departures = zip(*(_departure(c, np.array(speed_ratios)) for c in computed), strict=True)
-    whole = Departure(*(np.concatenate(parts) for parts in departures))
     asked = 0.0 if estimated is None else 1.0
-    misfit, variance = (asked * part for part in departure_of_boats(whole, boat))
+    departures = departure_of_boats(_departure(c, np.array(speed_ratios)), boat)
+    misfit, variance = (asked * part for part in departures)
     cw, bend, ratio = pl.col("cw_kg_m"), pl.col("bend"), pl.col("speed_ratio")
     r = (bend / (1.0 + bend) * ratio**2).clip(-1.0, MOST_BENT)
     return pl.concat(
         tows.with_columns(
             speed_ratio=pl.lit(speed),
-            cw_kg_m=pl.Series(np.concatenate([c.cw_at(speed) for c in computed])),
-            random_ratio=pl.Series(np.concatenate([_random_ratio(*one, speed) for one in each])),
+            cw_kg_m=pl.Series(c.cw_at(speed)),
+            random_ratio=pl.Series(_random_ratio(c, scatter, speed)),
             misfit=pl.Series(misfit[:, place]),
             misfit_variance=pl.Series(variance[:, place]),
         )
@@ -129,17 +127,17 @@ def facts_of(
 
 
 def _departure(c: Computed, speed_ratios: FloatArray) -> Departure:
-    """How far the points of each tow of a batch lie from its curve."""
-    batch, (ratio, used, _) = c.batch, _residuals(c)
-    towed = c.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None]
-    way = batch.by_tow(batch.direction.astype(np.float64))
-    counts, target = used & batch.trusted[:, None], batch.by_tow(batch.target_speed_ratio)
-    return Departure.of(ratio, counts, towed, way, target, speed_ratios)
+    """How far the points of each tow lie from its curve."""
+    tows, (ratio, used, _) = c.tows, _residuals(c)
+    towed = c.points.speed_m_s / tows.of_tow("declared_speed_m_s")[:, None]
+    way = tows.by_tow(tows.direction.astype(np.float64))
+    counts, target = used & tows.trusted[:, None], tows.by_tow(tows.target_speed_ratio)
+    return Departure.of(ratio, counts, towed, way, target, speed_ratios, c.plan.which)
 
 
 def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
     """Relative random uncertainty of Cw at a speed / declared speed, shape (tows,)."""
-    speed = speed_ratio * c.batch.of_tow("declared_speed_m_s")
+    speed = speed_ratio * c.tows.of_tow("declared_speed_m_s")
     errors = curve.covariance(c.points, c.free, scatter, speed)
     cw = c.free.cw_at(speed)
     known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
@@ -151,20 +149,28 @@ def _terms_of_tows(
     c: Computed, factors: SeasonFactors | None, scatter: curve.Scatter
 ) -> pl.DataFrame:
     """What `propagation.budget` asks of tows, as far as it is the same at any speed."""
-    batch = c.batch
+    tows = c.tows
     estimated = np.isfinite(c.estimated("ln_sd"))
-    usual = USUAL_BEND if factors is None else _median_bend(c)
+    usual = np.full(tows.size, USUAL_BEND) if factors is None else _median_bends(c)
     bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual)
-    wanders = 0.0 if factors is None else factors.tow_log_sd_of(batch.of_tow("season"))
+    wanders = 0.0 if factors is None else factors.tow_log_sd_of(tows.of_tow("season"))
     is_wandering = (factors is not None) & ~c.calibrated
     # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
     # taken off, and only what is put back for still air has it.
-    taken_off = 0.0 if c.steps.wind.coefficients == "archive" else c.air_kg_m
-    net_air = batch.mean(taken_off - c.still_air_kg_m, c.used)
+    by_archive = c.plan.of_runs("wind.coefficients") == "archive"
+    net_air = tows.mean(np.where(by_archive, 0.0, c.air_kg_m) - c.still_air_kg_m, c.used)
+    assumed = Assumed()
+    if factors is not None:
+        assumed = assumed.beside_repeats(factors.tow_sd, factors.calibration_sd)
+    of_archive = np.isfinite(c.coefficient_sd)
+    own = {
+        "unmeasured_wind": c.expected_wind_sd,
+        "wind_coefficient": np.where(of_archive, c.coefficient_sd, assumed.wind_coefficient),
+    }
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = c.still_air_kg_m / np.maximum(c.air.still, 1e-9)
     felt_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
-    return batch.tows.select(
+    return tows.frame.select(
         "tow_id",
         "fsn_no",
         "season",
@@ -179,13 +185,14 @@ def _terms_of_tows(
         tow_log_sd=pl.Series(np.where(is_wandering, np.hypot(wanders, files_log_sd(c)), 0.0)),
         net_air_kg_m=pl.Series(net_air),
         wind_ln_sd=pl.Series(c.wind_ln_sd).fill_nan(None),
-        air_per_coefficient_kg_m=pl.Series(batch.mean(still_unit - felt_unit, c.used)),
-        wind_measured=pl.Series(batch.measured("wind")),
-        still_air_kg_m=pl.Series(batch.mean(c.still_air_kg_m, c.used)),
+        air_per_coefficient_kg_m=pl.Series(tows.mean(still_unit - felt_unit, c.used)),
+        wind_measured=pl.Series(tows.measured("wind")),
+        still_air_kg_m=pl.Series(tows.mean(c.still_air_kg_m, c.used)),
         temperature_known=pl.Series(c.temperature_known),
         water_off_c=pl.Series(c.water_off_c),
-        force_sd=force_uncertainty(batch.tows),
-        **{name: pl.lit(size) for name, size in asdict(_assumed(c, factors)).items()},
+        force_sd=force_uncertainty(tows.frame),
+        **{name: pl.lit(size) for name, size in asdict(assumed).items() if name not in own},
+        **{name: pl.Series(size) for name, size in own.items()},
     )
 
 
@@ -200,20 +207,11 @@ def force_uncertainty(tows: pl.DataFrame) -> pl.Expr:
     return (off**2 + pl.col("load_cell_sd") ** 2).sqrt()
 
 
-def _median_bend(c: Computed) -> float:
-    """Median of q at the declared speed over the batch."""
-    declared = c.batch.of_tow("declared_speed_m_s")
-    r = np.where(c.free.converged, c.free.s_s2_m2 * declared**2, np.nan)
-    known = np.isfinite(r) & (r > 0.0) & (r < 1.0)
-    return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
-
-
-def _assumed(c: Computed, estimated: SeasonFactors | None) -> Assumed:
-    """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
-    assumed = Assumed()
-    if estimated is not None:
-        assumed = assumed.beside_repeats(estimated.tow_sd, estimated.calibration_sd)
-    assumed = replace(assumed, unmeasured_wind=c.expected_wind.sd)
-    if c.steps.wind.coefficients == "archive" and np.isfinite(c.coefficient_sd):
-        assumed = replace(assumed, wind_coefficient=c.coefficient_sd)
-    return assumed
+def _median_bends(c: Computed) -> FloatArray:
+    """Median of q at the declared speed over the tows with the same steps, (tows,)."""
+    r = c.free.s_s2_m2 * c.tows.of_tow("declared_speed_m_s") ** 2
+    known = c.free.converged & (r > 0.0) & (r < 1.0)
+    q = pl.Series(np.where(known, r / np.where(known, 1.0 - r, 1.0), np.nan)).fill_nan(None)
+    bends = pl.DataFrame({"which": c.plan.which, "q": q})
+    median = bends.select(pl.col("q").median().over("which").fill_null(USUAL_BEND))
+    return median.to_series().to_numpy()

@@ -1,24 +1,22 @@
-"""A batch of tows under a method, as arrays: what was found step by step, and what follows.
+"""Tows under a method, as arrays: what was found step by step, and what follows.
 
 Filled by `pipeline.recompute.recompute`, made into tables by `pipeline.recompute.results`.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.arrays import BoolArray, FloatArray, StrArray
-from pipeline.blocks.batch import Batch
+from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
+from pipeline.blocks.tows import Tows
 from pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from pipeline.method.constants import CAP_HULL_SPEEDS, FEWEST_RUNS
-from pipeline.method.definition import Steps
+from pipeline.recompute.plan import Plan
 from pipeline.steps.resistance import RunMeans
-from pipeline.steps.window import Windows
-from pipeline.uncertainty.propagation import Assumed
 
 
 class Coefficients(NamedTuple):
@@ -29,22 +27,13 @@ class Coefficients(NamedTuple):
     still: FloatArray
 
 
-class ExpectedWind(NamedTuple):
-    """Net wind correction of a tow / its still-air part, mean of out and back."""
-
-    mean: float
-    sd: float
-
-
-STILL_AIR: Final = ExpectedWind(0.0, Assumed().unmeasured_wind)
-"""Where nothing is expected: as if there was no wind."""
-
-
 @dataclass(frozen=True)
 class Computed:
-    """A batch under the steps of a method.
+    """Tows under the steps that each follows.
 
     Attributes:
+        plan: the tows and their steps.
+        windows: of every run, by name as `Windows.of_runs` has them, shape (runs,).
         known_factor: speed factor of the log's known error, shape (tows,).
         y: calibration factor of each run's file, shape (runs,).
         calibrated: tows that have one, shape (tows,).
@@ -54,15 +43,16 @@ class Computed:
         temperature_kg_m: change to the reference temperature, shape (runs,).
         temperature_known: shape (tows,).
         air: coefficients of each run.
-        coefficient_sd: standard deviation of the archive's coefficient; NaN where there is none.
-        wind_ln_scale: ln of the anemometer's scale, taken out of `means`, shape (tows,), and
+        coefficient_sd: standard deviation of the archive's coefficient, shape (tows,), as the next;
+            NaN where there is none.
+        wind_ln_scale: ln of the anemometer's scale, taken out of `means`, and
         wind_ln_sd: its standard deviation; NaN where the wind is taken as it reads.
-        expected_wind: what is taken off, and how uncertain that is, where no wind was measured.
+        expected_wind, expected_wind_sd: net wind correction / its still-air part, mean of out and
+            back, that is taken off where no wind was measured, and how uncertain that is.
     """
 
-    batch: Batch
-    steps: Steps
-    windows: Windows
+    plan: Plan
+    windows: dict[str, Any]
     means: RunMeans
     known_factor: FloatArray
     y: FloatArray
@@ -72,10 +62,22 @@ class Computed:
     temperature_kg_m: FloatArray
     temperature_known: BoolArray
     air: Coefficients
+    coefficient_sd: FloatArray
     wind_ln_scale: FloatArray
     wind_ln_sd: FloatArray
-    coefficient_sd: float = np.nan
-    expected_wind: ExpectedWind = STILL_AIR
+    expected_wind: FloatArray
+    expected_wind_sd: FloatArray
+
+    @property
+    def tows(self) -> Tows:
+        """The tows."""
+        return self.plan.tows
+
+    @cached_property
+    def of_season(self) -> IntArray:
+        """The same for tows of one season with the same steps, shape (tows,)."""
+        pairs = np.stack([self.plan.which, self.tows.of_tow("season")])
+        return np.unique(pairs, axis=1, return_inverse=True)[1].ravel()
 
     def estimated(self, name: str) -> FloatArray:
         """A column of `instruments`, shape (tows,); NaN where nothing was estimated."""
@@ -86,12 +88,12 @@ class Computed:
     @cached_property
     def speed_factor(self) -> FloatArray:
         """True speed / log speed of each run, shape (runs,)."""
-        return self.known_factor[self.batch.tow] * self.y
+        return self.known_factor[self.tows.tow] * self.y
 
     @cached_property
     def calibration_factor(self) -> FloatArray:
         """Mean calibration factor of the runs that count, shape (tows,); 1 where there are none."""
-        return np.where(self.batch.any(self.used), self.batch.mean(self.y, self.used), 1.0)
+        return np.where(self.tows.any(self.used), self.tows.mean(self.y, self.used), 1.0)
 
     @cached_property
     def speed_m_s(self) -> FloatArray:
@@ -112,21 +114,22 @@ class Computed:
     @cached_property
     def in_fit(self) -> BoolArray:
         """Runs that count, of tows that have enough of them, and both ways, shape (runs,)."""
-        enough = self.batch.count(self.used) >= FEWEST_RUNS
-        return self.used & (enough & self.batch.both_ways(self.used))[self.batch.tow]
+        enough = self.tows.count(self.used) >= FEWEST_RUNS
+        return self.used & (enough & self.tows.both_ways(self.used))[self.tows.tow]
 
     # Air and water
 
     @cached_property
     def water_off_c(self) -> FloatArray:
         """How far the water is from its day's, where the method corrects for it, shape (tows,)."""
-        return self.batch.of_tow("water_off_c") * (self.steps.temperature.rule != "none")
+        corrected: BoolArray = self.plan.option("temperature.rule") != "none"
+        return self.tows.of_tow("water_off_c") * corrected
 
     @cached_property
     def still_unit_kg_m(self) -> FloatArray:
         """Still-air coefficient for a drag coefficient of 1, shape (runs,)."""
-        batch = self.batch
-        front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
+        tows = self.tows
+        front = front_area_m2(tows.of_run("beam_m"), tows.of_run("bow_height_m"))
         return still_air_coefficient_kg_m(front, 1.0)
 
     @cached_property
@@ -141,19 +144,23 @@ class Computed:
 
     def air_of(self, air: Coefficients) -> FloatArray:
         """The air part that is taken off for given coefficients, shape (runs,)."""
-        parts = self.means.air.total(air.ahead, air.behind, self.steps.wind.side)
-        felt = self.by_true_speed(parts)
-        if not self.steps.expects_unrecorded:
-            return felt
-        expected = (1.0 + self.expected_wind.mean) * self.still_unit_kg_m * air.ahead
-        return np.where(self.batch.measured("wind")[self.batch.tow], felt, expected)
+        side = self.plan.of_runs("wind.side")
+        felt = self.by_true_speed(self.means.air.total(air.ahead, air.behind, side))
+        missing = self.expects_unrecorded & ~self.tows.measured("wind")
+        expected = (1.0 + self.expected_wind[self.tows.tow]) * self.still_unit_kg_m * air.ahead
+        return np.where(missing[self.tows.tow], expected, felt)
+
+    @property
+    def expects_unrecorded(self) -> BoolArray:
+        """Tows of which others say what nobody recorded, shape (tows,)."""
+        return np.asarray(self.plan.option("unrecorded.rule") == "expected")
 
     def wind_ratio(self) -> FloatArray:
         """Net wind correction / still-air part, shape (tows,); NaN where no wind was measured."""
-        batch = self.batch
-        put_back = batch.mean(self.still_air_kg_m, self.used)
-        net = batch.mean(self.air_kg_m, self.used) - put_back
-        known = batch.measured("wind") & batch.trusted & (put_back > 0)
+        tows = self.tows
+        put_back = tows.mean(self.still_air_kg_m, self.used)
+        net = tows.mean(self.air_kg_m, self.used) - put_back
+        known = tows.measured("wind") & tows.trusted & (put_back > 0)
         return np.where(known, net / np.where(known, put_back, 1.0), np.nan)
 
     # Points and curve
@@ -176,11 +183,11 @@ class Computed:
 
     def points_of(self, cw_kg_m: FloatArray) -> curve.Points:
         """Points of all tows that have enough runs, for a batch fit."""
-        batch = self.batch
+        tows = self.tows
         return curve.Points(
-            batch.by_tow(self.speed_m_s),
-            batch.by_tow(cw_kg_m),
-            batch.by_tow(self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
+            tows.by_tow(self.speed_m_s),
+            tows.by_tow(cw_kg_m),
+            tows.by_tow(self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
         )
 
     @cached_property
@@ -191,10 +198,9 @@ class Computed:
     @cached_property
     def curves(self) -> curve.Curves:
         """The hyperbola that the method chooses, shape (tows,)."""
-        if self.steps.curve.b == "free":
-            return self.free
-        hull = hull_speed_m_s(self.batch.of_tow("waterline_length_m"))
-        return curve.fit_capped(self.points, self.free, CAP_HULL_SPEEDS * hull)
+        hull = hull_speed_m_s(self.tows.of_tow("waterline_length_m"))
+        capped = curve.fit_capped(self.points, self.free, CAP_HULL_SPEEDS * hull)
+        return curve.chosen(self.plan.option("curve.b") == "capped", capped, self.free)
 
     @property
     def cw_at_declared(self) -> FloatArray:
@@ -204,5 +210,5 @@ class Computed:
     def cw_at(self, speed_ratio: float, curves: curve.Curves | None = None) -> FloatArray:
         """Cw of each tow at a speed / declared speed, shape (tows,); NaN where there is none."""
         by = self.curves if curves is None else curves
-        cw = by.cw_at(speed_ratio * self.batch.of_tow("declared_speed_m_s"))
+        cw = by.cw_at(speed_ratio * self.tows.of_tow("declared_speed_m_s"))
         return np.where(by.converged & np.isfinite(cw), cw, np.nan)

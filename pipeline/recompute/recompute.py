@@ -7,36 +7,27 @@ searched over the whole archive is found first and applied after. Nothing here k
 method says what holds when.
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import polars as pl
 
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, StrArray
-from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.method.definition import Method, Steps
+from pipeline.method.definition import Method
 from pipeline.recompute.anemometer import with_anemometer
-from pipeline.recompute.computed import Coefficients, Computed, ExpectedWind
-from pipeline.recompute.facts import with_expected_water
+from pipeline.recompute.computed import Coefficients, Computed
+from pipeline.recompute.plan import Plan, without_factor
 from pipeline.recompute.results import Recomputed, as_tables
 from pipeline.recompute.run_cache import RunCache
-from pipeline.recompute.season_factors import (
-    find_season_factors,
-    instruments_of,
-    without_factor,
-    without_gps,
-)
+from pipeline.recompute.season_factors import find_season_factors, instruments_of
 from pipeline.season_log import SeasonFactors
 from pipeline.steps.calibration import gps_factor_of_files
-from pipeline.steps.resistance import RunMeans, temperature_change_kg_m
+from pipeline.steps.resistance import accelerated_mass_kg, run_means, temperature_change_kg_m
 from pipeline.steps.speed import log_factor
 from pipeline.steps.target import above_target
 from pipeline.steps.wind import nearest_coefficients
-from pipeline.steps.window import Windows
 from pipeline.uncertainty.propagation import Assumed
 
 NOT_SELECTED = "not_selected"
@@ -48,17 +39,7 @@ PER_RUN_ITERATIONS = 4
 """The old tool printed "4 iteraties" (presentation 2015, screens of Razende Snol)."""
 
 
-class ArchiveCoefficient(NamedTuple):
-    """The drag coefficient of the whole archive, with its standard deviation."""
-
-    value: float
-    sd: float
-
-
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
-
-Plans = Sequence[tuple[Batch, Steps]]
-"""Batches of tows, each with its steps."""
 
 FEWEST_WINDS = 10
 """Tows with an anemometer from which those without learn (inferred)."""
@@ -83,172 +64,123 @@ def recompute(
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
-    plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     cache = RunCache() if cache is None else cache
-    estimated = season_factors(plans, cache) if method.estimates_logs else None
-    computed = evaluate(plans, cache, None if estimated is None else estimated.tows)
-    return as_tables(method, tows, computed, estimated, with_bands)
+    plan = Plan.of(method, tows, blocks)
+    estimated = season_factors(plan, cache) if method.estimates_logs else None
+    computed = evaluate(plan, cache, None if estimated is None else estimated.tows)
+    return as_tables(method, computed, estimated, with_bands)
 
 
-def season_factors(plans: Plans, cache: RunCache) -> SeasonFactors | None:
+def season_factors(plan: Plan, cache: RunCache) -> SeasonFactors | None:
     """The log factors that the given steps ask to estimate, and how far tows scatter.
 
     None if not a single tow has a curve from which to estimate.
     """
-    as_read = evaluate([(batch, without_factor(steps)) for batch, steps in plans], cache)
-    if not any((np.isfinite(c.cw_at_declared) & c.batch.trusted).any() for c in as_read):
+    as_read = evaluate(plan.changed(without_factor), cache)
+    if not (np.isfinite(as_read.cw_at_declared) & as_read.tows.trusted).any():
         return None
     return find_season_factors(as_read)
 
 
-def batches(
-    methods: Sequence[Method], tows: pl.DataFrame, blocks: RunBlocks
-) -> list[tuple[Batch, tuple[Steps, ...]]]:
-    """Tows that share their steps under every method, together: each step works on all at once.
-
-    Tows without GPS are batches of their own where a method says what they get instead.
-
-    Returns:
-        Batches, each with its steps under each of the methods.
-    """
-    tows = with_expected_water(tows)
-    seasons: dict[str, tuple[tuple[Steps, ...], list[int]]] = {}
-    for season in tows["season"].unique().sort():
-        steps = tuple(method.for_season(season) for method in methods)
-        seasons.setdefault(str(steps), (steps, []))[1].append(season)
-    whole = Batch.of(tows, blocks)
-    alike = [
-        (whole.part(np.isin(whole.of_tow("season"), season_batch)), steps)
-        for steps, season_batch in seasons.values()
-    ]
-    return [part for batch, steps in alike for part in _by_gps(batch, steps)]
-
-
-def _by_gps(batch: Batch, steps: tuple[Steps, ...]) -> Iterator[tuple[Batch, tuple[Steps, ...]]]:
-    """A batch as it is, or its tows with GPS and those without."""
-    otherwise = tuple(without_gps(one) for one in steps)
-    if otherwise == steps or (has_gps := batch.has_gps).all():
-        yield batch, steps
-        return
-    for mine, own in ((has_gps, steps), (~has_gps, otherwise)):
-        if mine.any():
-            yield batch.part(mine), own
-
-
-def evaluate(
-    plans: Plans, cache: RunCache, instruments: pl.DataFrame | None = None
-) -> list[Computed]:
-    """What the given steps make of each batch.
+def evaluate(plan: Plan, cache: RunCache, instruments: pl.DataFrame | None = None) -> Computed:
+    """What the given steps make of the tows.
 
     Args:
-        plans: batches with their steps; what is searched over the archive is searched over them.
+        plan: what is searched over the archive is searched over its tows.
         cache: what was found before of the same tows; added to.
         instruments: rows of the table `tow_instruments`, for steps that ask for an estimate.
     """
-    read = [
-        _prepare(batch, steps, cache, instruments_of(batch, steps, instruments))
-        for batch, steps in plans
-    ]
+    read = _prepare(plan, cache, instruments_of(plan, instruments))
     return _with_expected_wind(_with_coefficients(with_anemometer(read)))
 
 
-def _with_expected_wind(computed: list[Computed]) -> list[Computed]:
-    """The wind that tows without an anemometer must have had, by those with one, if a method asks.
+def _with_expected_wind(c: Computed) -> Computed:
+    """The wind that tows without an anemometer must have had, by those with one, where it is asked.
 
     Wind along the course adds more on one way than it takes off on the other, so that a tow whose
     wind nobody measured comes out too high.
     """
-    asking = [c for c in computed if c.steps.expects_unrecorded]
-    ratios = np.concatenate([[], *(c.wind_ratio() for c in asking)])
-    known = ratios[np.isfinite(ratios)]
+    asked = c.expects_unrecorded
+    known = c.wind_ratio()[asked]
+    known = known[np.isfinite(known)]
     if len(known) < FEWEST_WINDS:
-        return computed
-    expected = ExpectedWind(float(known.mean()), float(known.std(ddof=1)))
-    return [
-        replace(c, expected_wind=expected) if c.steps.expects_unrecorded else c for c in computed
-    ]
+        return c
+    sd = np.where(asked, known.std(ddof=1), c.expected_wind_sd)
+    return replace(c, expected_wind=np.where(asked, known.mean(), 0.0), expected_wind_sd=sd)
 
 
-def _prepare(batch: Batch, steps: Steps, cache: RunCache, instruments: pl.DataFrame) -> Computed:
+def _prepare(plan: Plan, cache: RunCache, instruments: pl.DataFrame) -> Computed:
     """All that does not depend on the wind coefficients; these are fixed for now."""
-    windows, means = cache.windows(batch, steps), cache.means(batch, steps)
-    scale, zero_n = (
-        instruments[name].to_numpy()[batch.tow] for name in ("force_factor", "force_zero_n")
+    tows, windows = plan.tows, cache.under(plan)
+    means = run_means(
+        tows,
+        windows,
+        plan.of_runs("run_point.estimator") == "mean_of_ratios",
+        plan.of_runs("wind.model") == "oblique",
+        accelerated_mass_kg(tows) * (plan.of_runs("run_point.inertia") != "none"),
     )
+    scale, zero_n = (
+        instruments[name].to_numpy()[tows.tow] for name in ("force_factor", "force_zero_n")
+    )
+    means = means.with_force(plan.of_runs("force.ratio"), 0.0 * zero_n)
     means = means.with_force(scale, zero_n)
-    estimated = instruments["factor"].cast(pl.Float64).to_numpy()
-    known = log_factor(steps.speed, batch.of_tow("speed_correction_ratio"), estimated)
-    reasons = _reasons(batch, steps, windows, means)
-    y, determined = _calibrate(batch, steps, windows, means, known, reasons == "")
-    calibrated = batch.any(determined & (reasons == "")) & (steps.calibration.rule != "none")
-    reasons = np.where((reasons == "") & ~determined, NOT_CALIBRATED, reasons)
-    speed = means.speed_m_s * known[batch.tow] * y
-    temperature, temperature_known = temperature_change_kg_m(batch, steps, speed)
-    ahead, behind = (np.full(len(batch.tow), c) for c in (steps.wind.ahead, steps.wind.behind))
+    known = log_factor(
+        plan.option("speed.correction"),
+        plan.option("speed.factor"),
+        tows.of_tow("speed_correction_ratio"),
+        instruments["factor"].cast(pl.Float64).to_numpy(),
+    )
+    reasons = _reasons(plan, windows["exists"], means.speed_m_s)
+    used, by_gps = reasons == "", plan.option("calibration.rule") != "none"
+    log = means.speed_m_s * known[tows.tow]
+    y, found = gps_factor_of_files(tows, means.gps_m_s, log, used, windows["exists"] & (log > 0))
+    determined = found.ravel()[tows.file] | ~by_gps[tows.tow]
+    y = np.where(by_gps[tows.tow], y.ravel()[tows.file], 1.0)
+    corrected = plan.option("temperature.rule") != "none"
+    expected = plan.option("unrecorded.rule") == "expected"
+    temperature = temperature_change_kg_m(tows, corrected, expected, log * y)
+    ahead, behind = (plan.of_runs(f"wind.{way}") for way in ("ahead", "behind"))
+    nothing = np.full(tows.size, np.nan)
     return Computed(
-        batch,
-        steps,
+        plan,
         windows,
         means,
         known,
         y,
-        calibrated,
+        tows.any(determined & used) & by_gps,
         instruments,
-        reasons,
-        temperature,
-        temperature_known,
+        np.where(used & ~determined, NOT_CALIBRATED, reasons),
+        *temperature,
         Coefficients(ahead, behind, still=ahead),
-        wind_ln_scale=np.zeros(batch.size),
-        wind_ln_sd=np.full(batch.size, np.nan),
+        coefficient_sd=nothing,
+        wind_ln_scale=np.zeros(tows.size),
+        wind_ln_sd=nothing,
+        expected_wind=np.zeros(tows.size),
+        expected_wind_sd=np.full(tows.size, Assumed().unmeasured_wind),
     )
 
 
-def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> StrArray:
+def _reasons(plan: Plan, has_window: BoolArray, log_m_s: FloatArray) -> StrArray:
     """Why a run does not count, before calibration; empty where it does."""
-    chosen = batch.selected & windows.exists
-    too_fast = above_target(batch, means.speed_m_s, chosen, steps.runs.highest_target_ratio)
+    selected, highest = plan.tows.selected, plan.of_runs("runs.highest_target_ratio")
+    too_fast = above_target(plan.tows, log_m_s, selected & has_window, highest)
     return np.select(
-        [~batch.selected, ~windows.exists, too_fast],
-        [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET],
-        "",
+        [~selected, ~has_window, too_fast], [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET], ""
     )
 
 
-def _calibrate(
-    batch: Batch,
-    steps: Steps,
-    windows: Windows,
-    means: RunMeans,
-    known_factor: FloatArray,
-    used: BoolArray,
-) -> tuple[FloatArray, BoolArray]:
-    """Factor on the log speed as corrected so far, and whether it is known, shape (runs,)."""
-    if steps.calibration.rule == "none":
-        return np.ones(len(batch.tow)), np.ones(len(batch.tow), dtype=bool)
-    log = means.speed_m_s * known_factor[batch.tow]
-    y, determined = gps_factor_of_files(batch, means.gps_m_s, log, used, windows.exists & (log > 0))
-    return y.ravel()[batch.file], determined.ravel()[batch.file]
-
-
-def _with_coefficients(computed: list[Computed]) -> list[Computed]:
-    """The batches with the drag coefficients that their steps ask for."""
-    by_archive = [c for c in computed if c.steps.wind.coefficients == "archive"]
-    shared = _archive_coefficient(by_archive)
-
-    def found(c: Computed) -> Computed:
-        if c.steps.wind.coefficients == "per_run":
-            return replace(c, air=_best_per_run(c))
-        if c.steps.wind.coefficients == "archive" and shared is not None:
-            one = _alike(c, shared.value)
-            return replace(c, air=one, coefficient_sd=shared.sd)
-        return c
-
-    return [found(c) for c in computed]
-
-
-def _alike(computed: Computed, value: float) -> Coefficients:
-    one = np.full(len(computed.batch.tow), value)
-    return Coefficients(one, one, one)
+def _with_coefficients(c: Computed) -> Computed:
+    """The tows with the drag coefficients that their steps ask for."""
+    rule = c.plan.option("wind.coefficients")
+    if (per_run := (rule == "per_run")[c.tows.tow]).any():
+        pairs = zip(_best_per_run(c), c.air, strict=True)
+        c = replace(c, air=Coefficients(*(np.where(per_run, *pair) for pair in pairs)))
+    asked = rule == "archive"
+    if asked.any() and (shared := _archive_coefficient(c, asked)) is not None:
+        value, sd = shared
+        air = (np.where(asked[c.tows.tow], value, fixed) for fixed in c.air)
+        c = replace(c, air=Coefficients(*air), coefficient_sd=np.where(asked, sd, np.nan))
+    return c
 
 
 def _best_per_run(computed: Computed) -> Coefficients:
@@ -257,7 +189,7 @@ def _best_per_run(computed: Computed) -> Coefficients:
     The old rule: fit, move every run as near to the curve as its wind allows, fit again. The
     still-air part keeps its fixed coefficient (inferred).
     """
-    air, tow = computed.air, computed.batch.tow
+    air, tow = computed.air, computed.tows.tow
     for _ in range(PER_RUN_ITERATIONS):
         cw = computed.cw_of(air)
         curves = curve.fit(computed.points_of(cw))
@@ -270,37 +202,39 @@ def _best_per_run(computed: Computed) -> Coefficients:
     return air
 
 
-def _misfits(computed: Computed, grid: FloatArray) -> FloatArray:
+def _misfits(c: Computed, grid: FloatArray) -> FloatArray:
     """Residuals' squares / Cw^2, (coefficients, tows); infinite without a curve of all points."""
-    points = [computed.points_of(computed.cw_of(_alike(computed, value))) for value in grid]
+    alike = (np.full(len(c.tows.tow), value) for value in grid)
+    points = [c.points_of(c.cw_of(Coefficients(one, one, one))) for one in alike]
     stacked = zip(*((p.speed_m_s, p.cw_kg_m, p.used) for p in points), strict=True)
     curves = curve.fit(curve.Points(*map(np.concatenate, stacked)))
-    scale = curves.cw_at(np.tile(computed.batch.of_tow("declared_speed_m_s"), len(grid)))
-    runs = np.tile(computed.batch.count(computed.in_fit), len(grid))
+    scale = curves.cw_at(np.tile(c.tows.of_tow("declared_speed_m_s"), len(grid)))
+    runs = np.tile(c.tows.count(c.in_fit), len(grid))
     sound = curves.converged & np.isfinite(scale) & (curves.n_points == runs)
     misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, np.inf)
     return misfit.reshape(len(grid), -1)
 
 
-def _archive_coefficient(computed: list[Computed]) -> ArchiveCoefficient | None:
-    """One coefficient for the whole archive: the least misfit of all tows together.
+def _archive_coefficient(c: Computed, asked: BoolArray) -> tuple[float, float] | None:
+    """One coefficient for the whole archive, and its standard deviation; None without tows.
+
+    It has the least misfit of all tows together.
 
     Out and back feel different wind, so a wrong coefficient drives their points apart. Tows that
     one of the coefficients leaves without a curve take no part, so that every sum is of the same
-    tows. The misfit is a parabola in the coefficient, near its minimum; None without tows. The
+    tows. The misfit is a parabola in the coefficient, near its minimum. The
     standard deviation is the sandwich over tows (Huber 1967): what is odd about one tow is shared
     by its runs.
     """
-    misfits = (_misfits(c, ARCHIVE_GRID)[:, c.batch.trusted] for c in computed)
-    each = np.concatenate([np.empty((len(ARCHIVE_GRID), 0)), *misfits], axis=1)
+    each = _misfits(c, ARCHIVE_GRID)[:, asked & c.tows.trusted]
     if not (each := each[:, np.isfinite(each).all(axis=0)]).size:
         return None
     best = int(np.clip(each.sum(axis=1).argmin(), 1, len(ARCHIVE_GRID) - 2))
     below, here, above = each[best - 1 : best + 2]
     bends = below - 2.0 * here + above
     if (bend := bends.sum()) <= 0:
-        return ArchiveCoefficient(float(ARCHIVE_GRID[best]), Assumed().wind_coefficient)
+        return float(ARCHIVE_GRID[best]), Assumed().wind_coefficient
     step, shift = ARCHIVE_GRID[1] - ARCHIVE_GRID[0], 0.5 * (below - above).sum() / bend
     slopes = 0.5 * (above - below) + bends * shift
     value = np.clip(ARCHIVE_GRID[best] + step * shift, ARCHIVE_GRID[0], ARCHIVE_GRID[-1])
-    return ArchiveCoefficient(float(value), float(step * np.sqrt((slopes**2).sum()) / bend))
+    return float(value), float(step * np.sqrt((slopes**2).sum()) / bend)

@@ -5,7 +5,6 @@ is in `pipeline.recompute.recompute`; its uncertainty, in `pipeline.recompute.bu
 person should look at, in `pipeline.assessment.assess`.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -14,10 +13,10 @@ import polars as pl
 from numpy.typing import ArrayLike
 
 from pipeline import curve
-from pipeline.arrays import BoolArray
+from pipeline.arrays import BoolArray, FloatArray
 from pipeline.assessment.assess import assess, with_status
 from pipeline.assessment.run_choice import with_run_choice
-from pipeline.method.definition import Method
+from pipeline.method.definition import Method, Steps
 from pipeline.quantiles import t_quantile
 from pipeline.races.race import power_per_rower_w
 from pipeline.recompute.anemometer import anemometer_diagnosis
@@ -29,11 +28,9 @@ from pipeline.recompute.budget import (
     scatter_of,
 )
 from pipeline.recompute.computed import Computed
-from pipeline.recompute.facts import with_expected_water
 from pipeline.season_log import SeasonFactors, retow_choice
 from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
 from pipeline.season_log.factors import NOT_SETTLED
-from pipeline.steps.speed import log_factor
 from pipeline.tables.frames import dtypes
 from pipeline.tables.season_log import (
     BestEstimateWeights,
@@ -80,63 +77,61 @@ class Recomputed:
 
 def as_tables(
     method: Method,
-    tows: pl.DataFrame,
-    computed: Sequence[Computed],
+    c: Computed,
     estimated: SeasonFactors | None,
     with_bands: bool,
 ) -> Recomputed:
-    """The tables of a method from its batches; tows are assessed when all curves are there."""
+    """The tables of a method; tows are assessed when all curves are there."""
     name = pl.lit(method.name).alias("method")
 
-    def together(frames: list[pl.DataFrame]) -> pl.DataFrame:
-        return pl.concat(frames).select(name, pl.all())
+    def named(frame: pl.DataFrame) -> pl.DataFrame:
+        return frame.select(name, pl.all())
 
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
-    run_points = with_run_choice(together([_run_points(c) for c in computed]))
+    run_points = with_run_choice(named(_run_points(c)))
     speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
-    facts = facts_of(computed, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
+    facts = facts_of(c, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
     components = budget(facts)
     bounds = combine(components)
-    curves = together([_curves(c, bounds.filter(at_declared), pooled) for c in computed])
     at_v0 = components.filter(at_declared)
+    curves = named(_curves(c, bounds.filter(at_declared), pooled))
     curves = with_best(curves, estimated, at_v0, facts.filter(at_declared))
-    diagnosis = _diagnosis(estimated, computed)
-    assessments = assess(curves, run_points, with_expected_water(tows), diagnosis)
+    diagnosis = _diagnosis(estimated, c)
+    assessments = assess(curves, run_points, c.tows.frame, diagnosis)
     rejecting = [
         (season, check)
-        for season in tows["season"].unique().sort()
+        for season in c.tows.frame["season"].unique().sort()
         for check in method.for_season(season).assessment.reject
     ]
     return Recomputed(
         run_points=run_points,
         curves=with_status(curves, assessments, rejecting),
-        log_factors=together([_log_factors(c, estimated) for c in computed]).unique(
-            "season", keep="first", maintain_order=True
-        ),
+        log_factors=named(_log_factors(c, estimated)),
         assessments=assessments,
         uncertainty_budget=at_v0.select(
             name,
             pl.exclude("speed_ratio", "dof"),
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
-        curve_points=together([_curve_points(facts, bounds)]) if with_bands else pl.DataFrame(),
-        season_diagnosis=together([diagnosis]),
-        **{table: together([rows]) for table, rows in _of_all_tows(estimated).items()},
+        curve_points=named(_curve_points(facts, bounds)) if with_bands else pl.DataFrame(),
+        season_diagnosis=named(diagnosis),
+        **{table: named(rows) for table, rows in _of_all_tows(estimated).items()},
         factors=estimated,
     )
 
 
 def _run_points(c: Computed) -> pl.DataFrame:
-    means, has_window, tow = c.means, c.windows.exists, c.batch.tow
+    means, windows, tow = c.means, c.windows, c.tows.tow
+    has_window = windows["exists"]
     on_curve = curve.cw(c.curves.a_kg_m[tow], c.curves.s_s2_m2[tow], c.speed_m_s)
     log1 = np.where(has_window, means.speed_m_s, 1.0)
-    has_limits = c.steps.window.rule != "all"
-    wind, log2 = (c.batch.measured(channel)[tow] for channel in ("wind", "log2"))
+    has_limits = c.plan.of_runs("window.rule") != "all"
+    wind, log2 = (c.tows.measured(channel)[tow] for channel in ("wind", "log2"))
     log2_ratio = means.log2_m_s / log1
     log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
     numbers = {
-        "window_start_s": c.windows.start_s,
-        "window_end_s": c.windows.end_s,
+        "window_start_s": windows["start_s"],
+        "window_end_s": windows["end_s"],
         "speed_factor": c.speed_factor,
         "speed_m_s": c.speed_m_s,
         "gross_cw_kg_m": c.by_true_speed(means.gross_kg_m),
@@ -152,23 +147,23 @@ def _run_points(c: Computed) -> pl.DataFrame:
         "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
         "log2_ratio": np.where(log2, log2_ratio, np.nan),
     }
-    return c.batch.blocks.runs.select(
+    return c.tows.blocks.runs.select(
         "tow_id", "run", "direction", "target_speed_ratio"
     ).with_columns(
-        pl.Series("lost_s", c.batch.lost_s),
+        pl.Series("lost_s", c.tows.lost_s),
         *(_column(name, values, has_window) for name, values in numbers.items()),
-        _column("ends_ratio", c.windows.ends.in_limits, has_window & has_limits),
+        _column("ends_ratio", windows["ends_ratio"], has_window & has_limits),
         _column("gps_ratio", means.gps_m_s / log1, has_window),
         _column("fitted_cw_kg_m", on_curve, has_window & c.curves.converged[tow]),
-        pl.Series("cut_reason", c.windows.reasons, pl.String),
+        pl.Series("cut_reason", windows["cut_reason"], pl.String),
         pl.Series("used", c.used),
         pl.Series("reason", c.reasons, pl.String),
     )
 
 
 def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
-    tows = c.batch.tows
-    declared = c.batch.of_tow("declared_speed_m_s")
+    tows = c.tows.frame
+    declared = c.tows.of_tow("declared_speed_m_s")
     cw = c.cw_at_declared
     sound = np.isfinite(cw)
     mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
@@ -177,7 +172,7 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     safe_cw = np.where(sound, cw, 1.0)
     residual = np.sqrt(c.curves.rss_kg2_m2 / np.maximum(c.curves.n_points - 2, 1)) / safe_cw
     # A cap is the method's choice, and coefficients searched run by run leave no scatter.
-    own_b = ~c.curves.b_capped & (c.steps.wind.coefficients != "per_run")
+    own_b = ~c.curves.b_capped & (c.plan.option("wind.coefficients") != "per_run")
     numbers = {
         "a_kg_m": c.curves.a_kg_m,
         "cw_kg_m": cw,
@@ -185,7 +180,7 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
         "cw_hi_kg_m": cw * hi,
         "b_lo_m_s": np.where(own_b, b_interval.lo, np.nan),
         "b_hi_m_s": np.where(own_b, b_interval.hi, np.nan),
-        "power_w": power_per_rower_w(safe_cw, declared, c.batch.of_tow("rowers")),
+        "power_w": power_per_rower_w(safe_cw, declared, c.tows.of_tow("rowers")),
         "residual_sd_ratio": residual,
     }
     return tows.select(
@@ -193,9 +188,11 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     ).with_columns(
         *(_column(name, values, sound) for name, values in numbers.items()),
         _column("b_m_s", c.curves.b_m_s, sound & c.curves.b_determined),
-        _column("calibration_factor", c.calibration_factor, c.steps.calibration.rule != "none"),
+        _column(
+            "calibration_factor", c.calibration_factor, c.plan.option("calibration.rule") != "none"
+        ),
         pl.Series("b_capped", c.curves.b_capped),
-        pl.Series("runs_used", c.batch.count(c.used), pl.Int8),
+        pl.Series("runs_used", c.tows.count(c.used), pl.Int8),
     )
 
 
@@ -212,49 +209,49 @@ def _curve_points(facts: pl.DataFrame, bounds: pl.DataFrame) -> pl.DataFrame:
 
 
 def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
-    """The factor of each season: from GPS, estimated, prescribed or none, in this order.
+    """The factor of each season, its interval and source; of tows that have GPS, if any have.
 
-    Tows without GPS in a season that has it are in a batch behind the others, and give no row.
-    With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
     A tow's own factor is in `run_points.speed_factor`.
     """
-    if c.steps.calibration.rule == "none":
-        rows = [_factor_row(c, season, estimated) for season in c.batch.seasons]
-        return pl.DataFrame(rows, schema=dtypes(LogFactors, without=["method"]), orient="row")
-    ln_factor = pl.when(pl.Series(c.calibrated)).then(
-        pl.Series(np.log(c.known_factor * c.calibration_factor))
-    )
-    means = (
-        c.batch.tows.select("season", ln=ln_factor)
-        .group_by("season", maintain_order=True)
-        .agg(pl.col("ln").mean(), sd=pl.col("ln").std(), n=pl.col("ln").count())
-        .sort("season")
-    )
-    n = means["n"].to_numpy()
-    quantile = pl.Series(t_quantile(np.maximum(n - 1, 1)) / np.sqrt(np.maximum(n, 1)))
-    half = quantile * pl.col("sd")
-    return means.select(
-        "season",
-        factor=pl.col("ln").fill_null(0.0).exp(),
-        lo=(pl.col("ln") - half).exp(),
-        hi=(pl.col("ln") + half).exp(),
-        source=pl.when(pl.col("n") > 0).then(pl.lit("gps")).otherwise(pl.lit("none")),
-    )
+    ln_factor = np.where(c.calibrated, np.log(c.known_factor * c.calibration_factor), np.nan)
+    season, which = c.tows.of_tow("season"), c.plan.which
+    rows: list[tuple[int, *Factor]] = []
+    for year in c.tows.frame["season"].unique().sort():
+        first = which[season == year].min()
+        if c.plan.steps[first].calibration.rule == "none":
+            found = _of_season(c.plan.steps[first], year, estimated)
+        else:
+            found = _mean_factor(ln_factor[(season == year) & (which == first)])
+        rows.append((year, *found))
+    return pl.DataFrame(rows, schema=dtypes(LogFactors, without=["method"]), orient="row")
 
 
-FactorRow = tuple[int, float, float | None, float | None, str]
+Factor = tuple[float, float | None, float | None, str]
+"""A factor with its interval and source."""
 
 
-def _factor_row(c: Computed, season: int, estimated: SeasonFactors | None) -> FactorRow:
-    """Season, factor, its interval and source where tows are not calibrated on GPS."""
-    is_asked = estimated is not None and c.steps.speed.correction == "estimated"
+def _of_season(steps: Steps, season: int, estimated: SeasonFactors | None) -> Factor:
+    """The factor where tows are not calibrated on GPS: estimated, prescribed or none."""
+    is_asked = estimated is not None and steps.speed.correction == "estimated"
     if estimated is not None and is_asked and (known := estimated.of_season(season)) is not None:
-        return season, *known
-    nothing = np.array([np.nan])
-    factor = float(log_factor(c.steps.speed, nothing, nothing)[0])
+        return known
+    factor = steps.speed.prescribed
     if estimated is not None and estimated.is_refused(season):
-        return season, factor, None, None, NOT_SETTLED
-    return season, factor, None, None, "none" if factor == 1.0 else "prescribed"
+        return factor, None, None, NOT_SETTLED
+    return factor, None, None, "none" if factor == 1.0 else "prescribed"
+
+
+def _mean_factor(ln_factor: FloatArray) -> Factor:
+    """The mean of tows that are calibrated on GPS, with a t interval; NaN are not."""
+    known = ln_factor[np.isfinite(ln_factor)]
+    if not (n := len(known)):
+        return 1.0, None, None, "none"
+    mean = float(known.mean())
+    if n == 1:
+        return float(np.exp(mean)), None, None, "gps"
+    half = float(t_quantile(n - 1) * known.std(ddof=1) / np.sqrt(n))
+    factor, lo, hi = np.exp([mean, mean - half, mean + half]).tolist()
+    return factor, lo, hi, "gps"
 
 
 def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
@@ -272,10 +269,10 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
     }
 
 
-def _diagnosis(estimated: SeasonFactors | None, computed: Sequence[Computed]) -> pl.DataFrame:
+def _diagnosis(estimated: SeasonFactors | None, c: Computed) -> pl.DataFrame:
     """What is wrong with the instruments of each season; no rows without an estimate."""
     joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
-    both = pl.concat([joint, anemometer_diagnosis(computed)])
+    both = pl.concat([joint, anemometer_diagnosis(c)])
     return both.sort("season", "part", "instrument")
 
 

@@ -1,63 +1,49 @@
 """Windows of runs and means over them, kept between recomputes: they take half of their time.
 
 Most changes of a method leave them as they are: they depend on few of its options, and not on log
-factors or other tows. They are made of all tows together, however a method parts them.
+factors or other tows.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields, is_dataclass, replace
-from typing import Any, TypeVar
+from typing import Any
 
-from pipeline.arrays import FloatArray, IntArray
-from pipeline.blocks.batch import Batch
-from pipeline.method.definition import Steps
-from pipeline.steps.resistance import RunMeans, run_means, window_means
+import numpy as np
+
+from pipeline.blocks.tows import Tows
+from pipeline.recompute.plan import Plan
+from pipeline.steps.resistance import window_means
 from pipeline.steps.window import Windows, steady_windows, whole_runs
 
-T = TypeVar("T")
 
-
-@dataclass(frozen=True)
 class RunCache:
-    """Windows and means of the runs of whole batches by the options that they depend on.
+    """Windows and means of the runs of some tows by the options that they depend on.
 
     Of one set of blocks; another needs a cache of its own.
     """
 
-    _found: dict[tuple[object, ...], Any] = field(default_factory=dict)
+    def __init__(self) -> None:
+        self._windows: dict[tuple[object, ...], Windows] = {}
+        self._means: dict[tuple[object, ...], dict[str, Any]] = {}
 
-    def windows(self, batch: Batch, steps: Steps) -> Windows:
-        """The window of every run of a batch."""
-        choose = whole_runs if steps.window.rule == "all" else steady_windows
-        return self._of_part(batch, (steps.window.rule,), lambda whole: choose(whole.blocks))
+    def under(self, plan: Plan) -> dict[str, Any]:
+        """What `Windows.of_runs` and `window_means` give of every run, by its steps, (runs,)."""
+        rule, averaging = plan.of_runs("window.rule"), plan.of_runs("wind.averaging_s")
+        asked = sorted({*zip(rule.tolist(), averaging.tolist(), strict=True)})
+        found = [self._of(plan.tows, *options) for options in asked] or [
+            self._of(plan.tows, "all", 0)
+        ]
+        here = [(rule == r) & (averaging == s) for r, s in asked[1:]]
+        return {
+            name: np.select(here, [other[name] for other in found[1:]], first) if here else first
+            for name, first in found[0].items()
+        }
 
-    def means(self, batch: Batch, steps: Steps) -> RunMeans:
-        """The means of every run of a batch over its window: coefficients are not in them yet."""
-        averaging_s = steps.wind.averaging_s
-
-        def over_windows(whole: Batch) -> dict[str, FloatArray]:
-            return window_means(whole.blocks, self.windows(whole, steps), averaging_s)
-
-        over = self._of_part(batch, (steps.window.rule, averaging_s), over_windows)
-        return run_means(batch, self.windows(batch, steps), over, steps)
-
-    def _of_part(self, batch: Batch, options: tuple[object, ...], find: Callable[[Batch], T]) -> T:
-        """What is found of the whole that a batch is part of, the rows of its runs."""
-        whole, rows = batch.whole
-        key = whole.key, *options
-        if key not in self._found:
-            self._found[key] = find(whole)
-        found: T = self._found[key]
-        return found if whole is batch else _rows(found, rows)
-
-
-def _rows(of_whole: Any, rows: IntArray) -> Any:
-    """The rows of some runs of all arrays of windows, or of means by name."""
-    if is_dataclass(of_whole) and not isinstance(of_whole, type):
-        parts = {f.name: _rows(getattr(of_whole, f.name), rows) for f in fields(of_whole)}
-        return replace(of_whole, **parts)
-    if isinstance(of_whole, dict):
-        return {name: values[rows] for name, values in of_whole.items()}
-    if isinstance(of_whole, tuple):
-        return tuple(of_whole[row] for row in rows)
-    return of_whole[rows]
+    def _of(self, tows: Tows, rule: str, averaging_s: int) -> dict[str, Any]:
+        key = tuple(tows.frame["tow_id"]), rule
+        if key not in self._windows:
+            choose = whole_runs if rule == "all" else steady_windows
+            self._windows[key] = choose(tows.blocks)
+        windows = self._windows[key]
+        if (*key, averaging_s) not in self._means:
+            means = window_means(tows.blocks, windows, averaging_s)
+            self._means[*key, averaging_s] = windows.of_runs | means
+        return self._means[*key, averaging_s]

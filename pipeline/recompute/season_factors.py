@@ -6,7 +6,7 @@ after. The statistics are in `pipeline.season_log`.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
@@ -14,10 +14,10 @@ import polars as pl
 
 from pipeline import curve
 from pipeline.arrays import FloatArray
-from pipeline.blocks.batch import Batch
-from pipeline.method.definition import Calibration, Steps
+from pipeline.channels import BACK, OUT
 from pipeline.recompute.budget import files_log_sd, force_uncertainty, scatter_of
 from pipeline.recompute.computed import Computed
+from pipeline.recompute.plan import Plan
 from pipeline.season_log import SeasonFactors, estimate_season_factors, first_estimate
 from pipeline.season_log.archive_tows import LOG
 from pipeline.steps.calibration import gps_factor
@@ -34,35 +34,11 @@ LEAST_SPREAD: Final = 1e-6
 LOG_SCATTER: Final = 0.005
 """Standard deviation of ln y from tow to tow where too few are calibrated to show it (inferred)."""
 
-GPS: Final = "gps_per_tow"
-
 INSTRUMENTS: Final = dtypes(TowInstruments, without=["method"])
 """What is estimated of a tow's instruments."""
 
 
-def is_estimated(steps: Steps) -> bool:
-    """Whether these steps ask for an estimated log factor."""
-    return steps.speed.correction == "estimated"
-
-
-def without_gps(steps: Steps) -> Steps:
-    """The steps of a tow that has no GPS, where the method says what it then gets."""
-    if not steps.estimates_without_gps:
-        return steps
-    speed = steps.speed.model_copy(update={"correction": "estimated"})
-    calibration = Calibration(rule="none")
-    return steps.model_copy(update={"speed": speed, "calibration": calibration})
-
-
-def without_factor(steps: Steps) -> Steps:
-    """The steps from which log factors are estimated: with the log as it reads."""
-    if not is_estimated(steps):
-        return steps
-    speed = steps.speed.model_copy(update={"correction": "none"})
-    return steps.model_copy(update={"speed": speed})
-
-
-def find_season_factors(computed: Sequence[Computed]) -> SeasonFactors:
+def find_season_factors(c: Computed) -> SeasonFactors:
     """The log factors of all seasons, from tows computed without them.
 
     Tows of a line are compared at one true speed: its median declared speed. A first estimate, from
@@ -70,24 +46,19 @@ def find_season_factors(computed: Sequence[Computed]) -> SeasonFactors:
     low would be compared at the edge of what was towed, and all would hang on the bend.
 
     Args:
-        computed: all batches under `without_factor`.
+        c: all tows under `without_factor`.
     """
-    declared = pl.concat([c.batch.tows.select(*LINE, "declared_speed_m_s") for c in computed])
-    reference = declared.group_by(LINE, maintain_order=True).agg(
-        pl.col("declared_speed_m_s").median().alias("speed")
-    )
 
     def rows(ln_factor: Mapping[str, float]) -> pl.DataFrame:
-        found = pl.concat([_rows(c, reference, ln_factor) for c in computed]).drop_nulls("ln_cw")
-        return _with_calibrations(_with_kappa(found))
+        return _with_calibrations(_with_kappa(_rows(c, ln_factor).drop_nulls("ln_cw")))
 
     first = first_estimate(rows({}))
     known = zip(first.fit.problem.tows.frame["tow_id"], first.ln_factor.tolist(), strict=True)
     return estimate_season_factors(rows({t: ln for t, ln in known if math.isfinite(ln)}), first)
 
 
-def instruments_of(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> pl.DataFrame:
-    """What was estimated of each tow of a batch, as far as its steps ask for it.
+def instruments_of(plan: Plan, rows: pl.DataFrame | None) -> pl.DataFrame:
+    """What was estimated of each tow, as far as its steps ask for it.
 
     Args:
         rows: `SeasonFactors.tows` or rows of the table `tow_instruments`; None where nothing
@@ -97,35 +68,35 @@ def instruments_of(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> pl.
         A row per tow with the columns of `INSTRUMENTS`, null where nothing is known; such a
         load cell has the factor 1 and the zero 0.
     """
-    own = batch.tows.select("tow_id", "season", "log1_part")
+    own = plan.tows.frame.select("tow_id", "season", "log1_part")
     known = pl.DataFrame(schema=INSTRUMENTS) if rows is None else rows
     joined = own.join(known.select(*INSTRUMENTS), on="tow_id", how="left", maintain_order="left")
     # A tow that takes no part in the estimate had the instruments of its season all the same.
     of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
     filled = joined.with_columns(of_season.fill_null(of_season.mean().over("season", "log1_part")))
-    factor = pl.col("factor") if is_estimated(steps) else pl.lit(None, pl.Float64)
+    asked = pl.Series(plan.option("speed.correction") == "estimated")
     return filled.with_columns(
-        factor.alias("factor"),
+        pl.when(asked).then("factor").alias("factor"),
         pl.col("force_factor").fill_null(1.0),
         pl.col("force_zero_n").fill_null(0.0),
     )
 
 
-def _rows(c: Computed, reference: pl.DataFrame, ln_factor: Mapping[str, float]) -> pl.DataFrame:
-    """Per tow its curve at its line's true `speed`, with uncertainty, and its GPS ratio."""
-    batch, steps = c.batch, c.steps
-    lines = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
-    reference_ln = np.array([ln_factor.get(name, 0.0) for name in batch.tows["tow_id"]])
-    true_speed = lines["speed"].to_numpy()
+def _rows(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFrame:
+    """Per tow its curve at its line's true speed, with uncertainty, and its GPS ratio."""
+    tows, declared = c.tows, c.tows.of_tow("declared_speed_m_s")
+    reference_ln = np.array([ln_factor.get(name, 0.0) for name in tows.frame["tow_id"]])
+    of_line = pl.col("declared_speed_m_s").median().over(LINE)
+    true_speed = tows.frame.select(of_line).to_series().to_numpy()
     speed = true_speed * np.exp(-reference_ln)
     water = _water_points(c)
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
     errors = curve.covariance(water, curves, scatter_of(c, pooled=True), speed)
-    sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
+    sound = curves.converged & np.isfinite(cw) & (cw > 0) & tows.trusted
     sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
-    calibrated = steps.calibration.rule == GPS
+    calibrated = c.plan.option("calibration.rule") == "gps_per_tow"
     gps, gps_sd, has_gps = _gps_ratio(c)
     own_sd, q = files_log_sd(c), safe_r / (1.0 - safe_r)
     by_log = (2.0 + 2.0 * q, 2.0 * q * (1.0 + q))
@@ -142,22 +113,22 @@ def _rows(c: Computed, reference: pl.DataFrame, ln_factor: Mapping[str, float]) 
         "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
         + by_log[0] * by_log[1] * own_sd**2,
         "own_calibration_ln": np.where(c.calibrated, np.log(c.known_factor * y), np.nan),
-        "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
-        "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, own_sd), np.nan),
+        "gps_ln_ratio": np.where(has_gps & ~calibrated, gps, np.nan),
+        "gps_sd": np.where(has_gps & ~calibrated, np.hypot(gps_sd, own_sd), np.nan),
     }
     names = ("tow_id", *LINE, "altered", "declared_speed_m_s")
-    return batch.tows.select(
+    return tows.frame.select(
         *names,
         pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
-        _boat_type(batch.tows),
+        _boat_type(tows.frame),
         pl.col("tow_date").dt.ordinal_day().cast(pl.Float64).alias("day"),
         "season",
         pl.col("log1_part").alias("part"),
-        pl.lit(calibrated).alias("anchored"),
+        pl.Series("anchored", calibrated),
         pl.Series("temperature_known", c.temperature_known),
         pl.Series("water_off_c", c.water_off_c),
-        force_uncertainty(batch.tows).alias("force_sd"),
-        pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / true_speed),
+        force_uncertainty(tows.frame).alias("force_sd"),
+        pl.Series("reference_ratio", declared / true_speed),
         pl.Series("reference_ln", reference_ln),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
@@ -165,13 +136,13 @@ def _rows(c: Computed, reference: pl.DataFrame, ln_factor: Mapping[str, float]) 
 
 def _unmeasured_wind_kg_m(c: Computed) -> FloatArray:
     """Standard uncertainty of Cw by wind that nobody measured, shape (tows,); 0 where it was."""
-    still = c.batch.mean(c.still_air_kg_m, c.used)
-    return np.where(c.batch.measured("wind"), 0.0, still * c.expected_wind.sd)
+    still = c.tows.mean(c.still_air_kg_m, c.used)
+    return np.where(c.tows.measured("wind"), 0.0, still * c.expected_wind_sd)
 
 
 def _water_points(c: Computed) -> curve.Points:
     """Run points of the water alone: the still-air part does not scale with the log's error."""
-    water = c.batch.by_tow(c.cw_kg_m - c.still_air_kg_m)
+    water = c.tows.by_tow(c.cw_kg_m - c.still_air_kg_m)
     return curve.Points(c.points.speed_m_s, water, c.points.used & (water > 0))
 
 
@@ -183,22 +154,22 @@ def _boat_type(tows: pl.DataFrame) -> pl.Expr:
 def _gps_ratio(c: Computed) -> tuple[FloatArray, FloatArray, np.ndarray]:
     """Gives ln(GPS / log) of each tow with runs both ways, its random part, and where known.
 
-    The random part is the scatter of run ratios about their direction's mean, pooled over the
-    batch: one tow's six runs are too few.
+    The random part is the scatter of run ratios about their direction's mean, pooled over
+    the tows with the same steps: one tow's six runs are too few.
     """
-    batch, gps, log = c.batch, c.means.gps_m_s, c.means.speed_m_s
+    tows, gps, log, which = c.tows, c.means.gps_m_s, c.means.speed_m_s, c.plan.which
     used = c.used & np.isfinite(gps)
-    y, both = gps_factor(gps, log, batch.direction, batch.tow, used, batch.size)
+    y, both = gps_factor(gps, log, tows.direction, tows.tow, used, tows.size)
     ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
-    spread, count = 0.0, 0.0
-    for way in (1, -1):
-        mine = used & (batch.direction == way)
-        deviation = np.where(mine, ratio - batch.mean(ratio, mine)[batch.tow], 0.0)
-        spread += float((deviation**2).sum())
-        count += float(np.maximum(batch.count(mine) - 1, 0).sum())
-    run_sd = np.sqrt(spread / count) if count else 1.0
-    runs = np.maximum(batch.count(used), 1)
-    return np.log(np.where(both, y, 1.0)), run_sd / np.sqrt(runs), both
+    spread, count = np.zeros((2, len(c.plan.steps)))
+    for way in (OUT, BACK):
+        mine = used & (tows.direction == way)
+        deviation = np.where(mine, ratio - tows.mean(ratio, mine)[tows.tow], 0.0)
+        spread += np.bincount(which[tows.tow], deviation**2, len(spread))
+        count += np.bincount(which, np.maximum(tows.count(mine) - 1, 0), len(count))
+    run_sd = np.where(count > 0, np.sqrt(spread / np.maximum(count, 1)), 1.0)
+    runs = np.maximum(tows.count(used), 1)
+    return np.log(np.where(both, y, 1.0)), run_sd[which] / np.sqrt(runs), both
 
 
 def _with_calibrations(rows: pl.DataFrame) -> pl.DataFrame:

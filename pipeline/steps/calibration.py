@@ -9,7 +9,7 @@ samples is wrong by 0.5 % (docs/method-details.md, 4).
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
-from pipeline.blocks.batch import Batch
+from pipeline.blocks.tows import Tows
 from pipeline.channels import BACK, OUT
 
 
@@ -62,7 +62,7 @@ def gps_factor(
 
 
 def gps_factor_of_files(
-    batch: Batch, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray, steady: BoolArray
+    tows: Tows, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray, steady: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
     """The factor y of every file of a tow, and whether it could be determined.
 
@@ -80,13 +80,13 @@ def gps_factor_of_files(
     """
 
     def factor(of: IntArray, runs: BoolArray, count: int) -> tuple[FloatArray, BoolArray]:
-        return gps_factor(gps_m_s, log_m_s, batch.direction, of, runs, count)
+        return gps_factor(gps_m_s, log_m_s, tows.direction, of, runs, count)
 
-    files = 2 * batch.size
-    y, known = factor(batch.file, used, files)
-    of_all, known_of_all = factor(batch.file, steady, files)
-    of_tow, known_of_tow = factor(batch.tow, used, batch.size)
-    known_of_all &= np.repeat(batch.any(batch.in_second_file), 2)
+    files = 2 * tows.size
+    y, known = factor(tows.file, used, files)
+    of_all, known_of_all = factor(tows.file, steady, files)
+    of_tow, known_of_tow = factor(tows.tow, used, tows.size)
+    known_of_all &= np.repeat(tows.any(tows.in_second_file), 2)
     y = np.select([known, known_of_all], [y, of_all], np.repeat(of_tow, 2))
     known = known | known_of_all | np.repeat(known_of_tow, 2)
     return y.reshape(-1, 2), known.reshape(-1, 2)

@@ -13,11 +13,10 @@ from typing import Final
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import SUM_NAMES, RunBlocks, WindowSums
+from pipeline.blocks.tows import Tows
 from pipeline.hull import front_area_m2, side_area_m2
 from pipeline.method.constants import REFERENCE_WATER_C
-from pipeline.method.definition import RunPoint, Steps
 from pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from pipeline.steps.wind import (
     AirParts,
@@ -82,35 +81,39 @@ def window_means(blocks: RunBlocks, windows: Windows, averaging_s: int) -> dict[
 
 
 def run_means(
-    batch: Batch, windows: Windows, over: Mapping[str, FloatArray], steps: Steps
+    tows: Tows,
+    over: Mapping[str, FloatArray],
+    of_ratios: BoolArray,
+    oblique: BoolArray,
+    accelerated_kg: FloatArray,
 ) -> RunMeans:
     """Means of every run over its window.
 
     Args:
-        over: as `window_means` gives them.
-        steps: estimator, wind model and inertia of the method.
+        over: as `window_means` gives them, with `start_s` and `end_s` of the window, and `rise_m_s`
+            of the speed from its first to its last seconds.
+        of_ratios: the mean of F / v^2 is taken, else mean F over mean v squared, shape (runs,).
+        oblique: the oblique wind model holds, shape (runs,).
+        accelerated_kg: mass that the rise of the speed accelerated, shape (runs,); 0 leaves it in.
     """
     speed, ratio = over["log1_v"], over["log1_cw"]
     square = _or_one(speed) ** 2
-    of_ratios = steps.run_point.estimator == "mean_of_ratios"
 
-    def air_term(name: str) -> FloatArray:
-        return over[f"log1_{name}"] if of_ratios else over[name] / square
+    def term(name: str) -> FloatArray:
+        return np.where(of_ratios, over[f"log1_{name}"], over[name] / square)
 
-    seconds_apart = np.maximum(windows.end_s - windows.start_s - END_SECONDS, 1)
+    seconds_apart = np.maximum(over["end_s"] - over["start_s"] - END_SECONDS, 1)
     fixes = over["gps_n"]
     return RunMeans(
         speed_m_s=speed,
-        gross_kg_m=ratio if of_ratios else over["force"] / square,
+        gross_kg_m=np.where(of_ratios, ratio, over["force"] / square),
         sd_kg_m=np.sqrt(np.maximum(over["log1_cw2"] - ratio**2, 0.0)),
-        inertia_kg_m=_inertia(
-            batch, steps.run_point, windows.ends.speed_m_s / seconds_apart, square
-        ),
+        inertia_kg_m=accelerated_kg * (over["rise_m_s"] / seconds_apart) / square,
         air=air_parts(
-            steps.wind,
-            air_term,
-            front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m")),
-            side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m")),
+            oblique,
+            term,
+            front_area_m2(tows.of_run("beam_m"), tows.of_run("bow_height_m")),
+            side_area_m2(tows.of_run("waterline_length_m"), tows.of_run("bow_height_m")),
         ),
         gps_m_s=np.where(fixes > 0, over["gps"] / np.where(fixes > 0, fixes, 1.0), np.nan),
         log2_m_s=over["log2_v"],
@@ -119,27 +122,21 @@ def run_means(
     )
 
 
-def _inertia(
-    batch: Batch, rule: RunPoint, acceleration_m_s2: FloatArray, square_m2_s2: FloatArray
-) -> FloatArray:
-    """Part of F / v^2 that accelerates boat, crew and water: m_eff a / v^2.
+def accelerated_mass_kg(tows: Tows) -> FloatArray:
+    """Boat, crew and the water that moves with them, shape (runs,); 0 where no weight is known.
 
-    m_eff = (boat + crew) (1 + added mass); source: docs/method-details.md, 6. 0 where no weight is
-    known.
+    Source: docs/method-details.md, 6.
     """
-    if rule.inertia == "none":
-        return np.zeros_like(square_m2_s2)
-    mass = (1.0 + ADDED_MASS_RATIO) * np.nan_to_num(displaced_mass_kg(batch))[batch.tow]
-    return mass * acceleration_m_s2 / square_m2_s2
+    return (1.0 + ADDED_MASS_RATIO) * np.nan_to_num(displaced_mass_kg(tows))[tows.tow]
 
 
-def displaced_mass_kg(batch: Batch) -> FloatArray:
+def displaced_mass_kg(tows: Tows) -> FloatArray:
     """Boat and crew, shape (tows,), kg; NaN where a weight is not known."""
-    return batch.of_tow("weight_kg") + batch.of_tow("crew_weight_kg")
+    return tows.of_tow("weight_kg") + tows.of_tow("crew_weight_kg")
 
 
 def temperature_change_kg_m(
-    batch: Batch, steps: Steps, speed_m_s: FloatArray
+    tows: Tows, corrected: BoolArray, expected: BoolArray, speed_m_s: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
     """What brings Cw to the reference temperature: friction there minus friction as towed.
 
@@ -147,28 +144,26 @@ def temperature_change_kg_m(
     `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
 
     Args:
+        corrected: whether the method asks it, shape (tows,).
+        expected: whether the day's temperature is taken where nobody wrote it down, shape (tows,).
         speed_m_s: true speed of each run, shape (runs,).
 
     Returns:
         Change of Cw, shape (runs,), kg/m, 0 where temperature or weight is missing; and for which
-        tows both were recorded, shape (tows,). Where the steps expect a temperature that nobody
-        recorded, the change is that of `expected_water_c`.
+        tows both were recorded, shape (tows,).
     """
-    recorded = batch.of_tow("water_temperature_c")
-    mass = displaced_mass_kg(batch)
+    recorded = tows.of_tow("water_temperature_c")
+    mass = displaced_mass_kg(tows)
     known = np.isfinite(recorded) & np.isfinite(mass)
-    if steps.temperature.rule == "none":
-        return np.zeros_like(speed_m_s), known
-    temperature = recorded
-    if steps.expects_unrecorded:
-        temperature = np.where(known, recorded, batch.of_tow("expected_water_c"))
-    told = np.isfinite(temperature) & np.isfinite(mass)
+    day = np.where(expected, tows.of_tow("expected_water_c"), np.nan)
+    temperature = np.where(known, recorded, day)
+    told = corrected & np.isfinite(temperature) & np.isfinite(mass)
     celsius = np.where(told, temperature, REFERENCE_WATER_C)
-    length = batch.of_run("waterline_length_m")
-    surface = wetted_surface_m2(np.where(told, mass, 0.0)[batch.tow], length)
+    length = tows.of_run("waterline_length_m")
+    surface = wetted_surface_m2(np.where(told, mass, 0.0)[tows.tow], length)
     speed = _or_one(speed_m_s)
     at_reference, as_towed = (
-        friction_cw_kg_m(speed, length, surface, t) for t in (REFERENCE_WATER_C, celsius[batch.tow])
+        friction_cw_kg_m(speed, length, surface, t) for t in (REFERENCE_WATER_C, celsius[tows.tow])
     )
     return at_reference - as_towed, known
 

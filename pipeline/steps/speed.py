@@ -9,20 +9,24 @@ How a season's factor is estimated instead is in `pipeline.season_log`.
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pipeline.arrays import FloatArray
-from pipeline.method.definition import Speed
 
 LOG: Final = "log1"
 """The log in use: "De berekeningen worden gebaseerd op log1" (Sleepproef, R. Pot 2017)."""
 
 
 def log_factor(
-    speed: Speed, tow_list_ratio: FloatArray, estimated_factor: FloatArray
+    correction: ArrayLike,
+    factor: ArrayLike,
+    tow_list_ratio: FloatArray,
+    estimated_factor: FloatArray,
 ) -> FloatArray:
     """True speed / log speed for each tow.
 
     Args:
+        correction, factor: options of the method, of each tow or of all.
         tow_list_ratio: correction of the tow list as a ratio (0.06 for 6 %), NaN where the list
             gives none, shape (tows,).
         estimated_factor: factor estimated for the tow's season and log, NaN where there is none,
@@ -32,9 +36,7 @@ def log_factor(
         Factor of shape (tows,): 1 + the ratio of the tow list, or the prescribed factor. Where an
         estimate is asked for and there is none, the same.
     """
-    if speed.correction == "none":
-        return np.ones(len(tow_list_ratio))
-    prescribed = np.where(np.isnan(tow_list_ratio), speed.factor, 1.0 + tow_list_ratio)
-    if speed.correction == "prescribed":
-        return np.asarray(prescribed, dtype=np.float64)
-    return np.where(np.isnan(estimated_factor), prescribed, estimated_factor)
+    asked = np.asarray(correction)
+    prescribed = np.where(np.isnan(tow_list_ratio), factor, 1.0 + tow_list_ratio)
+    estimated = np.where(np.isnan(estimated_factor), prescribed, estimated_factor)
+    return np.select([asked == "none", asked == "prescribed"], [1.0, prescribed], estimated)

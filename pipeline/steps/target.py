@@ -10,11 +10,11 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.blocks.batch import Batch
+from pipeline.blocks.tows import Tows
 
 
 def above_target(
-    batch: Batch, log_m_s: FloatArray, runs: BoolArray, highest_ratio: float
+    tows: Tows, log_m_s: FloatArray, runs: BoolArray, highest_ratio: FloatArray | float
 ) -> BoolArray:
     """Runs faster than `highest_ratio` of the declared speed, on the scale of the tow's own runs.
 
@@ -26,13 +26,13 @@ def above_target(
     Args:
         log_m_s: mean speed of each run as read, shape (runs,).
         runs: runs that take part, shape (runs,).
-        highest_ratio: limit of speed / declared speed.
+        highest_ratio: limit of speed / declared speed, of each run or of all.
     """
-    speed = np.where(runs & (log_m_s > 0), log_m_s / batch.of_run("declared_speed_m_s"), np.nan)
+    speed = np.where(runs & (log_m_s > 0), log_m_s / tows.of_run("declared_speed_m_s"), np.nan)
     ratios = pl.DataFrame(
-        {"tow": batch.tow, "intended": batch.target_speed_ratio, "speed": speed}, nan_to_null=True
-    )
+        {"tow": tows.tow, "intended": tows.target_speed_ratio, "speed": speed}, nan_to_null=True
+    ).with_columns(highest=highest_ratio)
     level = (pl.col("speed") / pl.col("intended")).quantile(0.5, "lower").over("tow")
     of_pair = pl.col("speed").min().over("tow", "intended")
-    too_fast = pl.col("speed").is_not_null() & (of_pair > highest_ratio * level)
+    too_fast = pl.col("speed").is_not_null() & (of_pair > pl.col("highest") * level)
     return ratios.select(too_fast.fill_null(False)).to_series().to_numpy()

@@ -12,10 +12,9 @@ from typing import Final
 
 import numpy as np
 
-from pipeline.arrays import FloatArray, OnDemand
+from pipeline.arrays import BoolArray, FloatArray, OnDemand
 from pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks
 from pipeline.hull import AIR_DENSITY_KG_M3
-from pipeline.method.definition import Wind
 
 PER_RUN_BOUNDS: Final = (0.0, 1.0)
 """Between which the old tool searched, run by run (presentation 2015, "Tegenwind en
@@ -37,7 +36,7 @@ class AirParts:
     behind: FloatArray
     side: FloatArray
 
-    def total(self, ahead: FloatArray, behind: FloatArray, side: float) -> FloatArray:
+    def total(self, ahead: FloatArray, behind: FloatArray, side: FloatArray | float) -> FloatArray:
         """The air part for given coefficients, shape (runs,), kg/m."""
         return ahead * self.ahead + behind * self.behind + side * self.side
 
@@ -47,7 +46,7 @@ class AirParts:
 
 
 def air_parts(
-    wind: Wind,
+    oblique: BoolArray,
     term: Callable[[str], FloatArray],
     front_area_m2: FloatArray,
     side_area_m2: FloatArray,
@@ -59,14 +58,16 @@ def air_parts(
       ("Dwarse tegenwind")
 
     Args:
+        oblique: whether the second holds, else the first, shape (runs,).
         term: gives the mean over the window of a term of `AIR_SUMS` / v^2, shape (runs,).
         front_area_m2, side_area_m2: shape (runs,).
     """
     front = 0.5 * AIR_DENSITY_KG_M3 * front_area_m2
-    if wind.model == "head":
-        return AirParts(front * term("head_ahead"), front * term("head_behind"), 0.0 * front)
     side = 0.5 * AIR_DENSITY_KG_M3 * side_area_m2
-    return AirParts(front * term("front_ahead"), front * term("front_behind"), side * term("side"))
+    ahead, behind = (
+        np.where(oblique, term(f"front_{way}"), term(f"head_{way}")) for way in ("ahead", "behind")
+    )
+    return AirParts(front * ahead, front * behind, np.where(oblique, side * term("side"), 0.0))
 
 
 def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]:

@@ -11,7 +11,7 @@ its limit, the window says. A window that a person gave goes before the one that
 
 from dataclasses import dataclass
 from itertools import compress
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import scipy
@@ -85,6 +85,18 @@ class Windows:
     exists: BoolArray
     reasons: tuple[str, ...]
     ends: "Ends"
+
+    @property
+    def of_runs(self) -> dict[str, Any]:
+        """What a method keeps of them, (runs,) each: all but the mask."""
+        return {
+            "start_s": self.start_s,
+            "end_s": self.end_s,
+            "exists": self.exists,
+            "cut_reason": np.array(self.reasons, dtype=np.str_),
+            "ends_ratio": self.ends.in_limits,
+            "rise_m_s": self.ends.speed_m_s,
+        }
 
 
 @dataclass(frozen=True)

@@ -11,16 +11,16 @@ from typing import Final
 import numpy as np
 import polars as pl
 
-from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.method.definition import Method, Steps
+from pipeline.method.definition import Method
 from pipeline.recompute.computed import Computed
-from pipeline.recompute.recompute import batches, evaluate, season_factors
+from pipeline.recompute.plan import Plan
+from pipeline.recompute.recompute import evaluate, season_factors
 from pipeline.recompute.run_cache import RunCache
-from pipeline.recompute.season_factors import is_estimated
 
 STEP_ORDER: Final = (
     "speed",
+    "force",
     "window",
     "runs",
     "calibration",
@@ -59,43 +59,46 @@ def ladder(
         Sorted rows `tow_id`, `position` (0 is the start), `step`, `factor` (Cw after / before the
         step; 1 at the start) and `cw_kg_m` (after it). The factors of a tow multiply to its total.
     """
-    pairs = batches([from_method, to_method], tows, blocks)
+    old, new = (Plan.of(method, tows, blocks) for method in (from_method, to_method))
     cache = RunCache() if cache is None else cache
-    of_old, of_new = links or (
-        _instruments([(batch, steps[end]) for batch, steps in pairs], cache) for end in (0, 1)
-    )
-    rungs: list[list[Computed]] = []
-    mixed: list[Steps] = []
+    of_old, of_new = links or (_instruments(plan, cache) for plan in (old, new))
+    rungs: list[Computed] = []
     for count in range(len(STEP_ORDER) + 1):
-        before, mixed = mixed, [_mixed(old, new, count) for _, (old, new) in pairs]
-        if count > 1 and mixed == before:  # both methods have this step alike
+        plan = _mixed(old, new, count)
+        if count > 1 and plan.steps == rungs[-1].plan.steps:  # both methods have this step alike
             rungs.append(rungs[-1])
-            continue
-        plans = [(batch, steps) for (batch, _), steps in zip(pairs, mixed, strict=True)]
-        rungs.append(evaluate(plans, cache, of_new if count else of_old))
-    parts = [_rungs_of_batch(list(computed)) for computed in zip(*rungs, strict=True)]
-    return pl.concat(parts).sort("tow_id", "position")
+        else:
+            rungs.append(evaluate(plan, cache, of_new if count else of_old))
+    return _with_factors(rungs).sort("tow_id", "position")
 
 
-def _instruments(plans: list[tuple[Batch, Steps]], cache: RunCache) -> pl.DataFrame | None:
-    asked = any(is_estimated(steps) for _, steps in plans)
-    estimated = season_factors(plans, cache) if asked else None
+def _instruments(plan: Plan, cache: RunCache) -> pl.DataFrame | None:
+    asked = any(steps.speed.correction == "estimated" for steps in plan.steps)
+    estimated = season_factors(plan, cache) if asked else None
     return None if estimated is None else estimated.tows
 
 
-def _mixed(old: Steps, new: Steps, count: int) -> Steps:
-    """The old steps with the first `count` of `STEP_ORDER` taken from the new."""
-    return old.model_copy(update={step: getattr(new, step) for step in STEP_ORDER[:count]})
+def _mixed(old: Plan, new: Plan, count: int) -> Plan:
+    """The old steps of each tow with the first `count` of `STEP_ORDER` taken from the new."""
+    pairs, which = np.unique([old.which, new.which], axis=1, return_inverse=True)
+    steps = tuple(
+        old.steps[before].model_copy(
+            update={step: getattr(new.steps[after], step) for step in STEP_ORDER[:count]}
+        )
+        for before, after in pairs.T.tolist()
+    )
+    return Plan(old.tows, steps, which.ravel())
 
 
-def _rungs_of_batch(computed: list[Computed]) -> pl.DataFrame:
-    cw = np.stack([one.cw_at_declared for one in computed])
+def _with_factors(rungs: list[Computed]) -> pl.DataFrame:
+    """What each rung makes of every tow, and its factor on the one before."""
+    cw = np.stack([one.cw_at_declared for one in rungs])
     sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
     for rung in range(1, len(cw)):
         cw[rung] = np.where(np.isfinite(cw[rung]), cw[rung], cw[rung - 1])
     cw_known = cw[:, sound]
     factor = np.vstack([np.ones(cw_known.shape[1]), cw_known[1:] / cw_known[:-1]])
-    tow_ids = computed[0].batch.tows["tow_id"].filter(pl.Series(sound))
+    tow_ids = rungs[0].tows.frame["tow_id"].filter(pl.Series(sound))
     steps = (START, *STEP_ORDER)
     return pl.DataFrame(
         {

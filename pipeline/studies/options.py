@@ -9,17 +9,19 @@ combinations; here are all.
 
 import itertools
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import polars as pl
 
 from pipeline import curve
-from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.hull import hull_speed_m_s
 from pipeline.method.definition import Method, Steps
 from pipeline.recompute.computed import Computed
-from pipeline.recompute.recompute import batches, evaluate
+from pipeline.recompute.plan import Plan
+from pipeline.recompute.recompute import evaluate
 from pipeline.recompute.run_cache import RunCache
 
 FACTOR: Final = "speed.factor"
@@ -71,21 +73,20 @@ def option_effects(
         `cw_effect_ratio` (second value / first value, mean over all combinations of the others). A
         tow that one of the combinations leaves without a curve has no rows.
     """
-    plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
-    prescribed = [batch for batch, steps in plans if steps.speed.correction == "prescribed"]
-    names = [name for name in CHOICES if name != FACTOR or prescribed]
+    plan = Plan.of(method, tows, blocks)
+    can = pl.Series(plan.option("speed.correction") == "prescribed")
+    names = [name for name in CHOICES if name != FACTOR or can.any()]
     crossed = {name: (name, CHOICES[name]) for name in names if name != B}
-    capped = [(batch, chosen(steps, {B: "capped"})) for batch, steps in plans]
+    capped = plan.changed(lambda steps: chosen(steps, {B: "capped"}))
     frames = [
         _curves(one, of_b).with_columns(_flags(flags | {B: of_b is one.free}))
-        for flags, computed in _combinations(capped, crossed, links, cache)
-        for one in computed
+        for flags, one in _combinations(capped, crossed, links, cache)
         for of_b in (one.curves, one.free)
     ]
     whole = _whole(pl.concat(frames), ["tow_id"], len(names))
-    can = pl.concat([batch.tows["tow_id"] for batch in prescribed] or [pl.Series(dtype=pl.String)])
+    prescribed = plan.tows.frame["tow_id"].filter(can)
     effects = [
-        _effect(whole.filter(pl.col("tow_id").is_in(can.implode()) | (name != FACTOR)), name)
+        _effect(whole.filter(pl.col("tow_id").is_in(prescribed.implode()) | (name != FACTOR)), name)
         for name in names
     ]
     return pl.concat(effects).sort("tow_id", "option")
@@ -104,16 +105,16 @@ def option_curves(
         `a_kg_m, b_m_s` (null where resistance does not rise) and `cw_kg_m` at the declared speed;
         combinations that give no curve are left out.
     """
-    pairs = batches([method], tows, blocks)
-    read = [(speed, batch, way) for batch, (steps,) in pairs for speed, way in speeds(steps)]
-    plans = [(batch, way) for _, batch, way in read]
+    plan = Plan.of(method, tows, blocks)
     crossed = {name: choice for name, choice in TICKS.items() if name != B_FROM_LENGTH}
     frames = [
-        _curves(one, of_b).with_columns(
+        _curves(one, of_b)
+        .filter(pl.col("tow_id").is_in(there.implode()))
+        .with_columns(
             pl.lit(speed).alias("speed"), *_flags(flags | {B_FROM_LENGTH: of_b is not one.free})
         )
-        for flags, computed in _combinations(plans, crossed, links, cache)
-        for (speed, *_), one in zip(read, computed, strict=True)
+        for speed, there, way in _speeds(plan)
+        for flags, one in _combinations(way, crossed, links, cache)
         for of_b in (one.free, _from_length(one))
     ]
     key = ["tow_id", "speed", *TICKS]
@@ -139,18 +140,29 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
     return pl.concat([*ticks, *pairs]).sort("tow_id", "option")
 
 
-def speeds(steps: Steps) -> Iterator[tuple[str, Steps]]:
+def _speeds(plan: Plan) -> Iterator[tuple[str, pl.Series, Plan]]:
+    """Every speed, the tows that have it, and a plan under which these do."""
+    ways = [_speeds_of(steps) for steps in plan.steps]
+    for speed in (AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED):
+        there = plan.tows.frame["tow_id"].filter([speed in ways[one] for one in plan.which])
+        if there.len():
+            steps = tuple(way.get(speed, way[AS_READ]) for way in ways)
+            yield speed, there, replace(plan, steps=steps)
+
+
+def _speeds_of(steps: Steps) -> dict[str, Steps]:
     """The log as it reads, and each way in which a season's method makes a true speed of it."""
     as_read, no_gps = {"speed.correction": "none"}, {"calibration.rule": "none"}
-    yield AS_READ, chosen(steps, as_read | no_gps)
+    ways = {AS_READ: chosen(steps, as_read | no_gps)}
     if steps.calibration.rule != "none":
-        yield DGPS, chosen(steps, as_read)
+        ways[DGPS] = chosen(steps, as_read)
     if steps.speed.correction == "estimated":
-        yield ESTIMATED, steps
+        ways[ESTIMATED] = steps
     if steps.speed.correction == "prescribed":
         # Multiply by 1 + p, or divide by 1 - p.
-        yield MULTIPLY, chosen(steps, no_gps)
-        yield DIVIDE, chosen(steps, no_gps | {FACTOR: 1.0 / (2.0 - steps.speed.factor)})
+        ways[MULTIPLY] = chosen(steps, no_gps)
+        ways[DIVIDE] = chosen(steps, no_gps | {FACTOR: 1.0 / (2.0 - steps.speed.factor)})
+    return ways
 
 
 def chosen(steps: Steps, values: Mapping[str, object]) -> Steps:
@@ -162,26 +174,22 @@ def chosen(steps: Steps, values: Mapping[str, object]) -> Steps:
     return steps
 
 
-Plans = list[tuple[Batch, Steps]]
-"""Batches with their steps."""
-
-
 def _combinations(
-    plans: Plans,
+    plan: Plan,
     crossed: Mapping[str, tuple[str, tuple[object, object]]],
     links: pl.DataFrame,
     cache: RunCache,
-) -> Iterator[tuple[dict[str, bool], list[Computed]]]:
+) -> Iterator[tuple[dict[str, bool], Computed]]:
     """All combinations of choices: which are on, and what comes of them."""
     for corner in itertools.product((False, True), repeat=len(crossed)):
         flags = dict(zip(crossed, corner, strict=True))
         values = {crossed[name][0]: crossed[name][1][on] for name, on in flags.items()}
-        yield flags, evaluate([(batch, chosen(one, values)) for batch, one in plans], cache, links)
+        yield flags, evaluate(plan.changed(partial(chosen, values=values)), cache, links)
 
 
 def _from_length(computed: Computed) -> curve.Curves:
     """The curves whose B is hull speed."""
-    hull = hull_speed_m_s(computed.batch.of_tow("waterline_length_m"))
+    hull = hull_speed_m_s(computed.tows.of_tow("waterline_length_m"))
     return curve.fit_given_b(computed.points, hull)
 
 
@@ -189,7 +197,7 @@ def _curves(computed: Computed, curves: curve.Curves) -> pl.DataFrame:
     cw = computed.cw_at(1.0, curves)
     frame = pl.DataFrame(
         {
-            "tow_id": computed.batch.tows["tow_id"],
+            "tow_id": computed.tows.frame["tow_id"],
             "a_kg_m": curves.a_kg_m,
             "b_m_s": curves.b_m_s,
             "cw_kg_m": cw,

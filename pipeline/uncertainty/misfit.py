@@ -49,8 +49,9 @@ class Departure(NamedTuple):
         direction: FloatArray,
         target: FloatArray,
         asked: FloatArray,
+        alike: IntArray | None = None,
     ) -> Self:
-        """Departures of tows that share their scatter.
+        """Departures of tows by their own points.
 
         Args:
             residual_ratio: (point - curve) / curve, (tows, points), as the next four.
@@ -59,6 +60,7 @@ class Departure(NamedTuple):
             direction: 1 out, -1 back.
             target: intended speed / declared speed.
             asked: speeds / declared speed at which to tell, (speeds,).
+            alike: (tows,) the same for tows that share their scatter; all, when left out.
         """
         shape = (len(used), len(asked))
         ratio, variance = np.zeros(shape), np.full(shape, np.inf)
@@ -70,12 +72,15 @@ class Departure(NamedTuple):
             inverse = np.linalg.inv(np.swapaxes(design, 1, 2) @ design)
             parabola = np.einsum("tij,tpj,tp->ti", inverse, design, e)
             rest = e - np.einsum("tpj,tj->tp", design, parabola)
-            scatter = (rest**2).sum() / (weight.sum() - SHAPE * tells.sum())
-            if scatter > ROUNDING:
-                at = asked - 1.0
-                along = np.stack([np.ones_like(at), at, at**2, np.zeros_like(at)], axis=1)
-                ratio[tells] = parabola @ along.T
-                variance[tells] = scatter * np.einsum("sj,tjk,sk->ts", along, inverse, along)
+            group = np.zeros(len(rest), np.int64) if alike is None else alike[tells]
+            spare = np.bincount(group, weight.sum(axis=1) - SHAPE)[group]
+            scatter = (np.bincount(group, (rest**2).sum(axis=1))[group] / spare)[:, None]
+            at = asked - 1.0
+            along = np.stack([np.ones_like(at), at, at**2, np.zeros_like(at)], axis=1)
+            known = scatter > ROUNDING
+            of_scatter = scatter * np.einsum("sj,tjk,sk->ts", along, inverse, along)
+            ratio[tells] = np.where(known, parabola @ along.T, 0.0)
+            variance[tells] = np.where(known, of_scatter, np.inf)
         return cls(ratio, variance)
 
 

@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import polars as pl
 
-from pipeline.arrays import BoolArray, FloatArray
+from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.quantiles import t_quantile
 from pipeline.steps.speed import LOG
 
@@ -24,7 +24,7 @@ CURVE_PARAMETERS: Final = 2
 
 
 def residual_scatter(
-    residual_ratio: FloatArray, used: BoolArray, season: FloatArray
+    residual_ratio: FloatArray, used: BoolArray, season: FloatArray | IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
@@ -33,7 +33,7 @@ def residual_scatter(
     Args:
         residual_ratio: (point - curve) / curve, shape (tows, points).
         used: points that count, same shape.
-        season: season of each tow, shape (tows,).
+        season: the same for tows of one season, shape (tows,).
 
     Returns:
         Standard deviation and degrees of freedom for each tow's season, shape (tows,); infinite

@@ -12,7 +12,7 @@ from dashboards.report import Check, headlines
 from pipeline.messages import speaker
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
-from tests.warehouse.test_faults import Archive, cells, line_of, times
+from tests.warehouse.edition_bench import EditionBench
 from warehouse.queries.change_report import (
     change_report,
     reported_path,
@@ -26,21 +26,13 @@ def latest(bench):
     return json.loads((bench.data / "report" / "latest.json").read_text("utf-8"))
 
 
-STRONGER = 1.05
-
-
-def with_more_force(bench, tow):
-    """Rewrites the force column of a tow's samples; every Cw of that tow moves as much."""
-    archive = Archive(bench.archive, bench)
-    archive.samples(tow, cells(3, times(STRONGER), 2, line_of(7)))
-
-
 def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     file = samples_files(bench, 2009)[3]
     gone, kept = tow_of(bench, file), spoil(file)
     register = built.table("register").filter(pl.col("tow_id").str.starts_with("2009"))
     stronger = register.filter(pl.col("tow_id") != gone).row(0, named=True)
-    with_more_force(bench, stronger["tow_id"])
+    listed = bench.store.read("listed_tows").filter(tow_id=stronger["tow_id"])
+    EditionBench(bench.archive, bench.data).stretch_force(listed["samples_path"].item(), 1.05)
     report = bench.rebuild(page=True)
     assert latest(bench)["headlines"] == report.headlines
     assert {(row["tow_id"], row["what"]) for row in report.tows} == {
@@ -56,7 +48,7 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
         (stronger["fsn_no"], f"concept-{method}") for method in METHODS
     ]
     for line in changed:
-        assert line["cw_ratio"] == pytest.approx(STRONGER, abs=0.02)
+        assert line["cw_ratio"] == pytest.approx(1.05, abs=0.02)
         (cause,) = json.loads(line["causes"])
         assert (cause["cause"], cause["factor"]) == ("input", pytest.approx(line["cw_ratio"]))
     page = (bench.data / "report" / "latest.html").read_text("utf-8").replace('"', "")

@@ -10,7 +10,6 @@ import pytest
 from dashboards import drawn
 from dashboards.figures import FIGURES
 from dashboards.labels import code
-from dashboards.site.charts import specification
 from pipeline.messages import speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})
@@ -61,7 +60,7 @@ def bare(spec):
 
 
 def svg(name, frame):
-    return drawn.svg(FIGURES[name](frame, speaker("nl")).to_dict(), "nl")
+    return drawn.svg(drawn.specification(name, "nl"), frame, "nl")
 
 
 def test_a_boat_far_from_the_others_does_not_pull_the_scale():
@@ -110,7 +109,7 @@ def test_a_method_of_one_s_own_is_drawn_and_changes_no_other_s_colour():
 
 @pytest.mark.parametrize("name", ["history", "resistance_curve"])
 def test_a_bar_that_leaves_the_log_out_is_dashed(name):
-    text = json.dumps(specification(FIGURES[name], speaker("nl")))
+    text = json.dumps(drawn.specification(name, "nl"))
     assert "datum.interval == 'runs_alone'" in text
 
 

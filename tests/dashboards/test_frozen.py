@@ -23,8 +23,7 @@ def shown(store):
             answer.line.update(dict.fromkeys(OF_TODAY))
         english = Speech("en")
         pages = [
-            [*(one(english) for one in answer.statements), answer.waterfall(english)]
-            for answer in answers
+            [*(one(english) for one in answer.statements), *answer.waterfall] for answer in answers
         ]
         paper = certificate.certificates(views, EDITION, None, "en", certificate.Issued(DAY))
     return pages, register_report(store, EDITION), paper

@@ -28,6 +28,7 @@ def herijk(monkeypatch, capsys):
 
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", ["herijk", *map(str, arguments)])
+        monkeypatch.setattr(sys.modules["__main__"], "__package__", "")  # not `python -m pytest`
         capsys.readouterr()
         with pytest.raises(SystemExit) as stopped:
             main()

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.blocks.tows import Tows
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.steps.calibration import gps_factor, gps_factor_of_files
 
@@ -18,11 +18,11 @@ LOG = np.array([2.0, 2.2, 2.4, 2.0, 2.2, 2.4])
 NUMBER = np.arange(1, 7)
 
 
-def batch_of(number: np.ndarray = NUMBER, way: np.ndarray = WAY) -> Batch:
+def batch_of(number: np.ndarray = NUMBER, way: np.ndarray = WAY) -> Tows:
     """One tow with runs of these numbers and directions."""
     runs = pl.DataFrame({"run": number, "direction": way})
     blocks = RunBlocks(runs, np.ones((len(way), 1)), {})
-    return Batch(pl.DataFrame({"tow_id": ["a"]}), blocks, np.zeros(len(way), dtype=np.int64))
+    return Tows(pl.DataFrame({"tow_id": ["a"]}), blocks, np.zeros(len(way), dtype=np.int64))
 
 
 @given(y=st.floats(0.9, 1.1), stream=st.floats(-0.3, 0.3), lost=st.sampled_from([None, 2, 3]))

@@ -208,6 +208,16 @@ def test_hull_speed_is_that_of_the_truth():
     assert row["b_is_hull_speed"] is False
 
 
+@pytest.mark.parametrize(("middle", "is_hull_speed"), [(1.0, True), (1.06, False), (0.94, False)])
+def test_b_is_hull_speed_where_the_interval_of_its_median_holds_1(middle, is_hull_speed):
+    found = compared_tows(observe(*fleet(19, boats=12, noise=0.002)))
+    ratio = pl.col("b_hull_ratio")
+    moved = found.with_columns(ratio * middle / ratio.median())
+    row = hull_speed_statistics(moved).filter(boat_type="all").row(0, named=True)
+    assert row["b_is_hull_speed"] is is_hull_speed
+    assert (row["b_share_within_5pct"] > 0.9) is is_hull_speed
+
+
 # Repeats
 
 

@@ -76,6 +76,12 @@ def test_a_percentage_of_the_tow_list_goes_before_that_of_the_season(clean):
     assert error(unused, clean).min() > 0.08
 
 
+def test_a_load_cell_that_reads_too_much(clean):
+    too_much = Defects(force_scale=1.04)
+    assert error(cw_of(too_much), clean).min() > 0.039
+    assert error(cw_of(too_much, force="{ ratio = 1.04 }"), clean).max() < EXACT
+
+
 def test_oblique_wind(clean):
     windy = Defects(wind_m_s=5.0, wind_turbulence=0.25)
     assert error(cw_of(windy), clean).max() > 0.1

@@ -176,6 +176,7 @@ def test_extending_gives_the_hash_of_the_same_written_out():
 
 OTHER_RESULT = {
     "speed": '{ correction = "prescribed" }',
+    "force": "{ ratio = 1.04 }",
     "calibration": '{ rule = "gps_per_tow" }',
     "window": '{ rule = "steady" }',
     "wind": '{ model = "head", ahead = 0.50001 }',

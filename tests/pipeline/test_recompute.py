@@ -10,9 +10,9 @@ import pytest
 from polars.testing import assert_frame_equal
 
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
-from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
+from pipeline.blocks.tows import Tows
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.facts import with_expected_water
 from pipeline.recompute.recompute import recompute
@@ -213,7 +213,7 @@ def test_a_curve_needs_four_runs_and_both_ways(measured, left_out, status):
 
 @pytest.mark.parametrize(("out", "dropped"), [(1.1495, False), (1.155, True)])
 def test_runs_out_and_back_stay_or_go_together(measured, out, dropped):
-    batch = Batch.of(measured.tows, measured.blocks)
+    batch = Tows.of(measured.tows, measured.blocks)
     intended = batch.of_run("declared_speed_m_s") * batch.target_speed_ratio
     top = batch.target_speed_ratio == 1.1
     towed = np.where(batch.direction > 0, out, 1.1608) / 1.1

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from pipeline.blocks.run_blocks import RunBlocks, WindowSums, stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
-from pipeline.method.definition import Wind
 from pipeline.steps.wind import AirParts, air_parts, averaged_terms, nearest_coefficients
 
 FRONT, SIDE = np.array([3.26]), np.array([9.0])
@@ -30,8 +29,8 @@ def blocks_of(wind_m_s, angle_deg, seconds=4, rate_hz=5) -> RunBlocks:
 
 
 def parts(blocks: RunBlocks, model: str) -> AirParts:
-    everything = WindowSums(blocks, blocks.n > 0)
-    return air_parts(Wind(model=model), lambda name: everything.mean(f"log1_{name}"), FRONT, SIDE)
+    mean = WindowSums(blocks, blocks.n > 0).mean
+    return air_parts(np.array([model == "oblique"]), lambda n: mean(f"log1_{n}"), FRONT, SIDE)
 
 
 @given(wind=st.floats(0.1, 12.0), angle=st.floats(0.0, 359.9))

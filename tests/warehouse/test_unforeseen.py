@@ -17,7 +17,7 @@ import pipeline
 import warehouse.archive
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from pipeline.blocks.batch import Batch
+from pipeline.blocks.tows import Tows
 from pipeline.recompute.computed import Computed
 from tests.architecture.repository import PACKAGES
 from tests.conftest import METHODS, Workbench, shared
@@ -35,9 +35,9 @@ def tows_in(value):
     if isinstance(value, pl.DataFrame):
         return "tow_id" in value.columns and TOW in value["tow_id"]
     if isinstance(value, Computed):
-        return tows_in(value.batch)
-    if isinstance(value, Batch):
         return tows_in(value.tows)
+    if isinstance(value, Tows):
+        return tows_in(value.frame)
     if isinstance(value, dict):
         return value.get("tow_id") == TOW
     if isinstance(value, Judgement):

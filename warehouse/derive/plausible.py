@@ -15,8 +15,8 @@ from typing import Final
 import polars as pl
 
 from pipeline.assessment.plausibility import TURNED, Shift, plausibility
-from pipeline.blocks.batch import Batch
 from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.blocks.tows import Tows
 from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.lake import Faults
@@ -44,7 +44,7 @@ def judge(tows: pl.DataFrame, blocks: RunBlocks) -> tuple[Shift, ...]:
     """
     if tows.is_empty():
         return ()
-    return plausibility(Batch.of(tows, blocks))
+    return plausibility(Tows.of(tows, blocks))
 
 
 def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:

@@ -15,7 +15,6 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.method.definition import Method
 from pipeline.register.register import LINE, valid_until
-from pipeline.steps.speed import log_factor
 from warehouse.editions.inputs import INPUTS_HASH
 from warehouse.store.editions import Edition
 from warehouse.store.store import Store, fingerprint
@@ -142,5 +141,4 @@ def _season_factor(season: int, known: dict[int, float], method: Method) -> floa
         return 1.0  # the method says nothing about it, so the line stays as printed
     if steps.calibration.rule != "none":
         return 1.0
-    unknown = np.array([np.nan])
-    return known.get(season, float(log_factor(steps.speed, unknown, unknown)[0]))
+    return known.get(season, steps.speed.prescribed)

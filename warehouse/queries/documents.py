@@ -1,6 +1,5 @@
 """What printed documents say: the lines of certificates, and a proposal against what counts now."""
 
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -20,7 +19,6 @@ from warehouse.store.editions import edition_names, read_edition
 
 CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64())
 OF_EDITION: Final = ("decision", "valid_from", "published_on", "code_version")
-Curve = Sequence[tuple[float, float, float]]
 SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
 """Speeds of the power table, as parts of the declared speed: where the curve holds."""
 
@@ -83,15 +81,10 @@ def _lines(views: Views, edition: str) -> pl.DataFrame:
     return lines.join(held, on=LINE, how="left", maintain_order="left")
 
 
-def curve_of(line: Row) -> Curve:
-    """The curve that the A and B of a line give: speed [m/s], Cw [kg/m], power per rower [W].
-
-    Nothing where the line has no curve.
-    """
-    if line["cw_kg_m"] is None:
-        return []
+def curve_of(line: Row) -> pl.DataFrame:
+    """The curve that the A and B of a line give: `speed_m_s`, `cw_kg_m` and `power_w` per rower."""
     speed = np.array(SPEEDS) * line["declared_speed_m_s"]
     a, s = curve_of_lines(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))
     resistance = cw(a, s, speed)
     power = power_per_rower_w(resistance, speed, np.full(speed.shape, line["rowers"]))
-    return list(zip(speed.tolist(), resistance.tolist(), power.tolist(), strict=True))
+    return pl.DataFrame({"speed_m_s": speed, "cw_kg_m": resistance, "power_w": power})

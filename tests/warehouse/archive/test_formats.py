@@ -2,10 +2,12 @@
 
 import gzip
 import io
+import re
 import unicodedata
 import zipfile
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from xml.sax.saxutils import escape
 
@@ -16,7 +18,7 @@ import xlsxwriter
 from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
 from pipeline.errors import DefectiveInputError
-from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, TOWS, Archive, Scan
+from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
 from warehouse.archive import SeasonProfile
 from warehouse.archive.samples.file import read_samples
 
@@ -208,13 +210,149 @@ def in_words(archive: Archive) -> None:
     archive.replace(BOATS, "8,08;2,25", "808 cm;225 cm")
 
 
+def units_below(archive: Archive) -> None:
+    """Names in one row, units in the next, in lists and samples."""
+    archive.replace(FIRST, HEADER, "run;log1;log2;gps;kracht;wind;windvaan\n-;m/s;m/s;m/s;N;m/s;°")
+    archive.replace(TOWS, "roeisnelheid [m/s]", "roeisnelheid")
+    archive.edit(TOWS, lambda t: t.replace("\n", f"\n{';' * 7}m/s{';' * 12}\n", 1))
+
+
+def a_sheet_a_year(archive: Archive) -> None:
+    """One workbook for all years, with a sheet that is about something else."""
+    header, *rows = cells_of(archive, TOWS)
+    book = xlsxwriter.Workbook(str(archive.root / "sleeplijsten/sleeplijst.xlsx"))
+    book.add_worksheet("Toelichting").write(0, 0, "Van de commissie")
+    for name, kept in (("a", rows[:2]), ("b", rows[2:])):
+        sheet = book.add_worksheet(name)
+        sheet.write_row(0, 0, header)
+        for place, row in enumerate(kept, start=1):
+            sheet.write_row(place, 0, row)
+    book.close()
+    (archive.root / TOWS).unlink()
+
+
+def runs_in_a_folder(archive: Archive) -> None:
+    """A folder for a tow, in which a file is named after its run alone."""
+    header, *lines = (archive.root / FIRST).read_text("utf-8").splitlines()
+    folder = archive.root / FIRST.removesuffix(".csv")
+    folder.mkdir()
+    for run in "123456":
+        own = [line for line in lines if line.startswith(run)]
+        (folder / f"vaart {run}.csv").write_text("\n".join([header, *own, ""]))
+    (archive.root / FIRST).unlink()
+
+
+def thousands(archive: Archive) -> None:
+    """Marks between thousands, where a number can mean nothing else."""
+    for old, new in (
+        (";1400;1405;", ";1.400,00;1 405;"),
+        (";864;870;1140;", ";864,0;870;1.140,0;"),
+    ):
+        archive.replace(TOWS, old, new)
+    archive.replace(BOATS, ";1417;", ";1.417 kg;")
+
+
+def days_as_numbers(archive: Archive) -> None:
+    """Dates in cells that are not set to show dates, and tows numbered a year and a slash."""
+    for old, new in (("2014-03-01", "41699"), ("02-03-2014", "41700"), ("2014-03-03", "41701")):
+        archive.replace(TOWS, old, new)
+    archive.edit(TOWS, lambda text: text.replace("2014-00", "2014/00"))
+
+
+def a_clock_that_goes_on(archive: Archive) -> None:
+    """No column of runs, and a pause between them."""
+    path = archive.root / FIRST
+    header, *lines = path.read_text("utf-8").splitlines()
+    rows = [f"{60 * (i // 1000) + i % 1000 / 20:.2f}{line[1:]}" for i, line in enumerate(lines)]
+    path.write_text("\n".join([header.replace("run;", "tijd;", 1), *rows, ""]))
+
+
+def numbered_labview(archive: Archive) -> None:
+    """One segment, a column of runs, and no times."""
+    header, *rows = samples_text(archive).split("\n")
+    lines = ["LabVIEW Measurement\t", "Separator\tTab", "Decimal_Separator\t,"]
+    lines += ["***End_of_Header***", "", "Channels\t7", "***End_of_Header***"]
+    lines += ["\t".join(["X_Value", *header.split(";"), "Comment"])]
+    lines += ["\t" + row.replace(";", "\t") for row in rows]
+    instead(archive, ".lvm", "\n".join(lines).encode())
+
+
+def as_people_write(archive: Archive) -> None:
+    """A month by its name with two digits of the year; a file as the federation's tool shows it."""
+    for old, new in (
+        ("2014-03-01", "01-mrt-14"), ("02-03-2014", "2 mrt '14"),
+        (";derde boot", ";E:\\slepen\\meetdata_2014\\derde boot"), (";8;H;2,40", ";8 heren;H;2,40"),
+    ):  # fmt: skip
+        archive.replace(TOWS, old, new)
+
+
+def returns_alone(archive: Archive) -> None:
+    """As Excel writes "CSV (Macintosh)"."""
+    for path in (BOATS, TOWS, FIRST):
+        file = archive.root / path
+        file.write_bytes(file.read_bytes().replace(b"\n", b"\r"))
+
+
+def blank_lines_part_runs(archive: Archive) -> None:
+    header, *rows = samples_text(archive).rstrip("\n").split("\n")
+    without = [row.split(";", 1)[1] for row in rows]
+    runs = ["\n".join(without[i : i + ROWS]) for i in range(0, len(without), ROWS)]
+    archive.edit(FIRST, lambda _: header.split(";", 1)[1] + "\n" + "\n;;;;;\n\n".join(runs))
+
+
+def two_lists_of_boats(archive: Archive) -> None:
+    boats = (archive.root / BOATS).read_text().splitlines()
+    (archive.root / BOATS).write_text("\n".join(boats[:2]))
+    (archive.root / "sloepregister/Sloependata.txt").write_text("\n".join(boats))
+
+
+def crew_in_one_cell(header: str) -> Callable[[Archive], None]:
+    """Rowers and class in one cell, under any of these headers."""
+    empty = ";" if ";" in header else ""
+
+    def write(archive: Archive) -> None:
+        archive.replace(TOWS, "roeiers;klasse", header)
+        in_one = partial(re.sub, r";([0-9]+);([HD]);", rf";\1 \2;{empty}")
+        archive.edit(TOWS, in_one)
+
+    return write
+
+
+def replaced(path: str, old: str, new: str) -> Callable[[Archive], None]:
+    return lambda archive: archive.replace(path, old, new)
+
+
+def run_word(word: str) -> Callable[[Archive], None]:
+    return lambda archive: archive.cells(0, lambda cell, _: word + cell, 2, 6 * ROWS + 1)
+
+
+FORMS = {
+    **{
+        form.__name__: form
+        for form in (
+            *(units_below, a_sheet_a_year, runs_in_a_folder, thousands, days_as_numbers),
+            *(a_clock_that_goes_on, numbered_labview, as_people_write, returns_alone),
+            *(blank_lines_part_runs, two_lists_of_boats),
+        )
+    },
+    **{f"crew under {h}": crew_in_one_cell(h) for h in ("roeiers", "klasse", "roeiers;klasse")},
+    **{f"{word}before its number": run_word(word) for word in ("run ", "RUN-")},
+    **{
+        f"file {name}": replaced(TOWS, "eerste boot 8h 2014", name)
+        for name in (" EERSTE  boot 8h 2014 ", "Eerste boot 8h 2014.CSV")
+    },
+}
+"""Archives in forms of their own that are read as they are."""
+
+
 LISTS = {"xlsx": xlsx, "ods": ods, "words": in_words}
+WAYS = SAMPLES | LISTS | FORMS
 PLACES = ["samples_path", "samples_sha256", "list_path", "list_line"]
 
 
 def assert_same(scan: Scan, good: Scan) -> None:
     assert scan.faults == []
-    assert scan.index.boats.equals(good.index.boats)
+    assert scan.index.boats.sort("fsn_no").equals(good.index.boats)
     assert scan.index.tows.drop(PLACES).equals(good.index.tows.drop(PLACES))
     assert scan.index.runs.equals(good.index.runs)
     assert scan.good.keys() == good.good.keys()
@@ -222,11 +360,11 @@ def assert_same(scan: Scan, good: Scan) -> None:
         assert scan.good[tow_id].equals(samples), tow_id
 
 
-@pytest.mark.parametrize("way", [*SAMPLES, *LISTS])
+@pytest.mark.parametrize("way", WAYS)
 def test_one_archive_in_many_ways_gives_equal_tables(
     archive: Archive, good_scan: Scan, way: str
 ) -> None:
-    (SAMPLES | LISTS)[way](archive)
+    WAYS[way](archive)
     assert_same(archive.scan(), good_scan)
 
 

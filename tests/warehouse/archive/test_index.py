@@ -1,7 +1,6 @@
 """What the index says of a good archive, the profile, and archives that are none."""
 
 import datetime as dt
-import re
 from pathlib import Path
 
 import polars as pl
@@ -90,21 +89,6 @@ def test_natural_oddities_are_no_faults(archive: Archive) -> None:
     archive.cells(6, lambda cell, line: "80", line_of(2), line_of(2, 300))  # no wind to turn it
     archive.cells(3, lambda cell, line: "2,40", line_of(2), line_of(2, ROWS - 1))  # held fix
     assert archive.scan().faults == []
-
-
-@pytest.mark.parametrize("header", ["roeiers", "klasse", "roeiers;klasse"])
-def test_a_crew_in_one_cell_is_rowers_and_class(archive: Archive, header: str) -> None:
-    as_two = archive.scan().index.tows.select("tow_id", "rowers", "crew_class")
-
-    def in_one(text: str) -> str:
-        text = text.replace("roeiers;klasse", header)
-        empty = ";" if ";" in header else ""
-        return re.sub(r";([0-9]+);([HD]);", rf";\1 \2;{empty}", text)
-
-    archive.edit(TOWS, in_one)
-    scan = archive.scan()
-    assert scan.index.tows.select("tow_id", "rowers", "crew_class").equals(as_two)
-    assert scan.faults == []
 
 
 def test_the_profile_says_what_the_vane_reads_for_wind_from_ahead(archive: Archive) -> None:
@@ -306,16 +290,6 @@ def test_a_thousand_with_a_point_beside_decimal_commas_is_no_number(archive: Arc
 
 
 OTHER_BOATS = "sloepregister/Sloependata.txt"
-
-
-def test_all_boat_lists_are_read(archive: Archive) -> None:
-    before = archive.scan()
-    boats = (archive.root / BOATS).read_text().splitlines()
-    (archive.root / BOATS).write_text("\n".join(boats[:2]))
-    (archive.root / OTHER_BOATS).write_text("\n".join(boats))
-    after = archive.scan()
-    assert after.faults == []
-    assert after.index.boats.sort("fsn_no").equals(before.index.boats.sort("fsn_no"))
 
 
 def test_boats_on_which_two_lists_disagree_are_set_aside_with_both_places(

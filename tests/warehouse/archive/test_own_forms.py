@@ -12,82 +12,13 @@ import xlsxwriter
 
 from pipeline.errors import MissingKnowledgeError
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
-from tests.warehouse.archive.test_formats import assert_same, cells_of, instead, lvm
+from tests.warehouse.archive.conftest import line_of as first_line_of
+from tests.warehouse.archive.test_formats import cells_of, lvm, runs_in_a_folder
 from warehouse.archive.check.check import check_archive
 from warehouse.archive.profile.reading import parse_profiles, read_profiles
+from warehouse.archive.sheets.cells import BOAT_NUMBER
 from warehouse.archive.spelling.columns import find_columns
 from warehouse.archive.spelling.headers import split_header
-
-
-def units_below(archive: Archive) -> None:
-    """Names in one row, units in the next, in lists and samples."""
-    archive.replace(FIRST, HEADER, "run;log1;log2;gps;kracht;wind;windvaan\n-;m/s;m/s;m/s;N;m/s;°")
-    archive.replace(TOWS, "roeisnelheid [m/s]", "roeisnelheid")
-    archive.edit(TOWS, lambda t: t.replace("\n", f"\n{';' * 7}m/s{';' * 12}\n", 1))
-
-
-def a_sheet_a_year(archive: Archive) -> None:
-    """One workbook for all years, with a sheet that is about something else."""
-    header, *rows = cells_of(archive, TOWS)
-    book = xlsxwriter.Workbook(str(archive.root / "sleeplijsten/sleeplijst.xlsx"))
-    book.add_worksheet("Toelichting").write(0, 0, "Van de commissie")
-    for name, kept in (("a", rows[:2]), ("b", rows[2:])):
-        sheet = book.add_worksheet(name)
-        sheet.write_row(0, 0, header)
-        for place, row in enumerate(kept, start=1):
-            sheet.write_row(place, 0, row)
-    book.close()
-    (archive.root / TOWS).unlink()
-
-
-def runs_in_a_folder(archive: Archive) -> None:
-    """A folder for a tow, in which a file is named after its run alone."""
-    header, *lines = (archive.root / FIRST).read_text("utf-8").splitlines()
-    folder = archive.root / FIRST.removesuffix(".csv")
-    folder.mkdir()
-    for run in "123456":
-        own = [line for line in lines if line.startswith(run)]
-        (folder / f"vaart {run}.csv").write_text("\n".join([header, *own, ""]))
-    (archive.root / FIRST).unlink()
-
-
-def thousands(archive: Archive) -> None:
-    """Marks between thousands, where a number can mean nothing else."""
-    for old, new in (
-        (";1400;1405;", ";1.400,00;1 405;"),
-        (";864;870;1140;", ";864,0;870;1.140,0;"),
-    ):
-        archive.replace(TOWS, old, new)
-    archive.replace(BOATS, ";1417;", ";1.417 kg;")
-
-
-def days_as_numbers(archive: Archive) -> None:
-    """Dates in cells that are not set to show dates, and tows numbered a year and a slash."""
-    for old, new in (("2014-03-01", "41699"), ("02-03-2014", "41700"), ("2014-03-03", "41701")):
-        archive.replace(TOWS, old, new)
-    archive.edit(TOWS, lambda text: text.replace("2014-00", "2014/00"))
-
-
-def a_clock_that_goes_on(archive: Archive) -> None:
-    """No column of runs, and a pause between them."""
-    path = archive.root / FIRST
-    header, *lines = path.read_text("utf-8").splitlines()
-    rows = [f"{60 * (i // 1000) + i % 1000 / 20:.2f}{line[1:]}" for i, line in enumerate(lines)]
-    path.write_text("\n".join([header.replace("run;", "tijd;", 1), *rows, ""]))
-
-
-READ_AS_THEY_ARE = (
-    *(units_below, a_sheet_a_year, runs_in_a_folder),
-    *(thousands, days_as_numbers, a_clock_that_goes_on),
-)
-
-
-@pytest.mark.parametrize("form", READ_AS_THEY_ARE, ids=lambda form: form.__name__)
-def test_forms_that_are_read_as_they_are(
-    archive: Archive, good_scan: Scan, form: Callable[[Archive], None]
-) -> None:
-    form(archive)
-    assert_same(archive.scan(), good_scan)
 
 
 def lists_in_one_workbook(archive: Archive) -> None:
@@ -334,19 +265,6 @@ def test_a_fault_of_a_tow_of_several_files_names_its_file(archive: Archive) -> N
     assert (fault.path, fault.line) == (path, line_of(archive, path, "mist"))
 
 
-def test_a_labview_file_may_number_its_runs_itself(archive: Archive, good_scan: Scan) -> None:
-    """One segment, a column of runs, and no times."""
-    header, *rows = (archive.root / FIRST).read_text("utf-8").split("\n")
-    lines = ["LabVIEW Measurement\t", "Separator\tTab", "Decimal_Separator\t,"]
-    lines += ["***End_of_Header***", "", "Channels\t7", "***End_of_Header***"]
-    lines += ["\t".join(["X_Value", *header.split(";"), "Comment"])]
-    lines += ["\t" + row.replace(";", "\t") for row in rows]
-    instead(archive, ".lvm", "\n".join(lines).encode())
-    scan = archive.scan()
-    assert scan.faults == []
-    assert_same(scan, good_scan)
-
-
 def test_lines_of_labview_text_are_counted_over_its_headers(archive: Archive) -> None:
     """One cell that is no number, and one run of which the log was stuck."""
     lvm(archive)
@@ -445,30 +363,6 @@ def test_every_fault_of_a_row_is_told_at_once(archive: Archive) -> None:
     assert len(set_aside) == len(set(set_aside)) == 3
 
 
-def test_what_people_write_in_a_cell_is_read(archive: Archive, good_scan: Scan) -> None:
-    """A month by its name with two digits of the year; a file as the federation's tool shows it."""
-    archive.replace(TOWS, "2014-03-01", "01-mrt-14")
-    archive.replace(TOWS, "02-03-2014", "2 mrt '14")
-    archive.replace(TOWS, ";derde boot", ";E:\\slepen\\meetdata_2014\\derde boot")
-    archive.replace(TOWS, ";8;H;2,40", ";8 heren;H;2,40")
-    assert_same(archive.scan(), good_scan)
-
-
-def test_a_jump_of_the_gps_costs_its_seconds_and_one_of_a_log_counts(archive: Archive) -> None:
-    """Two tons do not go a fifth faster for a second; a log may show it."""
-    first, second = ROWS + 202, ROWS // 50
-    for column in (1, 3):
-        archive.cells(column, faster, first, first + second - 1)
-    (fault,) = archive.scan().faults
-    assert (fault.reason_code, fault.run) == ("implausible_value", 2)
-    assert (fault.lost, fault.lost_s) == ("seconds", 1.0)
-    assert "column 'gps" in fault.message
-
-
-def faster(cell: str, _: int) -> str:
-    return f"{1.2 * float(cell.replace(',', '.')):.3f}".replace(".", "," if "," in cell else ".")
-
-
 def test_a_unit_in_a_name_that_somebody_gives_is_its_unit():
     profiles = parse_profiles('[[profile]]\nseasons = "2014"\ncolumns.force = "pull_lbf"')
     found = find_columns(
@@ -499,11 +393,36 @@ def test_a_boat_that_no_list_has_is_asked_with_the_nearest_names(archive: Archiv
     assert cause.settings == ['[words] "de 2e boot" = "?"  # derde boot, tweede boot, eerste boot']
 
 
-def test_lines_may_end_in_cr(archive: Archive, good_scan: Scan) -> None:
-    """As Excel writes "CSV (Macintosh)"."""
-    for path in (BOATS, TOWS, FIRST):
-        file = archive.root / path
-        file.write_bytes(file.read_bytes().replace(b"\n", b"\r"))
+@pytest.mark.parametrize(
+    ("cell", "number"),
+    [("FSN nr 1", "1"), ("fsn-nummer 1", "1"), ("nr 1", "1"), ("FSN nr", None), ("101 nr", None)],
+)
+def test_a_boat_may_have_nr_before_its_number(cell: str, number: str | None) -> None:
+    found = BOAT_NUMBER.fullmatch(cell)
+    assert (found and found[1]) == number
+
+
+def test_a_fault_in_a_file_with_blank_lines_names_its_line(archive: Archive) -> None:
+    def parted(text: str) -> str:
+        header, *rows = text.rstrip("\n").split("\n")
+        rows[ROWS] = rows[ROWS].replace(";", ";x", 1)  # the first of run 2
+        lines = [row.split(";", 1)[1] for row in (header, *rows)]
+        runs = [lines[1 + i : 1 + i + ROWS] for i in range(0, len(rows), ROWS)]
+        return lines[0] + "\n" + "\n\n\n".join("\n".join(run) for run in runs)
+
+    archive.edit(FIRST, parted)
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.run, fault.line) == ("bad_number", 2, first_line_of(2) + 2)
+
+
+@pytest.mark.parametrize("cell", ["999", ""])
+def test_a_wind_of_999_in_all_runs_is_none(archive: Archive, good_scan: Scan, cell: str) -> None:
+    archive.cells(5, lambda *_: cell, 2, 6 * ROWS + 1)
     scan = archive.scan()
-    assert scan.faults == []
-    assert all(scan.good[tow].equals(samples) for tow, samples in good_scan.good.items())
+    (fault,) = scan.faults
+    assert (fault.tow_id, fault.lost, fault.run) == ("2014-001", "seconds", None)
+    assert "without wind" in fault.message
+    for name in ("wind_speed_m_s", "wind_angle_deg"):
+        assert scan.good["2014-001"][name].null_count() == 6 * ROWS
+    others = ["run", "log1_m_s", "log2_m_s", "gps_m_s", "force_n"]
+    assert scan.good["2014-001"].select(others).equals(good_scan.good["2014-001"].select(others))

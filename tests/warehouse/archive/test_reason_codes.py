@@ -75,12 +75,12 @@ def lines(change: Callable[[list[str]], list[str]], path: str = FIRST) -> Spoil:
     return lambda a: a.edit(path, lambda content: "\n".join(change(content.split("\n"))))
 
 
-def with_time(step_s: float, spoiled_line: int | None = None) -> Spoil:
+def with_time(step_s: float, set_back: range = range(0)) -> Spoil:
+    """A column of time, in some rows 20 s less."""
+
     def change(content: list[str]) -> list[str]:
-        rows = [
-            f"{row};{((number % ROWS) * step_s if number + 2 != spoiled_line else 0):.4f}"
-            for number, row in enumerate(content[1:-1])
-        ]
+        times = [i % ROWS * step_s - 20.0 * (i in set_back) for i in range(len(content) - 2)]
+        rows = [f"{row};{t:.4f}" for row, t in zip(content[1:-1], times, strict=True)]
         return [content[0] + ";tijd [s]", *rows, ""]
 
     return lines(change)
@@ -124,7 +124,7 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "a run twice": (run_again(2, 3), "samples_listed_twice", FIRST, line_of(3)),
     "run 21": (constant(0, "21", 500, 500), "unknown_run", FIRST, 500),
     "run in two pieces": (constant(0, "2", 500, 500), "split_run", FIRST, 501),
-    "time goes back": (with_time(0.05, spoiled_line=500), "broken_row", FIRST, 2),
+    "time goes back": (with_time(0.05, range(498, 499)), "broken_row", FIRST, 2),
     "time at another rate": (with_time(0.051), "bad_time", FIRST, 2),
     "column missing": (header("kracht [N]", "krach [N]"), "missing_column", FIRST, 1),
     "column twice": (header("log2", "log1"), "duplicate_column", FIRST, 1),
@@ -143,10 +143,26 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "date of another year": (text("2014-03-01", "2013-03-01"), "date_outside_season", TOWS, 2),
     "no such date": (text("2014-03-01", "2014-02-30"), "bad_list_row", TOWS, 2),
     "length in cm": (text(";8,00;", ";800;"), "bad_list_row", TOWS, 2),
+    "length in feet": (text("8,00", "24,9"), "bad_list_row", TOWS, 2),
+    "weight of ten boats": (text(";1400;", ";14000;"), "bad_list_row", TOWS, 2),
+    "half the rate": (text(";nee;20;", ";nee;10;"), "long_run", FIRST, 2),
+    "wind 999 in a run": (constant(5, "999", line_of(2), line_of(3) - 1), "implausible_value", FIRST, line_of(2)),
+    "gps and a log jump": (several(*(scaled(c, 1.2, line_of(2, 200), line_of(2, 219)) for c in (1, 3))), "implausible_value", FIRST, line_of(2, 200)),
+    "clock jumps back": (with_time(0.05, range(ROWS + 500, 2 * ROWS)), "broken_row", FIRST, line_of(2)),
     "run b1 without second file": (text("1,2,3,4,5,6", "1,2,3,b4"), "bad_list_row", TOWS, 2),
     "verbouwd": (text("nee", "misschien"), "bad_list_row", TOWS, 2),
     "quote not closed": (text("8,7;6;", '8,7;6;"'), "bad_list_row", TOWS, 2),
 }  # fmt: skip
+
+
+SAID = {
+    "length in feet": "'lengte [m]' is 24,9 and the boat list says",
+    "weight of ten boats": "14000 and the boat list says 1417",
+    "half the rate": "is the rate 20?",
+    "gps and a log jump": "column 'gps",
+    "clock jumps back": "jump back",
+}
+"""What only the message of a fault tells."""
 
 
 def assert_others_unchanged(scan: Scan, good: Scan, lost: set[str]) -> None:
@@ -167,11 +183,11 @@ def test_good_archive_has_no_faults(good_scan: Scan) -> None:
 
 SECONDS, RUN, CELL = "seconds", "run", "cell"
 COSTS = {
-    "length in cm": CELL,
+    **dict.fromkeys(["length in cm", "weight of ten boats"], CELL),
     **dict.fromkeys(
         [
             *("run missing", "cut in mid-row", "log1 drops out", "log1 stuck", "a run twice"),
-            "time goes back",
+            *("time goes back", "clock jumps back", "wind 999 in a run"),
         ],
         RUN,
     ),
@@ -179,6 +195,7 @@ COSTS = {
         [
             *("run short", "too many fields", "blank line", "empty gps", "gps drops out"),
             *("force spike", "wind too strong", "a negative second"),
+            *("half the rate", "gps and a log jump"),
         ],
         SECONDS,
     ),
@@ -195,6 +212,7 @@ def test_one_bad_tow(archive: Archive, good_scan: Scan, case: str) -> None:
     assert found[0] == (code, path, "2014-001", line), scan.faults
     assert len(found) == 1
     assert scan.faults[0].message.endswith(".")
+    assert SAID.get(case, "") in scan.faults[0].message
     lost = scan.faults[0].lost
     assert lost == COSTS.get(case), scan.faults
     kept = scan.good.pop("2014-001", None)

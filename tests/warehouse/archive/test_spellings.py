@@ -1,21 +1,16 @@
 """Every allowed spelling of a samples file reads to the same frame."""
 
-import gzip
-import io
 import math
 from collections.abc import Callable
 from pathlib import Path
 
 import polars as pl
-import pyarrow as pa
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.channels import SAMPLE_SCHEMA
-from pipeline.errors import DefectiveInputError
-from tests.reason_codes import REASON_CODES
-from tests.warehouse.archive.conftest import HEADER, TOWS, Archive, Scan
+from tests.warehouse.archive.conftest import HEADER
 from warehouse.archive import SeasonProfile
 from warehouse.archive.samples import text_files
 from warehouse.archive.samples.file import read_samples
@@ -122,14 +117,6 @@ def test_gps_may_be_absent_throughout(tmp_path: Path, gps: str) -> None:
     assert samples.drop("gps_m_s").equals(EXPECTED.drop("gps_m_s"))
 
 
-@pytest.mark.parametrize("name", [" EERSTE  boot 8h 2014 ", "Eerste boot 8h 2014.CSV"])
-def test_meetfile_is_matched_forgivingly(archive: Archive, good_scan: Scan, name: str) -> None:
-    archive.replace(TOWS, "eerste boot 8h 2014", name)
-    scan = archive.scan()
-    assert scan.faults == []
-    assert scan.index.tows.equals(good_scan.index.tows)
-
-
 @given(st.text(max_size=12))
 def test_text_is_a_number_only_if_python_agrees(text: str) -> None:
     try:
@@ -157,68 +144,3 @@ def test_fast_reading_gives_what_careful_reading_gives(
         assert fast.select(sorted(fast.columns)).equals(
             text_files._read_carefully(body).select(sorted(fast.columns))
         )
-
-
-@settings(max_examples=150)
-@given(st.data())
-def test_spoiled_bytes_are_read_or_set_aside_and_nothing_else(
-    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
-) -> None:
-    content = bytearray(PLAIN.encode())
-    for _ in range(data.draw(st.integers(1, 4))):
-        at = data.draw(st.integers(0, len(content) - 1))
-        match data.draw(st.sampled_from(["set", "insert", "cut"])):
-            case "set":
-                content[at] = data.draw(st.integers(0, 255))
-            case "insert":
-                content[at:at] = data.draw(st.binary(max_size=4))
-            case _:
-                del content[at : at + data.draw(st.integers(0, 20))]
-        content = content or bytearray(b"\n")
-    path = tmp_path_factory.getbasetemp() / "spoiled.csv"
-    path.write_bytes(content)
-    try:
-        frame, _ = read_samples(path, PROFILE)
-    except DefectiveInputError as error:
-        code = error.reason_code
-    else:
-        code = None
-        assert frame.schema == pl.Schema(SAMPLE_SCHEMA)
-        infinite = frame.select(pl.all().cast(pl.Float64()).is_infinite().any())
-        assert not any(infinite.row(0))
-    assert code is None or code in REASON_CODES
-
-
-def packed(suffix: str) -> bytes:
-    if suffix == ".csv.gz":
-        return gzip.compress(PLAIN.encode())
-    if suffix == ".csv.zst":
-        return bytes(pa.Codec("zstd").compress(PLAIN.encode(), asbytes=True))
-    buffer = io.BytesIO()
-    names = dict(zip(EXPECTED.columns, HEADER.split(";"), strict=True))
-    EXPECTED.rename(names).write_parquet(buffer)
-    return buffer.getvalue()
-
-
-@pytest.mark.parametrize("suffix", [".parquet", ".csv.gz", ".csv.zst"])
-@settings(max_examples=30)
-@given(at=st.floats(0, 1, exclude_max=True), byte=st.integers(0, 255))
-def test_damaged_packed_files_are_set_aside(
-    tmp_path_factory: pytest.TempPathFactory, suffix: str, at: float, byte: int
-) -> None:
-    path = tmp_path_factory.getbasetemp() / f"damaged{suffix}"
-    content = bytearray(packed(suffix))
-    position = int(at * len(content))
-    path.write_bytes(content[:position])
-    with pytest.raises(DefectiveInputError) as raised:
-        read_samples(path, PROFILE)
-    assert raised.value.reason_code in REASON_CODES
-    content[position] = byte
-    path.write_bytes(content)
-    try:
-        read_samples(path, PROFILE)
-    except DefectiveInputError as error:
-        code = error.reason_code
-    else:
-        code = None  # a byte that does not matter
-    assert code is None or code in REASON_CODES

@@ -8,7 +8,7 @@ import pytest
 
 from pipeline.method.definition import Method, parse_method
 from tests.warehouse.archive.conftest import TOWS, Archive
-from warehouse.derive.graph import ARCHIVE, METHOD, REGISTERS
+from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
 from warehouse.intake.seasons import bring_in as read_archive
 from warehouse.store.store import Store
@@ -145,25 +145,3 @@ def test_a_window_reaches_the_run_point_and_a_changed_one_does_so_again(
     bring_in(archive, store)
     assert METHOD.is_stale(Scope(store, [method]))
     assert run_2(store, method) == searched
-
-
-def test_a_tow_that_a_flag_rejects_keeps_its_numbers_and_leaves_the_register(
-    archive: Archive, tmp_path: Path, method: Method
-) -> None:
-    store = Store(tmp_path / "data")
-    give(archive, "2014-001;2;5;34;te kort, dus telt de run niet\n")
-    bring_in(archive, store)
-    METHOD.make(Scope(store, [method]))
-    curves = store.read("curves", method.name)
-    curve = curves.row(by_predicate=pl.col("tow_id") == "2014-001", named=True)
-    assert curve["status"] == "rejected"
-    assert "few_runs" in curve["flags"]
-    assert curve["cw_kg_m"] == pytest.approx(40.0, rel=0.05)
-    assessed = store.read("assessments", method.name)
-    few = assessed.filter(tow_id="2014-001", check="few_runs").to_dicts()[0]
-    assert (few["observed"], few["limit"], few["flagged"]) == (5.0, 6.0, True)
-    REGISTERS.make(Scope(store, [method]))
-    status = dict(store.read("register").select("fsn_no", "status").rows())
-    assert status == {"FSN1": "rejected", "FSN2": "valid", "FSN3": "valid"}
-    # The wind of these samples is the same out and back, which no boat feels.
-    assert all("wind_unusual" in flags for flags in curves["flags"])

@@ -1,12 +1,12 @@
-"""A batch: tows that share every option of a method, with their runs as arrays.
+"""Tows and their runs: what is known of each, and the bookkeeping between the two.
 
-The bookkeeping between tows and runs: which run is of which tow, columns as arrays, one number per
-tow spread over its runs. No formula of the method.
+Which run is of which tow, columns as arrays, one number per tow spread over its runs. No formula of
+the method.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 import polars as pl
@@ -20,23 +20,21 @@ DOUBTED_SPEED: Final = "speed_not_plausible"
 
 
 @dataclass(frozen=True)
-class Batch:
+class Tows:
     """Tows and their runs, both sorted by tow.
 
     Attributes:
-        tows: rows of the table `tows`.
+        frame: rows of the table `tows`.
         blocks: their runs; `blocks.runs` has the columns of the table `tow_runs`.
         tow: index of each run's tow, shape (runs,).
-        cut_from: the batch that it is a part of, with its rows among the runs of that.
     """
 
-    tows: pl.DataFrame
+    frame: pl.DataFrame
     blocks: RunBlocks
     tow: IntArray
-    cut_from: "tuple[Batch, IntArray] | None" = None
 
     @classmethod
-    def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> "Batch":
+    def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> Self:
         """The given tows, with their runs among the given ones."""
         tows = tows.sort("tow_id")
         mine = blocks.take(blocks.runs["tow_id"].is_in(tows["tow_id"].implode()).to_numpy())
@@ -46,35 +44,12 @@ class Batch:
     @property
     def size(self) -> int:
         """Number of tows."""
-        return self.tows.height
-
-    @cached_property
-    def seasons(self) -> tuple[int, ...]:
-        """Seasons of the tows, sorted."""
-        return tuple(self.tows["season"].unique().sort())
-
-    @cached_property
-    def key(self) -> tuple[str, ...]:
-        """The tows, which tell this batch from others of the same tables."""
-        return tuple(self.tows["tow_id"])
+        return self.frame.height
 
     @cached_property
     def has_gps(self) -> BoolArray:
         """Tows with GPS fixes in selected runs, both out and back, shape (tows,)."""
         return self.both_ways(self.selected & (self.blocks["gps_n"].sum(axis=1) > 0))
-
-    def part(self, tows: BoolArray) -> "Batch":
-        """The tows that are marked, shape (tows,)."""
-        runs = tows[self.tow]
-        tow = (np.cumsum(tows) - 1)[self.tow[runs]]
-        whole, rows = self.whole
-        cut_from = whole, rows[runs]
-        return Batch(self.tows.filter(pl.Series(tows)), self.blocks.take(runs), tow, cut_from)
-
-    @property
-    def whole(self) -> "tuple[Batch, IntArray]":
-        """The largest batch that this is a part of, and its rows among the runs of that."""
-        return self.cut_from or (self, np.arange(len(self.tow)))
 
     def of_tow(self, column: str) -> FloatArray:
         """A number of each tow, shape (tows,); NaN where it is not known."""
@@ -82,8 +57,8 @@ class Batch:
 
     @cached_property
     def _columns(self) -> OnDemand:
-        tows = self.tows
-        return OnDemand(tows.columns, lambda name: tows[name].cast(pl.Float64).to_numpy())
+        frame = self.frame
+        return OnDemand(frame.columns, lambda name: frame[name].cast(pl.Float64).to_numpy())
 
     def of_run(self, column: str) -> FloatArray:
         """A number of each run's tow, shape (runs,); NaN where it is not known."""
@@ -92,7 +67,7 @@ class Batch:
     def measured(self, channel: str) -> BoolArray:
         """Tows that have a channel, `wind` or `log2`, shape (tows,); all if no column says so."""
         name = f"{channel}_measured"
-        if name not in self.tows.columns:
+        if name not in self.frame.columns:
             return np.ones(self.size, dtype=bool)
         return np.asarray(self.of_tow(name) != 0.0)  # also where it is not known
 
@@ -102,10 +77,10 @@ class Batch:
 
         Tows with a doubted speed are kept: the log may be off, and only those tows can show it.
         """
-        if "doubts" not in self.tows.columns:
+        if "doubts" not in self.frame.columns:
             return np.ones(self.size, dtype=bool)
         others = pl.col("doubts").list.set_difference(pl.lit([DOUBTED_SPEED]))
-        return self.tows.select(others.list.len() == 0).to_series().to_numpy()
+        return self.frame.select(others.list.len() == 0).to_series().to_numpy()
 
     @cached_property
     def direction(self) -> IntArray:
@@ -154,6 +129,11 @@ class Batch:
         """Mean of a run quantity over the marked runs of each tow; 0 where there are none."""
         total = np.bincount(self.tow, np.where(runs, values, 0.0), self.size)
         return np.asarray(total / np.maximum(self.count(runs), 1), dtype=np.float64)
+
+    def mean_of_ways(self, values: FloatArray, runs: BoolArray) -> FloatArray:
+        """Mean of out and back of each tow, each way weighing the same; NaN without both."""
+        ways = (self.mean(values, runs & (self.direction == way)) for way in (OUT, BACK))
+        return np.where(self.both_ways(runs), 0.5 * sum(ways), np.nan)
 
     @cached_property
     def place(self) -> IntArray:

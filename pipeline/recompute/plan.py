@@ -1,0 +1,76 @@
+"""Which steps each tow follows: those of its season, or what a method says of one without GPS."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import IntArray
+from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.blocks.tows import Tows
+from pipeline.method.definition import Calibration, Method, Steps
+from pipeline.recompute.facts import with_expected_water
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Tows with the steps that each follows.
+
+    Attributes:
+        steps: those that some tow follows, in the order of seasons, of a season with GPS first.
+        which: (tows,) place of a tow's steps: tows that share them are alike in how they scatter.
+    """
+
+    tows: Tows
+    steps: tuple[Steps, ...]
+    which: IntArray
+
+    @classmethod
+    def of(cls, method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Self:
+        """All tows under a method.
+
+        Raises:
+            MissingKnowledgeError: the method says nothing about a season of `tows`.
+        """
+        known = Tows.of(with_expected_water(tows), blocks)
+        season, has_gps = known.frame["season"].to_list(), known.has_gps.tolist()
+        groups: dict[tuple[Steps, Steps], int] = {}
+        place = {}
+        for year, gps in sorted({*zip(season, has_gps, strict=True)}, key=lambda s: (s[0], -s[1])):
+            steps = method.for_season(year)
+            own = steps if gps else without_gps(steps)
+            place[year, gps] = groups.setdefault((steps, own), len(groups))
+        which = [place[one] for one in zip(season, has_gps, strict=True)]
+        return cls(known, tuple(own for _, own in groups), np.array(which, dtype=np.int64))
+
+    def option(self, name: str) -> Any:
+        """An option of each tow's steps, such as `speed.correction`, shape (tows,)."""
+        step, option = name.split(".")
+        return np.array([getattr(getattr(s, step), option) for s in self.steps])[self.which]
+
+    def of_runs(self, name: str) -> Any:
+        """The same of each run's tow, shape (runs,)."""
+        return self.option(name)[self.tows.tow]
+
+    def changed(self, change: Callable[[Steps], Steps]) -> Self:
+        """The same tows with other steps."""
+        return replace(self, steps=tuple(map(change, self.steps)))
+
+
+def without_gps(steps: Steps) -> Steps:
+    """The steps of a tow that has no GPS, where the method says what it then gets."""
+    if not steps.estimates_without_gps:
+        return steps
+    speed = steps.speed.model_copy(update={"correction": "estimated"})
+    calibration = Calibration(rule="none")
+    return steps.model_copy(update={"speed": speed, "calibration": calibration})
+
+
+def without_factor(steps: Steps) -> Steps:
+    """The steps from which log factors are estimated: with the log as it reads."""
+    if steps.speed.correction != "estimated":
+        return steps
+    speed = steps.speed.model_copy(update={"correction": "none"})
+    return steps.model_copy(update={"speed": speed})
