@@ -363,10 +363,7 @@ METHODS: Final[dict[str, Sentence]] = {
 }
 """Methods that ship, and that of the workbench."""
 
-CREWS: Final[dict[str, Sentence]] = {
-    "H": say("men"),
-    "D": say("women"),
-}
+CREWS: Final[dict[str, Sentence]] = {"H": say("men"), "D": say("women")}
 
 FIGURES: Final[dict[str, Sentence]] = {
     "b_weight": say("B against weight"),

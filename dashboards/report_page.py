@@ -9,14 +9,7 @@ from typing import Final
 import polars as pl
 from markupsafe import Markup
 
-from dashboards.report import (
-    PAGES,
-    Check,
-    in_short,
-    outcome_of,
-    values_found,
-    verdict,
-)
+from dashboards.report import PAGES, Check, in_short, outcome_of, values_found, verdict
 from dashboards.site.parts import Page, Section, Table
 from dashboards.site.render import Edition
 from pipeline.messages import LANGUAGES, pgettext, say, speaker
@@ -68,11 +61,7 @@ def report_pages(
         name: pl.DataFrame(getattr(changes, name), infer_schema_length=None) for name in changed
     } | {"checks": of_checks}
     sections = [
-        Section(
-            f"report_{name}",
-            _TITLES[name],
-            tables=[Table(name, frame, _COLUMNS[name], _TITLES[name])],
-        )
+        Section(f"report_{name}", _TITLES[name], tables=[Table(name, frame, _COLUMNS[name])])
         if frame.height
         else Section(f"report_{name}", _TITLES[name], empty=say("Nothing."))
         for name, frame in frames.items()

@@ -76,10 +76,7 @@ class Slide(NamedTuple):
 
 
 def slides(
-    views: Views,
-    types: Sequence[str] = (),
-    boats: Sequence[str] = (),
-    border: Border = nullcontext,
+    views: Views, types: Sequence[str] = (), boats: Sequence[str] = (), border: Border = nullcontext
 ) -> Iterator[Slide]:
     """Every slide of which the archive has something to show, each made within a border.
 

@@ -85,7 +85,8 @@ def in_template(source: bytes) -> Iterator[Text]:
 
 def in_help(command) -> Iterator[Text]:
     """What a command says of itself, of its options and of the commands below it."""
-    for text in (command.help, *(getattr(option, "help", None) for option in command.params)):
+    for described in (command, *command.params):
+        text = getattr(described, "english", getattr(described, "help", ""))
         yield " ".join((text or "").split()), None
     for inner in getattr(command, "commands", {}).values():
         yield from in_help(inner)

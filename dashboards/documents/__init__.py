@@ -21,10 +21,7 @@ EPOCH: Final = 0
 @cache
 def _compiler(template: str) -> typst.Compiler:
     return typst.Compiler(
-        TEMPLATES / template,
-        root=TEMPLATES,
-        font_paths=[fonts.FOLDER],
-        ignore_system_fonts=True,
+        TEMPLATES / template, root=TEMPLATES, font_paths=[fonts.FOLDER], ignore_system_fonts=True
     )
 
 

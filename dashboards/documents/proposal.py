@@ -163,9 +163,10 @@ def _ballot(lines: dict[str, pl.DataFrame]) -> Part:
     """The methods side by side."""
     rows = []
     for method, of_method in lines.items():
-        effect, changed = effects(of_method)[0], of_method.filter(change="changed").height
-        own = (effect.beyond, effect.median, effect.lowest, effect.highest)
-        rows.append([labels.method(method), changed, *own])
+        changed = of_method.filter(change="changed").height
+        for effect in effects(of_method):  # one; none where no line has a number on both sides
+            own = (effect.beyond, effect.median, effect.lowest, effect.highest)
+            rows.append([labels.method(method), changed, *own])
     names = ("exceeds_interval", "median", "lowest_ratio", "highest_ratio")
     head = (say("Method"), labels.code("changed"), *map(labels.column, names))
     return Part(say("The methods side by side"), (), head, rows)

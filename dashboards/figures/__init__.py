@@ -13,7 +13,6 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
-from dashboards.colours import OKABE_ITO
 from dashboards.figures import boat, slides, style
 from dashboards.figures.charts import (
     CHANGE,
@@ -26,7 +25,7 @@ from dashboards.figures.charts import (
     curves,
     scatter,
 )
-from dashboards.figures.style import WIDTH, Column, Drawing, named, tips
+from dashboards.figures.style import OKABE_ITO, WIDTH, Column, Drawing, named, tips
 from pipeline.history import ERAS
 from pipeline.messages import Say, say
 from pipeline.studies.ladder import STEP_ORDER
@@ -87,8 +86,7 @@ def _ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     axis = alt.Axis(labelExpr=named(STEP_ORDER, say), labelAngle=-45, orient="top")
     order = alt.EncodingSortField("position", order="ascending")
     base = alt.Chart(frame).encode(
-        alt.X("step:N", title=None, sort=order, axis=axis),
-        alt.Y("season:O", title=None),
+        alt.X("step:N", title=None, sort=order, axis=axis), alt.Y("season:O", title=None)
     )
     shades = alt.Scale(
         domain=[0.8, 1.0, 1.2], range=[OKABE_ITO[5], "#ffffff", OKABE_ITO[4]], clamp=True,
@@ -193,7 +191,7 @@ FIGURES: Final[dict[str, Figure]] = {
         facet=("scope", lambda say: named(SCOPES, say)),
     ),
     "budget": bars(
-        "component", ("u_ratio", say("Standard uncertainty / Cw")), COMPONENTS, None
+        "component", ("u_ratio", say("Standard uncertainty / Cw")), COMPONENTS
     ),
     "options": bars(
         "option", ("median_ratio", CHANGE), JUDGED, ("lo_ratio", "hi_ratio")

@@ -7,8 +7,7 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
-from dashboards.colours import GREY, OKABE_ITO
-from dashboards.figures.style import Drawing, tips
+from dashboards.figures.style import GREY, OKABE_ITO, Drawing, tips
 from pipeline.messages import Say, say
 from pipeline.steps.window import CUT_REASONS
 

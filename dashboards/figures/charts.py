@@ -10,9 +10,10 @@ from typing import Any, Final
 import altair as alt
 import polars as pl
 
-from dashboards.colours import GREY, OKABE_ITO
 from dashboards.figures.style import (
+    GREY,
     HEIGHT,
+    OKABE_ITO,
     WIDTH,
     Column,
     Drawing,
@@ -205,7 +206,6 @@ def bars(
     value: Column,
     codes: Iterable[str],
     ends: tuple[str, str] | None = None,
-    facet: tuple[str, Label] | None = None,
 ) -> Figure:
     """A value per name, the largest first: a bar, or where it has ends a point with its interval.
 
@@ -214,7 +214,6 @@ def bars(
         value: the column of the values; with ends they are ratios.
         codes: of the names, which are shown in words.
         ends: columns of the lower and upper end.
-        facet: a column of which each value has a panel, and an expression for its title.
     """
     (field, title), known = value, list(codes)
 
@@ -235,8 +234,7 @@ def bars(
                 rule.encode(low, alt.X2(f"{ends[1]}:Q")),
                 point.encode(number(alt.X, field, say(title)), tooltip=shown),
             ]
-        drawing = alt.layer(*layers, data=frame).properties(height=alt.Step(24))
-        return _panels(drawing, facet, say) if facet else drawing.properties(width=WIDTH)
+        return alt.layer(*layers, data=frame).properties(height=alt.Step(24), width=WIDTH)
 
     return figure
 

@@ -9,10 +9,17 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
-from dashboards.colours import GREY
 from dashboards.figures import style
 from dashboards.figures.charts import FACET_WIDTH, Figure, scatter
-from dashboards.figures.style import Column, Drawing, interval_kind, methods_named, number, tips
+from dashboards.figures.style import (
+    GREY,
+    Column,
+    Drawing,
+    interval_kind,
+    methods_named,
+    number,
+    tips,
+)
 from pipeline.consistency.compared import ROWED_RATIO
 from pipeline.messages import Say
 

@@ -7,10 +7,14 @@ from typing import Any, Final
 import altair as alt
 
 from dashboards import labels
-from dashboards.colours import GREY, OKABE_ITO
 from pipeline.messages import Say, Sentence
 from pipeline.method.definition import RUNS_ALONE, shipped_method, shipped_methods
 
+OKABE_ITO: Final = (
+    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
+)  # fmt: skip
+"""Okabe and Ito (2008), dark ones first; yellow is left out, it cannot be seen on white."""
+GREY: Final = "#666666"
 SHAPES: Final = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
 WIDTH: Final = 620
 HEIGHT: Final = 320

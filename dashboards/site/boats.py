@@ -206,8 +206,8 @@ FACT_COLUMNS = (
 def _page(
     fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str], told: Sequence[Answer]
 ) -> Page:
-    title = say("Dimensions")
-    facts = Section("facts", title, tables=[Table("boats", own["boats"], FACT_COLUMNS, title)])
+    measures = Table("boats", own["boats"], FACT_COLUMNS)
+    facts = Section("facts", say("Dimensions"), tables=[measures])
     boat = own["boats"].row(0, named=True)
     name = boat["name"]
     subtitle = " · ".join(filter(None, (fsn_no, boat["ht_no"], boat["boat_type"])))
@@ -258,16 +258,16 @@ DRAWN = {
 
 def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     """How the numbers were made: all of it folded."""
-    curve = Chart("resistance_curve", "curve", say("Resistance curve"), OF_THE_CURVE)
-    history = Chart("history", "curves", say("Through the years"))
-    traces = Chart("traces", "traces", say("What the instruments said"), OF_THE_CURVE)
-    budget = Chart("budget", "budget", say("What the uncertainty is made of"), OF_THE_CURVE)
+    curve = Chart("resistance_curve", "curve", follows=OF_THE_CURVE)
+    history = Chart("history", "curves")
+    traces = Chart("traces", "traces", follows=OF_THE_CURVE)
+    budget = Chart("budget", "budget", follows=OF_THE_CURVE)
     sides = [
-        Chart("out_and_back", "stages", say("Out against back, and the wind"), OF_THE_CURVE),
+        Chart("out_and_back", "stages", follows=OF_THE_CURVE),
         Chart("wind", "runs", say("Apparent wind [m/s]"), OF_THE_CURVE),
     ]
-    runs = Table("run_points", own["runs"], RUN_COLUMNS, say("Runs"), FOLLOWS)
-    lines = Table("register", own["register"], LINE_COLUMNS, say("In the register"))
+    runs = Table("run_points", own["runs"], RUN_COLUMNS, follows=FOLLOWS)
+    lines = Table("register", own["register"], LINE_COLUMNS)
     sections = [
         Section("boat_lines", say("In the register"), tables=[lines]),
         Section(

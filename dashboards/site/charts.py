@@ -56,16 +56,19 @@ def json_of(frame: pl.DataFrame) -> str:
     return shown.select(pl.all().implode()).write_ndjson().rstrip("\n")
 
 
-def first_chart(page: Page) -> tuple[Chart, pl.DataFrame] | None:
-    """The first chart that is seen at once, with the rows it shows; None where there is none."""
-    chart = next((c for s in page.sections if not s.folded for c in s.charts), None)
-    if chart is None:
-        return None
-    rows = _shown(page, chart)
-    return None if rows.is_empty() else (chart, rows)
+def stills(page: Page, language: str) -> dict[str, Markup]:
+    """The picture of the first chart that is seen at once, by the name of its figure."""
+    for section in page.sections:
+        for chart in section.charts:
+            rows = _shown(page, chart)
+            if section.folded or rows.is_empty():
+                continue
+            caption = speaker(language)(chart.caption or section.title)
+            return {chart.figure: _still(chart.figure, rows, language, caption)}
+    return {}
 
 
-def still(figure: str, rows: pl.DataFrame, language: str, caption: str) -> Markup:
+def _still(figure: str, rows: pl.DataFrame, language: str, caption: str) -> Markup:
     """A figure as SVG; a screen reader says its caption."""
     svg = drawn.svg(drawn.specification(figure, language), rows, language)
     bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", svg)

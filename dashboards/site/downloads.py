@@ -5,14 +5,7 @@ from typing import Final
 
 from dashboards.documents import pdf
 from dashboards.markdown import to_blocks
-from warehouse.store.editions import (
-    CSV,
-    NOTICE,
-    NOTICE_EN,
-    XLSX,
-    edition_names,
-    edition_path,
-)
+from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_names, edition_path
 from warehouse.store.store import Store
 
 DOWNLOADS: Final = "downloads"

@@ -22,10 +22,7 @@ TERMS: Final = {
             "coefficient that naval architects call Cw."
         ),
     ),
-    "a": (
-        say("A"),
-        say("Cw at very low speed, in kg/m."),
-    ),
+    "a": (say("A"), say("Cw at very low speed, in kg/m.")),
     "b": (
         say("B"),
         say(
@@ -65,14 +62,8 @@ TERMS: Final = {
         say("Edition"),
         say("A register as decided, which never changes. A draft is not decided."),
     ),
-    "flag": (
-        say("Flag"),
-        say("Something to look at; it changes no number."),
-    ),
-    "set_aside": (
-        say("Set aside"),
-        say("Not used, with the reason."),
-    ),
+    "flag": (say("Flag"), say("Something to look at; it changes no number.")),
+    "set_aside": (say("Set aside"), say("Not used, with the reason.")),
     "e_n": (
         say("E_n"),
         say(
@@ -88,10 +79,7 @@ TERMS: Final = {
         say("Standard speed"),
         say("The median declared speed of a type, at which boats can be compared."),
     ),
-    "crew_class": (
-        pgettext("glossary", "Class"),
-        say("H: men, D: women."),
-    ),
+    "crew_class": (pgettext("glossary", "Class"), say("H: men, D: women.")),
     "verification_code": (
         pgettext("glossary", "Verification code"),
         say(

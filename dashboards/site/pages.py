@@ -83,7 +83,7 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
     editions = lines["edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     table = Table(
-        "register", lines, REGISTER_COLUMNS, say("Register"), ["edition"], search=True,
+        "register", lines, REGISTER_COLUMNS, follows=["edition"], search=True,
         cards=REGISTER_CARDS,
     )  # fmt: skip
     headline = edition.register(lines.filter(edition=chosen))
@@ -114,10 +114,9 @@ def _editions(views: Views) -> list[Section]:
     frame = views.table("editions")
     if frame.is_empty():
         return []
-    title = say("Published editions")
-    table = Table("editions", frame, EDITION_COLUMNS, title)
+    table = Table("editions", frame, EDITION_COLUMNS)
     links = [(edition_page(name), name, "") for name in frame["edition"]]
-    return [Section("editions", title, links=links, tables=[table])]
+    return [Section("editions", say("Published editions"), links=links, tables=[table])]
 
 
 DUE_COLUMNS = (
@@ -137,14 +136,13 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
     """Who has to tow again, at what speed, and which boats to tow again."""
     rows = views.ask("due_list").filter(method=default_method(methods))
     rows = rows.rename({"tow_date": "last_tow"})
-    title = say("Who has to tow again")
-    due = Table("due_list", rows, DUE_COLUMNS, title, search=True, cards=DUE_CARDS)
+    due = Table("due_list", rows, DUE_COLUMNS, search=True, cards=DUE_CARDS)
     choice = views.ask("retow_choice").filter(method=default_method(methods))
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
     sections = [
         Section(
             "due_list",
-            title,
+            say("Who has to tow again"),
             say(
                 "Until when each tow counts, as judged on the day of the last tow or race (As "
                 "of), and the speed of the next one. Lowest and Highest: 70 to 90 W per rower "
@@ -210,10 +208,7 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         for section in SEASON_CHARTS
         if frames[section.name].height
     ]
-    told = (
-        *listed(LINKS, "season_links", links, LINK_COLUMNS),
-        *_season_diagnosis(views),
-    )
+    told = (*listed(LINKS, "season_links", links, LINK_COLUMNS), *_season_diagnosis(views))
     return Page(
         "seasons.html",
         say("Seasons"),
@@ -235,7 +230,7 @@ LINKS = Section(
 
 def _charted(rows: str, figure: str, title: Sentence, note: Sentence, **follows: str) -> Section:
     """A section with one chart of these rows, in which selectors choose what `follows` says."""
-    return Section(rows, title, note, [Chart(figure, rows, title, follows)])
+    return Section(rows, title, note, [Chart(figure, rows, follows=follows)])
 
 
 SEASON_CHARTS: Final = (
@@ -345,8 +340,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
     editions = changed["to_edition"].unique().sort().to_list()
     chosen = newest_edition(editions, draft_of(methods))
     table = Table(
-        "changes", changed, CHANGE_COLUMNS, say("Changed lines"), ["to_edition"], search=True,
-        cards=CHANGE_CARDS,
+        "changes", changed, CHANGE_COLUMNS, follows=["to_edition"], search=True, cards=CHANGE_CARDS,
     )  # fmt: skip
     chart = Chart(
         "changes", "changes", say("Time that crews gain or lose in two hours"),
@@ -448,8 +442,7 @@ def _season_diagnosis(views: Views) -> list[Section]:
     rows = doubted.with_columns(
         PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
     )
-    title = say("Instruments by season")
-    table = Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, title, ["method"])
+    table = Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, follows=["method"])
     note = say(
         "What may be wrong in a season with log, GPS, load cell, anemometer or "
         "temperature. Fault: likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 "
@@ -458,14 +451,12 @@ def _season_diagnosis(views: Views) -> list[Section]:
         "interval counts how seldom such a fault is, so it can be 0 to 0. What is not "
         "in the table: no fault was seen, and a usual one would show."
     )
-    return [Section("season_diagnosis", title, note, tables=[table])]
+    return [Section("season_diagnosis", say("Instruments by season"), note, tables=[table])]
 
 
 def _set_aside(views: Views) -> Section:
     section = Section(
-        "set_aside",
-        say("Set aside"),
-        say("Files, lines and tows not used, with the reason."),
+        "set_aside", say("Set aside"), say("Files, lines and tows not used, with the reason.")
     )
     if not views.has("quarantine"):
         return replace(section, empty=say("Nothing was set aside."))
@@ -476,5 +467,5 @@ def _set_aside(views: Views) -> Section:
     faults = views.table("quarantine").with_columns(
         lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
     )
-    table = Table("quarantine", faults, columns, section.title, search=True)
+    table = Table("quarantine", faults, columns, search=True)
     return replace(section, tables=[table])

@@ -25,7 +25,7 @@ class Table:
         name: names the download.
         frame: its rows; columns keep the names they have in the warehouse.
         columns: what is shown, in order, where it says something; the download holds the same.
-        caption: the text above it.
+        caption: the text above it; left out, the title of its section.
         follows: columns that a selector of the page filters on.
         search: whether it has a search box.
         linked: whether a selection in a chart filters it by boat.
@@ -35,7 +35,7 @@ class Table:
     name: str
     frame: pl.DataFrame
     columns: Sequence[str]
-    caption: Sentence
+    caption: Sentence | None = None
     follows: Sequence[str] = ()
     search: bool = False
     linked: bool = False
@@ -71,7 +71,7 @@ class Chart:
     Attributes:
         figure: name in `dashboards.figures.FIGURES`.
         data: name of the page's data it draws.
-        caption: also what a screen reader says.
+        caption: also what a screen reader says; left out, the title of its section.
         follows: selector, or several, by data column: only rows that hold what one of them says
             are drawn, and rows where the column is empty. A column may hold lists: then one of
             its values has to be chosen.
@@ -80,7 +80,7 @@ class Chart:
 
     figure: str
     data: str
-    caption: Sentence
+    caption: Sentence | None = None
     follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
     says: Headline | None = None
 
@@ -201,7 +201,7 @@ def listed(
     """A section with one table, called as the section is; none where there are no rows."""
     if frame.is_empty():
         return []
-    table = Table(name, frame, columns, section.title, follows)
+    table = Table(name, frame, columns, follows=follows)
     return [replace(section, charts=charts, tables=[table], headline=headline)]
 
 
@@ -223,11 +223,7 @@ def draft_of(methods: Sequence[str]) -> str:
     return draft_name(default_method(methods))
 
 
-METHOD_SELECTORS: Final = {
-    "method": say("Method"),
-    "before": say("Before"),
-    "after": say("After"),
-}
+METHOD_SELECTORS: Final = {"method": say("Method"), "before": say("Before"), "after": say("After")}
 
 
 def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "") -> Select:

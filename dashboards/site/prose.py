@@ -21,10 +21,7 @@ TITLES: Final = {
         say("The method"),
         say("In two pages: what is measured, what each step does here, and what is voted on."),
     ),
-    "audit": (
-        say("Reading an audit"),
-        say("How to read the audit of a boat or a type."),
-    ),
+    "audit": (say("Reading an audit"), say("How to read the audit of a boat or a type.")),
 }
 """Title of each document, and a sentence about it."""
 
@@ -60,9 +57,7 @@ def edition_pages(views: Views) -> Iterator[Page]:
             say("Edition"),
             [
                 Section(
-                    "notice",
-                    say("Notice to the members"),
-                    prose=in_language((dutch, english), {}),
+                    "notice", say("Notice to the members"), prose=in_language((dutch, english), {})
                 ),
                 Section("downloads", say("Downloads"), files=files_of(edition)),
             ],

@@ -32,23 +32,18 @@ def race_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
 
 
 def _race(
-    path: str,
-    name: str,
-    rows: pl.DataFrame,
-    editions: Sequence[str],
-    chosen: str,
-    chances: Chances,
+    path: str, name: str, rows: pl.DataFrame, editions: Sequence[str], chosen: str, chances: Chances
 ) -> Page:
     now = rows.filter(to_edition=chosen)
-    title = say("Results by both editions")
-    table = Table("race_changes", rows, COLUMNS, title, ["to_edition"], search=True, cards=CARDS)
+    follows = ["to_edition"]
+    table = Table("race_changes", rows, COLUMNS, follows=follows, search=True, cards=CARDS)
     return Page(
         path,
         say("Races"),
         [
             Section(
                 "race_results",
-                title,
+                say("Results by both editions"),
                 say(
                     "Power per rower in this race, and the place by it, by class: among the crews "
                     "that have a valid line on that day in both editions."

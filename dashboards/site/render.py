@@ -20,7 +20,7 @@ from dashboards.addresses import boat_path, race_path, type_path
 from dashboards.html import as_json, environment
 from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
-from dashboards.site.charts import charts_script, first_chart, page_json, still, vega_bundle
+from dashboards.site.charts import charts_script, page_json, stills, vega_bundle
 from dashboards.site.downloads import copy_sheets
 from dashboards.site.glossary import TERMS, Glossed
 from dashboards.site.pages import method_names, shared_pages
@@ -103,12 +103,7 @@ def build_pages(
 
 
 def _write_part(
-    store: Store,
-    folder: Path,
-    as_of: dt.date | None,
-    bordered: Border,
-    by_reports: bool,
-    part: str,
+    store: Store, folder: Path, as_of: dt.date | None, bordered: Border, by_reports: bool, part: str
 ) -> None:
     """The pages of one language with the data of all, or what all pages share."""
     with Views(store, as_of) as views:
@@ -209,7 +204,7 @@ class Edition:
         other = next(name for name in LANGUAGES if name != language)
         return _template().render(
             **self.names(page),
-            stills=self._still(page) if page.data and "/" not in page.path else {},
+            stills=stills(page, language) if page.data and "/" not in page.path else {},
             site=site,
             root=(site + FOLDERS[language]) if page.site else page.root,
             other=other,
@@ -225,15 +220,6 @@ class Edition:
             "rows_of": partial(self._cells.rows, page),
             "language": self.speech.language,
         }
-
-    def _still(self, page: Page) -> dict[str, Markup]:
-        """The picture of the page's first chart, by the name of its figure."""
-        first = first_chart(page)
-        if first is None:
-            return {}
-        chart, rows = first
-        caption = self.speech.say(chart.caption)
-        return {chart.figure: still(chart.figure, rows, self.speech.language, caption)}
 
 
 def _data_path(page: Page) -> str:

@@ -25,7 +25,7 @@ def slides_page(views: Views) -> Page:
 def _sections(made: Sequence[Slide]) -> Iterator[Section]:
     for place, slide in enumerate(made):
         name = f"slide_{place}"
-        chart = Chart(slide.figure, name, slide.finding, says=_explained(slide))
+        chart = Chart(slide.figure, name, says=_explained(slide))
         is_between = 0 < place < len(made) - 1
         yield Section(name, slide.finding, charts=[chart], folded=is_between)
 

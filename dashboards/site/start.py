@@ -8,13 +8,7 @@ from markupsafe import Markup
 
 from dashboards import labels
 from dashboards.report import PAGES, in_short
-from dashboards.site.parts import (
-    Chart,
-    Page,
-    Section,
-    default_method,
-    draft_of,
-)
+from dashboards.site.parts import Chart, Page, Section, default_method, draft_of
 from dashboards.speech import Headline, Speech
 from dashboards.statements import edition, season
 from pipeline.messages import Sentence, pgettext, say
@@ -33,14 +27,8 @@ MENU: Final = {
 """Title of each page that the menu leads to."""
 
 ABOUT: Final = {
-    "words": (
-        say("Glossary"),
-        say("What the words and signs mean."),
-    ),
-    "quality": (
-        say("Quality"),
-        say("Tows set aside, flags, and counts of the rebuild."),
-    ),
+    "words": (say("Glossary"), say("What the words and signs mean.")),
+    "quality": (say("Quality"), say("Tows set aside, flags, and counts of the rebuild.")),
     "slides": (
         say("Presentation 2015"),
         say("What the presentation of 24 January 2015 asked, answered before and after."),

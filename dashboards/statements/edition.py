@@ -180,6 +180,7 @@ def effects(lines: pl.DataFrame, *by: str) -> list[Effect]:
             pl.when(beyond.count() > 0).then(beyond.sum()).alias("beyond"),
         )
         .sort(by, descending=[name == "crew_class" for name in by])
+        .filter(pl.col("lines") > 0)  # without `by` there is a row of nothing
     )
     return [
         Effect(

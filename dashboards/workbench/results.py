@@ -102,11 +102,10 @@ def _summary(scenario: Scenario) -> Part:
 
 def _register(scenario: Scenario) -> Part:
     lines = scenario.register_lines.select(*REGISTER_COLUMNS, "time_ratio", "to_edition")
-    title = say("The register")
     return [
         Section(
             "register",
-            title,
+            say("The register"),
             note=say(
                 "Every line against the chosen method, the largest change first. Time: what the "
                 "new line gives (+) or costs (-) in a two-hour race at equal power."
@@ -124,9 +123,7 @@ def _register(scenario: Scenario) -> Part:
                     say("True speed / log speed per season, with its 95 % interval"),
                 ),
             ],
-            tables=[
-                Table("register", lines, REGISTER_COLUMNS, title, search=True, linked=True),
-            ],
+            tables=[Table("register", lines, REGISTER_COLUMNS, search=True, linked=True)],
         )
     ], {
         "changed": lines.filter(change="changed"),
@@ -136,11 +133,10 @@ def _register(scenario: Scenario) -> Part:
 
 
 def _boat(scenario: Scenario, asked: Asked) -> Part:
-    title = say("A boat")
     return [
         Section(
             "boat",
-            title,
+            say("A boat"),
             note=say(
                 "The curve and the runs before and after. Open marks do not count. The bar at the "
                 "declared speed is the 95 % interval; a dashed bar is the spread of the runs "
@@ -154,18 +150,17 @@ def _boat(scenario: Scenario, asked: Asked) -> Part:
                     {"tow_id": "tow"},
                 )
             ],
-            tables=[Table("boat_curves", scenario.boat_curves(asked.boat), CURVE_COLUMNS, title)],
+            tables=[Table("boat_curves", scenario.boat_curves(asked.boat), CURVE_COLUMNS)],
         )
     ], {"boat_figure": scenario.boat_figure(asked.boat)}
 
 
 def _types(scenario: Scenario, asked: Asked) -> Part:
-    title = say("Types: are equal boats equal?")
     tests = scenario.type_homogeneity()
     return [
         Section(
             "types",
-            title,
+            say("Types: are equal boats equal?"),
             note=say(
                 "The chosen tows, Cw at the standard speed of the type. Drag over a chart to see "
                 "in the register which boats lie there. The table tests whether boats of a type "
@@ -180,22 +175,22 @@ def _types(scenario: Scenario, asked: Asked) -> Part:
                     OF_TYPE,
                 ),
             ],
-            tables=[Table("homogeneity", tests, HOMOGENEITY_COLUMNS, title, ["boat_type"])],
+            tables=[Table("homogeneity", tests, HOMOGENEITY_COLUMNS, follows=["boat_type"])],
         )
     ], {"types": scenario.type_tows(asked.tows)}
 
 
 def _repeats(scenario: Scenario) -> Part:
-    title, repeats = say("Reproducibility: the same boat again"), scenario.reproducibility()
+    repeats = scenario.reproducibility()
     return [
         Section(
             "repeats",
-            title,
+            say("Reproducibility: the same boat again"),
             note=say("Two consecutive tows of an unaltered boat with the same crew."),
             charts=[
                 Chart("reproducibility", "reproducibility", say("Standard deviation of one tow"))
             ],
-            tables=[Table("reproducibility", repeats, REPEATS_COLUMNS, title)],
+            tables=[Table("reproducibility", repeats, REPEATS_COLUMNS)],
         )
     ], {"reproducibility": repeats}
 

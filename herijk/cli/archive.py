@@ -4,14 +4,7 @@ from pathlib import Path
 
 import click
 
-from herijk.cli.options import (
-    PATH,
-    Seasons,
-    data_option,
-    json_option,
-    show,
-    show_files,
-)
+from herijk.cli.options import PATH, Seasons, data_option, json_option, show, show_files
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import tell

@@ -6,14 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import (
-    PATH,
-    archive_option,
-    as_json_text,
-    data_option,
-    json_option,
-    show,
-)
+from herijk.cli.options import PATH, archive_option, as_json_text, data_option, json_option, show
 from herijk.cli.registers import BEST
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import HerijkError

@@ -107,11 +107,7 @@ def proposal(
 @option("--boat", "boats", multiple=True, help="Boat, by number or name; repeat for more.")
 @json_option
 def slides(
-    data: Path,
-    out: Path | None,
-    types: tuple[str, ...],
-    boats: tuple[str, ...],
-    as_json: bool,
+    data: Path, out: Path | None, types: tuple[str, ...], boats: tuple[str, ...], as_json: bool
 ) -> None:
     """What the 2015 presentation asked, over this archive: a finding and a chart per slide."""
     from dashboards.slides import slide_book

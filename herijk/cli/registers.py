@@ -128,8 +128,7 @@ def verify(data: Path, head: str | None, as_json: bool) -> None:
     store = Store(data)
     if not edition_names(store) and not store.database.exists():
         raise MissingKnowledgeError(
-            "{} holds no editions and no tables; is it the right data folder?",
-            data,
+            "{} holds no editions and no tables; is it the right data folder?", data
         )
     report = verify_editions(store, head=head)
     show(report, text.verify, as_json)

@@ -111,8 +111,7 @@ def seasons(report: "LogErrorReport") -> str:
         section(
             tell("Each log, and each part of a season in which one was replaced:"),
             table(
-                [row | {"part": row["part"] + 1} for row in report.parts],
-                f"season part {factor}",
+                [row | {"part": row["part"] + 1} for row in report.parts], f"season part {factor}"
             ),
         ),
         section(

@@ -42,69 +42,36 @@ def speak(language: str) -> None:
     os.environ["LANGUAGE"] = language  # where gettext looks first
 
 
-def in_words(text: str | None) -> str:
-    """A help text in the language of this command."""
-    return tell(" ".join((text or "").split()))
+def in_words(command: click.Command) -> None:
+    """Puts what a command, its parameters and the commands below it say of themselves in words."""
+    described: Any
+    for described in (command, *command.params):
+        described.english = getattr(described, "english", " ".join((described.help or "").split()))
+        described.help = tell(described.english)
+    if shown := command.get_help_option(click.Context(command)):
+        shown.help = tell(HELP)
+    for inner in getattr(command, "commands", {}).values():
+        in_words(inner)
 
 
-def _in_words(parameter: click.Parameter, record: tuple[str, str] | None) -> tuple[str, str] | None:
-    """A line of the help, which is a text of ours with what click adds in brackets."""
-    if record is None or not parameter.help:
-        return record
-    return record[0], record[1].replace(parameter.help, in_words(parameter.help), 1)
-
-
-class Option(click.Option):
-    """An option whose help is in the language of this command."""
-
-    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        """Its names, and what it is."""
-        return _in_words(self, super().get_help_record(ctx))
-
-
-class Argument(click.Argument):
-    """An argument whose help is in the language of this command."""
-
-    def get_help_record(self, ctx: click.Context) -> tuple[str, str]:
-        """Its name, and what it is."""
-        return _in_words(self, super().get_help_record(ctx)) or ("", "")
-
-
-option = partial(click.option, cls=Option, show_default=True)
-flag = partial(click.option, cls=Option, is_flag=True)
-argument = partial(click.argument, cls=Argument)
+option = partial(click.option, show_default=True)
+flag = partial(click.option, is_flag=True)
+argument = click.argument
 
 
 class Command(click.Command):
-    """A command that takes `--lang`, and whose help is in the language asked for."""
+    """A command that takes `--lang`."""
 
     def __init__(self, *given: Any, **settings: Any) -> None:
         super().__init__(*given, **settings)
         self.params.append(
-            Option(
+            click.Option(
                 ["--lang"],
                 type=click.Choice(LANGUAGES),
                 expose_value=False,  # it was read before the command was
                 help="Language. Default: that of the system.",
             )
         )
-
-    def get_help_option(self, ctx: click.Context) -> click.Option | None:
-        """The option `--help`."""
-        shown = super().get_help_option(ctx)
-        if shown is not None:
-            shown.help = tell(HELP)
-        return shown
-
-    def format_help_text(
-        self,
-        ctx: click.Context,  # noqa: ARG002 - as click calls it
-        formatter: click.HelpFormatter,
-    ) -> None:
-        """Writes what the command does."""
-        formatter.write_paragraph()
-        with formatter.indentation():
-            formatter.write_text(in_words(self.help))
 
 
 class Group(Command, click.Group):
@@ -126,6 +93,7 @@ class Group(Command, click.Group):
         """Reads the arguments, from here on in the language that they ask for."""
         if parent is None:
             speak(language_of(args, os.environ))
+            in_words(self)
         return super().make_context(info_name, args, parent, **extra)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -133,10 +101,6 @@ class Group(Command, click.Group):
         sections = self.sections or {gettext.gettext("Commands"): self.list_commands(ctx)}
         for heading, names in sections.items():
             with formatter.section(tell(heading)):
-                formatter.write_dl(
-                    [(name, _first_sentence(in_words(self.commands[name].help))) for name in names]
-                )
-
-
-def _first_sentence(text: str) -> str:
-    return text.partition(". ")[0].removesuffix(".")
+                helps = ((name, self.commands[name].help or "") for name in names)
+                firsts = ((name, text.partition(". ")[0].removesuffix(".")) for name, text in helps)
+                formatter.write_dl(list(firsts))

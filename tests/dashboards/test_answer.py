@@ -187,9 +187,8 @@ def test_how_to_object_names_boat_and_code():
 
 
 def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
-    bars = Answer(LINE, ()).waterfall
+    old, temperature, wind, new = bars = Answer(LINE, ()).waterfall
     assert [bar.kind for bar in bars] == ["number", "less", "less", "number"]
-    old, temperature, wind, new = bars
     assert (old.width, new.width) == (0, 0)  # a bar for a number would have to begin at zero
     assert temperature.start + temperature.width == pytest.approx(old.start)
     assert wind.start + wind.width == pytest.approx(temperature.start)
