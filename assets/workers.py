@@ -77,7 +77,7 @@ def in_parallel(
     except BrokenProcessPool as error:
         workers.cache_clear()
         raise UnavailableError(
-            "a process that helped with the rebuild was ended, perhaps as memory ran out. Run it "
+            "a worker process of the rebuild was killed, perhaps because memory ran out. Run it "
             "again: what was finished is kept"
         ) from error
     finally:

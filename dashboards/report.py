@@ -96,7 +96,7 @@ FAILED: Final = {
     "tables_fit_their_schemas": say("tables do not fit their schemas"),
     "few_tows_set_aside": say("many tows are set aside"),
     "nothing_unforeseen": say(
-        "Herijk itself failed; report this to whoever maintains it, with the folder unforeseen"
+        "Herijk itself failed; report this to its maintainer, with the folder unforeseen"
     ),
     "log_factors_stayed": say("log factors moved"),
     "boats_stayed_within_their_intervals": say("boats moved beyond their intervals"),

@@ -120,7 +120,7 @@ def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fa
 
 def _failed(error: BaseException) -> Sentence:
     return say(
-        "Herijk itself failed on this list ({}). It may be sound. Please report this to whoever "
-        "maintains Herijk, with the folder unforeseen of the data folder.",
+        "Herijk itself failed on this list ({}). It may be sound. Please report this to the "
+        "maintainer of Herijk, with the folder unforeseen of the data folder.",
         in_short(error),
     )

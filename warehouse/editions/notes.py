@@ -44,7 +44,9 @@ def texts(edition: Edition, previous: Edition | None) -> dict[str, str]:
             for name, language in TEXTS.items()
         }
     except jinja2.TemplateNotFound as error:
-        raise MissingKnowledgeError("its texts are in words of other code") from error
+        raise MissingKnowledgeError(
+            "its texts were written by another version of Herijk"
+        ) from error
     return {name: template.render(facts) + "\n" for name, template in templates.items()}
 
 

@@ -358,7 +358,7 @@ def _table(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
     if "causes" in now.columns and differences(parts_of(was), parts_of(now), LINE).height:
         columns.add("causes")  # a text with numbers, which are compared as such
     if columns:
-        message = say("made again, it comes out otherwise in {}", ", ".join(sorted(columns)))
+        message = say("made again, it differs in {}", ", ".join(sorted(columns)))
         yield Finding(name, "differs", table + PARQUET, message)
 
 
@@ -381,7 +381,7 @@ def _files(store: Store, edition: Edition, again: Edition) -> Iterator[Finding]:
         return
     tables = {table + PARQUET for table in again.tables}
     for file in sorted(edition.manifest.files.keys() - expected.keys() - tables):
-        message = say("{} is no longer made; its seal alone says whether it is whole", file)
+        message = say("{} is no longer made; only its seal can show that it is intact", file)
         yield Finding(name, "notice", file, message, wrong=False)
     for file, content in sorted(expected.items()):
         found = (path / file).read_bytes() if (path / file).exists() else b""

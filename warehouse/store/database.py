@@ -15,8 +15,7 @@ _HELD: Final = say(
     "read only, and try again"
 )
 _SPOILT: Final = say(
-    "it is damaged, or another program wrote in it. Make it again with herijk rebuild, which knows "
-    "the archive"
+    "it is damaged, or another program wrote in it. Run herijk rebuild to make it again"
 )
 
 

@@ -153,8 +153,7 @@ class DamagedFileError(BrokenPromiseError):
     def __init__(self, path: Path) -> None:
         super().__init__(
             say(
-                "{} is damaged. It can be made again: run herijk rebuild; when that comes back, "
-                "look at the disk"
+                "{} is damaged. Run herijk rebuild to make it again; if this recurs, check the disk"
             ),
             path,
         )

@@ -59,8 +59,8 @@ def traced(error: BaseException) -> str:
 def sentence(tow_id: str, told: str) -> Sentence:
     """What a volunteer reads about a tow that Herijk failed on."""
     return say(
-        "Herijk itself failed on this tow ({}). Its files may be sound. Please report this to "
-        "whoever maintains Herijk, with unforeseen/{}.txt of the data folder.",
+        "Herijk itself failed on this tow ({}). Its files may be sound. Please report this to the "
+        "maintainer of Herijk, with unforeseen/{}.txt of the data folder.",
         told,
         _file_name(tow_id),
     )
@@ -111,8 +111,8 @@ def documents(root: Path, command: str) -> Iterator[Border]:
         yield round_one
     if failed:
         raise BrokenPromiseError(
-            "Herijk itself failed on {}; all else was made. Please report this to whoever "
-            "maintains Herijk, with what the folder unforeseen of the data folder has of it",
+            "Herijk itself failed on {}; all else was made. Please report this to the "
+            "maintainer of Herijk, with what the folder unforeseen of the data folder has of it",
             ", ".join(failed),
         )
 
