@@ -141,12 +141,12 @@ def test_a_page_shows_what_is_asked(bench):
     tables = {table.name: table.frame for part in page.sections for table in part.tables}
     assert set(tables["boat_curves"]["method"]) == {"as-published", SCENARIO}
     assert tables["register"].height == bench.draft(asked(bench)).register.height
-    assert page.data["types"][0]["page"][0].endswith("#boat")
+    assert page.data["b_weight"][0]["page"][0].endswith("#boat")
 
 
 def test_types_are_judged_by_the_tows_that_are_chosen(bench):
     (some,), (every,) = (
-        results(bench, asked(bench, **query)).data["types"] for query in ({"tows": NEWEST}, {})
+        results(bench, asked(bench, **query)).data["b_weight"] for query in ({"tows": NEWEST}, {})
     )
     assert 0 < some.height < every.height
 
