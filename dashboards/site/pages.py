@@ -1,6 +1,6 @@
 """Which page shows what. A section is there only if its table is, and holds rows."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import Final
@@ -23,14 +23,14 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.site.prose import audit_guide, edition_pages, guide_links
-from dashboards.site.races import race_pages
 from dashboards.site.start import ABOUT, MENU, start_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
+from dashboards.statements.race import Chances, winners
 from pipeline.messages import Sentence, say
 from warehouse.derive.studies import FIRST_PUBLISHED, JUDGEMENT
-from warehouse.queries.answers import line_changes, newest_edition
+from warehouse.queries.answers import line_changes, newest_edition, race_chances
 from warehouse.queries.views import Views
 
 
@@ -46,7 +46,7 @@ def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Itera
         "of types": lambda: type_pages(views, methods),
         "seasons": lambda: [_seasons(views, methods)],
         "changes": lambda: [_changes(views, methods, changes())],
-        "races": lambda: race_pages(views, methods),
+        "races": lambda: _races(views, methods),
         "about": lambda: [_about()],
         "quality": lambda: [_quality(views, methods)],
         "words": lambda: [words_page()],
@@ -380,6 +380,54 @@ CHANGE_CARDS = (
     *("gain_in_two_hours_s", "exceeds_interval"),
 )
 DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_in_two_hours_s")
+
+
+RACE_COLUMNS = (
+    *("name", "fsn_no", "crew_class", "rowers", "rowing_time_s", "old_power_w", "new_power_w"),
+    *("old_rank", "new_rank", "podium_changed", "old_remark", "new_remark"),
+)
+RACE_CARDS = ("name", "fsn_no", "new_power_w", "old_rank", "new_rank")
+
+
+def _races(views: Views, methods: Sequence[str]) -> Iterator[Page]:
+    """A page for each race."""
+    races = views.ask("races") if views.has("race_changes") else pl.DataFrame()
+    if races.is_empty():
+        return
+    editions = races["to_edition"].unique().sort().to_list()
+    chosen = newest_edition(editions, draft_of(methods))
+    chances = race_chances(views, races.filter(to_edition=chosen)["from_edition"][0], chosen)
+    for race, day in views.race_days():
+        own = races.filter(race=race, race_date=day)
+        yield _race(race_path(race, day), f"{race} {day}", own, editions, chosen, chances)
+
+
+def _race(
+    path: str, name: str, rows: pl.DataFrame, editions: Sequence[str], chosen: str, chances: Chances
+) -> Page:
+    now = rows.filter(to_edition=chosen)
+    follows = ["to_edition"]
+    table = Table(
+        "race_changes", rows, RACE_COLUMNS, follows=follows, search=True, cards=RACE_CARDS
+    )
+    return Page(
+        path,
+        say("Races"),
+        [
+            Section(
+                "race_results",
+                say("Results by both editions"),
+                say(
+                    "Power per rower in this race, and the place by it, by class: among the crews "
+                    "that have a valid line on that day in both editions."
+                ),
+                tables=[table],
+                headline=winners(now, chances),
+            )
+        ],
+        name=name,
+        selects=[editions_select("to_edition", editions, chosen)],
+    )
 
 
 def _about() -> Page:

@@ -87,7 +87,10 @@ def test_kinds_of_options():
     assert CONTROLS["wind", "model"].values == ["head", "oblique"]
     factor = CONTROLS["speed", "factor"]
     assert (factor.least, factor.most, factor.whole) == (0.85, 1.2, False)
-    assert (CONTROLS["wind", "averaging_s"].by, CONTROLS["wind", "averaging_s"].unit) == (1, "s")
+    assert (CONTROLS["wind", "averaging_s"].whole, CONTROLS["wind", "averaging_s"].unit) == (
+        True,
+        "s",
+    )
     assert set(CONTROLS["assessment", "reject"].values) == set(CODES)
 
 
