@@ -85,12 +85,9 @@ def test_what_a_control_offers_is_a_value_of_the_model(step, option):
 
 def test_kinds_of_options():
     assert CONTROLS["wind", "model"].values == ["head", "oblique"]
-    factor = CONTROLS["speed", "factor"]
+    factor, seconds = CONTROLS["speed", "factor"], CONTROLS["wind", "averaging_s"]
     assert (factor.least, factor.most, factor.whole) == (0.85, 1.2, False)
-    assert (CONTROLS["wind", "averaging_s"].whole, CONTROLS["wind", "averaging_s"].unit) == (
-        True,
-        "s",
-    )
+    assert (seconds.whole, seconds.unit) == (True, "s")
     assert set(CONTROLS["assessment", "reject"].values) == set(CODES)
 
 
