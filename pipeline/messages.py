@@ -125,7 +125,7 @@ def _sentence(
     number: int = 1,
 ) -> Sentence:
     text = plural if plural and number != 1 else template
-    sentence = Sentence(text.format(*in_order, **values) if in_order or values else text)
+    sentence = Sentence(_filled(text, "en", in_order, values))
     sentence.template, sentence.in_order, sentence.values = str(template), in_order, values
     sentence.context, sentence.plural, sentence.number = context, plural, number
     return sentence
@@ -194,11 +194,11 @@ def in_per_cent(probability: float) -> str:
 
 def _printable(value: object) -> object:
     """Text or an error as one line without control characters; other values as they are."""
-    if isinstance(value, Exception):
-        value = value.args[0] if value.args and isinstance(value.args[0], Sentence) else str(value)
-    if isinstance(value, Sentence) or not isinstance(value, str):
+    if isinstance(value, Exception) and value.args and isinstance(value.args[0], Sentence):
+        return value.args[0]
+    if isinstance(value, Sentence) or not isinstance(value, str | Exception):
         return value
-    line = " ".join(value.split())
+    line = " ".join(str(value).split())
     return line if line.isprintable() else "".join(c if c.isprintable() else "?" for c in line)
 
 

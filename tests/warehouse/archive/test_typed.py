@@ -22,8 +22,9 @@ ROUNDS = (
         '"ploeg" = "?"': '"ploeg" = "roeiers"',
         '"boeg" = "?"': '"boeg" = "hoogte"',
         '"kilo" = "?"': '"kilo" = "gewicht"',
-        'units.force = "?"': '[[profile]]\nseasons = "2014"\nunits.force = "kgf"',
-        'columns.log1 = "?"  # "snelheid"': 'columns.log1 = "snelheid"',
+        'columns.log1 = "?"  # "snelheid"': (
+            '[[profile]]\nseasons = "2014"\ncolumns.log1 = "snelheid"'
+        ),
     },
     {
         f"sample_rate_hz = {RATE_HZ}": f"sample_rate_hz = {RATE_HZ}",
@@ -58,7 +59,7 @@ def type_by_hand(archive: Archive) -> None:
     rows = [line.split(";") for line in (root / THIRD).read_text("utf-8").splitlines()]
     with xlsxwriter.Workbook(root / "meetdata_2014/proeven.xlsx") as book:
         sheet = book.add_worksheet("derde boot 12h 2014")
-        sheet.write_row(0, 0, ["run", "log1", "log2", "gps", "kracht", "wind", "windhoek"])
+        sheet.write_row(0, 0, ["run", "log1", "log2", "gps", "kracht [kg]", "wind", "windhoek"])
         for line, row in enumerate(rows[1:], 1):
             sheet.write_row(line, 0, [float(cell.replace(",", ".")) for cell in row])
     (root / THIRD).unlink()
@@ -70,7 +71,7 @@ def in_kgf(cell: str) -> str:
 
 
 def with_clock(text: str) -> str:
-    header, *rows = text.replace("kracht [N]", "kracht").replace(";", "\t").splitlines()
+    header, *rows = text.replace("kracht [N]", "kracht [kg]").replace(";", "\t").splitlines()
     clocks = (
         f"10:{i // 1200:02d}:{i % 1200 / RATE_HZ:05.2f}".replace(".", ",") for i in range(len(rows))
     )
