@@ -18,7 +18,7 @@ from dashboards.statements import Change
 from dashboards.statements.season import reproducibility
 from dashboards.workbench.bench import Asked, Bench
 from pipeline.messages import Sentence, say
-from warehouse.queries.scenario import CURVE_COLUMNS, Scenario
+from warehouse.queries.scenario import Scenario
 from warehouse.queries.views import ALL, NEWEST
 
 REGISTER_COLUMNS = (
@@ -33,6 +33,10 @@ HOMOGENEITY_COLUMNS = (
 REPEATS_COLUMNS = (
     *("method", "scope", "n_pairs", "sd_ratio", "lo", "hi", "share_within_1pct"),
     "share_within_2pct",
+)
+CURVE_COLUMNS = (
+    *("method", "tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m"),
+    *("cw_hi_kg_m", "runs_used", "status", "flags"),
 )
 OF_TYPE = {"boat_type": "boat_type"}
 
@@ -96,7 +100,7 @@ def _summary(scenario: Scenario) -> Part:
         (say("lines removed"), str(s["removed"])),
         (say("Cw, median"), Change(median) if isinstance(median, float) else "-"),
     ]
-    repeats = reproducibility(scenario.reproducibility(), SCENARIO)
+    repeats = reproducibility(_reproducibility(scenario), SCENARIO)
     return [Section("overview", say("In short"), key_figures=figures, headline=repeats)], {}
 
 
@@ -128,7 +132,7 @@ def _register(scenario: Scenario) -> Part:
     ], {
         "changed": lines.filter(change="changed"),
         "season_change": scenario.season_change(),
-        "log_factors": scenario.log_factors(),
+        "log_factors": scenario.both(lambda draft: draft.made.log_factors),
     }
 
 
@@ -156,7 +160,7 @@ def _boat(scenario: Scenario, asked: Asked) -> Part:
 
 
 def _types(scenario: Scenario, asked: Asked) -> Part:
-    tests = scenario.type_homogeneity()
+    tests = scenario.both(lambda draft: draft.type_homogeneity)
     return [
         Section(
             "types",
@@ -181,7 +185,7 @@ def _types(scenario: Scenario, asked: Asked) -> Part:
 
 
 def _repeats(scenario: Scenario) -> Part:
-    repeats = scenario.reproducibility()
+    repeats = _reproducibility(scenario)
     return [
         Section(
             "repeats",
@@ -193,6 +197,10 @@ def _repeats(scenario: Scenario) -> Part:
             tables=[Table("reproducibility", repeats, REPEATS_COLUMNS)],
         )
     ], {"reproducibility": repeats}
+
+
+def _reproducibility(scenario: Scenario) -> pl.DataFrame:
+    return scenario.both(lambda draft: draft.reproducibility)
 
 
 def _selects(bench: Bench, scenario: Scenario, asked: Asked) -> Sequence[Select]:
