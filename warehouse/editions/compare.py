@@ -31,7 +31,7 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.registers import lines_in_time
-from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
+from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today
 from warehouse.store.editions import CHANGES, MEASURED, Edition
 from warehouse.store.store import Store
 
@@ -137,8 +137,9 @@ def _steps(store: Store, start: Method, old: Edition, new: Edition) -> pl.DataFr
         return NO_STEPS
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
 
-    there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
-    tows, runs = (table.filter(there) for table in tables_of_today(store).values())
+    today = tables_of_today(store)
+    there = pl.col("tow_id").is_in(list(same_tows(new.tables, today)))
+    tows, runs = (table.filter(there) for table in today.values())
     if tows.is_empty():
         return NO_STEPS
     from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed

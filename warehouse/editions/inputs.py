@@ -11,7 +11,6 @@ from typing import Final
 import polars as pl
 
 from pipeline.recompute.facts import samples_files
-from warehouse.store.editions import Edition
 from warehouse.store.store import Store, fingerprint
 
 JUDGED: Final = ("doubts", "unusual")
@@ -65,11 +64,6 @@ def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) 
         for edition in (was, now)
     )
     return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
-
-
-def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
-    """Tows of an edition that the warehouse has with the same inputs."""
-    return same_tows(edition.tables, tables_of_today(store))
 
 
 def listed_inputs(store: Store) -> pl.DataFrame:
