@@ -72,7 +72,7 @@ def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None
         MissingKnowledgeError: there is no such edition or draft.
     """
     before, after = (_edition(views, name, valid_from) for name in (old, new))
-    lines = compare(views.store, before, after).lines
+    lines = compare(views.store, before, after)
     return _named(views, lines.drop("name", "old_status", "new_status"))
 
 
