@@ -4,7 +4,6 @@ A number depends on its own tow, and under some methods on all tows at once (a c
 whole archive). Which files still are what they were is `verify`'s.
 """
 
-from collections import defaultdict
 from collections.abc import Mapping
 from typing import Final
 
@@ -30,13 +29,10 @@ SAMPLES, LIST, REGISTER = "meetdata", "lijst", "register"
 def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
     """Tows with the hash of all that their numbers are made from: list row, runs and files."""
     facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
-    of_tow = defaultdict(list)
-    runs = runs.sort("tow_id", "run")
-    for tow_id, run in zip(runs["tow_id"], runs.select(facts).iter_rows(), strict=True):
-        of_tow[tow_id].append(run)
+    of_tow = runs.sort("tow_id", "run").select(facts).rows_by_key("tow_id", include_key=True)
     measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
     hashes = [
-        fingerprint(row, of_tow[tow_id])
+        fingerprint(row, of_tow.get(tow_id, []))
         for tow_id, row in zip(tows["tow_id"], tows.select(measured).iter_rows(), strict=True)
     ]
     return tows.with_columns(pl.Series(INPUTS_HASH, hashes, pl.String))
