@@ -204,23 +204,21 @@ class Scores(NamedTuple):
         return cls(across.reshape(k, size), itself, pull)
 
     def odds(
-        self, covariance: FloatArray, away: FloatArray, prior: FloatArray, chance: FloatArray
+        self, covariance: FloatArray, prior: FloatArray, chance: FloatArray
     ) -> tuple[FloatArray, BoolArray]:
         """Ln odds of each candidate that is normal about 0, were it added by itself, (c,).
 
         Args:
             covariance: of the unknowns, (k, k).
-            away: how far their mean lies from where the scores are, (k,).
             prior, chance: its variance, and the probability that there is one, (c,).
 
         Returns:
             The odds, and whether one of the size of its prior would be likelier than not.
         """
-        pull = self.pull - self.across.T @ away
         of_unknowns = (self.across * (covariance @ self.across)).sum(axis=0)
         known = prior * np.maximum(self.itself - of_unknowns, 0.0)
         ln_prior = np.log(chance / (1.0 - chance)) - 0.5 * np.log1p(known)
-        ln_odds = 0.5 * pull**2 * prior / (1.0 + known) + ln_prior
+        ln_odds = 0.5 * self.pull**2 * prior / (1.0 + known) + ln_prior
         return ln_odds, 0.5 * known**2 / (1.0 + known) + ln_prior > 0.0
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import polars as pl
 
 from herijk.simulate import WORLDS
+from pipeline.assessment.checks import CHECKS
 
 PERIODS = {
     "2009-11": range(2009, 2012),
@@ -27,6 +28,9 @@ SUMS = ("n", "intervals", "error", "squared", "covered", "half_width", "flagged"
 EQUAL_BOATS = "type_homogeneity"
 """Table of the test whether boats of a type are equal; given where they are."""
 LEVEL = 0.05
+OF_SEASON = "season_in_doubt"
+"""The question that a season is asked, and not a tow."""
+ASKED = [check.code for check in CHECKS if check.severity != "note" and check.code != OF_SEASON]
 Record = dict[str, Any]
 
 
@@ -63,7 +67,18 @@ def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -
         *_factors(tables["log_factors"], truth, doubted, _not_told_apart(tables)),
         _alarms(truth, faulty, seasons_said(tables, NAMED)),
         *_equal_boats(tables),
+        _asked(tows),
     ]
+
+
+def _asked(tows: pl.DataFrame) -> Record:
+    """Of how many sound tows a person is asked something, or only of their season."""
+    sound = tows.filter(~pl.col("altered") & (pl.col("askew_ratio") == 1.0))["flags"].list
+    counts = (sound.contains(OF_SEASON), sound.set_intersection(ASKED).list.len() > 0)
+    names = ("sound_tows", "of_season", "asked")
+    return {"what": "sound tows", "group": "tows"} | dict(
+        zip(names, map(int, (counts[0].len(), *(one.sum() for one in counts))), strict=True)
+    )
 
 
 def _sums(tows: pl.DataFrame, cw: str, lo: str, hi: str) -> Record:
@@ -168,6 +183,7 @@ def table(records: pl.DataFrame) -> Iterator[str]:
             if rows["n"].sum():
                 yield _line(world, str(group), str(what), rows)
         yield _alarm_line(world, mine.filter(what="alarms"))
+        yield _asked_line(world, mine.filter(what="sound tows"))
         equal = mine.filter(what="equal boats")
         if equal.height:
             share, error = mean_and_error(equal["rejected"].to_numpy(), equal["tested"].to_numpy())
@@ -194,6 +210,18 @@ def _line(world: str, group: str, what: str, rows: pl.DataFrame) -> str:
         for (value, error), d in zip(figures, decimals, strict=True)
     ]
     return f"| {world} | {group} | {what} | {rows.height} | " + " | ".join(cells) + " |"
+
+
+def _asked_line(world: str, rows: pl.DataFrame) -> str:
+    of_tow, of_season = (
+        mean_and_error(rows[name].to_numpy(), rows["sound_tows"].to_numpy())
+        for name in ("asked", "of_season")
+    )
+    said = "; ".join(
+        f"{name} {100 * value:.1f} ± {100 * error:.1f} %"
+        for name, (value, error) in (("asked about", of_tow), ("of a doubted season", of_season))
+    )
+    return f"| {world} | all | sound tows | {rows.height} | {said} | | | | | |"
 
 
 def _alarm_line(world: str, rows: pl.DataFrame) -> str:

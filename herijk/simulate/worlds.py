@@ -68,6 +68,26 @@ SPREAD_OUT: Final = {"tows_a_day": 2, "days_apart": 3}
 
 WORLDS: Final[Mapping[str, NamedWorld]] = {
     "history": NamedWorld("Everything that is known to have gone wrong.", base=Defects.history),
+    "real": NamedWorld(
+        "Errors of every kind at moderate size: humped hulls, logs that drift, unreported changes.",
+        {
+            EVER: {
+                "tide_m_s": 0.05,
+                "vane_offset_deg": 3.0,
+                "anemometer_scale": 0.97,
+                "alteration_share": 0.08,
+                "unreported_share": 0.7,
+                "askew_gross_share": 0.0,
+            },
+            BEFORE_DGPS: {"log_tow_sd": 0.004, "log_trend": 0.005, "askew_share": 0.02},
+            range(2011, 2012): {"force_scale": 1.002},
+            range(2013, 2014): {"force_scale": 0.998, "force_zero_n": 0.5},
+            range(2015, 2016): {"force_scale": 0.998},
+            range(2017, 2018): {"force_scale": 1.002, "force_zero_n": -0.5},
+        },
+        {"shape": "hump"},
+        base=Defects.history,
+    ),
     "clean": NamedWorld("Instruments and weather of each season, and nothing else wrong."),
     "restless": NamedWorld(
         "Logs vary 1.2 % between tows, 12 % of boats are altered unreported, boats age.",

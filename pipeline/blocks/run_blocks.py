@@ -81,15 +81,11 @@ class RunBlocks:
         return np.asarray(later > 0)
 
     def take(self, rows: BoolArray) -> "RunBlocks":
-        """The runs marked in `rows`, shape (runs,); neighbours are not copied."""
-        places = np.flatnonzero(rows)
-        first, last = (int(places[0]), int(places[-1]) + 1) if len(places) else (0, 0)
-        chosen = slice(first, last) if last - first == len(places) else places
-        return RunBlocks(
-            self.runs.filter(pl.Series(rows)),
-            self.n[chosen],
-            OnDemand(self.sums.keys(), lambda name: self.sums[name][chosen]),
-        )
+        """The runs marked in `rows`, shape (runs,)."""
+        if rows.all():
+            return self
+        sums = OnDemand(self.sums.keys(), lambda name: self.sums[name][rows])
+        return RunBlocks(self.runs.filter(pl.Series(rows)), self.n[rows], sums)
 
     def block_means(self, name: str) -> FloatArray:
         """Mean of each block, shape (runs, seconds); 0 after the run.

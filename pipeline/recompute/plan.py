@@ -12,6 +12,7 @@ from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.blocks.tows import Tows
 from pipeline.method.definition import Calibration, Method, Steps
 from pipeline.recompute.facts import with_expected_water
+from pipeline.recompute.run_cache import RunCache
 
 
 @dataclass(frozen=True)
@@ -21,14 +22,22 @@ class Plan:
     Attributes:
         steps: those that some tow follows, in the order of seasons, of a season with GPS first.
         which: (tows,) place of a tow's steps: tows that share them are alike in how they scatter.
+        cache: what was found before of the same tows; added to.
     """
 
     tows: Tows
     steps: tuple[Steps, ...]
     which: IntArray
+    cache: RunCache
 
     @classmethod
-    def of(cls, method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Self:
+    def of(
+        cls,
+        method: Method,
+        tows: pl.DataFrame,
+        blocks: RunBlocks,
+        cache: RunCache | None = None,
+    ) -> Self:
         """All tows under a method.
 
         Raises:
@@ -43,7 +52,19 @@ class Plan:
             own = steps if gps else without_gps(steps)
             place[year, gps] = groups.setdefault((steps, own), len(groups))
         which = [place[one] for one in zip(season, has_gps, strict=True)]
-        return cls(known, tuple(own for _, own in groups), np.array(which, dtype=np.int64))
+        own_steps = tuple(own for _, own in groups)
+        return cls(known, own_steps, np.array(which, dtype=np.int64), cache or RunCache())
+
+    def windows(self) -> dict[str, Any]:
+        """Windows of the runs, and means over them, as `RunCache.of` gives them."""
+        rule, averaging = self.of_runs("window.rule"), self.of_runs("wind.averaging_s")
+        asked = sorted({*zip(rule.tolist(), averaging.tolist(), strict=True)})
+        first, *others = [self.cache.of(self.tows, *one) for one in asked or [("all", 0)]]
+        here = [(rule == r) & (averaging == s) for r, s in asked[1:]]
+        return {
+            name: np.select(here, [other[name] for other in others], values) if here else values
+            for name, values in first.items()
+        }
 
     def option(self, name: str) -> Any:
         """An option of each tow's steps, such as `speed.correction`, shape (tows,)."""

@@ -64,33 +64,31 @@ def recompute(
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
-    cache = RunCache() if cache is None else cache
-    plan = Plan.of(method, tows, blocks)
-    estimated = season_factors(plan, cache) if method.estimates_logs else None
-    computed = evaluate(plan, cache, None if estimated is None else estimated.tows)
+    plan = Plan.of(method, tows, blocks, cache)
+    estimated = season_factors(plan) if method.estimates_logs else None
+    computed = evaluate(plan, None if estimated is None else estimated.tows)
     return as_tables(method, computed, estimated, with_bands)
 
 
-def season_factors(plan: Plan, cache: RunCache) -> SeasonFactors | None:
+def season_factors(plan: Plan) -> SeasonFactors | None:
     """The log factors that the given steps ask to estimate, and how far tows scatter.
 
     None if not a single tow has a curve from which to estimate.
     """
-    as_read = evaluate(plan.changed(without_factor), cache)
+    as_read = evaluate(plan.changed(without_factor))
     if not (np.isfinite(as_read.cw_at_declared) & as_read.tows.trusted).any():
         return None
     return find_season_factors(as_read)
 
 
-def evaluate(plan: Plan, cache: RunCache, instruments: pl.DataFrame | None = None) -> Computed:
+def evaluate(plan: Plan, instruments: pl.DataFrame | None = None) -> Computed:
     """What the given steps make of the tows.
 
     Args:
         plan: what is searched over the archive is searched over its tows.
-        cache: what was found before of the same tows; added to.
         instruments: rows of the table `tow_instruments`, for steps that ask for an estimate.
     """
-    read = _prepare(plan, cache, instruments_of(plan, instruments))
+    read = _prepare(plan, instruments_of(plan, instruments))
     return _with_expected_wind(_with_coefficients(with_anemometer(read)))
 
 
@@ -109,9 +107,9 @@ def _with_expected_wind(c: Computed) -> Computed:
     return replace(c, expected_wind=np.where(asked, known.mean(), 0.0), expected_wind_sd=sd)
 
 
-def _prepare(plan: Plan, cache: RunCache, instruments: pl.DataFrame) -> Computed:
+def _prepare(plan: Plan, instruments: pl.DataFrame) -> Computed:
     """All that does not depend on the wind coefficients; these are fixed for now."""
-    tows, windows = plan.tows, cache.under(plan)
+    tows, windows = plan.tows, plan.windows()
     means = run_means(
         tows,
         windows,

@@ -6,10 +6,7 @@ factors or other tows.
 
 from typing import Any
 
-import numpy as np
-
 from pipeline.blocks.tows import Tows
-from pipeline.recompute.plan import Plan
 from pipeline.steps.resistance import window_means
 from pipeline.steps.window import Windows, steady_windows, whole_runs
 
@@ -24,20 +21,8 @@ class RunCache:
         self._windows: dict[tuple[object, ...], Windows] = {}
         self._means: dict[tuple[object, ...], dict[str, Any]] = {}
 
-    def under(self, plan: Plan) -> dict[str, Any]:
-        """What `Windows.of_runs` and `window_means` give of every run, by its steps, (runs,)."""
-        rule, averaging = plan.of_runs("window.rule"), plan.of_runs("wind.averaging_s")
-        asked = sorted({*zip(rule.tolist(), averaging.tolist(), strict=True)})
-        found = [self._of(plan.tows, *options) for options in asked] or [
-            self._of(plan.tows, "all", 0)
-        ]
-        here = [(rule == r) & (averaging == s) for r, s in asked[1:]]
-        return {
-            name: np.select(here, [other[name] for other in found[1:]], first) if here else first
-            for name, first in found[0].items()
-        }
-
-    def _of(self, tows: Tows, rule: str, averaging_s: int) -> dict[str, Any]:
+    def of(self, tows: Tows, rule: str, averaging_s: int) -> dict[str, Any]:
+        """What `Windows.of_runs` and `window_means` give of every run, (runs,) each."""
         key = tuple(tows.frame["tow_id"]), rule
         if key not in self._windows:
             choose = whole_runs if rule == "all" else steady_windows

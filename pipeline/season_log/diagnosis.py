@@ -136,21 +136,14 @@ def _of_log(posterior: Posterior, columns: IntArray) -> str:
 
 
 def _confused_with(posterior: Posterior, columns: IntArray, faults: IntArray) -> str | None:
-    """Other faults that would explain as much, likeliest first; then what would pass for them."""
+    """What one of these faults would pass for if it does not show, and what would pass for it."""
     effects, active = posterior.fit.problem.effects, posterior.fit.active
-    label = effects.frame["label"].to_numpy()
-    chance: dict[str, float] = {}
-    for name, more in zip(
-        label[effects.faults], posterior.instead[faults].sum(axis=0).tolist(), strict=True
-    ):
-        chance[name] = chance.get(name, 0.0) + more
-    likely = sorted((n for n in chance if chance[n] >= POSSIBLE), key=lambda n: (-chance[n], n))
-    hidden = ~posterior.shows
-    passes = [active[posterior.hidden_by[faults[hidden[faults]]]]]
-    passes.append(effects.faults[hidden & np.isin(posterior.hidden_by, columns)])
-    names = [*likely, *label[np.concatenate(passes)]]
+    label, hidden = effects.frame["label"].to_numpy(), ~posterior.shows
+    passes = active[posterior.hidden_by[faults[hidden[faults]]]]
+    pass_for_it = effects.faults[hidden & np.isin(posterior.hidden_by, columns)]
     own = {*label[effects.faults[faults]], *label[active[columns]]}
-    return ", ".join(name for name in dict.fromkeys(names) if name not in own) or None
+    names = dict.fromkeys(label[np.concatenate([passes, pass_for_it])])
+    return ", ".join(name for name in names if name not in own) or None
 
 
 def _rests_on(tows: ArchiveTows) -> pl.DataFrame:

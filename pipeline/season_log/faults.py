@@ -28,17 +28,15 @@ class Posterior:
         fit: with the faults that are likelier than not.
         chance: (faults,) probability of each fault, in the order of `Effects.faults`; 0 where its
             own fit did not bear out what one step promised.
-        instead: (faults, faults) probability of the other fault if the one were not there, and
-            was in the model.
         shows: (faults,) whether a fault of the usual size would be likelier than not.
-        hidden_by: (faults,) effect of the fit that would move most, in standard deviations.
+        hidden_by: (faults,) effect of the fit that would move most, in standard deviations: what
+            one that does not show passes for.
         refused: (logs,) whether the factor of a log contradicts what needs no model
             (`factors.refused`).
     """
 
     fit: Fit
     chance: FloatArray
-    instead: FloatArray
     shows: BoolArray
     hidden_by: IntArray
     refused: BoolArray
@@ -119,7 +117,7 @@ def _better(fitted: Fit, fitted_before: set[tuple[int, ...]]) -> IntArray | None
     if len(places) and ln_odds.min() < 0.0:
         return np.delete(fitted.active, places[int(ln_odds.argmin())])
     faults = fitted.problem.effects.faults
-    more, _ = _odds(fitted, _scores(fitted), fitted.covariance, 0.0 * fitted.value)
+    more, _ = _odds(fitted, _scores(fitted))
     there = [_kinds(fitted, also) in fitted_before for also in faults.tolist()]
     more[np.isin(faults, fitted.active) | there] = -np.inf
     best = int(first_largest(more))
@@ -133,13 +131,11 @@ def _scores(fitted: Fit) -> Scores:
     return Scores.of(fitted.boats, design.reshape(-1, design.shape[2]))
 
 
-def _odds(
-    fitted: Fit, scores: Scores, covariance: FloatArray, away: FloatArray
-) -> tuple[FloatArray, BoolArray]:
-    """Ln odds of every fault beside a posterior, and whether it would show (`Scores.odds`)."""
+def _odds(fitted: Fit, scores: Scores) -> tuple[FloatArray, BoolArray]:
+    """Ln odds of every fault beside the fit, and whether it would show (`Scores.odds`)."""
     effects = fitted.problem.effects
     prior, chance = (effects.column(name, effects.faults) for name in ("variance", "chance"))
-    return scores.odds(covariance, away, prior, chance)
+    return scores.odds(fitted.covariance, prior, chance)
 
 
 def _in_fit(fitted: Fit) -> tuple[IntArray, FloatArray]:
@@ -153,21 +149,14 @@ def _in_fit(fitted: Fit) -> tuple[IntArray, FloatArray]:
 
 
 def _posterior(fitted: Fit) -> Posterior:
-    """The fit, with how likely each fault is beside it or in place of one of its own."""
+    """The fit, with how likely each fault is beside it."""
     faults = fitted.problem.effects.faults
     scores, (places, ln_odds) = _scores(fitted), _in_fit(fitted)
     own = np.searchsorted(faults, fitted.active[places])
-    more, shows = _odds(fitted, scores, fitted.covariance, 0.0 * fitted.value)
+    more, shows = _odds(fitted, scores)
     # What the search has tried and rejected by its own fit has odds of one step still.
     chance = np.where(more > 0.0, 0.0, scipy.special.expit(more))
     chance[own] = scipy.special.expit(ln_odds)
-    instead = np.zeros((len(faults), len(faults)))
-    for place, fault, odds in zip(places.tolist(), own.tolist(), ln_odds.tolist(), strict=True):
-        along = fitted.covariance[:, place] / fitted.covariance[place, place]
-        without = fitted.covariance - np.outer(along, fitted.covariance[place])
-        others, _ = _odds(fitted, scores, without, -along * fitted.value[place])
-        instead[fault] = scipy.special.expit(others - odds)
-        instead[fault, own] = 0.0
     moved = np.abs(fitted.covariance @ scores.across)
     hidden_by = first_largest(moved / np.sqrt(np.diag(fitted.covariance))[:, None])
-    return Posterior(fitted, chance, instead, shows, hidden_by, refused(fitted))
+    return Posterior(fitted, chance, shows, hidden_by, refused(fitted))

@@ -59,22 +59,22 @@ def ladder(
         Sorted rows `tow_id`, `position` (0 is the start), `step`, `factor` (Cw after / before the
         step; 1 at the start) and `cw_kg_m` (after it). The factors of a tow multiply to its total.
     """
-    old, new = (Plan.of(method, tows, blocks) for method in (from_method, to_method))
-    cache = RunCache() if cache is None else cache
-    of_old, of_new = links or (_instruments(plan, cache) for plan in (old, new))
+    cache = cache or RunCache()
+    old, new = (Plan.of(method, tows, blocks, cache) for method in (from_method, to_method))
+    of_old, of_new = links or (_instruments(plan) for plan in (old, new))
     rungs: list[Computed] = []
     for count in range(len(STEP_ORDER) + 1):
         plan = _mixed(old, new, count)
         if count > 1 and plan.steps == rungs[-1].plan.steps:  # both methods have this step alike
             rungs.append(rungs[-1])
         else:
-            rungs.append(evaluate(plan, cache, of_new if count else of_old))
+            rungs.append(evaluate(plan, of_new if count else of_old))
     return _with_factors(rungs).sort("tow_id", "position")
 
 
-def _instruments(plan: Plan, cache: RunCache) -> pl.DataFrame | None:
+def _instruments(plan: Plan) -> pl.DataFrame | None:
     asked = any(steps.speed.correction == "estimated" for steps in plan.steps)
-    estimated = season_factors(plan, cache) if asked else None
+    estimated = season_factors(plan) if asked else None
     return None if estimated is None else estimated.tows
 
 
@@ -87,7 +87,7 @@ def _mixed(old: Plan, new: Plan, count: int) -> Plan:
         )
         for before, after in pairs.T.tolist()
     )
-    return Plan(old.tows, steps, which.ravel())
+    return Plan(old.tows, steps, which.ravel(), old.cache)
 
 
 def _with_factors(rungs: list[Computed]) -> pl.DataFrame:

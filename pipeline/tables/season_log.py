@@ -84,7 +84,7 @@ class SeasonDiagnosis(PerPart):
     alarm = column.flag("a person should look: fault, cannot be told, alarm, or not settled")
     first_tow = column.text("likeliest first tow after a log changed", nullable=True)
     rests_on = column.text("what tells")
-    confused_with = column.text("what else would explain it, likeliest first", nullable=True)
+    confused_with = column.text("what it would pass for, and what for it", nullable=True)
 
 
 class TowInstruments(PerTow):

@@ -31,8 +31,7 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     gone, kept = tow_of(bench, file), spoil(file)
     register = built.table("register").filter(pl.col("tow_id").str.starts_with("2009"))
     stronger = register.filter(pl.col("tow_id") != gone).row(0, named=True)
-    listed = bench.store.read("listed_tows").filter(tow_id=stronger["tow_id"])
-    EditionBench(bench.archive, bench.data).stretch_force(listed["samples_path"].item(), 1.05)
+    EditionBench(bench.archive, bench.data).change_force(stronger["tow_id"], lambda n: 1.05 * n)
     report = bench.rebuild(page=True)
     assert latest(bench)["headlines"] == report.headlines
     assert {(row["tow_id"], row["what"]) for row in report.tows} == {

@@ -65,7 +65,9 @@ def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
     file.write_text('name = "ours"\ntitle = "Onze"\nextends = "rebased-2015"\n', encoding="utf-8")
     folders = ("--archive", bench.archive, "--data", bench.data)
     with directly():
-        assert "Method ours: new" in herijk("rebuild", *folders, "--method", file)[1]
+        printed = herijk("rebuild", *folders, "--method", file)[1]
+    assert "Seasons read: none. Methods applied: ours." in printed
+    assert "Method ours: new" in printed
     assert set(bench.table("methods")["method"]) == {*METHODS, "ours"}
     assert set(bench.table("register")["method"]) == {*METHODS, "ours"}
     terms = ("--method", "ours", "--valid-from", "2015-01-01", "--decision", "ALV")

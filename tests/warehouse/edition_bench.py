@@ -2,8 +2,10 @@
 
 import datetime as dt
 import shutil
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 import polars as pl
 
@@ -33,17 +35,17 @@ class EditionBench:
     data: Path
 
     @classmethod
-    def simulated(cls, root: Path) -> "EditionBench":
+    def simulated(cls, root: Path) -> Self:
         bench = cls(root / "archive", root / "data")
         write_simulated_archive(bench.archive, simulate_world(SMALL))
         bench.rebuild()
         return bench
 
-    def copy(self, root: Path) -> "EditionBench":
+    def copy(self, root: Path) -> Self:
         """A copy to change at will; the warehouse knows its archive by the new place."""
         shutil.copytree(self.archive, root / "archive")
         shutil.copytree(self.data, root / "data")
-        copied = EditionBench(root / "archive", root / "data")
+        copied = type(self)(root / "archive", root / "data")
         about = copied.store.read("about_archive")
         place = pl.lit(str(copied.archive.resolve())).alias("root")
         copied.store.write("about_archive", about.with_columns(place), made_from="")
@@ -75,18 +77,27 @@ class EditionBench:
         """The first sound tow of a season."""
         return self.store.read("tows").filter(pl.col("season") == season).row(0, named=True)
 
-    def stretch_force(self, samples_path: str, factor: float) -> None:
-        """Makes the forces in a samples file (plain CSV) larger by a factor."""
-        path = self.archive / samples_path
-        head, *rows = path.read_text(encoding="utf-8").splitlines()
-        place = next(i for i, name in enumerate(head.split(";")) if name.startswith("kracht"))
-        changed = [head]
-        for row in rows:
-            cells = row.split(";")
-            force = float(cells[place].replace(",", ".")) * factor
-            cells[place] = f"{force:.3f}".replace(".", ",")
-            changed.append(";".join(cells))
-        path.write_text("\n".join(changed) + "\n", encoding="utf-8")
+    def change_samples(self, tow_id: str, change: Callable[[str], str]) -> str:
+        """Changes the text of a tow's samples (plain CSV); gives their path."""
+        listed = self.store.read_all("season_tows").filter(tow_id=tow_id)
+        path: str = listed["samples_path"].item()
+        file = self.archive / path
+        file.write_bytes(change(file.read_bytes().decode("utf-8")).encode("utf-8"))
+        return path
+
+    def change_force(self, tow_id: str, change: Callable[[float], float]) -> None:
+        """Changes the forces in a tow's samples."""
+
+        def changed(text: str) -> str:
+            head, *rows = text.splitlines()
+            place = next(i for i, name in enumerate(head.split(";")) if name.startswith("kracht"))
+            cells = [row.split(";") for row in rows]
+            for row in cells:
+                force = change(float(row[place].replace(",", ".")))
+                row[place] = f"{force:.3f}".replace(".", ",")
+            return "\n".join([head, *(";".join(row) for row in cells), ""])
+
+        self.change_samples(tow_id, changed)
 
 
 def terms(edition: str, valid_from: dt.date = DAY) -> Terms:

@@ -97,7 +97,7 @@ def test_one_file_shows_as_input_on_its_own_line_alone(bench_of_editions):
     bench = bench_of_editions
     bench.publish("a")
     tow = line_with_season(bench, "a", 2009)
-    stretch(bench, tow, 1.02)
+    bench.change_force(tow, lambda n: 1.02 * n)
     bench.rebuild(AS_PUBLISHED)
     bench.publish("b")
     lines = diff(bench.store, "a", "b")
@@ -114,16 +114,11 @@ def line_with_season(bench, edition, season):
     return register.filter(pl.col("tow_date").dt.year() == season)["tow_id"][0]
 
 
-def stretch(bench, tow_id, factor):
-    tow = bench.store.read("tows").filter(pl.col("tow_id") == tow_id).row(0, named=True)
-    bench.stretch_force(tow["samples_path"], factor)
-
-
 def test_method_code_and_one_file_together_are_told_apart(bench_of_editions, monkeypatch):
     bench = bench_of_editions
     bench.publish("a", "as-published")
     tow = line_with_season(bench, "a", 2009)
-    stretch(bench, tow, 1.02)
+    bench.change_force(tow, lambda n: 1.02 * n)
     new_code(monkeypatch)
     bench.rebuild((shipped_method("rebased"),))
     bench.publish("b", "rebased")

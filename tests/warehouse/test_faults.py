@@ -39,10 +39,7 @@ def nothing(_: Lines) -> Lines:
 
 def spoil(bench: EditionBench, tow: str, change: Callable[[Lines], Lines]) -> str:
     """Spoils the samples of a tow of 2009; gives their path."""
-    path: str = bench.store.read("listed_tows").filter(tow_id=tow)["samples_path"].item()
-    file = bench.archive / path
-    file.write_text("\n".join(change(file.read_text("utf-8").rstrip("\n").split("\n"))), "utf-8")
-    return path
+    return bench.change_samples(tow, lambda text: "\n".join(change(text.rstrip("\n").split("\n"))))
 
 
 def read_again(bench: EditionBench, day: dt.date) -> pl.DataFrame:

@@ -5,7 +5,6 @@ The archive is sound; a fault is put in by changing the unit in a header or the 
 
 import datetime as dt
 import re
-import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -19,44 +18,23 @@ from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.assessment.plausibility import Shift, plausibility
 from pipeline.blocks.tows import Tows
 from pipeline.method.definition import shipped_method
+from tests.warehouse.edition_bench import EditionBench
 from tests.worlds import measure
-from warehouse.derive.graph import ARCHIVE
-from warehouse.derive.graph import METHOD as METHOD_STEP
-from warehouse.derive.inputs import Scope
 from warehouse.derive.plausible import with_doubts
-from warehouse.editions.publish import Terms, lines_to_look_at, publish
-from warehouse.intake.seasons import bring_in
+from warehouse.editions.publish import lines_to_look_at
 from warehouse.store.editions import read_edition
-from warehouse.store.store import Store
 
-DAY = dt.date(2026, 11, 22)
 WORLD = WorldSettings(seasons=(2015, 2016, 2017), tows_per_season=10, rate_hz=20, seed=5)
-METHOD = "rebased"
+METHOD = shipped_method("rebased")
 
 
-class Archive:
-    """An archive, and what is made of it without Dagster."""
-
-    def __init__(self, root: Path) -> None:
-        self.root, self.store = root / "archive", Store(root / "data")
-
-    def file_of(self, tow_id: str) -> Path:
-        listed = self.store.read_all("season_tows").filter(tow_id=tow_id)
-        return self.root / str(listed["samples_path"][0])
+class Archive(EditionBench):
+    """An archive, and what is doubted in it."""
 
     def season(self, season: int) -> list[str]:
-        listed: list[str] = (
-            self.store.read_all("season_tows").filter(season=season)["tow_id"].to_list()
-        )
-        return listed
-
-    def change(self, tow_id: str, changed: Callable[[str], str]) -> None:
-        path = self.file_of(tow_id)
-        path.write_bytes(changed(path.read_bytes().decode("utf-8")).encode("utf-8"))
-
-    def collect(self) -> None:
-        bring_in(self.store, self.root)
-        ARCHIVE.make(Scope(self.store, (), today=DAY))
+        listed = self.store.read_all("season_tows").filter(season=season)
+        tows: list[str] = listed["tow_id"].to_list()
+        return tows
 
     def quarantined(self) -> dict[str, tuple[str, str]]:
         faults = self.store.read("quarantine").filter(lost="tow")
@@ -67,41 +45,27 @@ class Archive:
         return dict(doubted.select("tow_id", "doubts").rows())
 
     def curves(self) -> pl.DataFrame:
-        METHOD_STEP.make(Scope(self.store, [shipped_method(METHOD)]))
-        return self.store.read("curves", METHOD)
+        self.rebuild((METHOD,))
+        return self.store.read("curves", METHOD.name)
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Archive:
-    archive = Archive(tmp_path_factory.mktemp("plausible"))
-    write_simulated_archive(archive.root, simulate_world(WORLD))
-    archive.collect()
+    root = tmp_path_factory.mktemp("plausible")
+    archive = Archive(root / "archive", root / "data")
+    write_simulated_archive(archive.archive, simulate_world(WORLD))
+    archive.rebuild(())
     return archive
 
 
 @pytest.fixture
 def archive(whole: Archive, tmp_path: Path) -> Archive:
-    for name in ("archive", "data"):
-        shutil.copytree(whole.root.parent / name, tmp_path / name)
-    return Archive(tmp_path)
+    return whole.copy(tmp_path)
 
 
 def header(word: str, unit: str) -> Callable[[str], str]:
     """Gives a column another unit; its numbers stay."""
     return lambda text: re.sub(rf"{re.escape(word)} \[[^]]*\]", f"{word} [{unit}]", text, count=1)
-
-
-def added_to_force(newtons: float) -> Callable[[str], str]:
-    def changed(text: str) -> str:
-        head, *rows = text.splitlines()
-        place = next(i for i, name in enumerate(head.split(";")) if name.startswith("kracht"))
-        cells = [row.split(";") for row in rows]
-        for row in cells:
-            number = float(row[place].replace(",", ".")) + newtons
-            row[place] = f"{number:.3f}".replace(".", ",")
-        return "\n".join([head, *(";".join(row) for row in cells)]) + "\n"
-
-    return changed
 
 
 def test_a_sound_archive_is_not_doubted(whole):
@@ -118,8 +82,8 @@ def test_a_sound_archive_is_not_doubted(whole):
     ids=["kgf", "knots"],
 )
 def test_a_tow_in_another_unit_is_set_aside_with_the_likely_unit(archive, change, code, word):
-    archive.change("2016-004", change)
-    archive.collect()
+    archive.change_samples("2016-004", change)
+    archive.rebuild(())
     found = archive.quarantined()
     assert set(found) == {"2016-004"}
     assert found["2016-004"][0] == code
@@ -168,8 +132,8 @@ def test_a_turned_vane_is_gross_in_a_tow_and_in_a_season_and_a_dead_anemometer_i
 def test_a_season_in_another_unit_is_set_aside_as_a_season_in_one_sentence(archive):
     mine = archive.season(2016)
     for tow in mine:
-        archive.change(tow, header("kracht", "kgf"))
-    archive.collect()
+        archive.change_samples(tow, header("kracht", "kgf"))
+    archive.rebuild(())
     found = archive.quarantined()
     assert set(found) == set(mine)
     (sentence,) = {message for _, message in found.values()}
@@ -189,9 +153,10 @@ def with_two_decimals(text: str) -> str:
 
 def test_samples_of_another_boat_are_found_also_when_written_otherwise(archive):
     taken, other = "2016-003", "2017-005"
-    written = with_two_decimals(archive.file_of(taken).read_text("utf-8"))
-    archive.file_of(other).write_text(written, "utf-8")
-    archive.collect()
+    written: list[str] = []
+    archive.change_samples(taken, lambda text: written.append(with_two_decimals(text)) or text)
+    archive.change_samples(other, lambda _: written[0])
+    archive.rebuild(())
     found = {tow: code for tow, (code, _) in archive.quarantined().items()}
     assert found == dict.fromkeys((taken, other), "samples_listed_twice")
 
@@ -199,14 +164,14 @@ def test_samples_of_another_boat_are_found_also_when_written_otherwise(archive):
 def test_a_zero_that_is_off_is_doubted_shared_with_nobody_and_not_published(archive):
     sound = archive.curves()
     tow = "2017-002"
-    archive.change(tow, added_to_force(100.0))
-    archive.collect()
+    archive.change_force(tow, lambda newtons: newtons + 100.0)
+    archive.rebuild(())
     assert archive.doubts() == {tow: ["force_not_plausible"]}
     now = archive.curves()
     both = sound.join(now, on="tow_id", suffix="_now").filter(pl.col("tow_id") != tow)
     assert ((both["cw_kg_m_now"] / both["cw_kg_m"]).log().abs().max()) < 0.002
     assert "force_not_plausible" in now.filter(tow_id=tow)["flags"][0]
-    publish(archive.store, shipped_method(METHOD), Terms("2018-1", dt.date(2018, 1, 1), "SKC", DAY))
+    archive.publish("2018-1", METHOD, dt.date(2018, 1, 1))
     edition = read_edition(archive.store, "2018-1")
     assert tow not in edition.register["tow_id"].drop_nulls().to_list()
     to_look_at = lines_to_look_at(edition)

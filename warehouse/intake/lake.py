@@ -29,7 +29,7 @@ from warehouse.archive import (
     judge_samples,
     read_tow_samples,
 )
-from warehouse.archive.samples.resolution import steps_of
+from warehouse.archive.samples.frame import steps_of
 from warehouse.store.code import ADDING, READING, code_hash
 from warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 from warehouse.store.unforeseen import (

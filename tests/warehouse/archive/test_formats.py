@@ -154,7 +154,7 @@ def xlsx(archive: Archive) -> None:
         for row, cells in enumerate(cells_of(archive, path), start=2):
             for column, cell in enumerate(cells):
                 is_text = cell.startswith("0") or column == 0
-                sheet.write(row, column, cell if is_text else _typed(cell))
+                sheet.write(row, column, cell if is_text else _typed(cell.removeprefix("FSN")))
         book.close()
         (archive.root / path).unlink()
 

@@ -13,71 +13,43 @@ from warehouse.archive.profile.definition import Profiles
 from warehouse.archive.sheets.reading import read_list
 from warehouse.archive.sheets.rows import faults_of
 
-TOW = {
-    "sleep_id": "2014-001",
-    "datum": "2014-03-08",
-    "fsn_nr": "FSN1",
-    "meetfile": "a",
-    "roeiers": "8",
-    "klasse": "H",
-    "roeisnelheid [m/s]": "2.5",
-    "lengte [m]": "8",
-    "breedte [m]": "2",
-    "hoogte [m]": "1",
-    "gewicht [kg]": "600",
-    "gewicht na [kg]": "600",
-    "bemanning [kg]": "700",
-    "watertemperatuur [C]": "8",
-    "correctie [%]": "0",
-    "meetfrequentie [Hz]": "1000",
-    "vrijboord laagst [m]": "0.4",
-    "vrijboord boeg [m]": "0.5",
-    "vrijboord achter [m]": "0.5",
+TEXTS = {
+    list_kinds.BOATS: """
+fsn_nr;ht_nr;sloep;type;roeiers;klasse;lengte [m];breedte [m];hoogte [m];gewicht [kg]
+FSN1;1;een;;8;H;8;2;1;600""",
+    list_kinds.TOWS: """
+sleep_id;datum;fsn_nr;meetfile;roeiers;klasse;roeisnelheid [m/s];meetfrequentie [Hz];correctie [%]
+2014-001;2014-03-08;FSN1;a;8;H;2.5;1000;0
+lengte [m];breedte [m];hoogte [m];gewicht [kg];gewicht na [kg];bemanning [kg];watertemperatuur [C]
+8;2;1;600;600;700;8
+vrijboord laagst [m];vrijboord boeg [m];vrijboord achter [m]
+0.4;0.5;0.5""",
+    list_kinds.WINDOWS: """
+sleep_id;run;van [s];tot [s];reden
+2014-001;1;5;45;zwaan""",
+    list_kinds.FORCE_CHECKS: """
+datum;gewicht [kg];aflezing [N]
+2014-03-08;100;981""",
+    list_kinds.LAMPS: """
+sleep_id;run;van [s];tot [s]
+2014-001;1;5;45""",
+    list_kinds.RACES: """
+wedstrijd;datum;afstand [m];fsn_nr;roeiers;klasse;roeitijd;stroom [m];straf [W]
+a;2014-06-01;9000;FSN1;8;H;1:00:00;0;0""",
+    list_kinds.REGISTERS: """
+fsn_nr;roeiers;klasse;A;B [m/s];Cw;roeisnelheid [m/s];sleepdatum
+FSN1;8;H;30;5;40;2.5;2014-03-08""",
 }
-BOAT = {
-    "fsn_nr": "FSN1",
-    "ht_nr": "1",
-    "sloep": "een",
-    "type": "",
-    "roeiers": "8",
-    "klasse": "H",
-    **{k: TOW[k] for k in ("lengte [m]", "breedte [m]", "hoogte [m]", "gewicht [kg]")},
-}
-WINDOW = {"sleep_id": "2014-001", "run": "1", "van [s]": "5", "tot [s]": "45", "reden": "zwaan"}
-CHECK = {"datum": "2014-03-08", "gewicht [kg]": "100", "aflezing [N]": "981"}
-LAMP = {key: WINDOW[key] for key in ("sleep_id", "run", "van [s]", "tot [s]")}
-RACE = {
-    "wedstrijd": "a",
-    "datum": "2014-06-01",
-    "afstand [m]": "9000",
-    "fsn_nr": "FSN1",
-    "roeiers": "8",
-    "klasse": "H",
-    "roeitijd": "1:00:00",
-    "stroom [m]": "0",
-    "straf [W]": "0",
-}
-PRINTED = {
-    "fsn_nr": "FSN1",
-    "roeiers": "8",
-    "klasse": "H",
-    "A": "30",
-    "B [m/s]": "5",
-    "Cw": "40",
-    "roeisnelheid [m/s]": "2.5",
-    "sleepdatum": "2014-03-08",
-}
+"""A list of each kind with one row; of a wide one in parts below each other."""
 
 
-LISTS = {
-    "boats": (list_kinds.BOATS, BOAT),
-    "tows": (list_kinds.TOWS, TOW),
-    "windows": (list_kinds.WINDOWS, WINDOW),
-    "checks": (list_kinds.FORCE_CHECKS, CHECK),
-    "lamps": (list_kinds.LAMPS, LAMP),
-    "races": (list_kinds.RACES, RACE),
-    "registers": (list_kinds.REGISTERS, PRINTED),
-}
+def cells_of(text):
+    """The cells of the row by their header."""
+    heads, cells = (";".join(text.strip().split("\n")[i::2]).split(";") for i in (0, 1))
+    return dict(zip(heads, cells, strict=True))
+
+
+LISTS = {kind.name: (kind, cells_of(text)) for kind, text in TEXTS.items()}
 
 
 def test_every_kind_of_list_is_tried():
@@ -124,7 +96,7 @@ def test_one_step_outside_is_set_aside_and_inside_accepted(
     others = dict(cells)
     if key in ("start_s", "end_s"):  # a window ends after it begins
         others |= {"van [s]": "0"} if key == "end_s" else {"tot [s]": "600"}
-    inside = limit if whole and name != "windows" else limit - sign * step
+    inside = limit if whole and kind is not list_kinds.WINDOWS else limit - sign * step
     accepted, faults = values_of(name, others | {header: cell_of(header, inside)}, tmp_path)
     assert faults == []
     assert accepted[key] == pytest.approx(inside)
@@ -141,7 +113,7 @@ def test_one_step_outside_is_set_aside_and_inside_accepted(
 @pytest.mark.parametrize(("season", "fits"), [(1989, False), (1990, True), (2100, True)])
 def test_a_season_outside_its_limits_is_set_aside_with_a_sentence(season, fits, tmp_path):
     (tmp_path / "wedstrijden").mkdir()
-    race = RACE | {"datum": f"{season}-06-01"}
+    race = LISTS[list_kinds.RACES.name][1] | {"datum": f"{season}-06-01"}
     (tmp_path / f"wedstrijden/a_{season}.csv").write_text(
         ";".join(race) + "\n" + ";".join(race.values()) + "\n"
     )

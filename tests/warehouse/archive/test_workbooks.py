@@ -111,15 +111,16 @@ def test_a_workbook_that_unpacks_to_too_much_is_not_read() -> None:
     assert told.value.reason_code == "too_large"
 
 
+@pytest.mark.parametrize("named", ["Proeven.xlsx#{}", "{}"])
 def test_samples_in_a_sheet_per_tow_and_in_a_sheet_per_run(
-    archive: Archive, good_scan: Scan
+    archive: Archive, good_scan: Scan, named: str
 ) -> None:
     """One workbook of two tows, named by sheet; one of a tow with its runs in sheets."""
     names = ("eerste boot 8h 2014", "tweede boot 6d 2014", "derde boot 12h 2014")
     with xlsxwriter.Workbook(str(archive.root / "meetdata_2014/Proeven.xlsx")) as book:
         for name in names[:2]:
             write_samples(book.add_worksheet(name), typed_rows(archive, name))
-            archive.replace(TOWS, f";{name};", f";Proeven.xlsx#{name};")
+            archive.replace(TOWS, f";{name};", ";" + named.format(name) + ";")
         book.add_worksheet("Blad3")
     header, *rows = typed_rows(archive, names[2])
     with xlsxwriter.Workbook(str(archive.root / f"meetdata_2014/{names[2]}.xlsx")) as book:
@@ -135,6 +136,17 @@ def test_samples_in_a_sheet_per_tow_and_in_a_sheet_per_run(
     first = scan.index.tows.row(0, named=True)
     assert first["samples_path"] == f"meetdata_2014/Proeven.xlsx#{names[0]}"
     assert first["samples_sha256"] == FileHashes().hash_samples(archive.root, first["samples_path"])
+
+
+def test_a_sheet_that_two_workbooks_have_is_asked_about(archive: Archive) -> None:
+    rows = typed_rows(archive, "eerste boot 8h 2014")
+    for name in ("Proeven", "Kopie"):
+        with xlsxwriter.Workbook(str(archive.root / f"meetdata_2014/{name}.xlsx")) as book:
+            write_samples(book.add_worksheet("snol"), rows)
+    archive.replace(TOWS, ";eerste boot 8h 2014;", ";snol;")
+    faults = [f for f in archive.scan().index.faults if f.reason_code == "ambiguous_file"]
+    assert len(faults) == 1
+    assert "'Kopie.xlsx#snol', 'Proeven.xlsx#snol'" in faults[0].message
 
 
 def test_faults_of_samples_in_a_workbook_are_named_with_sheet_and_line(archive: Archive) -> None:

@@ -26,6 +26,7 @@ from warehouse.archive.files.names import (
     split_sheet,
 )
 from warehouse.archive.sheets.cells import WrongError
+from warehouse.archive.sheets.extent import sheets_of
 from warehouse.archive.spelling.text import fold, fold_word, shorten
 
 
@@ -128,7 +129,7 @@ def files_by_name(samples: Iterable[ArchiveFile], names: Iterable[Named]) -> Fil
     """The samples by season and the name they answer to.
 
     Files that are a run each answer together to what their names have in common, unless a row
-    names one of them by itself.
+    names one of them by itself. Sheets of workbooks answer to a name that no file has.
     """
     named = {(season, match_key(without_own_folder(name, season))) for season, name in names}
     by_name: FilesByName = defaultdict(list)
@@ -143,13 +144,18 @@ def files_by_name(samples: Iterable[ArchiveFile], names: Iterable[Named]) -> Fil
     for key, runs in by_run.items():
         if key not in by_name and all(len(files) == 1 for files in runs.values()):
             by_name[key].append(SamplesFile(tuple(runs[run][0] for run in sorted(runs))))
+    lacking = {key for year, key in named if not {(year, key), (0, key)} & by_name.keys()}
+    for file in samples if lacking else ():
+        for sheet in sheets_of(file.full_path) if file.inside else ():
+            if match_key(sheet) in lacking:
+                by_name[file.season, match_key(sheet)].append(_sheet_in(file, sheet))
     return by_name
 
 
 def files_meant(name: str, season: int, by_name: FilesByName) -> list[SamplesFile]:
     """The files a name in a list can mean; a name with its extension is more precise.
 
-    Of a workbook it can name a sheet: `proeven.xlsx#snol 8h`.
+    Of a workbook it can name a sheet: `proeven.xlsx#snol 8h`; alone where no file has its name.
     """
     name = without_own_folder(name, season)
     key, (own, sheet) = match_key(name), split_sheet(name)
@@ -175,7 +181,7 @@ def not_listed(
     Rows that are set aside for another reason name their files all the same.
     """
     named = {
-        part.path
+        split_sheet(part.path)[0]
         for season, name in names
         for year in (season, 0)
         for file in by_name.get((year, match_key(without_own_folder(name, season))), [])

@@ -1,6 +1,5 @@
 """Reading samples from Parquet and TDMS."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
@@ -53,9 +52,7 @@ def _read_parquet(path: Path, profile: SeasonProfile) -> pl.DataFrame:
             check_nothing_misspelt(names, columns, profile)
             _check_parquet_size(path, file, len(columns))
             wanted = [names[column.index] for column in columns.values()]
-            schema = pa.schema([file.schema_arrow.field(name) for name in wanted])
-            table = pa.Table.from_batches(_batches(file, wanted), schema)
-        return pl.DataFrame(pl.from_arrow(table))
+            return pl.DataFrame(pl.from_arrow(file.read(columns=wanted)))
     except FileNotFoundError as error:
         said = say("'{name}' is not there any more.", name=path.name)
         raise DefectiveInputError("samples_missing", said) from error
@@ -63,18 +60,10 @@ def _read_parquet(path: Path, profile: SeasonProfile) -> pl.DataFrame:
         raise not_whole(path, "Parquet", error) from error
 
 
-def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]:
-    """The rows in pieces, as a footer may promise fewer than there are."""
-    rows = 0
-    for batch in file.iter_batches(columns=names):
-        rows += batch.num_rows
-        if rows > MOST_ROWS:
-            raise too_many_rows(rows)
-        yield batch
-
-
 def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int) -> None:
     metadata = file.metadata
+    if metadata.num_rows > MOST_ROWS:
+        raise too_many_rows(metadata.num_rows)
     groups = (metadata.row_group(index) for index in range(metadata.num_row_groups))
     unpacked = sum(group.total_byte_size for group in groups)
     if max(unpacked, metadata.num_rows * width * 8, path.stat().st_size) > SAMPLES_MAX_BYTES:

@@ -24,6 +24,10 @@ OUTPUT_NAMES: Final = {
 TIME_TOLERANCE: Final = 0.01
 PAUSE_S: Final = 10.0
 """After so long without a sample a new run begins, where nothing else says so."""
+ENOUGH_FOR_STEPS: Final = 10_000
+"""Samples that are enough to see in which steps a channel is written."""
+FEWEST_FOR_STEPS: Final = 3
+"""Values that differ."""
 
 LineOf = Callable[[int], int]
 """The line in a file of a row of samples, counted from 0; of the header where it is negative."""
@@ -115,36 +119,29 @@ def with_checked_times(
 ) -> pl.DataFrame:
     """The samples without the numbers of runs in which the clock jumps back, where most do not.
 
+    The usual step of every other run must be that of the rate; a gap costs its seconds elsewhere.
     Nothing says whether the clock was wrong there, or rows are there twice.
 
     Raises:
         DefectiveInputError: `bad_time`, where the time does not rise in half of the runs or more,
             or in one of the others at another rate.
     """
-    within = pl.col("run") == pl.col("run").shift()
-    step_s = pl.when(within).then(pl.col("time").diff())
-    steps = pl.DataFrame({"run": samples["run"], "time": time_s}).select("run", step_s=step_s)
-    stops = (steps["step_s"] <= 0).fill_null(value=False)
-    turned = steps.filter(stops)["run"].unique()
-    if len(turned) and 2 * len(turned) >= steps["run"].n_unique():
+    step_s = pl.col("time").diff()
+    stops = pl.col("row").filter(step_s <= 0)
+    usual_s = step_s.fill_nan(None).median()
+    runs = (
+        pl.DataFrame({"run": samples["run"], "time": time_s})
+        .with_row_index("row")
+        .group_by("run", maintain_order=True)
+        .agg(pl.col("row").first(), stop=stops.first(), hz=1 / usual_s)
+    )
+    turned = runs.drop_nulls("stop")
+    if turned.height and 2 * turned.height >= runs.height:
         what = say("the time does not increase within the run.")
-        raise _at(line_of(int(stops.arg_max() or 0)), "bad_time", what)
-    is_turned = pl.col("run").is_in(turned.implode())
-    if rate_hz is not None:
-        _check_rate(steps.with_row_index("row").filter(~is_turned), rate_hz, line_of)
-    if not len(turned):
-        return samples
-    channel = pl.selectors.float()
-    nothing = pl.when(channel.is_not_null()).then(float("nan"))
-    return samples.with_columns(pl.when(is_turned).then(nothing).otherwise(channel).name.keep())
-
-
-def _check_rate(steps: pl.DataFrame, rate_hz: int, line_of: LineOf) -> None:
-    """The usual step of every run must be that of the rate; a gap costs its seconds elsewhere."""
-    usual_s = pl.col("step_s").fill_nan(None).median()
-    rates = steps.group_by("run", maintain_order=True).agg(pl.col("row").first(), hz=1 / usual_s)
-    wrong = rates.filter((pl.col("hz") / rate_hz - 1).abs() > TIME_TOLERANCE)
-    for run, row, hz in wrong.rows():
+        raise _at(line_of(turned["stop"][0]), "bad_time", what)
+    others = runs.filter(pl.col("stop").is_null())
+    off = others.filter((pl.col("hz") / (rate_hz or pl.col("hz")) - 1).abs() > TIME_TOLERANCE)
+    for run, row, _, hz in off.rows():
         said = say(
             "Run {run}: by its times it has {observed:g} samples per second, by the list or "
             "the profile {rate}; they may differ by {most:.0%}.",
@@ -154,3 +151,28 @@ def _check_rate(steps: pl.DataFrame, rate_hz: int, line_of: LineOf) -> None:
             most=TIME_TOLERANCE,
         )
         raise DefectiveInputError("bad_time", said, line=line_of(row))
+    if turned.is_empty():
+        return samples
+    channel = pl.selectors.float()
+    nothing = pl.when(channel.is_not_null()).then(float("nan"))
+    is_turned = pl.col("run").is_in(turned["run"].implode())
+    return samples.with_columns(pl.when(is_turned).then(nothing).otherwise(channel).name.keep())
+
+
+def steps_of(samples: pl.DataFrame) -> dict[str, float | None]:
+    """In which steps readings are written: the least difference between two of GPS and of force.
+
+    Coarse steps do no harm where readings are rounded, as the unrest of a run is larger. Nothing in
+    the samples tells whether they were rounded or cut off, which makes all half a step too small.
+
+    Returns:
+        `gps_step_m_s` and `force_step_n`; None where a channel has too few values to tell.
+    """
+    names = {"gps_step_m_s": "gps_m_s", "force_step_n": "force_n"}
+    return {step: _least_step(samples[name]) for step, name in names.items()}
+
+
+def _least_step(channel: pl.Series) -> float | None:
+    values = channel.drop_nulls().to_numpy()[:: max(len(channel) // ENOUGH_FOR_STEPS, 1)]
+    distinct = np.unique(values[np.isfinite(values)].astype(np.float64))
+    return float(np.diff(distinct).min()) if len(distinct) >= FEWEST_FOR_STEPS else None

@@ -6,7 +6,6 @@ channels and what they mean are the business of the modules that read such table
 
 import logging
 import re
-from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
@@ -18,73 +17,56 @@ from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from warehouse.archive.files.contents import not_whole, too_large
 from warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
+from warehouse.archive.spelling.text import find_delimiter
 
 _END_OF_HEADER: Final = "***End_of_Header***"
-_SEPARATORS: Final = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " "}
-_SEPARATOR: Final = re.compile(r"(?im)^separator[\t,][ \t,]*(\w+)")
 _NUMBER_IN_NAME: Final = re.compile(r"([0-9]{1,2})[^0-9]*$")
-_NONE: Final = ("", "comment")
-"""What is no channel."""
+_ROW: Final = re.compile(r"\s*[+-]?[0-9.,]")
+_NO_CHANNEL: Final = ("", "comment")
 _INDEX_COLUMN: Final = "X_Value"
 
 
-def is_labview(text: str) -> bool:
+def is_labview(data: bytes) -> bool:
     """Whether a text is a LabVIEW measurement file."""
-    return text[:200].lstrip("\ufeff").startswith("LabVIEW Measurement")
+    return data.startswith(b"LabVIEW Measurement")
 
 
-def labview_as_table(text: str) -> tuple[str, list[int]]:
+def labview_as_table(data: bytes) -> bytes:
     """A LabVIEW measurement file as a table of text with one header.
 
-    Each segment (a header of its own, with samples below it) becomes a run where there is none:
-    column `run` is put before the others. All segments have the same columns.
-
-    Returns:
-        The table, with the separator and decimal mark of the file; and the line in the file of
-        each of its rows, the header's first.
+    Header and rows stay on their lines; all else, as what is between two segments (a header of its
+    own, with samples below it), is blank. All segments have the same columns.
 
     Raises:
         DefectiveInputError: `unreadable_file`.
     """
-    lines = [line.rstrip("\r") for line in text.split("\n")]
-    starts = [i for i, line in enumerate(lines) if line.strip().startswith(_END_OF_HEADER)]
-    named = _SEPARATOR.search("\n".join(lines[: starts[0]] if starts else []))
-    separator = _SEPARATORS.get(named[1].casefold(), "\t") if named else "\t"
-    cells = [line.split(separator) for line in [*lines, ""]]
-    headers = [[cell.strip() for cell in cells[start + 1]] for start in starts[1:]]
-    columns = [[i for i, name in enumerate(x) if name.casefold() not in _NONE] for x in headers]
-    if not columns or [] in columns or columns != columns[:1] * len(columns):
+    lines = [line.rstrip("\r") for line in [*data.decode().split("\n"), ""]]
+    ends = [i for i, line in enumerate(lines) if line.strip().startswith(_END_OF_HEADER)][1:]
+    begin = ends[0] + 1 if ends else 0
+    delimiter = find_delimiter(lines[begin])
+    headers = [[name.strip() for name in lines[end + 1].split(delimiter)] for end in ends]
+    channels = [[i for i, n in enumerate(h) if n.casefold() not in _NO_CHANNEL] for h in headers]
+    if not channels or [] in channels or channels != channels[:1] * len(channels):
         said = say("This LabVIEW file has no segment header.")
         raise DefectiveInputError("unreadable_file", said)
-    names, kept = headers[0], columns[0]
-    of_units = next((c for c in cells[: starts[1]] if c[0].strip() == "Y_Unit_Label"), [])
-    units = {place: unit.strip() for place, unit in enumerate(of_units)}
-    header = [_with_unit(names[i], units.get(i, "")) for i in kept]
-    counts = not _names_runs(names)
-    rows, places = [separator.join(["run"] * counts + header)], [starts[1] + 2]
-    for run, (start, end) in enumerate(pairwise([*starts[1:], len(lines)]), start=1):
+    names, kept = headers[0], channels[0]
+    cells = (line.split(delimiter) for line in lines[:begin])
+    of_units = dict(enumerate(next((c for c in cells if c[0].strip() == "Y_Unit_Label"), [])))
+    table = [""] * len(lines)
+    table[begin] = delimiter.join(_with_unit(names[i], of_units.get(i, "").strip()) for i in kept)
+    for start, end in pairwise([*ends, len(lines)]):
         for number in range(start + 2, end):
-            fields = dict(enumerate(cells[number]))
-            if not lines[number].strip() or not _is_number(fields.get(kept[0], "")):
+            if not _ROW.match(lines[number]):
                 break
-            rows.append(separator.join([str(run)] * counts + [fields.get(i, "") for i in kept]))
-            places.append(number + 1)
-    return "\n".join(rows), places
-
-
-def _names_runs(names: Iterable[str]) -> bool:
-    """Whether a recording has a column of its own that says which run a sample is of."""
-    return any(name.casefold().strip() == "run" for name in names)
+            fields = dict(enumerate(lines[number].split(delimiter)))
+            table[number] = delimiter.join(fields.get(i, "") for i in kept)
+    return "\n".join(table).encode()
 
 
 def _with_unit(name: str, unit: str) -> str:
     if name == _INDEX_COLUMN:
         return "tijd [s]"
     return f"{name} [{unit}]" if unit and "[" not in name and "(" not in name else name
-
-
-def _is_number(cell: str) -> bool:
-    return bool(re.fullmatch(r"\s*[+-]?[0-9.,]+(?:[eE][+-]?[0-9]+)?\s*", cell)) or not cell.strip()
 
 
 def read_tdms(path: Path, most_rows: int | None = None) -> pl.DataFrame:
@@ -135,7 +117,7 @@ def _group(group: Any, place: int, most_rows: int | None) -> pl.DataFrame:
     step = next((channel.properties.get("wf_increment", 0.0) for channel in group.channels()), 0.0)
     if step > 0 and not any(name.startswith("tijd") for name in map(str.casefold, columns)):
         frame = frame.with_columns((pl.int_range(pl.len()) * step).alias("tijd [s]"))
-    if _names_runs(columns):
+    if any(name.casefold().strip() == "run" for name in columns):
         return frame
     number = _NUMBER_IN_NAME.search(group.name)
     run = int(number[1]) if number else place

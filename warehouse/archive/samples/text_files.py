@@ -64,18 +64,13 @@ class Lines:
 
 
 class Body(NamedTuple):
-    """The text below the header, and what the header says of it.
-
-    Attributes:
-        clock: the time is written as a time of day.
-    """
+    """The text below the header, and what the header says of it."""
 
     data: bytes
     delimiter: str
     header: Sequence[str]
     columns: Mapping[str, FoundColumn]
     line_of: Lines
-    clock: bool = False
 
 
 def body_of(path: Path, profile: SeasonProfile, start: int | None = None) -> Body:
@@ -120,10 +115,9 @@ def find_body(data: bytes, profile: SeasonProfile) -> Body:
     """Finds the header, below titles if there are any, and what it says of the columns."""
     if not data.isascii() or b"\x00" in data or not data[:100].strip():
         data = unicodedata.normalize("NFC", decode(data)).encode()
-    places: list[int] = []
-    if is_labview(data[:200].decode(errors="replace")):
-        table, places = labview_as_table(data.decode())
-        data = table.encode()
+    is_in_segments = is_labview(data)
+    if is_in_segments:
+        data = labview_as_table(data)
     lines = data[:HEAD_BYTES].decode(errors="ignore").split("\n")
     told = profile.header_lines
     place = min(told[1], len(lines)) - 1 if told else find_header(lines, profile.columns)
@@ -138,8 +132,7 @@ def find_body(data: bytes, profile: SeasonProfile) -> Body:
         header = header_of_rows([split_line(x, delimiter) for x in lines[told[0] - 1 : told[1]]])
     elif units := with_units(header, _cells_of_line(lines, below, delimiter)):
         header, below = units, below + 1
-    line = places[0] if places else place + 1
-    columns = find_columns(header, profile.columns, line)
+    columns = find_columns(header, profile.columns, place + 1)
     check_nothing_misspelt(header, columns, profile)
     data = data[_start_of_line(data, below) :]
     if not data.strip(b"\r\n"):
@@ -147,35 +140,36 @@ def find_body(data: bytes, profile: SeasonProfile) -> Body:
         raise DefectiveInputError("unreadable_file", said)
     if delimiter == " ":
         data, delimiter = _BLANKS_WITHIN.sub(b"\t", _BLANKS_OUTSIDE.sub(b"", data)), "\t"
-    first_line, rows = below + 1, places[1:]
-    says_runs = rows or {"run", "time"} & columns.keys()
-    if not says_runs and (parted := _parted_by_blank_lines(data, delimiter)):
-        data, rows = parted[0], [first_line + row for row in parted[1]]
-        header = [*header, "run"]
-        columns = {**columns, "run": FoundColumn(len(header) - 1, "run", Scale())}
-    clock = _is_clock(data, delimiter, columns.get("time"))
-    return Body(data, delimiter, header, columns, Lines(line, first_line, rows), clock)
+    rows: list[int] = []
+    if is_in_segments or not {"run", "time"} & columns.keys():
+        run_behind = None if "run" in columns else delimiter.encode()
+        data, rows = _without_blank_lines(data, delimiter, run_behind)
+        if rows and run_behind:
+            columns = {**columns, "run": FoundColumn(len(header), "run", Scale())}
+            header = [*header, "run"]
+    line_of = Lines(place + 1, below + 1, [below + 1 + row for row in rows])
+    return Body(data, delimiter, header, columns, line_of)
 
 
-def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int]] | None:
-    """The rows with the number of their run behind them, and the place of each.
+def _without_blank_lines(
+    data: bytes, delimiter: str, run_behind: bytes | None
+) -> tuple[bytes, list[int]]:
+    """The rows, each with the number of its run behind it where that is asked; and their places.
 
-    A run is what is between blank lines; None where there are none between rows. In a file
-    without a column of runs or times nothing else can be meant by them.
+    A run is what is between blank lines: in a file without a column of runs or times nothing else
+    can be meant by them. Where there are none between rows, the data are as they were.
     """
     nothing = delimiter.encode() + b" \t\r"
     lines = data.split(b"\n")
-    full = np.array([bool(line.strip(nothing)) for line in lines])
-    places = np.flatnonzero(full)
+    places = np.flatnonzero([bool(line.strip(nothing)) for line in lines])
     begins = np.diff(places, prepend=places[:1]) > 1
     if not begins.any():
-        return None
-    runs = 1 + np.cumsum(begins)
-    rows = (
-        lines[place].rstrip(b"\r") + delimiter.encode() + str(run).encode()
-        for place, run in zip(places.tolist(), runs.tolist(), strict=True)
-    )
-    return b"\n".join(rows) + b"\n", places.tolist()
+        return data, []
+    rows = [lines[place].rstrip(b"\r") for place in places]
+    if run_behind:
+        runs = (1 + np.cumsum(begins)).tolist()
+        rows = [row + run_behind + str(run).encode() for row, run in zip(rows, runs, strict=True)]
+    return b"\n".join([*rows, b""]), places.tolist()
 
 
 def _cells_of_line(lines: Sequence[str], number: int, delimiter: str) -> list[str]:
@@ -193,57 +187,35 @@ def _start_of_line(data: bytes, number: int) -> int:
     return start
 
 
-def _is_clock(data: bytes, delimiter: str, time: FoundColumn | None) -> bool:
-    if time is None:
-        return False
-    cells = data.partition(b"\n")[0].split(delimiter.encode())
-    return time.index < len(cells) and b":" in cells[time.index]
-
-
 def _read_fast(body: Body) -> pl.DataFrame | None:
     """The columns, or None where the careful way has to judge.
 
-    That is also where a carriage return is within a line: Polars takes it for a blank. And
-    where there are commas and points: Polars takes either for the decimal mark.
+    That is where cells are quoted or hold a time of day; where a carriage return is within a line:
+    Polars takes it for a blank; and where there are commas and points: Polars takes either for the
+    decimal mark.
     """
-    mixed = b"," in body.data and b"." in body.data
-    if _has_stray_return(body.data) or (mixed and body.delimiter != ","):
+    data = body.data
+    is_mixed = body.delimiter != "," and b"," in data and b"." in data
+    is_returning = b"\r" in data and data.count(b"\r") != data.count(b"\r\n")
+    if is_mixed or is_returning or b'"' in data:
         return None
-    quoted = b'"' in body.data
     wanted = {column.index: key for key, column in body.columns.items()}
-    number = pl.String() if quoted else pl.Float64()
     schema = {
-        wanted.get(index, f"ignored {index}"): number
-        if index in wanted and not (body.clock and wanted[index] == "time")
-        else pl.String()
+        wanted.get(index, f"ignored {index}"): pl.Float64() if index in wanted else pl.String()
         for index in range(len(body.header))
     }
     try:
         frame = pl.read_csv(
-            body.data,
+            data,
             has_header=False,
             separator=body.delimiter,
-            quote_char='"' if quoted else None,
+            quote_char=None,
             decimal_comma=body.delimiter != ",",
             schema=schema,
         ).select(wanted.values())
-        if body.clock:
-            frame = frame.with_columns(seconds_of_clock(frame["time"]))
-        if quoted:
-            text = pl.selectors.string()
-            frame = frame.with_columns(text.str.replace(",", ".", literal=True).cast(pl.Float64()))
     except pl.exceptions.PolarsError:
         return None
     return frame if all(map(_all_finite, frame.iter_columns())) else None
-
-
-def _has_stray_return(data: bytes) -> bool:
-    """Whether a carriage return is anywhere but before a line feed."""
-    if b"\r" not in data:
-        return False
-    letters = np.frombuffer(data, np.uint8)
-    stray = (letters[:-1] == ord("\r")) & (letters[1:] != ord("\n"))
-    return data.endswith(b"\r") or bool(stray.any())
 
 
 def _all_finite(numbers: pl.Series) -> bool:
@@ -268,7 +240,7 @@ def _read_carefully(body: Body) -> pl.DataFrame:
             continue
         if key == "run":
             cells = cells.str.replace(_RUN_NAMED, "$1")
-        if key == "time" and body.clock:
+        if key == "time":
             cells = seconds_of_clock(cells).cast(pl.String()).fill_null(cells)
         columns[key] = _to_numbers(cells, whole)
     return pl.DataFrame(columns)

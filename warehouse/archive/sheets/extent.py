@@ -5,6 +5,7 @@ import io
 import re
 import zipfile
 import zlib
+from pathlib import Path
 from typing import Final
 
 from warehouse.archive.limits import (
@@ -48,8 +49,8 @@ def check_workbook(data: bytes, only: str = "", most_rows: int = MOST_LISTED_ROW
         return
     with zipfile.ZipFile(io.BytesIO(data)) as book:
         members = book.infolist()
-        if only and (own := _part_of(book, only)):
-            members = [m for m in members if m.filename == own or not _is_sheet(m.filename)]
+        if own := [part for name, part in _parts_of(book).items() if fold(name) == fold(only)]:
+            members = [m for m in members if m.filename in own or not _is_sheet(m.filename)]
         check_unpacked(
             sum(member.file_size for member in members),
             WORKBOOK_MAX_BYTES if most_rows == MOST_LISTED_ROWS else SAMPLES_MAX_BYTES,
@@ -63,23 +64,31 @@ def _is_sheet(part: str) -> bool:
     return part.startswith(_SHEETS)
 
 
-def _part_of(book: zipfile.ZipFile, sheet: str) -> str:
-    """The part of an XLSX that holds a sheet; empty where that is not said."""
+def sheets_of(path: Path) -> list[str]:
+    """The names of the sheets of an XLSX; none of another or a damaged file."""
+    try:
+        with zipfile.ZipFile(path) as book:
+            return [*_parts_of(book)]
+    except (zipfile.BadZipFile, OSError, ValueError):
+        return []
+
+
+def _parts_of(book: zipfile.ZipFile) -> dict[str, str]:
+    """The parts of an XLSX by the name of the sheet that they hold, as far as it is said."""
     names = ("xl/workbook.xml", "xl/_rels/workbook.xml.rels")
     if not {*names} <= {*book.namelist()} or sum(book.getinfo(n).file_size for n in names) > 1e7:
-        return ""
+        return {}
     said = [
         {name.rpartition(b":")[2]: value.decode() for name, value in _ATTRIBUTE.findall(tag)}
         for name in names
         for tag in _NAMED.findall(_content(book, book.getinfo(name)))
     ]
     targets = {one[b"Id"]: one.get(b"Target", "") for one in said if b"Id" in one}
-    parts = [
-        targets.get(one.get(b"id", ""), "")
+    return {
+        html.unescape(one[b"name"]): f"xl/{targets[one[b'id']].removeprefix('/xl/')}"
         for one in said
-        if fold(html.unescape(one.get(b"name", ""))) == fold(sheet)
-    ]
-    return f"xl/{parts[0].removeprefix('/xl/')}" if parts else ""
+        if b"name" in one and one.get(b"id") in targets
+    }
 
 
 def _content(book: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
