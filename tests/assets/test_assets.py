@@ -17,7 +17,6 @@ import assets.tables
 import warehouse.derive.step
 from assets.resources import Setup
 from assets.run import QUIET_LOG, assets_of
-from assets.site import SITE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.schemas import TABLES
 from tests.assets.page import page
@@ -108,7 +107,7 @@ def test_what_dagster_calls_stale_has_all_that_is_and_nothing_after_a_rebuild(
     def new_code(_):
         for module in (warehouse.derive.step, assets.tables):
             monkeypatch.setattr(module, "code_hash", lambda *_: "other")
-        steps = [assets.tables.step_asset(step) for step in (*STEPS, SITE)]
+        steps = [assets.tables.step_asset(step) for step in (*STEPS, assets.tables.SITE)]
         kept = [a for a in assets.run.ASSETS if a not in assets.tables.STEP_ASSETS]
         monkeypatch.setattr(assets.run, "ASSETS", [*kept, *steps])
 

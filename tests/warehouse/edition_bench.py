@@ -14,7 +14,7 @@ from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.definition import Method, shipped_method
 from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
-from warehouse.editions.compare import DiffReport, compare, report
+from warehouse.editions.compare import compare
 from warehouse.editions.publish import Terms, publish
 from warehouse.intake.seasons import bring_in
 from warehouse.store.editions import read_edition
@@ -106,8 +106,3 @@ def terms(edition: str, valid_from: dt.date = DAY) -> Terms:
 
 def diff(store: Store, old: str, new: str) -> pl.DataFrame:
     return compare(store, *(read_edition(store, name) for name in (old, new)))
-
-
-def diff_report(store: Store, old: str, new: str) -> DiffReport:
-    editions = [read_edition(store, name) for name in (old, new)]
-    return report(*editions, compare(store, *editions))

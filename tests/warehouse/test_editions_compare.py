@@ -13,8 +13,8 @@ import pipeline.studies.ladder
 from pipeline.method.definition import parse_method, shipped_method
 from pipeline.register.replay import RaceRules
 from pipeline.tables.keys import LINE
-from tests.warehouse.edition_bench import diff, diff_report, terms
-from warehouse.editions.compare import report_with_races
+from tests.warehouse.edition_bench import diff, terms
+from warehouse.editions.compare import report, report_with_races
 from warehouse.editions.publish import publish_printed
 from warehouse.intake import seasons as intake
 from warehouse.store.decisions import FILE_NAME
@@ -150,7 +150,8 @@ def test_another_tow_shows_as_tow_beside_the_steps(bench_of_editions):
 def test_the_summary_names_gainers_losers_and_the_largest(published):
     same = diff(published.store, "2014-1", "2014-1")
     assert (set(same["change"]), names(same)) == ({"same"}, set())
-    found = diff_report(published.store, "2014-1", "2014-2")
+    both = [read_edition(published.store, name) for name in ("2014-1", "2014-2")]
+    found = report(*both, diff(published.store, "2014-1", "2014-2"))
     moved = [r for r in found.rows if r["change"] == "changed"]
     assert found.gain["lines"] + found.loss["lines"] == len(moved)
     assert found.gain["lines"] == sum(r["power_ratio"] > 1 for r in moved)
@@ -160,15 +161,15 @@ def test_the_summary_names_gainers_losers_and_the_largest(published):
     row = found.largest[0]
     assert row["new_power_w"] == pytest.approx(row["old_power_w"] * row["power_ratio"])
     assert row["gain_in_two_hours_s"] == pytest.approx(7200 * (row["time_ratio"] - 1))
-    exceeding = [r for r in moved if r["exceeds_interval"]]
-    assert found.exceeds_interval == len(exceeding)
+    assert found.exceeds_interval == len([r for r in moved if r["exceeds_interval"]])
 
 
 def test_races_are_replayed_under_both(bench_of_editions):
     bench = bench_of_editions
     bench.publish("a", "as-published")
     bench.publish("b", "rebased")
-    register = read_edition(bench.store, "a").register.drop_nulls("cw_kg_m")
+    both = [read_edition(bench.store, name) for name in ("a", "b")]
+    register = both[0].register.drop_nulls("cw_kg_m")
     rows = [
         f"Proefrace;2014-06-07;18,4;{r['fsn_no']};{r['rowers']};{r['crew_class']};2:1{i}:00;;"
         for i, r in enumerate(register.head(6).iter_rows(named=True))
@@ -177,7 +178,6 @@ def test_races_are_replayed_under_both(bench_of_editions):
     folder = empty_races(bench)
     (folder / "proefrace_2014.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
     intake.index(bench.store, bench.archive)
-    both = (read_edition(bench.store, name) for name in "ab")
     replayed = report_with_races(bench.store, *both, RaceRules())
     assert len(replayed.races) == 6
     assert None not in [result["old_power_w"] for result in replayed.races]
