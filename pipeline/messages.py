@@ -8,7 +8,7 @@ data (the name of a boat, a method or an edition) and is never translated.
 
 from collections.abc import Mapping
 from contextvars import ContextVar
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from gettext import NullTranslations, translation
 from numbers import Real
 from string import Formatter
@@ -102,6 +102,8 @@ def _filled(
 ) -> str:
     if not in_order and not values:
         return text
+    if language == "en":
+        return text.format(*in_order, **values)
     shown = [_in_words(value, language) for value in in_order]
     named = {name: _in_words(value, language) for name, value in values.items()}
     return text.format(*shown, **named)
@@ -134,9 +136,16 @@ def say(template: str, *in_order: object, **named: object) -> Sentence:
 
     What comes from files and libraries is made printable: it goes to terminals and tables.
     """
+    if not in_order and not named:
+        return _marked(template, getattr(template, "context", ""))
     shown = tuple(_printable(value) for value in in_order)
     by_name = {name: _printable(value) for name, value in named.items()}
     return _sentence(template, shown, by_name, getattr(template, "context", ""))
+
+
+@lru_cache(10_000)
+def _marked(template: str, context: str) -> Sentence:
+    return _sentence(template, context=context)
 
 
 def headings(*texts: str) -> tuple[Sentence, ...]:

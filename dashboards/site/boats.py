@@ -20,7 +20,7 @@ from dashboards.site.parts import (
     once_for_methods,
 )
 from dashboards.statements.boat import Answer, answers_by_boat
-from pipeline.messages import say
+from pipeline.messages import Sentence, say
 from warehouse.queries.answers import newest_edition
 from warehouse.queries.views import DRAFT, Views, curve_figure
 
@@ -215,7 +215,6 @@ def _page(
         [*_related(told), replace(facts, folded=True), *_sections(own)],
         name=name,
         selects=selects,
-        data={name: [own[kind].drop("fsn_no") for kind in kinds] for name, kinds in DRAWN.items()},
         answers=told,
         subtitle=subtitle,
     )
@@ -234,26 +233,20 @@ def _related(answers: Sequence[Answer]) -> list[Section]:
     return [Section("boat_related", say("Its type and its races"), links=links)] if links else []
 
 
-DRAWN = {
-    "curve": ("line", "point", "declared"),
-    "traces": ("trace", "window"),
-    "stages": ("stages",),
-    "runs": ("wind",),
-    "curves": ("history",),
-    "budget": ("budget",),
-}
-"""What the charts draw, by name; rows of several kinds stand one below the other."""
-
-
 def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     """How the numbers were made: all of it folded."""
-    curve = Chart("resistance_curve", "curve", follows=OF_THE_CURVE)
-    history = Chart("history", "curves")
-    traces = Chart("traces", "traces", follows=OF_THE_CURVE)
-    budget = Chart("budget", "budget", follows=OF_THE_CURVE)
+
+    def drawn(figure: str, *kinds: str, caption: Sentence | None = None) -> Chart:
+        rows = [own[kind].drop("fsn_no") for kind in kinds]
+        return Chart(figure, rows, caption, OF_THE_CURVE if "tow_id" in rows[0].columns else {})
+
+    curve = drawn("resistance_curve", "line", "point", "declared")
+    history = drawn("history", "history")
+    traces = drawn("traces", "trace", "window")
+    budget = drawn("budget", "budget")
     sides = [
-        Chart("out_and_back", "stages", follows=OF_THE_CURVE),
-        Chart("wind", "runs", say("Apparent wind [m/s]"), OF_THE_CURVE),
+        drawn("out_and_back", "stages"),
+        drawn("wind", "wind", caption=say("Apparent wind [m/s]")),
     ]
     runs = Table("run_points", own["runs"], RUN_COLUMNS, follows=FOLLOWS)
     lines = Table("register", own["register"], LINE_COLUMNS)

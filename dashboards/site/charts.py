@@ -78,7 +78,7 @@ def _still(figure: str, rows: pl.DataFrame, language: str, caption: str) -> Mark
 
 def _shown(page: Page, chart: Chart) -> pl.DataFrame:
     """The rows that the selectors show at first, as `site.js` chooses them."""
-    rows = pl.concat(page.data[chart.data], how="diagonal_relaxed")
+    rows = pl.concat(chart.rows, how="diagonal_relaxed")
     for column, names in chart.follows.items():
         wanted = [page.chosen[name] for name in ([names] if isinstance(names, str) else names)]
         rows = rows.filter(pl.Series(_are_chosen(rows[column], wanted), dtype=pl.Boolean))

@@ -47,13 +47,12 @@ def _page(path: str, told: Explained, others: dict[str, str]) -> Page:
         Section("methods", say("Other methods"), links=links),
     ]
     title = say("The method: {method}", method=labels.method(name))
-    data = {} if told.worked is None else {"worked": [told.worked.drawn]}
-    return Page(path, title, sections, data=data)
+    return Page(path, title, sections)
 
 
 def _worked(told: Explained) -> Iterator[Section]:
     if told.worked is not None:
-        chart = Chart("resistance_curve", "worked", say("Resistance curve"))
+        chart = Chart("resistance_curve", [told.worked.drawn], say("Resistance curve"))
         yield Section("worked", WORKED, charts=[chart], prose=_listed(told.worked.statements))
 
 

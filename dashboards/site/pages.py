@@ -1,6 +1,6 @@
 """Which page shows what. A section is there only if its table is, and holds rows."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import Final
@@ -23,14 +23,14 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.site.prose import audit_guide, edition_pages, guide_links
-from dashboards.site.races import race_pages
 from dashboards.site.start import ABOUT, MENU, start_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
+from dashboards.statements.race import Chances, winners
 from pipeline.messages import Sentence, say
 from warehouse.derive.studies import FIRST_PUBLISHED, JUDGEMENT
-from warehouse.queries.answers import line_changes, newest_edition
+from warehouse.queries.answers import line_changes, newest_edition, race_chances
 from warehouse.queries.views import Views
 
 
@@ -46,7 +46,7 @@ def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Itera
         "of types": lambda: type_pages(views, methods),
         "seasons": lambda: [_seasons(views, methods)],
         "changes": lambda: [_changes(views, methods, changes())],
-        "races": lambda: race_pages(views, methods),
+        "races": lambda: _races(views, methods),
         "about": lambda: [_about()],
         "quality": lambda: [_quality(views, methods)],
         "words": lambda: [words_page()],
@@ -204,9 +204,16 @@ def _seasons(views: Views, methods: list[str]) -> Page:
     }
     links = views.table("season_links").with_columns(PART)
     sections = [
-        replace(section, headline=said.get(section.name), folded=section.name not in said)
-        for section in SEASON_CHARTS
-        if frames[section.name].height
+        Section(
+            name,
+            title,
+            note,
+            [Chart(figure, [frames[name]], follows=follows)],
+            headline=said.get(name),
+            folded=name not in said,
+        )
+        for name, (figure, title, note, follows) in SEASON_CHARTS.items()
+        if frames[name].height
     ]
     told = (*listed(LINKS, "season_links", links, LINK_COLUMNS), *_season_diagnosis(views))
     return Page(
@@ -214,7 +221,6 @@ def _seasons(views: Views, methods: list[str]) -> Page:
         say("Seasons"),
         [*sections, *(replace(section, folded=True) for section in told)],
         selects=[methods_select(methods)],
-        data={name: [frame] for name, frame in frames.items()},
     )
 
 
@@ -228,63 +234,56 @@ LINKS = Section(
 )
 
 
-def _charted(rows: str, figure: str, title: Sentence, note: Sentence, **follows: str) -> Section:
-    """A section with one chart of these rows, in which selectors choose what `follows` says."""
-    return Section(rows, title, note, [Chart(figure, rows, follows=follows)])
-
-
-SEASON_CHARTS: Final = (
-    _charted(
-        "season_change",
+SEASON_CHARTS: Final[dict[str, tuple[str, Sentence, Sentence, dict[str, str]]]] = {
+    "season_change": (
         "season_change",
         say("Relative to the published Cw"),
         say("Cw by the method / Cw as published, of the same tow: median, and lowest to highest."),
+        {},
     ),
-    _charted(
-        "log_factors",
+    "log_factors": (
         "log_factors",
         say("Log factor per season"),
         say("True speed = log speed x factor. A factor without a bar has no known interval."),
+        {},
     ),
-    _charted(
-        "reproducibility",
+    "reproducibility": (
         "reproducibility",
         say("Spread of one tow"),
         say(
             "Standard deviation of one tow from repeats of unaltered boats, with 95 % interval."
             " Lower is better."
         ),
+        {},
     ),
-    _charted(
-        "ladder",
+    "ladder": (
         "ladder",
         say("What each step does"),
         say(
             "Factor on Cw of each step, geometric mean over a season's tows. The factors of a "
             "season multiply to the total."
         ),
-        to_method="method",
+        {"to_method": "method"},
     ),
-    _charted(
-        "options",
+    "options": (
         "options",
         say("Sensitivity to choices"),
         say(
             "How Cw would change if one choice were made otherwise: median and the middle 90 % "
             "of tows."
         ),
+        {},
     ),
-    _charted(
-        "era_shifts",
+    "era_shifts": (
         "eras",
         say("Does an era differ?"),
         say(
             "Next tow of the same boats, in a later era, against that in the era itself, "
             "without ageing: median of n pairs with 95 % interval, all types together."
         ),
+        {},
     ),
-    _charted(
-        "repeat_pairs",
+    "repeat_pairs": (
         "repeats",
         say("Every pair"),
         say(
@@ -292,9 +291,9 @@ SEASON_CHARTS: Final = (
             " intervals together; beyond 1 two tows disagree. Where these are the spread of the"
             " runs alone, that may be the log's error. Click a point to go to the boat."
         ),
+        {},
     ),
-    _charted(
-        "variance_components",
+    "variance_components": (
         "components",
         say("Where the spread comes from"),
         say(
@@ -303,9 +302,9 @@ SEASON_CHARTS: Final = (
             "one model of all tows with a curve (n). Each crew of a boat counts as a boat, and "
             "again after an alteration."
         ),
+        {},
     ),
-    _charted(
-        "predicted_cw",
+    "predicted_cw": (
         "predicted",
         say("Predicted without towing"),
         say(
@@ -313,9 +312,10 @@ SEASON_CHARTS: Final = (
             "agree. Disagrees: by more than the uncertainty of both; under a method that does "
             "not estimate the log's error, that is not in it."
         ),
-        method="method",
+        {"method": "method"},
     ),
-)
+}
+"""By the rows that it draws, a chart of the seasons: figure, title, note, and what it follows."""
 
 
 def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
@@ -342,11 +342,11 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
     table = Table(
         "changes", changed, CHANGE_COLUMNS, follows=["to_edition"], search=True, cards=CHANGE_CARDS,
     )  # fmt: skip
+    drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
     chart = Chart(
-        "changes", "changes", say("Time that crews gain or lose in two hours"),
+        "changes", [drawn], say("Time that crews gain or lose in two hours"),
         {"to_edition": "to_edition"},
     )  # fmt: skip
-    drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
     return Page(
         "changes.html",
         MENU["changes"],
@@ -367,7 +367,6 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
             races,
         ],
         selects=[editions_select("to_edition", editions, chosen)],
-        data={"changes": [drawn]},
     )
 
 
@@ -381,6 +380,54 @@ CHANGE_CARDS = (
     *("gain_in_two_hours_s", "exceeds_interval"),
 )
 DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_in_two_hours_s")
+
+
+RACE_COLUMNS = (
+    *("name", "fsn_no", "crew_class", "rowers", "rowing_time_s", "old_power_w", "new_power_w"),
+    *("old_rank", "new_rank", "podium_changed", "old_remark", "new_remark"),
+)
+RACE_CARDS = ("name", "fsn_no", "new_power_w", "old_rank", "new_rank")
+
+
+def _races(views: Views, methods: Sequence[str]) -> Iterator[Page]:
+    """A page for each race."""
+    races = views.ask("races") if views.has("race_changes") else pl.DataFrame()
+    if races.is_empty():
+        return
+    editions = races["to_edition"].unique().sort().to_list()
+    chosen = newest_edition(editions, draft_of(methods))
+    chances = race_chances(views, races.filter(to_edition=chosen)["from_edition"][0], chosen)
+    for race, day in views.race_days():
+        own = races.filter(race=race, race_date=day)
+        yield _race(race_path(race, day), f"{race} {day}", own, editions, chosen, chances)
+
+
+def _race(
+    path: str, name: str, rows: pl.DataFrame, editions: Sequence[str], chosen: str, chances: Chances
+) -> Page:
+    now = rows.filter(to_edition=chosen)
+    follows = ["to_edition"]
+    table = Table(
+        "race_changes", rows, RACE_COLUMNS, follows=follows, search=True, cards=RACE_CARDS
+    )
+    return Page(
+        path,
+        say("Races"),
+        [
+            Section(
+                "race_results",
+                say("Results by both editions"),
+                say(
+                    "Power per rower in this race, and the place by it, by class: among the crews "
+                    "that have a valid line on that day in both editions."
+                ),
+                tables=[table],
+                headline=winners(now, chances),
+            )
+        ],
+        name=name,
+        selects=[editions_select("to_edition", editions, chosen)],
+    )
 
 
 def _about() -> Page:

@@ -70,7 +70,7 @@ class Chart:
 
     Attributes:
         figure: name in `dashboards.figures.FIGURES`.
-        data: name of the page's data it draws.
+        rows: what it draws; of several frames, the rows come one below the other.
         caption: also what a screen reader says; left out, the title of its section.
         follows: selector, or several, by data column: only rows that hold what one of them says
             are drawn, and rows where the column is empty. A column may hold lists: then one of
@@ -79,7 +79,7 @@ class Chart:
     """
 
     figure: str
-    data: str
+    rows: Sequence[pl.DataFrame]
     caption: Sentence | None = None
     follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
     says: Headline | None = None
@@ -161,7 +161,6 @@ class Page:
         name: of a boat, type or race, data rather than a text; empty elsewhere.
         subtitle: what tells a boat from one of the same name: its numbers and type.
         selects: selectors.
-        data: frames that charts draw, by name; of several, the rows come one below the other.
         site: the way to the site, of a page that lies outside it.
         answers: what an owner asks, of each crew of a boat.
         others: the same page in other languages, where it lies elsewhere.
@@ -172,11 +171,24 @@ class Page:
     sections: Sequence[Section]
     name: str = ""
     selects: Sequence[Select] = ()
-    data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
     site: str = ""
     answers: Sequence[Answer] = ()
     others: Mapping[str, str] = field(default_factory=dict)
     subtitle: str = ""
+
+    @cached_property
+    def data(self) -> dict[str, Sequence[pl.DataFrame]]:
+        """What charts draw, once for all that draw the same, by the figure that is the first."""
+        drawn: dict[str, Sequence[pl.DataFrame]] = {}
+        for chart in (chart for section in self.sections for chart in section.charts):
+            if all(chart.rows is not rows for rows in drawn.values()):
+                again = sum(name.split()[0] == chart.figure for name in drawn)
+                drawn[f"{chart.figure} {again + 1}" if again else chart.figure] = chart.rows
+        return drawn
+
+    def name_of(self, chart: Chart) -> str:
+        """The name of what a chart draws."""
+        return next(name for name, rows in self.data.items() if rows is chart.rows)
 
     @property
     def chosen(self) -> dict[str, str]:

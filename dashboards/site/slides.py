@@ -17,17 +17,14 @@ def slides_page(views: Views) -> Page:
     title = say("Presentation 2015")
     if not views.has("compared_tows"):
         return Page("slides.html", title, [])
-    made = list(slides(views))
-    data = {f"slide_{place}": [slide.rows] for place, slide in enumerate(made)}
-    return Page("slides.html", title, list(_sections(made)), data=data)
+    return Page("slides.html", title, list(_sections(list(slides(views)))))
 
 
 def _sections(made: Sequence[Slide]) -> Iterator[Section]:
     for place, slide in enumerate(made):
-        name = f"slide_{place}"
-        chart = Chart(slide.figure, name, says=_explained(slide))
+        chart = Chart(slide.figure, [slide.rows], says=_explained(slide))
         is_between = 0 < place < len(made) - 1
-        yield Section(name, slide.finding, charts=[chart], folded=is_between)
+        yield Section(f"slide_{place}", slide.finding, charts=[chart], folded=is_between)
 
 
 def _explained(slide: Slide) -> Headline:

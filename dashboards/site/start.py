@@ -86,7 +86,7 @@ def start_page(
         ),
     ]
     if years.height:
-        chart = Chart("season_change", "years", say("Relative to the published Cw"))
+        chart = Chart("season_change", [years], say("Relative to the published Cw"))
         note = say(
             "Cw by the method / Cw as published, of the same tow: median, and lowest to highest."
         )
@@ -97,7 +97,6 @@ def start_page(
         "index.html",
         say("Start"),
         [*sections, *_last_rebuild(views, by_reports)],
-        data={"years": [years]} if years.height else {},
     )
 
 

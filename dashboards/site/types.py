@@ -67,7 +67,8 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
         "type_boats", tows, columns, say("Boats"), OF_TYPE, search=True, linked=True,
     )  # fmt: skip
     follows = {"method": SIDES, "boat_type": "boat_type"}
-    charts = [Chart(name, "type_boats", labels.FIGURES[name], follows) for name in SCATTERS]
+    drawn = [tows.select("method", "page", *columns)]
+    charts = [Chart(name, drawn, labels.FIGURES[name], follows) for name in SCATTERS]
     outliers = views.ask("outliers").filter(shown).with_columns(after)
     return Page(
         "types.html",
@@ -115,7 +116,6 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
                 with_all=True,
             ),
         ],
-        data={"type_boats": [tows.select("method", "page", *columns)]},
     )  # fmt: skip
 
 
@@ -143,10 +143,11 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     book = Book(views)
     for boat_type in views.type_names():
         own = pl.col("boat_type") == boat_type
+        drawn = [book.drawn(boat_type, NEWEST)]
         charts = [
             Chart(
                 f"slide_{name}",
-                "slides",
+                drawn,
                 labels.FIGURES[caption],
                 says=_said(book.in_words(name, boat_type, NEWEST)),
             )
@@ -179,7 +180,6 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             ],
             name=boat_type,
             selects=[methods_select(methods)],
-            data={"slides": [book.drawn(boat_type, NEWEST)]},
         )
 
 

@@ -7,14 +7,10 @@ another kind is shown and cannot be changed here. Texts are in `dashboards.optio
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import floor, log10
 from typing import Any, Final
 
 from dashboards.columns import unit_of
 from pipeline.method.definition import SeasonSteps, Steps
-
-POSITIONS: Final = 100
-"""A number goes from its least to its most in at least so many steps."""
 
 
 @dataclass(frozen=True)
@@ -22,8 +18,8 @@ class Control:
     """How one option is changed.
 
     Attributes:
-        kind: `choice` and `several` of `values`; `number` from `least` to `most` in steps of `by`,
-            `whole` or not; `fixed`, which cannot be changed here.
+        kind: `choice` and `several` of `values`; `number` from `least` to `most`, `whole` or not;
+            `fixed`, which cannot be changed here.
     """
 
     step: str
@@ -32,7 +28,6 @@ class Control:
     values: Sequence[Any] = ()
     least: float = 0.0
     most: float = 0.0
-    by: float = 0.0
     whole: bool = False
 
     @property
@@ -86,9 +81,7 @@ def control(step: str, option: str, rule: dict[str, Any]) -> Control:
     least, most = rule.get("minimum"), rule.get("maximum")
     if rule.get("type") not in ("number", "integer") or least is None or most is None:
         return Control(step, option, "fixed")
-    whole = rule["type"] == "integer"
-    by = 1 if whole else 10.0 ** floor(log10((most - least) / POSITIONS))
-    return Control(step, option, "number", (), least, most, by, whole)
+    return Control(step, option, "number", (), least, most, rule["type"] == "integer")
 
 
 CONTROLS: Final = {(one.step, one.option): one for one in _controls()}

@@ -52,10 +52,6 @@ class BenchCells(Cells):
         return super()._shower(name, root)
 
 
-Part = tuple[list[Section], dict[str, pl.DataFrame]]
-"""Sections of the page, and what their charts draw."""
-
-
 def results(bench: Bench, asked: Asked) -> Page:
     """The page about a question.
 
@@ -63,33 +59,24 @@ def results(bench: Bench, asked: Asked) -> Page:
         HerijkError: the method does not cover a season, or cannot be.
     """
     scenario = bench.scenario(asked)
-    parts: list[Part] = [
+    sections = [
         _summary(scenario),
-        _register(scenario),
+        _register(scenario, asked),
         _boat(scenario, asked),
         _types(scenario, asked),
         _repeats(scenario),
     ]
-    return Page(
-        "index.html",
-        text("workbench"),
-        [section for sections, _ in parts for section in sections],
-        selects=_selects(bench, scenario, asked),
-        data={
-            name: [_leading(frame, asked)] for _, drawn in parts for name, frame in drawn.items()
-        },
-    )
+    selects = _selects(bench, scenario, asked)
+    return Page("index.html", text("workbench"), sections, selects=selects)
 
 
 def _leading(frame: pl.DataFrame, asked: Asked) -> pl.DataFrame:
     """Rows of boats, each with the address of the same question about it."""
-    if "fsn_no" not in frame.columns:
-        return frame
     address = pl.lit(asked.address(boat="")) + pl.col("fsn_no") + pl.lit("#boat")
     return frame.with_columns(page=address)
 
 
-def _summary(scenario: Scenario) -> Part:
+def _summary(scenario: Scenario) -> Section:
     s = scenario.summary()
     median = s["median_ratio"]
     figures: list[tuple[Sentence, str | Headline]] = [
@@ -101,102 +88,93 @@ def _summary(scenario: Scenario) -> Part:
         (say("Cw, median"), Change(median) if isinstance(median, float) else "-"),
     ]
     repeats = reproducibility(_reproducibility(scenario), SCENARIO)
-    return [Section("overview", say("In short"), key_figures=figures, headline=repeats)], {}
+    return Section("overview", say("In short"), key_figures=figures, headline=repeats)
 
 
-def _register(scenario: Scenario) -> Part:
+def _register(scenario: Scenario, asked: Asked) -> Section:
     lines = scenario.register_lines.select(*REGISTER_COLUMNS, "time_ratio", "to_edition")
-    return [
-        Section(
-            "register",
-            say("The register"),
-            note=say(
-                "Every line against the chosen method, the largest change first. Time: what the "
-                "new line gives (+) or costs (-) in a two-hour race at equal power."
+    return Section(
+        "register",
+        say("The register"),
+        note=say(
+            "Every line against the chosen method, the largest change first. Time: what the "
+            "new line gives (+) or costs (-) in a two-hour race at equal power."
+        ),
+        charts=[
+            Chart(
+                "changes",
+                [_leading(lines.filter(change="changed"), asked)],
+                say("Cw and time of every changed line"),
             ),
-            charts=[
-                Chart("changes", "changed", say("Cw and time of every changed line")),
-                Chart(
-                    "season_change",
-                    "season_change",
-                    say("Cw after / before per season: median and range"),
-                ),
-                Chart(
-                    "log_factors",
-                    "log_factors",
-                    say("True speed / log speed per season, with its 95 % interval"),
-                ),
-            ],
-            tables=[Table("register", lines, REGISTER_COLUMNS, search=True, linked=True)],
-        )
-    ], {
-        "changed": lines.filter(change="changed"),
-        "season_change": scenario.season_change(),
-        "log_factors": scenario.both(lambda draft: draft.made.log_factors),
-    }
-
-
-def _boat(scenario: Scenario, asked: Asked) -> Part:
-    return [
-        Section(
-            "boat",
-            say("A boat"),
-            note=say(
-                "The curve and the runs before and after. Open marks do not count. The bar at the "
-                "declared speed is the 95 % interval; a dashed bar is the spread of the runs "
-                "alone, without the error of the log."
+            Chart(
+                "season_change",
+                [scenario.season_change()],
+                say("Cw after / before per season: median and range"),
             ),
-            charts=[
-                Chart(
-                    "curves_compared",
-                    "boat_figure",
-                    say("Resistance curves of this tow"),
-                    {"tow_id": "tow"},
-                )
-            ],
-            tables=[Table("boat_curves", scenario.boat_curves(asked.boat), CURVE_COLUMNS)],
-        )
-    ], {"boat_figure": scenario.boat_figure(asked.boat)}
+            Chart(
+                "log_factors",
+                [scenario.both(lambda draft: draft.made.log_factors)],
+                say("True speed / log speed per season, with its 95 % interval"),
+            ),
+        ],
+        tables=[Table("register", lines, REGISTER_COLUMNS, search=True, linked=True)],
+    )
 
 
-def _types(scenario: Scenario, asked: Asked) -> Part:
+def _boat(scenario: Scenario, asked: Asked) -> Section:
+    return Section(
+        "boat",
+        say("A boat"),
+        note=say(
+            "The curve and the runs before and after. Open marks do not count. The bar at the "
+            "declared speed is the 95 % interval; a dashed bar is the spread of the runs "
+            "alone, without the error of the log."
+        ),
+        charts=[
+            Chart(
+                "curves_compared",
+                [scenario.boat_figure(asked.boat)],
+                say("Resistance curves of this tow"),
+                {"tow_id": "tow"},
+            )
+        ],
+        tables=[Table("boat_curves", scenario.boat_curves(asked.boat), CURVE_COLUMNS)],
+    )
+
+
+def _types(scenario: Scenario, asked: Asked) -> Section:
     tests = scenario.both(lambda draft: draft.type_homogeneity)
-    return [
-        Section(
-            "types",
-            say("Types: are equal boats equal?"),
-            note=say(
-                "The chosen tows, Cw at the standard speed of the type. Drag over a chart to see "
-                "in the register which boats lie there. The table tests whether boats of a type "
-                "can share one B, with the newest of those tows of each crew: a small p says no."
+    drawn = [_leading(scenario.type_tows(asked.tows), asked)]
+    return Section(
+        "types",
+        say("Types: are equal boats equal?"),
+        note=say(
+            "The chosen tows, Cw at the standard speed of the type. Drag over a chart to see "
+            "in the register which boats lie there. The table tests whether boats of a type "
+            "can share one B, with the newest of those tows of each crew: a small p says no."
+        ),
+        charts=[
+            Chart("b_weight", drawn, say("B against weight"), OF_TYPE),
+            Chart(
+                "cw_standard_weight",
+                drawn,
+                say("Cw at the standard speed against weight"),
+                OF_TYPE,
             ),
-            charts=[
-                Chart("b_weight", "types", say("B against weight"), OF_TYPE),
-                Chart(
-                    "cw_standard_weight",
-                    "types",
-                    say("Cw at the standard speed against weight"),
-                    OF_TYPE,
-                ),
-            ],
-            tables=[Table("homogeneity", tests, HOMOGENEITY_COLUMNS, follows=["boat_type"])],
-        )
-    ], {"types": scenario.type_tows(asked.tows)}
+        ],
+        tables=[Table("homogeneity", tests, HOMOGENEITY_COLUMNS, follows=["boat_type"])],
+    )
 
 
-def _repeats(scenario: Scenario) -> Part:
+def _repeats(scenario: Scenario) -> Section:
     repeats = _reproducibility(scenario)
-    return [
-        Section(
-            "repeats",
-            say("Reproducibility: the same boat again"),
-            note=say("Two consecutive tows of an unaltered boat with the same crew."),
-            charts=[
-                Chart("reproducibility", "reproducibility", say("Standard deviation of one tow"))
-            ],
-            tables=[Table("reproducibility", repeats, REPEATS_COLUMNS)],
-        )
-    ], {"reproducibility": repeats}
+    return Section(
+        "repeats",
+        say("Reproducibility: the same boat again"),
+        note=say("Two consecutive tows of an unaltered boat with the same crew."),
+        charts=[Chart("reproducibility", [repeats], say("Standard deviation of one tow"))],
+        tables=[Table("reproducibility", repeats, REPEATS_COLUMNS)],
+    )
 
 
 def _reproducibility(scenario: Scenario) -> pl.DataFrame:

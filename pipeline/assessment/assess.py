@@ -18,8 +18,6 @@ from pipeline.assessment.checks import CHECK, CHECKS, CODES, Check
 from pipeline.choice import SAME_SHARE
 from pipeline.season_log.diagnosis import FAULT
 from pipeline.season_log.effects import FLEET
-from pipeline.tables.archive import Tows
-from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import LINE, SIZES
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
@@ -44,14 +42,6 @@ LEAST_SPREAD: Final = 0.004
 
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 LISTED: Final = {"waterline_length_m": "listed_length_m", "beam_m": "listed_beam_m"}
-NOT_ALWAYS_KNOWN: Final = pl.DataFrame(
-    schema={
-        **dtypes(Tows),
-        "boat_type": pl.String,
-        **dict.fromkeys(("listed_length_m", "listed_beam_m"), pl.Float64),
-    }
-)
-"""Columns that the tows of an old edition, or a single tow, may lack."""
 
 
 def assess(
@@ -61,15 +51,13 @@ def assess(
 
     Args:
         curves, run_points: the tables of one method, curves without `status` and `flags`.
-        tows: rows of `tows`, with `boat_type` and what the boat list says where that is known; of a
-            column that is missing nothing is known.
+        tows: `Tows.frame`, with what is expected of the water.
         diagnosis: rows of `season_diagnosis` of that method.
 
     Returns:
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
         weight not known, season after its last) has no row.
     """
-    tows = pl.concat([tows, NOT_ALWAYS_KNOWN], how="diagonal_relaxed")
     boats = _with_boats(curves, tows)
     facts = [
         _beside_papers(tows),

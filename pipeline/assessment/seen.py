@@ -75,9 +75,7 @@ class Seen:
         ln_cw = np.log(np.where(good, water, 1.0))
         level, bend, bend_sd = _line(tows, speed, ln_cw, good)
         ln_gps = _season_gps(tows, mean["log1_v"], good)
-        windy = good.copy()
-        if "wind_measured" in tows.frame.columns:
-            windy &= tows.frame["wind_measured"].to_numpy()[tows.tow]
+        windy = good & tows.measured("wind")[tows.tow]
         speed_m_s = np.where(good, mean["log1_v"], 1.0)
         self.has_gps = np.isfinite(ln_gps)
         by_gps = (2.0 + USUAL_BEND) * np.nan_to_num(ln_gps)

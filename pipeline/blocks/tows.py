@@ -14,9 +14,20 @@ import polars as pl
 from pipeline.arrays import BoolArray, FloatArray, IntArray, OnDemand
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.channels import BACK, OUT, SECOND_FILE_OFFSET
+from pipeline.tables import archive
+from pipeline.tables.frames import dtypes
 
 DOUBTED_SPEED: Final = "speed_not_plausible"
 """A doubt for which a person must look, but that leaves the tow out of nothing."""
+
+NOT_ALWAYS_KNOWN: Final = pl.DataFrame(
+    schema={
+        **dtypes(archive.Tows),
+        "boat_type": pl.String,
+        **dict.fromkeys(("listed_length_m", "listed_beam_m"), pl.Float64),
+    }
+)
+"""Columns that the tows of an old edition, or a single tow, may lack."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +35,8 @@ class Tows:
     """Tows and their runs, both sorted by tow.
 
     Attributes:
-        frame: rows of the table `tows`.
+        frame: rows of the table `tows` with type and listed sizes of the boat; null where a column
+            was missing.
         blocks: their runs; `blocks.runs` has the columns of the table `tow_runs`.
         tow: index of each run's tow, shape (runs,).
     """
@@ -36,7 +48,7 @@ class Tows:
     @classmethod
     def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> Self:
         """The given tows, with their runs among the given ones."""
-        tows = tows.sort("tow_id")
+        tows = pl.concat([tows, NOT_ALWAYS_KNOWN], how="diagonal_relaxed").sort("tow_id")
         mine = blocks.take(blocks.runs["tow_id"].is_in(tows["tow_id"].implode()).to_numpy())
         index = tows["tow_id"].search_sorted(mine.runs["tow_id"])
         return cls(tows, mine, index.to_numpy().astype(np.int64))
@@ -65,11 +77,8 @@ class Tows:
         return self.of_tow(column)[self.tow]
 
     def measured(self, channel: str) -> BoolArray:
-        """Tows that have a channel, `wind` or `log2`, shape (tows,); all if no column says so."""
-        name = f"{channel}_measured"
-        if name not in self.frame.columns:
-            return np.ones(self.size, dtype=bool)
-        return np.asarray(self.of_tow(name) != 0.0)  # also where it is not known
+        """Tows that have a channel, `wind` or `log2`, shape (tows,)."""
+        return np.asarray(self.of_tow(f"{channel}_measured") != 0.0)  # also where it is not known
 
     @cached_property
     def trusted(self) -> BoolArray:
@@ -77,10 +86,8 @@ class Tows:
 
         Tows with a doubted speed are kept: the log may be off, and only those tows can show it.
         """
-        if "doubts" not in self.frame.columns:
-            return np.ones(self.size, dtype=bool)
         others = pl.col("doubts").list.set_difference(pl.lit([DOUBTED_SPEED]))
-        return self.frame.select(others.list.len() == 0).to_series().to_numpy()
+        return self.frame.select((others.list.len() == 0).fill_null(True)).to_series().to_numpy()
 
     @cached_property
     def direction(self) -> IntArray:

@@ -33,6 +33,12 @@ MOST_BENT: Final = 0.9
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
 
+_OFF: Final = pl.col("load_cell_ratio") - 1.0
+FORCE_SD: Final = (_OFF**2 + pl.col("load_cell_sd") ** 2).sqrt()
+"""Standard uncertainty of a tow's force by the record of its load cell; null without one.
+
+The force is not corrected by the record, so what the cell was off is part of it (GUM F.2.4.5)."""
+
 
 def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     """Scatter of single run points: pooled over the tows of a season, or of each tow alone.
@@ -190,21 +196,10 @@ def _terms_of_tows(
         still_air_kg_m=pl.Series(tows.mean(c.still_air_kg_m, c.used)),
         temperature_known=pl.Series(c.temperature_known),
         water_off_c=pl.Series(c.water_off_c),
-        force_sd=force_uncertainty(tows.frame),
+        force_sd=FORCE_SD,
         **{name: pl.lit(size) for name, size in asdict(assumed).items() if name not in own},
         **{name: pl.Series(size) for name, size in own.items()},
     )
-
-
-def force_uncertainty(tows: pl.DataFrame) -> pl.Expr:
-    """Standard uncertainty of a tow's force by the record of its load cell; null without one.
-
-    The force is not corrected by the record, so what the cell was off is part of it (GUM F.2.4.5).
-    """
-    if "load_cell_ratio" not in tows.columns:
-        return pl.lit(None, pl.Float64)
-    off = pl.col("load_cell_ratio") - 1.0
-    return (off**2 + pl.col("load_cell_sd") ** 2).sqrt()
 
 
 def _median_bends(c: Computed) -> FloatArray:

@@ -15,7 +15,7 @@ import polars as pl
 from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.channels import BACK, OUT
-from pipeline.recompute.budget import files_log_sd, force_uncertainty, scatter_of
+from pipeline.recompute.budget import FORCE_SD, files_log_sd, scatter_of
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
 from pipeline.season_log import SeasonFactors, estimate_season_factors, first_estimate
@@ -116,18 +116,16 @@ def _rows(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFrame:
         "gps_ln_ratio": np.where(has_gps & ~calibrated, gps, np.nan),
         "gps_sd": np.where(has_gps & ~calibrated, np.hypot(gps_sd, own_sd), np.nan),
     }
-    names = ("tow_id", *LINE, "altered", "declared_speed_m_s")
+    names = ("tow_id", *LINE, "boat_type", "season", "altered", "declared_speed_m_s")
     return tows.frame.select(
         *names,
         pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
-        _boat_type(tows.frame),
         pl.col("tow_date").dt.ordinal_day().cast(pl.Float64).alias("day"),
-        "season",
         pl.col("log1_part").alias("part"),
         pl.Series("anchored", calibrated),
         pl.Series("temperature_known", c.temperature_known),
         pl.Series("water_off_c", c.water_off_c),
-        force_uncertainty(tows.frame).alias("force_sd"),
+        FORCE_SD.alias("force_sd"),
         pl.Series("reference_ratio", declared / true_speed),
         pl.Series("reference_ln", reference_ln),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
@@ -144,11 +142,6 @@ def _water_points(c: Computed) -> curve.Points:
     """Run points of the water alone: the still-air part does not scale with the log's error."""
     water = c.tows.by_tow(c.cw_kg_m - c.still_air_kg_m)
     return curve.Points(c.points.speed_m_s, water, c.points.used & (water > 0))
-
-
-def _boat_type(tows: pl.DataFrame) -> pl.Expr:
-    known = "boat_type" in tows.columns
-    return pl.col("boat_type") if known else pl.lit(None, dtype=pl.String).alias("boat_type")
 
 
 def _gps_ratio(c: Computed) -> tuple[FloatArray, FloatArray, np.ndarray]:

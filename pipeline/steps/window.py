@@ -76,7 +76,9 @@ class Windows:
         start_s, end_s: the same in seconds, shape (runs,).
         exists: whether the run has a window of at least the prescribed length, shape (runs,).
         reasons: why the rest was cut, one text per run; empty when nothing was.
-        ends: how much the two ends differ.
+        speed_rise_m_s, force_rise_ratio, wind_rise_m_s: the last `END_SECONDS` less the first, of
+            mean speed by log 1, of mean force / that of the window, and of mean wind speed, shape
+            (runs,); 0 without a window.
     """
 
     mask: BoolArray
@@ -84,7 +86,16 @@ class Windows:
     end_s: IntArray
     exists: BoolArray
     reasons: tuple[str, ...]
-    ends: "Ends"
+    speed_rise_m_s: FloatArray
+    force_rise_ratio: FloatArray
+    wind_rise_m_s: FloatArray
+
+    @property
+    def ends_ratio(self) -> FloatArray:
+        """The largest of the three differences in their limits: over 1 exceeds one."""
+        speed = np.abs(self.speed_rise_m_s) / SPEED_ENDS_M_S
+        force = np.abs(self.force_rise_ratio) / FORCE_ENDS_RATIO
+        return np.maximum(np.maximum(speed, force), np.abs(self.wind_rise_m_s) / WIND_ENDS_M_S)
 
     @property
     def of_runs(self) -> dict[str, Any]:
@@ -94,48 +105,9 @@ class Windows:
             "end_s": self.end_s,
             "exists": self.exists,
             "cut_reason": np.array(self.reasons, dtype=np.str_),
-            "ends_ratio": self.ends.in_limits,
-            "rise_m_s": self.ends.speed_m_s,
+            "ends_ratio": self.ends_ratio,
+            "rise_m_s": self.speed_rise_m_s,
         }
-
-
-@dataclass(frozen=True)
-class Ends:
-    """The last `END_SECONDS` of a window less the first, shape (runs,); 0 without a window.
-
-    Attributes:
-        speed_m_s, wind_m_s: difference of the mean speed by log 1 and of the mean wind speed.
-        force_ratio: difference of the mean force / mean force of the window.
-    """
-
-    speed_m_s: FloatArray
-    force_ratio: FloatArray
-    wind_m_s: FloatArray
-
-    @classmethod
-    def of(cls, blocks: RunBlocks, mask: BoolArray) -> "Ends":
-        """The differences of windows that are given by their blocks, shape (runs, seconds)."""
-        first, last = (WindowSums(blocks, end) for end in end_masks(mask))
-
-        def rise(name: str) -> FloatArray:
-            return last.mean(name) - first.mean(name)
-
-        force = np.abs(WindowSums(blocks, mask).mean("force"))
-        return cls(rise("log1_v"), rise("force") / np.where(force > 0, force, 1.0), rise("wind_v"))
-
-    @property
-    def in_limits(self) -> FloatArray:
-        """The largest of the three differences in their limits: over 1 exceeds one."""
-        speed = np.abs(self.speed_m_s) / SPEED_ENDS_M_S
-        force = np.abs(self.force_ratio) / FORCE_ENDS_RATIO
-        return np.maximum(np.maximum(speed, force), np.abs(self.wind_m_s) / WIND_ENDS_M_S)
-
-
-def end_masks(mask: BoolArray) -> tuple[BoolArray, BoolArray]:
-    """The first and the last `END_SECONDS` blocks of every window, shape (runs, seconds)."""
-    length = mask.sum(axis=1, keepdims=True)
-    order = np.cumsum(mask, axis=1)
-    return mask & (order <= END_SECONDS), mask & (order > length - END_SECONDS)
 
 
 def whole_runs(blocks: RunBlocks) -> Windows:
@@ -174,7 +146,16 @@ def _given_by_hand(blocks: RunBlocks, searched: Windows) -> Windows:
 def _windows(blocks: RunBlocks, mask: BoolArray, reasons: tuple[str, ...]) -> Windows:
     length = mask.sum(axis=1)
     start = np.where(length > 0, mask.argmax(axis=1), 0)
-    return Windows(mask, start, start + length, length > 0, reasons, Ends.of(blocks, mask))
+    second = np.arange(blocks.seconds)
+    first = mask & (second < (start + END_SECONDS)[:, None])
+    last = mask & (second >= (start + length - END_SECONDS)[:, None])
+    ends = [WindowSums(blocks, end) for end in (first, last)]
+    speed, force, wind = (
+        ends[1].mean(name) - ends[0].mean(name) for name in ("log1_v", "force", "wind_v")
+    )
+    mean_force = np.abs(WindowSums(blocks, mask).mean("force"))
+    force /= np.where(mean_force > 0, mean_force, 1.0)
+    return Windows(mask, start, start + length, length > 0, reasons, speed, force, wind)
 
 
 @dataclass(frozen=True)

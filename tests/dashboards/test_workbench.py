@@ -85,9 +85,9 @@ def test_what_a_control_offers_is_a_value_of_the_model(step, option):
 
 def test_kinds_of_options():
     assert CONTROLS["wind", "model"].values == ["head", "oblique"]
-    factor = CONTROLS["speed", "factor"]
+    factor, seconds = CONTROLS["speed", "factor"], CONTROLS["wind", "averaging_s"]
     assert (factor.least, factor.most, factor.whole) == (0.85, 1.2, False)
-    assert (CONTROLS["wind", "averaging_s"].by, CONTROLS["wind", "averaging_s"].unit) == (1, "s")
+    assert (seconds.whole, seconds.unit) == (True, "s")
     assert set(CONTROLS["assessment", "reject"].values) == set(CODES)
 
 
@@ -141,12 +141,12 @@ def test_a_page_shows_what_is_asked(bench):
     tables = {table.name: table.frame for part in page.sections for table in part.tables}
     assert set(tables["boat_curves"]["method"]) == {"as-published", SCENARIO}
     assert tables["register"].height == bench.draft(asked(bench)).register.height
-    assert page.data["types"][0]["page"][0].endswith("#boat")
+    assert page.data["b_weight"][0]["page"][0].endswith("#boat")
 
 
 def test_types_are_judged_by_the_tows_that_are_chosen(bench):
     (some,), (every,) = (
-        results(bench, asked(bench, **query)).data["types"] for query in ({"tows": NEWEST}, {})
+        results(bench, asked(bench, **query)).data["b_weight"] for query in ({"tows": NEWEST}, {})
     )
     assert 0 < some.height < every.height
 

@@ -107,13 +107,13 @@ def test_wind_and_force_that_rise_are_cut_to_equal_ends_or_said_by_how_much():
     rising.wind_x += np.linspace(0, 4, SECONDS)
     stronger.force *= np.linspace(0.8, 1.2, SECONDS)
     found = steady_windows(blocks_of([dropping, rising, stronger]))
-    over = found.ends.in_limits
+    over = found.ends_ratio
     assert over[0] <= 1.0
     assert found.start_s[0] >= 5
-    assert found.ends.wind_m_s[1] == pytest.approx(over[1])
+    assert found.wind_rise_m_s[1] == pytest.approx(over[1])
     assert 1.8 < over[1] < 2.2  # of the shortest window, 30 s: 4 * 25 / 49
-    assert 0.17 < found.ends.force_ratio[2] < 0.22  # 0.4 * 25 / 49
-    assert over[2] == pytest.approx(found.ends.force_ratio[2] / 0.1)
+    assert 0.17 < found.force_rise_ratio[2] < 0.22  # 0.4 * 25 / 49
+    assert over[2] == pytest.approx(found.force_rise_ratio[2] / 0.1)
 
 
 @settings(max_examples=40, deadline=None)

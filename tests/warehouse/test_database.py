@@ -1,6 +1,5 @@
 """The database is swapped in whole, and says what its columns mean."""
 
-import re
 import subprocess
 
 import duckdb
@@ -16,11 +15,6 @@ from tests.conftest import METHODS, Workbench
 from warehouse.derive.database import build_database
 from warehouse.derive.inputs import LAKE_ONLY
 
-UNIT_SUFFIX = {
-    "m/s": "_m_s", "kg/m": "_kg_m", "kg": "_kg", "m": "_m", "s": "_s", "W": "_w", "C": "_c",
-    "N": "_n", "Hz": "_hz", "deg": "_deg",
-}  # fmt: skip
-
 
 def test_no_number_of_a_table_is_none(built: Workbench):
     floats = [
@@ -31,15 +25,6 @@ def test_no_number_of_a_table_is_none(built: Workbench):
     ]
     assert len(floats) > len(TABLES)
     assert [(table, name) for table, name, column in floats if column.is_nan().any()] == []
-
-
-@pytest.mark.parametrize("table", TABLES)
-def test_units_stand_in_the_names_of_columns(table: str):
-    for name, column in TABLES[table].columns().items():
-        unit = (column.metadata or {}).get("unit")
-        if unit in UNIT_SUFFIX and name != "cw_sd":  # named so in the contract
-            assert re.search(rf"{UNIT_SUFFIX[unit]}(_|$)", name), (name, unit)
-        assert not re.search(r"_(km_h|kn|kgf|cm|gra|pct|percent)$", name)
 
 
 def test_every_table_and_column_says_what_it_means(built: Workbench):

@@ -9,6 +9,7 @@ files look like is known to `warehouse.archive`, and which sums there are to
 
 import dataclasses
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
@@ -152,21 +153,17 @@ def _bring_in(
             write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:
         _check_unchanged(root, tow, hashes)
-        return row | _as_fault(row, fault_from(error, tow["samples_path"], tow["tow_id"]))
+        fault = fault_from(error, tow["samples_path"], tow["tow_id"])
     except BaseException as error:
         if not is_unforeseen(error):
             raise
         note(store.root, tow["tow_id"], traced(error))
         message = sentence(tow["tow_id"], in_short(error))
-        return row | _as_fault(
-            row, Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
-        )
-    return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}
-
-
-def _as_fault(row: Row, fault: Fault) -> Row:
-    facts = fault.as_row()
-    return {name: facts[name] for name in row.keys() & facts.keys()}
+        fault = Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
+    else:
+        return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}
+    found = fault.as_row()
+    return row | {name: found[name] for name in row.keys() & found.keys()}
 
 
 class ArchiveChangedError(UnavailableError):
@@ -179,20 +176,15 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
     A file with the size and time it had when it was hashed is not read once more.
     """
     for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
-        if tow[path] is not None and _sha256(root, tow[path], hashes) != tow[sha256]:
+        now = None  # also where a file went away
+        with suppress(FileNotFoundError):
+            now = tow[path] and hashes.hash_samples(root, tow[path])
+        if now != tow[sha256]:
             raise ArchiveChangedError(
                 "{} changed while it was read. Try again when nobody is copying files into {}",
                 tow[path],
                 root,
             )
-
-
-def _sha256(root: Path, path: str, hashes: FileHashes) -> str | None:
-    """Hash of samples; None when a file of theirs went away."""
-    try:
-        return hashes.hash_samples(root, path)
-    except FileNotFoundError:
-        return None
 
 
 def _known_tows(store: Store, season: int) -> dict[str, Row]:

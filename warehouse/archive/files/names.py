@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from warehouse.archive.files.list_kinds import LIST_KINDS
-from warehouse.archive.spelling.text import fold_word
+from warehouse.archive.spelling.text import MOST_NAMES, fold_word
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
 PROFILE_FILE: Final = "archief.toml"
@@ -37,14 +37,14 @@ _ONE_RUN: Final = re.compile(
 _RUN_ALONE: Final = re.compile(r"(?:run|vaart|lauf|r|no|nr)?[ _.-]*([0-9]{1,2})", re.IGNORECASE)
 
 
-@lru_cache(10_000)
+@lru_cache(MOST_NAMES)
 def split_sheet(path: str) -> tuple[str, str]:
     """File and sheet of `Lijsten.xlsx#Proeven`; an empty sheet where none is named."""
     match = _SHEET_OF.fullmatch(path)
     return (match[1], match[2]) if match else (path, "")
 
 
-@lru_cache(10_000)
+@lru_cache(MOST_NAMES)
 def sample_suffix(name: str) -> str:
     """The suffix of a samples file, in lower case; empty for any other file."""
     folded = name.casefold()
@@ -59,7 +59,7 @@ def kind_of(path: Path) -> str:
     return name[name.rfind(".") :]
 
 
-@lru_cache(10_000)
+@lru_cache(MOST_NAMES)
 def match_key(name: str) -> str:
     """The name of a samples file for comparing: folded, without suffix or sheet."""
     folded = fold_word(split_sheet(name)[0])

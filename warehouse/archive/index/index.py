@@ -4,7 +4,9 @@ Reading samples belongs to `samples`. A tow falls out at the first check that it
 """
 
 import datetime as dt
-from collections.abc import Callable
+import gc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -79,6 +81,19 @@ class ArchiveIndex:
     more: tuple[Fault, ...] = ()
 
 
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Pauses the search for reference cycles: among 400,000 faults it takes 5 of 14 s."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+@_uncollected()
 def index_archive(
     root: Path, hash_file: Callable[[Path], str], profiles: Profiles | None = None
 ) -> ArchiveIndex:

@@ -11,6 +11,8 @@ from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from warehouse.archive.limits import check_header
 
+MOST_NAMES: Final = 250_000
+"""Texts whose folded form is kept: those of the longest lists."""
 DELIMITERS: Final = (";", "\t", ",", "|")
 LONGEST_QUOTE: Final = 40
 """Letters of a cell that a sentence quotes."""
@@ -85,14 +87,14 @@ def split_or_nothing(line: str, delimiter: str = "") -> list[str]:
         return []
 
 
-@lru_cache(10_000)
+@lru_cache(MOST_NAMES)
 def fold(text: str) -> str:
     """A header for comparing: its letters and digits, without case and accents."""
     plain = unicodedata.normalize("NFKD", text).casefold()
     return "".join(letter for letter in plain if letter.isalnum())
 
 
-@lru_cache(10_000)
+@lru_cache(MOST_NAMES)
 def fold_word(text: str) -> str:
     """A value or a file name for comparing: without case; blanks inside count once."""
     return " ".join(unicodedata.normalize("NFC", text).casefold().split())

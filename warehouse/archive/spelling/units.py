@@ -70,7 +70,8 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
         "knot": "kn", "knoten": "kn", "knop": "kn", "noeuds": "kn", "noeud": "kn", "nœuds": "kn",
         "nd": "kn",
     },
-    "force": {"newton": "n", "kilonewton": "kn", "kg-f": "kgf", "kgkracht": "kgf", "kp": "kgf"},
+    "force": {"newton": "n", "kilonewton": "kn", "kg-f": "kgf", "kgkracht": "kgf", "kp": "kgf",
+              "kg": "kgf"},
     "angle": {
         "°": "gra", "º": "gra", "graden": "gra", "graad": "gra", "grad": "gra", "degree": "gra",
         "degrees": "gra", "radialen": "rad", "radians": "rad",
