@@ -9,11 +9,10 @@ import dagster as dg
 from assets import archive, checks, instance
 from assets.report import Done
 from assets.resources import Setup
-from assets.site import site
 from assets.tables import STEP_ASSETS
 from warehouse.derive import database
 
-ASSETS: Final = [archive.archive_index, archive.samples_and_blocks, *STEP_ASSETS, site]
+ASSETS: Final = [archive.archive_index, archive.samples_and_blocks, *STEP_ASSETS]
 
 QUIET_LOG: Final = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
 """Nothing on the terminal: what Dagster says is in its records."""

@@ -8,7 +8,8 @@ from typing import Final
 import dagster as dg
 
 from assets.resources import Setup
-from assets.workers import make_step
+from assets.site import SITE
+from assets.workers import in_parallel, make_step
 from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.schemas import TABLES
@@ -36,7 +37,9 @@ TITLES: Final = {
 
 def step_asset(step: Step) -> dg.AssetsDefinition:
     """The assets of a step: one per table."""
-    title = say("step {} of {}: {}", STEPS.index(step) + 1, len(STEPS), TITLES[step.group])
+    title = say("making the site")
+    if step in STEPS:
+        title = say("step {} of {}: {}", STEPS.index(step) + 1, len(STEPS), TITLES[step.group])
 
     @dg.multi_asset(
         name=step.name,
@@ -58,7 +61,8 @@ def make(step: Step, title: str, setup: Setup) -> Iterator[dg.MaterializeResult]
         stale = step.stale(store, methods)
         if stale:
             logging.getLogger("herijk").info(title)
-        for scope, _ in setup.map(partial(make_step, step.name), stale):
+        side_by_side = setup.map(partial(make_step, step.name), stale)
+        for scope, _ in side_by_side if step.per_method else in_parallel(step.make, stale):
             new.append(scope.at_hand.name)
 
     mending(store, work, again=partial(catch_up, store, setup.archive_root, methods, step))
@@ -112,4 +116,4 @@ def _columns(schema: type[dy.Schema]) -> dg.TableSchema:
     )
 
 
-STEP_ASSETS = [step_asset(step) for step in STEPS]
+STEP_ASSETS = [step_asset(step) for step in (*STEPS, SITE)]

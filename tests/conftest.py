@@ -19,7 +19,6 @@ from hypothesis import settings
 import assets.instance
 import assets.rebuild
 import assets.run
-import assets.stale
 import assets.workers
 import dashboards.report_page
 from assets.report import Done, Report
@@ -87,7 +86,7 @@ def directly(page: bool = False) -> Iterator[None]:
     Args:
         page: make the page about the rebuild too, a quarter of the work.
     """
-    no_site = mock.patch.object(assets.stale, "site_is_stale", return_value=False)
+    no_site = mock.patch.object(assets.rebuild, "SITE", mock.Mock(stale=lambda *_: []))
     no_dagster = mock.patch.object(assets.run, "run_assets", _make_directly)
     no_page = mock.patch.object(dashboards.report_page, "report_pages", return_value={})
     with no_site, no_dagster, nullcontext() if page else no_page:

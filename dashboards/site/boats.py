@@ -22,7 +22,7 @@ from dashboards.site.parts import (
 from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say
 from warehouse.queries.answers import newest_edition
-from warehouse.queries.views import DRAFT, Views
+from warehouse.queries.views import DRAFT, Views, curve_figure
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
@@ -98,13 +98,6 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     curves = views.ask("curves").with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
-    declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
-    intervals = views.table("methods").select("method", "interval")
-    lines = (
-        views.table("curve_points")
-        .join(boat_of, on="tow_id", maintain_order="left")
-        .join(intervals, on="method", maintain_order="left")
-    )
     frames = {
         "boats": views.table("boats"),
         "register": _once(register),
@@ -114,9 +107,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
             "tow_id", "run", maintain_order=True
         ),
         "wind": points.select("fsn_no", *WIND),
-        "line": _kind(lines, "line", "method", *NUMBERS, "interval"),
-        "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
-        "declared": _kind(declared, "declared", "method", *NUMBERS, "interval"),
+        **curve_figure(views.table("curve_points"), points, curves),
         "stages": _stages(points),
         "trace": _seconds(seconds.join(boat_of, on="tow_id", maintain_order="left")),
         "window": _kind(
@@ -140,14 +131,12 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     return frames
 
 
-POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
 WINDOW = ["window_start_s", "window_end_s", "run_end_s", "cut_reason"]
 WIND = ["method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg"]
 HISTORY = [
     *("method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s", "power_w"),
     *("weight_kg", "altered", "status", "interval"),
 ]
-NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
 
 
 def _kind(frame: pl.DataFrame, kind: str, *columns: str) -> pl.DataFrame:

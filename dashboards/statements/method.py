@@ -16,7 +16,7 @@ from pipeline.method.definition import COMPLETE, Method, Steps, basis_of
 from pipeline.method.variant import Difference, differences
 from pipeline.studies.ladder import START, STEP_ORDER
 from pipeline.tables.row import Row
-from warehouse.queries.views import Views
+from warehouse.queries.views import Views, curve_figure
 from warehouse.store.methods import KnownMethods
 
 EACH_STEP: Final = say("What each step does here")
@@ -29,18 +29,6 @@ BASES: Final = say(
 )
 """What the status and the sources of a step mean."""
 LADDER: Final = ("correction_steps",)
-
-
-DRAWN: Final = (
-    "kind",
-    "run",
-    "direction",
-    "speed_m_s",
-    "cw_kg_m",
-    "cw_lo_kg_m",
-    "cw_hi_kg_m",
-    "used",
-)
 
 
 class Explained(NamedTuple):
@@ -279,26 +267,15 @@ def _worked(views: Views, method: Method, ladder: pl.DataFrame) -> Worked | None
     if tow_id is None:
         return None
     key = {"method": method.name, "tow_id": tow_id}
-    curve = views.table("curves").filter(**key).row(0, named=True)
+    curves = views.ask("curves").filter(**key)
+    curve = curves.row(0, named=True)
     tow = views.table("tows").filter(tow_id=tow_id).row(0, named=True)
     boat = views.table("boats").filter(fsn_no=curve["fsn_no"]).row(0, named=True)
     run = views.table("run_points").filter("used", **key).sort("run").row(0, named=True)
     own = ladder.filter(tow_id=tow_id).sort("position")
     said = [_tow(boat | tow, curve), _force(run), _corrections(run), *_curve(curve), _change(own)]
-    return Worked(said, _drawn(views, method, key))
-
-
-def _drawn(views: Views, method: Method, key: dict[str, str]) -> pl.DataFrame:
-    """The curve of a tow, its runs, and its number at the declared speed."""
-    declared = views.table("curves").with_columns(speed_m_s="declared_speed_m_s")
-    kinds = {
-        "line": views.table("curve_points"),
-        "point": views.table("run_points").drop_nulls("cw_kg_m"),
-        "declared": declared,
-    }
-    rows = [rows.filter(**key).with_columns(kind=pl.lit(kind)) for kind, rows in kinds.items()]
-    shown = pl.concat(rows, how="diagonal_relaxed").select(DRAWN)
-    return shown.with_columns(interval=pl.lit(method.interval))
+    drawn = curve_figure(views.table("curve_points"), views.table("run_points"), curves)
+    return Worked(said, pl.concat(drawn.values(), how="diagonal_relaxed"))
 
 
 def _typical(ladder: pl.DataFrame) -> str | None:

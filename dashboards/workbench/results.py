@@ -18,7 +18,7 @@ from dashboards.statements import Change
 from dashboards.statements.season import reproducibility
 from dashboards.workbench.bench import Asked, Bench
 from pipeline.messages import Sentence, say
-from warehouse.queries.scenario import CURVE_COLUMNS, Scenario
+from warehouse.queries.scenario import Scenario
 from warehouse.queries.views import ALL, NEWEST
 
 REGISTER_COLUMNS = (
@@ -33,6 +33,10 @@ HOMOGENEITY_COLUMNS = (
 REPEATS_COLUMNS = (
     *("method", "scope", "n_pairs", "sd_ratio", "lo", "hi", "share_within_1pct"),
     "share_within_2pct",
+)
+CURVE_COLUMNS = (
+    *("method", "tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m"),
+    *("cw_hi_kg_m", "runs_used", "status", "flags"),
 )
 OF_TYPE = {"boat_type": "boat_type"}
 
@@ -83,7 +87,7 @@ def _summary(scenario: Scenario) -> Section:
         (say("lines removed"), str(s["removed"])),
         (say("Cw, median"), Change(median) if isinstance(median, float) else "-"),
     ]
-    repeats = reproducibility(scenario.reproducibility(), SCENARIO)
+    repeats = reproducibility(_reproducibility(scenario), SCENARIO)
     return Section("overview", say("In short"), key_figures=figures, headline=repeats)
 
 
@@ -109,7 +113,7 @@ def _register(scenario: Scenario, asked: Asked) -> Section:
             ),
             Chart(
                 "log_factors",
-                [scenario.log_factors()],
+                [scenario.both(lambda draft: draft.made.log_factors)],
                 say("True speed / log speed per season, with its 95 % interval"),
             ),
         ],
@@ -139,7 +143,7 @@ def _boat(scenario: Scenario, asked: Asked) -> Section:
 
 
 def _types(scenario: Scenario, asked: Asked) -> Section:
-    tests = scenario.type_homogeneity()
+    tests = scenario.both(lambda draft: draft.type_homogeneity)
     drawn = [_leading(scenario.type_tows(asked.tows), asked)]
     return Section(
         "types",
@@ -163,7 +167,7 @@ def _types(scenario: Scenario, asked: Asked) -> Section:
 
 
 def _repeats(scenario: Scenario) -> Section:
-    repeats = scenario.reproducibility()
+    repeats = _reproducibility(scenario)
     return Section(
         "repeats",
         say("Reproducibility: the same boat again"),
@@ -171,6 +175,10 @@ def _repeats(scenario: Scenario) -> Section:
         charts=[Chart("reproducibility", [repeats], say("Standard deviation of one tow"))],
         tables=[Table("reproducibility", repeats, REPEATS_COLUMNS)],
     )
+
+
+def _reproducibility(scenario: Scenario) -> pl.DataFrame:
+    return scenario.both(lambda draft: draft.reproducibility)
 
 
 def _selects(bench: Bench, scenario: Scenario, asked: Asked) -> Sequence[Select]:

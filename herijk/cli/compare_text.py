@@ -12,7 +12,7 @@ from pipeline.method.variant import Difference, differences
 from pipeline.register.register import draft_name
 from pipeline.register.replay import RaceRules
 from pipeline.tables.row import Row
-from warehouse.editions.compare import DiffReport, compare, report_with_races
+from warehouse.editions.compare import DiffReport, report_with_races
 from warehouse.editions.publish import drafted
 from warehouse.store.editions import Edition, edition_names, read_edition
 from warehouse.store.methods import KnownMethods
@@ -56,11 +56,11 @@ def compared(store: Store, old: str, new: str, rules: RaceRules) -> Compared:
     if not {old, new} <= {*published} and store.made_from("tows") is None:
         return Compared(old, new, options, None)
     counting = ("valid",) if {old, new} & {*published} else ("valid", "expired")
-    editions = (
+    first, second = (
         side if isinstance(side, Edition) else drafted(store, side, counting=counting)
         for side in sides
     )
-    return Compared(old, new, options, report_with_races(store, compare(store, *editions), rules))
+    return Compared(old, new, options, report_with_races(store, first, second, rules))
 
 
 def text(report: Compared) -> str:

@@ -107,7 +107,7 @@ def test_what_dagster_calls_stale_has_all_that_is_and_nothing_after_a_rebuild(
     def new_code(_):
         for module in (warehouse.derive.step, assets.tables):
             monkeypatch.setattr(module, "code_hash", lambda *_: "other")
-        steps = [assets.tables.step_asset(step) for step in STEPS]
+        steps = [assets.tables.step_asset(step) for step in (*STEPS, assets.tables.SITE)]
         kept = [a for a in assets.run.ASSETS if a not in assets.tables.STEP_ASSETS]
         monkeypatch.setattr(assets.run, "ASSETS", [*kept, *steps])
 

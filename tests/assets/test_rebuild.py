@@ -45,14 +45,14 @@ def assert_same_tables(one: dict[str, pl.DataFrame], other: dict[str, pl.DataFra
         assert_frame_equal(frame, other[name], check_exact=True)
 
 
-SUMMED_UP = ("season_ladder", "option_summary", "contents")
+SUMMED_UP = ("season_ladder", "option_summary", "changes_by_cause", "contents")
 """Tables about studies and comparisons of types, besides their own."""
 
 
 def without_studies(tables: dict[str, pl.DataFrame]) -> dict[str, pl.DataFrame]:
     """The tables that a rebuild makes also where it is not whole."""
     left_out = {*SUMMED_UP, *(name for s in STEPS if s.group in LEFT_OUT for name in s.outputs)}
-    return {name: frame for name, frame in tables.items() if name not in left_out}
+    return {n: t.drop("causes", strict=False) for n, t in tables.items() if n not in left_out}
 
 
 def when_read(
@@ -165,7 +165,7 @@ def test_made_elsewhere_season_by_season_the_tables_are_the_same(
     assert len(files_read) == SMALL.tows_per_season
     assert elsewhere.rebuild().done.seasons == [2009]
     assert len(files_read) == 2 * SMALL.tows_per_season
-    found = elsewhere.tables()
+    found = without_studies(elsewhere.tables())
     for name, frame in without_studies(built.tables()).items():
         assert table_digest(found[name]) == table_digest(frame), name
 

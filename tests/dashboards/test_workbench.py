@@ -195,7 +195,7 @@ def test_a_comparison_finds_what_the_workbench_showed(bench, built):
     path = bench.save(saving())
     method = parse_method(path.read_text(encoding="utf-8"), str(path))
     drafts = (drafted(built.store, one) for one in (bench.known.get("as-published"), method))
-    compared = compare(built.store, *drafts).lines
+    compared = compare(built.store, *drafts)
     changed = compared.filter(change="changed")
     assert changed.height == lines.filter(change="changed").height > 0
     key = ("fsn_no", "rowers", "crew_class")

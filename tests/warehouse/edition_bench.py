@@ -14,7 +14,7 @@ from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.definition import Method, shipped_method
 from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
-from warehouse.editions.compare import Comparison, compare
+from warehouse.editions.compare import compare
 from warehouse.editions.publish import Terms, publish
 from warehouse.intake.seasons import bring_in
 from warehouse.store.editions import read_edition
@@ -104,5 +104,5 @@ def terms(edition: str, valid_from: dt.date = DAY) -> Terms:
     return Terms(edition, valid_from, "besluit van de ALV", valid_from)
 
 
-def diff(store: Store, old: str, new: str) -> Comparison:
+def diff(store: Store, old: str, new: str) -> pl.DataFrame:
     return compare(store, *(read_edition(store, name) for name in (old, new)))

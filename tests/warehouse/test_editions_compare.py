@@ -69,7 +69,7 @@ def new_code(monkeypatch):
 
 
 def test_between_methods_only_steps_are_causes_and_they_multiply(published):
-    lines = diff(published.store, "2014-1", "2014-2").lines
+    lines = diff(published.store, "2014-1", "2014-2")
     assert lines["cw_ratio"].null_count() == 0
     found = names(lines)
     assert {cause for cause, _ in found} <= {"method"}
@@ -83,7 +83,7 @@ def test_one_option_shows_under_its_own_step_alone(bench_of_editions):
     bench.rebuild((shipped_method("as-published"), variant))
     bench.publish("a", "as-published")
     bench.publish("b", variant)
-    lines = diff(bench.store, "a", "b").lines
+    lines = diff(bench.store, "a", "b")
     assert names(lines) == {("method", "runs")}
     assert_factors_multiply(lines)
     seasons = bench.store.read("tows").select(tow_id_of="tow_id", season="season")
@@ -100,7 +100,7 @@ def test_one_file_shows_as_input_on_its_own_line_alone(bench_of_editions):
     bench.change_force(tow, lambda n: 1.02 * n)
     bench.rebuild(AS_PUBLISHED)
     bench.publish("b")
-    lines = diff(bench.store, "a", "b").lines
+    lines = diff(bench.store, "a", "b")
     changed = lines.filter(pl.col("change") == "changed")
     assert changed["new_tow_id"].to_list() == [tow]
     ((cause,),) = causes(changed)
@@ -122,7 +122,7 @@ def test_method_code_and_one_file_together_are_told_apart(bench_of_editions, mon
     new_code(monkeypatch)
     bench.rebuild((shipped_method("rebased"),))
     bench.publish("b", "rebased")
-    lines = diff(bench.store, "a", "b").lines
+    lines = diff(bench.store, "a", "b")
     assert_factors_multiply(lines)
     own = lines.filter(pl.col("new_tow_id") == tow)
     assert {cause for cause, _ in names(own)} == {"method", "input_and_code"}
@@ -140,7 +140,7 @@ def test_another_tow_shows_as_tow_beside_the_steps(bench_of_editions):
         encoding="utf-8",
     )
     bench.publish("b", "rebased")
-    lines = diff(bench.store, "a", "b").lines
+    lines = diff(bench.store, "a", "b")
     row = lines.filter(*(pl.col(name) == twice[name] for name in LINE))
     assert row["old_tow_id"].item() != row["new_tow_id"].item()
     assert {cause for cause, _ in names(row)} == {"tow", "method"}
@@ -148,9 +148,10 @@ def test_another_tow_shows_as_tow_beside_the_steps(bench_of_editions):
 
 
 def test_the_summary_names_gainers_losers_and_the_largest(published):
-    same = diff(published.store, "2014-1", "2014-1").lines
+    same = diff(published.store, "2014-1", "2014-1")
     assert (set(same["change"]), names(same)) == ({"same"}, set())
-    found = report(diff(published.store, "2014-1", "2014-2"))
+    both = [read_edition(published.store, name) for name in ("2014-1", "2014-2")]
+    found = report(*both, diff(published.store, "2014-1", "2014-2"))
     moved = [r for r in found.rows if r["change"] == "changed"]
     assert found.gain["lines"] + found.loss["lines"] == len(moved)
     assert found.gain["lines"] == sum(r["power_ratio"] > 1 for r in moved)
@@ -160,15 +161,15 @@ def test_the_summary_names_gainers_losers_and_the_largest(published):
     row = found.largest[0]
     assert row["new_power_w"] == pytest.approx(row["old_power_w"] * row["power_ratio"])
     assert row["gain_in_two_hours_s"] == pytest.approx(7200 * (row["time_ratio"] - 1))
-    exceeding = [r for r in moved if r["exceeds_interval"]]
-    assert found.exceeds_interval == len(exceeding)
+    assert found.exceeds_interval == len([r for r in moved if r["exceeds_interval"]])
 
 
 def test_races_are_replayed_under_both(bench_of_editions):
     bench = bench_of_editions
     bench.publish("a", "as-published")
     bench.publish("b", "rebased")
-    register = read_edition(bench.store, "a").register.drop_nulls("cw_kg_m")
+    both = [read_edition(bench.store, name) for name in ("a", "b")]
+    register = both[0].register.drop_nulls("cw_kg_m")
     rows = [
         f"Proefrace;2014-06-07;18,4;{r['fsn_no']};{r['rowers']};{r['crew_class']};2:1{i}:00;;"
         for i, r in enumerate(register.head(6).iter_rows(named=True))
@@ -177,7 +178,7 @@ def test_races_are_replayed_under_both(bench_of_editions):
     folder = empty_races(bench)
     (folder / "proefrace_2014.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
     intake.index(bench.store, bench.archive)
-    replayed = report_with_races(bench.store, diff(bench.store, "a", "b"), RaceRules())
+    replayed = report_with_races(bench.store, *both, RaceRules())
     assert len(replayed.races) == 6
     assert None not in [result["old_power_w"] for result in replayed.races]
     assert all(0 <= winner["change_probability"] <= 1 for winner in replayed.winners)
@@ -219,7 +220,7 @@ def test_a_printed_line_of_an_earlier_tow_is_told_apart_from_the_newer_tow(bench
     bench.publish("a")
     line, tows = towed_twice(bench)
     publish_printed_row(bench, line, tows["tow_date"][0])
-    lines = diff(bench.store, "printed", "a").lines.filter(change="changed")
+    lines = diff(bench.store, "printed", "a").filter(change="changed")
     assert names(lines) == {("reproduction", None), ("tow", None)}
     assert_factors_multiply(lines)
     curves = read_edition(bench.store, "a").tables["curves"]

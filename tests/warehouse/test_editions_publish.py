@@ -302,7 +302,7 @@ def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(wit
     assert "**Niet herijkt**: 1 regel van gedrukt-2012" in notes
     measured = line_of(with_printed, with_printed.tow(2014), "2014-1")
     assert measured["basis"] == "measured"
-    lines = diff(with_printed.store, "gedrukt-2012", "2014-1").lines
+    lines = diff(with_printed.store, "gedrukt-2012", "2014-1")
     causes = {row["fsn_no"]: json.loads(row["causes"]) for row in lines.iter_rows(named=True)}
     assert [c["cause"] for c in causes["FSN900"]] == ["closed_form"]
     assert [c["cause"] for c in causes[measured["fsn_no"]]] == ["printed_and_tow"]

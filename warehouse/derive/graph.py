@@ -4,6 +4,7 @@ Here are the functions of steps that only put together what `pipeline` computes.
 """
 
 from collections.abc import Callable, Sequence
+from itertools import takewhile
 from pathlib import Path
 from typing import Final
 
@@ -144,6 +145,6 @@ def catch_up(store: Store, archive: Path, methods: Sequence[Method], step: Step)
     intake.index(store, archive)
     for season in intake.damaged_seasons(store):
         intake.read_season(store, archive, season)
-    for before in STEPS[: STEPS.index(step)]:
+    for before in takewhile(lambda before: before is not step, STEPS):
         for scope in before.stale(store, methods):
             before.make(scope)

@@ -12,7 +12,7 @@ from pydantic import TypeAdapter
 from pipeline.method.definition import Method
 from pipeline.recompute.facts import samples_files
 from pipeline.register import due
-from pipeline.register.changes import register_changes
+from pipeline.register.changes import register_changes, steps_of_lines
 from pipeline.register.register import (
     CURVE_COLUMNS,
     LINE,
@@ -47,18 +47,22 @@ def register_tables(
     listed_races: pl.DataFrame,
     decisions: pl.DataFrame,
     published: Mapping[str, pl.DataFrame],
+    correction_steps: pl.DataFrame,
     methods: Sequence[Method],
 ) -> dict[str, pl.DataFrame]:
     """Draft registers, what changes between registers, lineage, and who is due to be towed.
 
-    Drafts are compared with the first method's. The published editions stand beside the drafts.
+    Drafts are compared with the first method's, by the steps from there. The published editions
+    stand beside the drafts.
     """
     as_of, known = reference_day(tows, listed_races), (curves, tows, listed_boats, decisions)
     lines = {method.name: lines_on(method, *known, as_of) for method in methods}
     drafts = [_draft(method, own, tows) for method, own in lines.items()]
     histories = [_history(method, curves, tows, decisions) for method in methods]
     register = pl.concat(drafts)
-    changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
+    ladders = correction_steps.filter(pl.col("position") > 0, from_method=methods[0].name)
+    parts = (steps_of_lines(d, ladders.filter(to_method=d["method"][0])) for d in drafts[1:])
+    changes = [register_changes(drafts[0], *both) for both in zip(drafts[1:], parts, strict=True)]
     hashes = {method.name: method.content_hash for method in methods}
     made = {
         "register": register,

@@ -31,7 +31,7 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.registers import lines_in_time
-from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today, unchanged_tows
+from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today
 from warehouse.store.editions import CHANGES, MEASURED, Edition
 from warehouse.store.store import Store
 
@@ -45,28 +45,17 @@ REPRODUCTION: Final = "reproduction"
 """From print to the same tow as published: what was printed and cannot be explained."""
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """Two editions side by side.
-
-    Attributes:
-        old, new: the editions.
-        lines: lines as `pipeline.register.changes.compare_lines` has them, with the boat's `name`,
-            and the status in both, which says why a line has no curve any more.
-    """
-
-    old: Edition
-    new: Edition
-    lines: pl.DataFrame
-
-
-def compare(store: Store, old: Edition, new: Edition) -> Comparison:
+def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """Compares two editions line by line, with causes whose factors multiply to the change.
 
     With the edition before it an edition was compared when it was published; that is part of it.
+
+    Returns:
+        Lines as `pipeline.register.changes.compare_lines` has them, with the boat's `name`, and
+        the status in both, which says why a line has no curve any more.
     """
     if CHANGES in new.tables and new.manifest.previous == old.manifest.edition:
-        return Comparison(old, new, new.tables[CHANGES])
+        return new.tables[CHANGES]
     start = old.method or shipped_method(AS_PUBLISHED)
     steps = _steps(store, start, old, new)
     printed = _printed_parts(steps, old, new)
@@ -91,8 +80,7 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
         mine = edition.register.select(*LINE, *said)
         lines = lines.join(mine, on=LINE, how="left", maintain_order="left")
     named = pl.coalesce("new_name", "old_name").alias("name")
-    lines = lines.sort(LINE).select(*columns, named, "old_status", "new_status")
-    return Comparison(old, new, lines)
+    return lines.sort(LINE).select(*columns, named, "old_status", "new_status")
 
 
 def _printed_parts(rungs: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
@@ -137,8 +125,9 @@ def _steps(store: Store, start: Method, old: Edition, new: Edition) -> pl.DataFr
         return NO_STEPS
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
 
-    there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
-    tows, runs = (table.filter(there) for table in tables_of_today(store).values())
+    today = tables_of_today(store)
+    there = pl.col("tow_id").is_in(list(same_tows(new.tables, today)))
+    tows, runs = (table.filter(there) for table in today.values())
     if tows.is_empty():
         return NO_STEPS
     from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
@@ -250,17 +239,15 @@ class DiffReport:
     winners: list[Row] | None = None
 
 
-def report(comparison: Comparison) -> DiffReport:
-    """Counts, who gains and loses, causes, and every line of a comparison."""
-    lines = comparison.lines
+def report(old: Edition, new: Edition, lines: pl.DataFrame) -> DiffReport:
+    """Counts, who gains and loses, causes, and every line of `compare`."""
     compared = lines.drop_nulls("cw_ratio")
     moved = compared.filter(change="changed")
     gains = pl.col("power_ratio") > 1
-    editions = (comparison.old, comparison.new)
     return DiffReport(
-        from_edition=comparison.old.manifest.edition,
-        to_edition=comparison.new.manifest.edition,
-        simulated=any(edition.manifest.simulated for edition in editions),
+        from_edition=old.manifest.edition,
+        to_edition=new.manifest.edition,
+        simulated=any(edition.manifest.simulated for edition in (old, new)),
         lines=lines.height,
         changes=dict(lines["change"].value_counts().sort("change").rows()),
         gain=_group(moved.filter(gains)),
@@ -269,7 +256,7 @@ def report(comparison: Comparison) -> DiffReport:
         interval_unknown=int(moved["exceeds_interval"].null_count()),
         runs_alone=[
             edition.manifest.edition
-            for edition in editions
+            for edition in (old, new)
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
         causes=causes_of(compared),
@@ -278,19 +265,18 @@ def report(comparison: Comparison) -> DiffReport:
     )
 
 
-def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) -> DiffReport:
-    """The same with power, rank, podium and winner of every race in the archive under both.
+def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules) -> DiffReport:
+    """Compares two editions, with power, rank, podium and winner of every race of the archive.
 
     Raises:
         MissingKnowledgeError: the rules ask for what is not known.
     """
-    without_races = replace(report(comparison), race_rules=rules)
+    without_races = replace(report(old, new, compare(store, old, new)), race_rules=rules)
     if store.made_from("listed_races") is None or not store.count_rows("listed_races"):
         return without_races
     results = store.read("listed_races")
-    editions = (comparison.old, comparison.new)
-    before, after = (replay(lines_in_time(store, one), results, rules) for one in editions)
-    members = comparison.new.tables.get("ensemble", pl.DataFrame())
+    before, after = (replay(lines_in_time(store, one), results, rules) for one in (old, new))
+    members = new.tables.get("ensemble", pl.DataFrame())
     return replace(
         without_races,
         races=race_changes(before, after).to_dicts(),

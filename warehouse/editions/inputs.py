@@ -4,14 +4,12 @@ A number depends on its own tow, and under some methods on all tows at once (a c
 whole archive). Which files still are what they were is `verify`'s.
 """
 
-from collections import defaultdict
 from collections.abc import Mapping
 from typing import Final
 
 import polars as pl
 
 from pipeline.recompute.facts import samples_files
-from warehouse.store.editions import Edition
 from warehouse.store.store import Store, fingerprint
 
 JUDGED: Final = ("doubts", "unusual")
@@ -31,13 +29,10 @@ SAMPLES, LIST, REGISTER = "meetdata", "lijst", "register"
 def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
     """Tows with the hash of all that their numbers are made from: list row, runs and files."""
     facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
-    of_tow = defaultdict(list)
-    runs = runs.sort("tow_id", "run")
-    for tow_id, run in zip(runs["tow_id"], runs.select(facts).iter_rows(), strict=True):
-        of_tow[tow_id].append(run)
+    of_tow = runs.sort("tow_id", "run").select(facts).rows_by_key("tow_id", include_key=True)
     measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
     hashes = [
-        fingerprint(row, of_tow[tow_id])
+        fingerprint(row, of_tow.get(tow_id, []))
         for tow_id, row in zip(tows["tow_id"], tows.select(measured).iter_rows(), strict=True)
     ]
     return tows.with_columns(pl.Series(INPUTS_HASH, hashes, pl.String))
@@ -65,11 +60,6 @@ def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) 
         for edition in (was, now)
     )
     return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
-
-
-def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
-    """Tows of an edition that the warehouse has with the same inputs."""
-    return same_tows(edition.tables, tables_of_today(store))
 
 
 def listed_inputs(store: Store) -> pl.DataFrame:

@@ -128,7 +128,7 @@ def with_changes(store: Store, edition: Edition) -> Edition:
     previous = _previous(store, edition)
     if previous is None:
         return edition
-    changes = compare(store, previous, edition).lines
+    changes = compare(store, previous, edition)
     return replace(edition, tables={**edition.tables, CHANGES: changes})
 
 

@@ -16,7 +16,7 @@ import jinja2
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import DECIMALS
 from pipeline.method.definition import COMPLETE
-from warehouse.editions.compare import Comparison, report
+from warehouse.editions.compare import report
 from warehouse.editions.printed import NOT_REBASED, REBASED
 from warehouse.store.editions import CHANGES, NOTICE, NOTICE_EN, Edition
 
@@ -36,7 +36,7 @@ def texts(edition: Edition, previous: Edition | None) -> dict[str, str]:
     """
     facts = _facts(edition) | {"changes": None}
     if previous is not None:
-        facts["changes"] = report(Comparison(previous, edition, edition.tables[CHANGES]))
+        facts["changes"] = report(previous, edition, edition.tables[CHANGES])
     version = edition.manifest.texts_version or VERSION
     try:
         templates = {

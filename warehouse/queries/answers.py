@@ -10,7 +10,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.method.definition import COMPLETE
-from pipeline.register.changes import compare_lines, steps_of_lines
+from pipeline.register.changes import compare_lines
 from pipeline.register.register import LINE, draft_name
 from pipeline.register.replay import (
     RaceRules,
@@ -50,13 +50,16 @@ def line_changes(views: Views) -> pl.DataFrame:
     Returns:
         Columns of `compare_lines`, ranks as `old_speed_rank` and `new_speed_rank`, the boat's
         `name` and `boat_type`, and of both editions whether an interval holds the error of the log
-        (`old_log_known`, `new_log_known`); causes of a draft's change by step.
+        (`old_log_known`, `new_log_known`).
     """
-    kept = views.table("register_changes")
+    kept, register = views.table("register_changes"), views.table("register")
     pairs = kept.select(PAIR).unique().sort(PAIR).rows()
-    nothing = views.table("register").clear()
-    lines = [_lines(views, old, new, kept) for old, new in pairs]
-    return _named(views, pl.concat([compare_lines(nothing, nothing), *lines]))
+    sides = [compare_lines(*(register.filter(edition=e) for e in pair)) for pair in pairs]
+    both = pl.concat([compare_lines(register.clear(), register.clear()), *sides])
+    beside = both.drop(set(kept.columns) - {*PAIR, *LINE})
+    key = [*PAIR, *LINE]
+    changes = kept.join(beside, on=key, how="left", nulls_equal=True, maintain_order="left")
+    return _named(views, changes)
 
 
 def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None) -> pl.DataFrame:
@@ -69,7 +72,7 @@ def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None
         MissingKnowledgeError: there is no such edition or draft.
     """
     before, after = (_edition(views, name, valid_from) for name in (old, new))
-    lines = compare(views.store, before, after).lines
+    lines = compare(views.store, before, after)
     return _named(views, lines.drop("name", "old_status", "new_status"))
 
 
@@ -82,22 +85,6 @@ def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
         return read_edition(views.store, name)
     method = KnownMethods.of(views.store).get(name.removeprefix(DRAFT))
     return drafted(views.store, method, valid_from)
-
-
-def _lines(views: Views, old: str, new: str, kept: pl.DataFrame) -> pl.DataFrame:
-    """The changes between two editions with both sides, and causes by step.
-
-    Args:
-        kept: the table `register_changes`: an edition keeps the causes that it was published with.
-    """
-    register = views.table("register")
-    before, after = (register.filter(edition=edition) for edition in (old, new))
-    if new.startswith(DRAFT):
-        return compare_lines(before, after, steps_of_lines(after, _steps(views, before, after)))
-    lines = compare_lines(before, after)
-    changes = kept.filter(from_edition=old, to_edition=new)
-    sides = lines.drop(set(kept.columns) - {*LINE})
-    return changes.join(sides, on=LINE, how="left", maintain_order="left").select(lines.columns)
 
 
 def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
@@ -124,13 +111,6 @@ def log_known(views: Views) -> pl.DataFrame:
     )
     of_each = pl.concat([views.table("editions").select("interval", "edition"), drafts])
     return of_each.select("edition", log_known=pl.col("interval") == COMPLETE)
-
-
-def _steps(views: Views, old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """What each step does to a tow, from the method of one register to that of the other."""
-    first, last = (side.sort("tow_id", nulls_last=True)["method"][0] for side in (old, new))
-    methods = {"from_method": first, "to_method": last}
-    return views.table("correction_steps").filter(pl.col("position") > 0, **methods)
 
 
 def answers(views: Views, edition: str) -> pl.DataFrame:

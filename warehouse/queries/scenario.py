@@ -19,7 +19,7 @@ from pipeline.curve import VALID_RATIO, s_of_height
 from pipeline.register.changes import compare_lines, largest_first
 from pipeline.studies.summaries import season_changes
 from warehouse.queries.history import Draft
-from warehouse.queries.views import ALL
+from warehouse.queries.views import ALL, curve_figure
 
 LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
 """Speeds at which a curve is drawn / declared speed."""
@@ -27,10 +27,6 @@ LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
 TYPE_COLUMNS: Final = (
     *("method", "fsn_no", "name", "boat_type", "rowers", "crew_class", "tow_id", "season"),
     *("weight_kg", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_standard_kg_m"),
-)
-CURVE_COLUMNS: Final = (
-    *("method", "tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m"),
-    *("cw_hi_kg_m", "runs_used", "status", "flags"),
 )
 
 
@@ -71,7 +67,7 @@ class Scenario:
 
     def season_change(self) -> pl.DataFrame:
         """Cw after / Cw before of all tows: median and range per season."""
-        curves = self._both(lambda draft: draft.made.curves)
+        curves = self.both(lambda draft: draft.made.curves)
         return season_changes(curves, self.before.method).sort("season")
 
     def type_tows(self, tows: str = ALL) -> pl.DataFrame:
@@ -85,65 +81,33 @@ class Scenario:
             seen = draft.observed
             return beside_their_type(seen if tows == ALL else newest(seen))
 
-        compared = self._both(of)
+        compared = self.both(of)
         named = compared.filter(pl.col("boat_type") != UNKNOWN_TYPE).join(
             self._names.drop("boat_type"), on="fsn_no", how="left", maintain_order="left"
         )
         return named.select(TYPE_COLUMNS)
 
-    def type_homogeneity(self) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity` under both methods."""
-        return self._both(lambda draft: draft.type_homogeneity)
-
-    def reproducibility(self) -> pl.DataFrame:
-        """Rows of the table `reproducibility` under both methods."""
-        return self._both(lambda draft: draft.reproducibility)
-
-    def log_factors(self) -> pl.DataFrame:
-        """Rows of the table `log_factors` under both methods."""
-        return self._both(lambda draft: draft.made.log_factors)
+    def boat_figure(self, fsn_no: str) -> pl.DataFrame:
+        """What the figure of a boat's curves draws: see `curve_figure`, at 13 speeds."""
+        curves = self.boat_curves(fsn_no).drop_nulls("cw_kg_m")
+        runs = self.both(lambda draft: draft.made.run_points)
+        return pl.concat(curve_figure(_lines(curves), runs, curves).values(), how="diagonal")
 
     def boat_curves(self, fsn_no: str) -> pl.DataFrame:
-        """Every tow's curve of a boat under both methods."""
-        return self._curves_of(fsn_no).select(CURVE_COLUMNS)
-
-    def boat_figure(self, fsn_no: str) -> pl.DataFrame:
-        """What the figure of a boat's curves draws.
-
-        Returns:
-            Rows of `kind` line (13 speeds over the valid range), point (a run) and declared (Cw
-            with its interval), with `method, tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m,
-            run, direction, used, interval`.
-        """
-        curves = self._curves_of(fsn_no).drop_nulls("cw_kg_m")
-        own = curves.select("method", "tow_id")
-        points = self._both(lambda draft: draft.made.run_points).join(
-            own, on=["method", "tow_id"], maintain_order="right"
-        )
-        shared = ("method", "tow_id", "speed_m_s", "cw_kg_m")
+        """Every tow's curve of a boat under both methods, with the `interval` of the method."""
         intervals = {d.method.name: d.method.interval for d in (self.before, self.after)}
-        declared = curves.with_columns(speed_m_s="declared_speed_m_s").select(
-            *shared,
-            "cw_lo_kg_m",
-            "cw_hi_kg_m",
-            kind=pl.lit("declared"),
-            interval=pl.col("method").replace_strict(intervals, return_dtype=pl.String),
+        mine = self.both(lambda draft: draft.made.curves).filter(fsn_no=fsn_no)
+        return mine.sort("season", "tow_id", maintain_order=True).with_columns(
+            interval=pl.col("method").replace_strict(intervals, return_dtype=pl.String)
         )
-        drawn = points.drop_nulls("cw_kg_m").select(
-            *shared, "run", "direction", "used", kind=pl.lit("point")
-        )
-        return pl.concat([_lines(curves).select(*shared, "kind"), drawn, declared], how="diagonal")
+
+    def both(self, of: Callable[[Draft], pl.DataFrame]) -> pl.DataFrame:
+        """Rows of a table of both drafts."""
+        return pl.concat([of(self.before), of(self.after)])
 
     @property
     def _names(self) -> pl.DataFrame:
         return self.after.history.boats.select("fsn_no", "name", "boat_type")
-
-    def _both(self, of: Callable[[Draft], pl.DataFrame]) -> pl.DataFrame:
-        return pl.concat([of(self.before), of(self.after)])
-
-    def _curves_of(self, fsn_no: str) -> pl.DataFrame:
-        mine = self._both(lambda draft: draft.made.curves).filter(fsn_no=fsn_no)
-        return mine.sort("season", "tow_id", maintain_order=True)
 
 
 def _lines(curves: pl.DataFrame) -> pl.DataFrame:
@@ -154,5 +118,12 @@ def _lines(curves: pl.DataFrame) -> pl.DataFrame:
     )
     speed = ratio * declared
     drawn = curve.cw(a, s_of_height(a, cw, declared), speed)
-    lines = rows.with_columns(speed_m_s=speed, cw_kg_m=drawn, kind=pl.lit("line"))
+    nothing = pl.lit(None, pl.Float64)
+    lines = rows.select(
+        *("method", "tow_id"),
+        speed_m_s=pl.Series(speed),
+        cw_kg_m=pl.Series(drawn),
+        cw_lo_kg_m=nothing,
+        cw_hi_kg_m=nothing,
+    )
     return lines.filter(pl.col("cw_kg_m").is_finite())

@@ -92,6 +92,37 @@ class Views:
         return self.ask("race_days").rows()
 
 
+def curve_figure(
+    lines: pl.DataFrame, runs: pl.DataFrame, curves: pl.DataFrame
+) -> dict[str, pl.DataFrame]:
+    """Rows of the figure `resistance_curve`, by their `kind`.
+
+    Args:
+        lines: rows of `curve_points`.
+        runs: rows of `run_points`.
+        curves: those to draw: rows of `curves` with the `interval` of their method.
+
+    Returns:
+        `line` and `declared` (Cw at the declared speed) with `interval`, `point` (a run) without;
+        all with `fsn_no`, `tow_id` and `method`.
+    """
+    of_tow = ("fsn_no", "tow_id", "method")
+    numbers = ("speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "interval")
+    own = curves.select(*of_tow, "interval")
+    rows = {
+        "line": (lines.join(own, on=of_tow[1:], maintain_order="left"), numbers),
+        "point": (
+            runs.join(own, on=of_tow[1:], maintain_order="left"),
+            ("run", "direction", "speed_m_s", "cw_kg_m", "used"),
+        ),
+        "declared": (curves.with_columns(speed_m_s="declared_speed_m_s"), numbers),
+    }
+    return {
+        kind: frame.drop_nulls("cw_kg_m").select(*of_tow, *columns, kind=pl.lit(kind))
+        for kind, (frame, columns) in rows.items()
+    }
+
+
 QUESTIONS: Final = {
     # How often each check was made and found something, most often first.
     "checks": 'SELECT * FROM check_counts ORDER BY method, beyond DESC, "check"',
