@@ -114,7 +114,7 @@ def _written_down(error: BaseException) -> str:
     ) as file:
         file.write("".join(traceback.format_exception(error)))
     return tell(
-        "{}. Nothing was published. Details are in {}; please send it to whoever maintains Herijk",
+        "{}. Nothing was published. Details are in {}; please send it to the maintainer of Herijk",
         unexpected(error),
         file.name,
     )
