@@ -120,8 +120,8 @@ def _prepare(plan: Plan, instruments: pl.DataFrame) -> Computed:
     scale, zero_n = (
         instruments[name].to_numpy()[tows.tow] for name in ("force_factor", "force_zero_n")
     )
-    means = means.with_force(plan.of_runs("force.ratio"), 0.0 * zero_n)
-    means = means.with_force(scale, zero_n)
+    ratio = plan.of_runs("force.ratio")
+    means = means.with_force(ratio * scale, ratio * zero_n)
     known = log_factor(
         plan.option("speed.correction"),
         plan.option("speed.factor"),

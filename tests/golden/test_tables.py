@@ -150,7 +150,7 @@ def differs(was: str, now: str) -> bool:
 
 
 def changed(now: dict[str, str], whole: str | None = None) -> dict[str, tuple[str, str]]:
-    """What is otherwise than it was; of a `whole` world also what is gone."""
+    """The columns that differ from those kept; of a `whole` world also those missing."""
     kept = dict(line.split(": ", 1) for line in LINES.read_text("utf-8").splitlines())
     both = [where for where in now if where in kept]
     assert len(both) > 0.9 * len(now)

@@ -21,7 +21,9 @@ from warehouse.archive.files.names import (
     PACKED,
     PARTS,
     SAMPLES,
+    SPREADSHEETS,
     as_one_run,
+    kind_of,
     match_key,
     split_sheet,
 )
@@ -146,7 +148,8 @@ def files_by_name(samples: Iterable[ArchiveFile], names: Iterable[Named]) -> Fil
             by_name[key].append(SamplesFile(tuple(runs[run][0] for run in sorted(runs))))
     lacking = {key for year, key in named if not {(year, key), (0, key)} & by_name.keys()}
     for file in samples if lacking else ():
-        for sheet in sheets_of(file.full_path) if file.inside else ():
+        is_book = file.inside and kind_of(file.full_path) in SPREADSHEETS
+        for sheet in sheets_of(file.full_path) if is_book else ():
             if match_key(sheet) in lacking:
                 by_name[file.season, match_key(sheet)].append(_sheet_in(file, sheet))
     return by_name
