@@ -94,12 +94,7 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
             Section(
                 "register",
                 say("Register"),
-                say(
-                    "A and B hold from 85 to 115 % of the declared speed; Cw holds at that speed. "
-                    "Its interval is a 95 % interval for a method that estimates the log's error. "
-                    "For other methods it is the spread of the runs alone: the log's error is not "
-                    "in it. An expired line has no A, B and Cw. A draft is not published."
-                ),
+                edition.REGISTER,
                 tables=[table],
                 headline=headline,
             ),
@@ -143,24 +138,15 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
         Section(
             "due_list",
             say("Who has to tow again"),
-            say(
-                "Until when each tow counts, as judged on the day of the last tow or race (As "
-                "of), and the speed of the next one. Lowest and Highest: 70 to 90 W per rower "
-                "(men) or 40 to 55 W (women) on the known curve. Beyond the curve: outside 85 "
-                "to 115 % of the declared speed."
-            ),
+            of_due.SPEEDS,
             tables=[due],
             headline=of_due.due(rows),
         ),
         *listed(
             Section(
                 "retow_choice",
-                say("Which boats to tow again"),
-                say(
-                    "Boats that, towed again with dGPS, reduce the uncertainty of the log "
-                    "factors most; the first one most. Sd: standard deviation of a factor, "
-                    "before and after."
-                ),
+                of_due.RETOW_TITLE,
+                of_due.RETOW,
             ),
             "retow_choice",
             choice.hstack(sd),
@@ -490,15 +476,9 @@ def _season_diagnosis(views: Views) -> list[Section]:
         PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
     )
     table = Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, follows=["method"])
-    note = say(
-        "What may be wrong in a season with log, GPS, load cell, anemometer or "
-        "temperature. Fault: likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 "
-        "standard deviations from what is usual. Would not show: a fault of the usual "
-        "size would be taken for something else. Size: in per cent, or in N; the "
-        "interval counts how seldom such a fault is, so it can be 0 to 0. What is not "
-        "in the table: no fault was seen, and a usual one would show."
-    )
-    return [Section("season_diagnosis", say("Instruments by season"), note, tables=[table])]
+    return [
+        Section("season_diagnosis", say("Instruments by season"), season.DIAGNOSIS, tables=[table])
+    ]
 
 
 def _set_aside(views: Views) -> Section:
