@@ -17,6 +17,7 @@ from dashboards import drawn, labels
 from dashboards.figures import FIGURES
 from dashboards.html import as_json
 from dashboards.site.parts import Chart, Page, is_chosen
+from dashboards.speech import Speech
 from pipeline.messages import speaker
 
 DRAWN: Final = 5
@@ -63,7 +64,7 @@ def stills(page: Page, language: str) -> dict[str, Markup]:
             rows = _shown(page, chart)
             if section.folded or rows.is_empty():
                 continue
-            caption = speaker(language)(chart.caption or section.title)
+            caption = Speech(language).text(chart.caption or section.title)
             return {chart.figure: _still(chart.figure, rows, language, caption)}
     return {}
 

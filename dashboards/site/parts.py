@@ -135,7 +135,7 @@ class Section:
     """
 
     name: str
-    title: Sentence
+    title: Sentence | Headline
     note: Sentence | None = None
     charts: Sequence[Chart] = ()
     tables: Sequence[Table] = ()

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup
 
+from dashboards.documents.slides import SOURCE
 from dashboards.site.parts import Chart, Page, Section
-from dashboards.slide_book import Slide, slides
-from dashboards.slides import SOURCE
 from dashboards.speech import Headline, Speech
+from dashboards.statements.slides import Slide, slides
 from pipeline.messages import say
 from warehouse.queries.views import Views
 

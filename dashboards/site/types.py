@@ -24,10 +24,10 @@ from dashboards.site.parts import (
     once_for_methods,
     with_page,
 )
-from dashboards.slide_book import Book
 from dashboards.speech import Headline, Text
 from dashboards.statements import together
 from dashboards.statements.boat_type import LINES, SPREAD, Slopes, homogeneity, level, slopes
+from dashboards.statements.slides import Book
 from pipeline.messages import Sentence, say
 from warehouse.queries.audit import WEIGHT_LINE
 from warehouse.queries.views import NEWEST, Views
@@ -149,7 +149,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                 f"slide_{name}",
                 drawn,
                 labels.FIGURES[caption],
-                says=_said(book.in_words(name, boat_type, NEWEST)),
+                says=together(book.in_words(name, boat_type, NEWEST), " "),
             )
             for name, caption in TYPE_FIGURES.items()
         ]
@@ -213,7 +213,3 @@ def _row_name(one: Slopes) -> Sentence:
         method=labels.method(one.method),
         n=one.n,
     )
-
-
-def _said(sentences: Sequence[Sentence]) -> Headline:
-    return lambda speech: " ".join(map(speech.say, sentences))

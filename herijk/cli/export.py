@@ -110,7 +110,7 @@ def slides(
     data: Path, out: Path | None, types: tuple[str, ...], boats: tuple[str, ...], as_json: bool
 ) -> None:
     """What the 2015 presentation asked, over this archive: a finding and a chart per slide."""
-    from dashboards.slides import slide_book
+    from dashboards.documents.slides import slide_book
     from warehouse.queries.views import Views
     from warehouse.store.store import Store
     from warehouse.store.unforeseen import documents
