@@ -7,10 +7,10 @@ import polars as pl
 from markupsafe import Markup
 
 from dashboards import labels
-from dashboards.report import PAGES, in_short
 from dashboards.site.parts import Chart, Page, Section, default_method, draft_of
 from dashboards.speech import Headline, Speech
 from dashboards.statements import edition, season
+from dashboards.statements.rebuild import PAGES, in_short
 from pipeline.messages import Sentence, pgettext, say
 from warehouse.queries.answers import newest_edition
 from warehouse.queries.change_report import last_changes
@@ -109,7 +109,7 @@ def _last_rebuild(views: Views, by_reports: bool) -> list[Section]:
         Section(
             "last_rebuild",
             say("What the last rebuild changed"),
-            headline=lambda speech: in_short(changes, speech.say),
+            headline=in_short(changes),
             prose=_to_report if by_reports else None,
         )
     ]

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from assets.report import Report
-from dashboards.report import headlines
-from herijk.cli.render import page, place, section, table, why_set_aside
-from pipeline.messages import LANGUAGE, speaker, tell
+from dashboards.statements.rebuild import headlines
+from herijk.cli.render import page, place, section, speech, table, why_set_aside
+from pipeline.messages import tell
 from pipeline.tables.row import Row
 from warehouse.queries.reports import RebuildReport
 
@@ -31,7 +31,7 @@ def text(made: Rebuilt) -> str:
         seasons = ", ".join(map(str, news.done.seasons)) or tell("none")
         methods = ", ".join(news.done.methods) or tell("none")
         done = tell("Seasons read: {}. Methods applied: {}.", seasons, methods)
-    lines = headlines(news, news.checks, speaker(LANGUAGE.get()))
+    lines = [line(speech()) for line in headlines(news, news.checks)]
     tows = ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
     places = tell("Tables: {}\nSite: {}\nReport: {}", report.database, report.site, report.report)
     since = section(tell("Since the last report:"), *(f"  {line}" for line in lines))
