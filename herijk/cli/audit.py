@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import PATH, archive_option, as_json_text, data_option, json_option, show
+from herijk.cli.options import PATH, archive_option, data_option, json_option, show
 from herijk.cli.registers import BEST
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import HerijkError
@@ -66,14 +66,19 @@ def audit(
         KnownMethods.of(store).text(method)
     report = audit_report(store, names, method)
     drawn = [] if plots is None else _plots(store, report, plots)
-    if as_json:
-        click.echo(as_json_text(report))
-        return
     if isinstance(report, BoatAudit):
         answers = audit_text.answers_of(store, report.boat, edition)
-        click.echo(audit_text.boat_text(report, answers, steps))
+        show(
+            report,
+            lambda report: audit_text.boat_text(report, answers, steps),
+            as_json,
+            lambda _: audit_text.said_of_boat(answers),
+        )
     else:
-        click.echo(audit_text.types_text(report, steps))
+        text, said = audit_text.types_text, audit_text.said_of_types
+        show(report, lambda report: text(report, steps), as_json, said)
+    if as_json:
+        return
     if behind:
         click.echo("\n" + audit_text.lineage_text(behind))
     if drawn:
@@ -88,6 +93,7 @@ def audit(
 @json_option
 def assess(tow_id: str, archive: Path, data: Path, method: str | None, as_json: bool) -> None:
     """What a tow shows while the boat waits: provisional, and nothing is stored."""
+    from dashboards.statements.tow import statements as tow_statements
     from herijk.cli.audit_text import assessment_text
     from pipeline.method.definition import COMPLETE
     from warehouse.editions.publish import latest_before
@@ -102,7 +108,13 @@ def assess(tow_id: str, archive: Path, data: Path, method: str | None, as_json: 
     in_force = None if edition is None else read_edition(store, edition).method
     chosen = in_force or KnownMethods.of(store).get(method or BEST)
     found = tows.assess(store, archive, tow_id, chosen)
-    show(found, lambda report: assessment_text(report, chosen.interval == COMPLETE), as_json)
+    said = tow_statements(found, chosen.interval == COMPLETE)
+    show(
+        found,
+        lambda report: assessment_text(report, said),
+        as_json,
+        lambda report: {report.tow["tow_id"]: said},
+    )
 
 
 def _plots(store: "Store", report: "BoatAudit | TypesAudit", folder: Path) -> list[Path]:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Final
 import polars as pl
 
 from dashboards.labels import code_in_words
+from dashboards.statements import Statement
 from dashboards.statements.boat import Answer, answers_by_boat
 from dashboards.statements.boat_type import LINES, SPREAD, homogeneity, level, slopes
-from dashboards.statements.tow import statements as tow_statements
+from herijk.cli.options import Told
 from herijk.cli.render import (
     cell,
     codes,
@@ -44,7 +45,7 @@ def boat_text(report: BoatAudit, answers: Sequence[Answer], steps: bool) -> str:
         "\n".join(
             [
                 f"{report.boat['fsn_no']} {report.boat['name']}, {answer.crew(speech())}",
-                *(statement(speech()) for statement in answer.statements),
+                *map(_worded, answer.statements),
             ]
         )
         for answer in answers
@@ -72,17 +73,25 @@ def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
         return answers_by_boat(views, chosen, boat["fsn_no"]).get(boat["fsn_no"], [])
 
 
+def said_of_boat(answers: Sequence[Answer]) -> Told:
+    """All that is said of each crew of a boat."""
+    return {
+        "{fsn_no} {rowers}{crew_class}".format(**answer.line): answer.statements
+        for answer in answers
+    }
+
+
 TOW: Final = (
     "run direction window_start_s window_end_s cut_reason speed_m_s cw_kg_m fitted_cw_kg_m reason"
 )
 
 
-def assessment_text(report: "Assessment", log_known: bool) -> str:
+def assessment_text(report: "Assessment", said: Sequence[Statement]) -> str:
     """What a tow on the quay shows, its runs, and what to look at."""
     tow = with_crew(report.tow)
     parts = [
         f"{tow['tow_id']} {tow['name'] or tow['fsn_no']}, {tow['crew']}\n"
-        + "\n".join(statement(speech()) for statement in tow_statements(report, log_known)),
+        + "\n".join(map(_worded, said)),
         section(tell("Its runs"), table(report.runs, TOW)),
         section(tell("To look at"), table(report.checks, "check observed limit unit")),
         section(
@@ -223,12 +232,27 @@ def _line_history(line: Row) -> str:
 # Types
 
 
+def said_of_types(report: TypesAudit) -> Told:
+    """Whether the boats of each type are equal, and what their A, B and Cw follow."""
+    newest = report.methods[-1]
+    said = {one["boat_type"]: _equal(one, newest) for one in report.types}
+    for one in slopes(_rows(report, _ends(report), "lines")):
+        about = f"{one.boat_type} {one.quantity} {one.method}"
+        said[about] = [*one.slopes, one.spread]
+    return said
+
+
+def _ends(report: TypesAudit) -> Sequence[str]:
+    """The first and the last method."""
+    return list(dict.fromkeys([report.methods[0], report.methods[-1]]))
+
+
 def types_text(report: TypesAudit, steps: bool) -> str:
     """Whether the boats of one or two types are equal; with which statistics where asked."""
     newest = report.methods[-1]
-    compared = report.methods if steps else list(dict.fromkeys([report.methods[0], newest]))
+    compared = report.methods if steps else _ends(report)
     parts = [_slopes(report, compared)]
-    parts += [_facts(one) + "\n" + _verdict(one, newest) for one in report.types]
+    parts += ["\n".join([_facts(one), *map(_worded, _equal(one, newest))]) for one in report.types]
     if differing := report.differences[newest]:
         parts.append(
             tell("What differs by more than chance: {}", ", ".join(map(_named, differing)))
@@ -260,12 +284,16 @@ RANGES: Final = (
 )
 
 
-def _verdict(of_type: Row, method: str) -> str:
+def _worded(statement: Statement) -> str:
+    return statement(speech())
+
+
+def _equal(of_type: Row, method: str) -> list[Statement]:
     """Whether they are equal, as the site says it, and which tows stand out."""
     under = of_type["under"][method]
     line = [row for row in under["lines"] if row.items() >= WEIGHT_LINE.items()]
     tested, newest, lines = (pl.DataFrame(rows) for rows in (under["bends"], under["newest"], line))
-    return f"{homogeneity(tested)(speech())}\n{level(newest, lines)(speech())}"
+    return [homogeneity(tested), level(newest, lines)]
 
 
 def _slopes(report: TypesAudit, methods: Sequence[str]) -> str:

@@ -2,15 +2,20 @@
 
 import datetime as dt
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
 
 import click
 
 from herijk.cli.speaking import flag, option
-from pipeline.messages import tell
+from pipeline.messages import LANGUAGE, tell
 
+if TYPE_CHECKING:
+    from dashboards.statements import Statement
+
+Told: TypeAlias = "Mapping[str, Sequence[Statement]]"
+"""The statements about each thing."""
 F = TypeVar("F", bound=Callable[..., Any])
 R = TypeVar("R")
 
@@ -66,15 +71,23 @@ as_of_option = option(
 )
 
 
-def show(report: R, as_text: Callable[[R], str], as_json: bool) -> None:
-    """Prints a result for a person, or for a program."""
-    click.echo(as_json_text(report) if as_json else as_text(report))
+def show(
+    report: R, as_text: Callable[[R], str], as_json: bool, said: "Callable[[R], Told] | None" = None
+) -> None:
+    """Prints a result for a person, or for a program with what is said of it."""
+    click.echo(as_json_text(report, said and said(report)) if as_json else as_text(report))
 
 
-def as_json_text(report: object) -> str:
-    """A result for a program."""
+def as_json_text(report: object, said: "Told | None" = None) -> str:
+    """A result for a program, with the statements about it."""
     from pydantic_core import to_json
 
+    if said is not None:
+        from dashboards.speech import Speech
+
+        speech = Speech(LANGUAGE.get())
+        told = [one.said(speech, about) for about, of in said.items() for one in of]
+        report = vars(report) | {"statements": told}
     return to_json(report, indent=1, fallback=str).decode()
 
 

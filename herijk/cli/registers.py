@@ -39,9 +39,11 @@ def register(
 
     store = Store(data)
     if due:
-        show(due_report(store, _method_of(store, edition), as_of), text.due, as_json)
+        expiring = due_report(store, _method_of(store, edition), as_of)
+        show(expiring, text.due, as_json, text.said_of_due)
     else:
-        show(register_report(store, edition, as_of), text.register, as_json)
+        report = register_report(store, edition, as_of)
+        show(report, text.register, as_json, text.said_of_register)
 
 
 def _method_of(store: "Store", edition: str | None) -> str:
@@ -70,7 +72,7 @@ def seasons(data: Path, method: str, as_json: bool) -> None:
 
     store = Store(data)
     KnownMethods.of(store).text(method)
-    show(log_error_report(store, method), text.seasons, as_json)
+    show(log_error_report(store, method), text.seasons, as_json, text.said_of_seasons)
 
 
 @click.command(cls=Command)

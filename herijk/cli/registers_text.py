@@ -7,6 +7,7 @@ import polars as pl
 
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
+from herijk.cli.options import Told
 from herijk.cli.render import codes, page, section, speech, table
 from pipeline.messages import ngettext, say, tell
 from pipeline.tables.row import Row
@@ -36,10 +37,18 @@ DUE: Final = (
 RETOW: Final = "position fsn_no name crew seasons valid_until tow_speed_m_s factor_sd_after_percent"
 
 
+def said_of_register(report: "RegisterReport") -> Told:
+    """How many lines have a curve."""
+    return {report.edition: [edition.register(_frame(report.lines))]}
+
+
 def register(report: "RegisterReport") -> str:
     """The lines of an edition, and the day on which their validity was judged."""
     parts = [
-        f"{speech().edition(report.edition)}: {edition.register(_frame(report.lines))(speech())}",
+        *(
+            f"{speech().edition(name)}: {one(speech())}"
+            for name, (one,) in said_of_register(report).items()
+        ),
         table(report.lines, REGISTER),
         tell(
             "Low, high: the 95 % interval of Cw where the method estimates the error of the log; "
@@ -56,6 +65,13 @@ URGENCIES: Final = {
     "without_curve": say("Without a curve: never towed, or no tow gave one"),
     "later": say("Later"),
 }
+
+
+def said_of_due(report: "DueReport") -> Told:
+    """Who has to tow, and whether towing more is worth it."""
+    choice = report.retow_choice
+    worth = [of_due.retow(_frame(choice))] if choice else []
+    return {report.method: [of_due.due(_frame(report.lines)), *worth]}
 
 
 def due(report: "DueReport") -> str:
@@ -91,13 +107,18 @@ def _retow(choice: list[Row]) -> str:
 # Seasons
 
 
+def said_of_seasons(report: "LogErrorReport") -> Told:
+    """Where the log was furthest off."""
+    furthest = season.log_factors(_frame(report.factors)) if report.factors else None
+    return {report.method: [furthest] if furthest else []}
+
+
 def seasons(report: "LogErrorReport") -> str:
     """The log factors of all seasons, and what else may be wrong with instruments."""
     factor = "factor lo hi source n_tows n_links"
-    furthest = season.log_factors(_frame(report.factors)) if report.factors else None
     lacking = _seasons_between([row["season"] for row in report.factors])
     parts = [
-        furthest(speech()) if furthest else "",
+        *(one(speech()) for one in said_of_seasons(report)[report.method]),
         section(
             tell("True speed = log speed x factor, under {} (95 % intervals):", report.method),
             table(report.factors, f"season {factor} cause", {"cause": say("step is of")}),

@@ -7,7 +7,8 @@ from dataclasses import fields
 import pytest
 from pydantic import TypeAdapter
 
-from herijk.cli.forms import FORMS
+from dashboards.statements import Said
+from herijk.cli.forms import FORMS, TOLD
 from herijk.cli.main import main
 from tests.warehouse.conftest import edition_archive, published
 
@@ -17,9 +18,13 @@ __all__ = ["edition_archive", "published"]
 def hold_against_form(command, printed):
     """Fails where a result has no form that is documented for its command."""
     result = json.loads(printed)
-    forms = [form for call, form in FORMS.items() if call.split()[0] == command]
-    (form,) = {form for form in forms if {field.name for field in fields(form)} == set(result)}
+    told = result.pop("statements", None)
+    forms = {call: form for call, form in FORMS.items() if call.split()[0] == command}
+    fitting = {c: f for c, f in forms.items() if {field.name for field in fields(f)} == set(result)}
+    (form,) = set(fitting.values())
     TypeAdapter(form).validate_python(result)
+    assert (told is not None) == (set(fitting) <= set(TOLD))
+    TypeAdapter(list[Said]).validate_python(told or [])
 
 
 @pytest.fixture
