@@ -40,7 +40,8 @@ SHOWN_ON = {
     "mail rebuild": "factors lines",
     "method-as-published.html method.html proposal": "register_rule runs_alone",
     "method.html proposal": (
-        "correction effect worked_cause worked_change worked_corrections worked_curve worked_power worked_run worked_tow"
+        "correction effect worked_cause worked_change worked_corrections worked_curve "
+        "worked_power worked_run worked_tow"
     ),
     "proposal": "flagged",
     "quality.html": "statuses",
