@@ -59,7 +59,7 @@ def json_of(frame: pl.DataFrame) -> str:
 
 def stills(page: Page, language: str) -> dict[str, Markup]:
     """The picture of the first chart that is seen at once, by the name of its figure."""
-    for section in page.sections:
+    for section in page.shown:
         for chart in section.charts:
             rows = _shown(page, chart)
             if section.folded or rows.is_empty():

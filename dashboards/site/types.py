@@ -16,12 +16,11 @@ from dashboards.site.parts import (
     Grid,
     Page,
     Section,
-    Select,
     Table,
     default_method,
-    listed,
     methods_select,
     once_for_methods,
+    types_select,
     with_page,
 )
 from dashboards.speech import Headline, Text
@@ -70,53 +69,42 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     drawn = [tows.select("method", "page", *columns)]
     charts = [Chart(name, drawn, labels.FIGURES[name], follows) for name in SCATTERS]
     outliers = views.ask("outliers").filter(shown).with_columns(after)
-    return Page(
-        "types.html",
-        say("Types"),
-        [
-            _slopes_section(views, book, book.chosen_types(())),
-            Section(
-                "types_verdicts",
-                say("Are equal boats equal?"),
-                say("By the newest tow of each boat and crew; every type has a page."),
-                links=[(type_path(name), name, judge(name)) for name in views.type_names()],
+    sections = [
+        _slopes_section(views, book, book.chosen_types(())),
+        Section(
+            "types_verdicts",
+            say("Are equal boats equal?"),
+            say("By the newest tow of each boat and crew; every type has a page."),
+            links=[(type_path(name), name, judge(name)) for name in views.type_names()],
+        ),
+        Section(
+            "types_charts",
+            say("B and Cw per type"),
+            say(
+                "The newest tows under two methods, on the same axes. Standard speed: the "
+                "median declared speed of the type. Drag over a chart to list the boats "
+                "there; click a point to go to its boat."
             ),
-            Section(
-                "types_charts",
-                say("B and Cw per type"),
-                say(
-                    "The newest tows under two methods, on the same axes. Standard speed: the "
-                    "median declared speed of the type. Drag over a chart to list the boats "
-                    "there; click a point to go to its boat."
-                ),
-                charts,
-                [table],
+            charts,
+            [table],
+        ),
+        Section(
+            "types_outliers",
+            say("Newest tows that differ from their type"),
+            say(
+                "Far from what the other boats of the type predict, in standard deviations "
+                "(sd) of that prediction. A possible cause is something to look at, not "
+                "proven."
             ),
-            *listed(
-                Section(
-                    "types_outliers",
-                    say("Newest tows that differ from their type"),
-                    say(
-                        "Far from what the other boats of the type predict, in standard deviations "
-                        "(sd) of that prediction. A possible cause is something to look at, not "
-                        "proven."
-                    ),
-                ),
-                "type_outliers",
-                outliers,
-                OUTLIER_COLUMNS,
-                follows=OF_TYPE,
-            ),
-        ],
-        selects=[
-            methods_select(methods, "before", methods[0]),
-            methods_select(methods, "after"),
-            Select(
-                "boat_type", say("Type"), tows["boat_type"].unique().sort().to_list(), "",
-                with_all=True,
-            ),
-        ],
-    )  # fmt: skip
+            tables=[Table("type_outliers", outliers, OUTLIER_COLUMNS, follows=OF_TYPE)],
+        ),
+    ]
+    selects = [
+        methods_select(methods, "before", methods[0]),
+        methods_select(methods, "after"),
+        types_select(tows["boat_type"]),
+    ]
+    return Page("types.html", say("Types"), sections, selects=selects)
 
 
 def _judged(views: Views, method: str) -> Callable[[str], Headline]:

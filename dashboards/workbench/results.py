@@ -12,7 +12,7 @@ from dashboards import labels
 from dashboards.figures.style import SCENARIO
 from dashboards.option_labels import text
 from dashboards.site.cells import Cells, Show
-from dashboards.site.parts import Chart, Page, Section, Select, Table
+from dashboards.site.parts import Chart, Page, Section, Select, Table, types_select
 from dashboards.speech import Headline
 from dashboards.statements import Change
 from dashboards.statements.season import reproducibility
@@ -182,26 +182,13 @@ def _reproducibility(scenario: Scenario) -> pl.DataFrame:
 
 
 def _selects(bench: Bench, scenario: Scenario, asked: Asked) -> Sequence[Select]:
-    names = dict(bench.boats.select("fsn_no", "name").iter_rows())
+    names = bench.boats.select("fsn_no", "name").iter_rows()
+    boats = {fsn_no: f"{name or ''} ({fsn_no})" for fsn_no, name in names}
     tows = scenario.boat_curves(asked.boat)["tow_id"].unique().sort(descending=True).to_list()
-    types = bench.boats["boat_type"].drop_nulls().unique().sort().to_list()
+    judged = {tows: labels.code(tows) for tows in (ALL, NEWEST)}
     return [
-        Select(
-            "boat",
-            say("Choose boat"),
-            list(names),
-            asked.boat,
-            named=lambda boat, _: f"{names[boat] or ''} ({boat})",
-            asks=True,
-        ),
-        Select("tow", say("Tow"), tows, tows[0] if tows else ""),
-        Select("boat_type", say("Type"), types, "", with_all=True),
-        Select(
-            "tows",
-            say("Types judged by tows"),
-            (ALL, NEWEST),
-            asked.tows,
-            named=lambda tows, speech: speech.say(labels.code(tows)),
-            asks=True,
-        ),
+        Select("boat", say("Choose boat"), boats, asked.boat, asks=True),
+        Select("tow", say("Tow"), dict(zip(tows, tows, strict=True)), tows[0] if tows else ""),
+        types_select(bench.boats["boat_type"]),
+        Select("tows", say("Types judged by tows"), judged, asked.tows, asks=True),
     ]

@@ -16,12 +16,11 @@ from dashboards.guides import GUIDES
 from dashboards.html import as_json, keep_units
 from dashboards.site.boats import boat_pages
 from dashboards.site.charts import DRAWN
-from dashboards.site.downloads import SHEETS
 from dashboards.site.glossary import Glossed
 from dashboards.site.pages import MENU, method_names, shared_pages
 from dashboards.site.parts import Table, default_method
+from dashboards.site.prose import SHEETS
 from dashboards.site.render import build_pages, build_site
-from dashboards.site.slides import slides_page
 from dashboards.site.start import ABOUT
 from dashboards.speech import Speech
 from dashboards.statements.boat_type import LINES, QUANTITIES, slope
@@ -200,7 +199,6 @@ def test_a_column_and_a_code_on_a_page_have_a_text(store, site):
         pages_made = [
             *(page for make in shared_pages(views, by_reports=True).values() for page in make()),
             *(make() for _, make in boat_pages(views, methods)),
-            slides_page(views),
         ]
     tables = [t for page in pages_made for s in page.sections for t in s.tables]
     drawn = {
