@@ -14,7 +14,7 @@ import polars as pl
 
 from dashboards import labels
 from dashboards.figures.slides import ENDS, PAIRS
-from dashboards.statements import Number, Statement, told
+from dashboards.statements import Number, Statement, Value, told
 from dashboards.statements.method import voted_steps
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
@@ -223,14 +223,14 @@ class Book:
         return told(
             "share_explained",
             say(
-                "R² is {after} % {method}, {before} {old_method}: the share of the spread that {x} "
+                "R² is {after} {method}, {before} {old_method}: the share of the spread that {x} "
                 "explains, in {tows} of {boats}."
             ),
             self.methods,
             "type_lines",
             x=EXPLAINING[PAIRS[figure][1]],
-            after=_share(after["r2"]),
-            before=told("share", say("{r2} %"), r2=_share(before["r2"])) if before else UNKNOWN,
+            after=_explained(after),
+            before=_explained(before),
             tows=ngettext("1 tow", "{n} tows", after["n"]),
             boats=_boats(after),
         )
@@ -383,6 +383,13 @@ class Book:
 
 def _boats(line: Row | None) -> Sentence:
     return ngettext("1 boat", "{n} boats", line["n_boats"] if line else 0)
+
+
+def _explained(line: Row | None) -> Value:
+    """The share of the spread that a line explains, where one was fitted and there is a spread."""
+    if line is None or line["r2"] is None:
+        return UNKNOWN
+    return told("share", say("{r2} %"), r2=_share(line["r2"]))
 
 
 def _finished(finding: Statement) -> Statement:

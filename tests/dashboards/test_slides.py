@@ -73,6 +73,14 @@ def test_nothing_is_found_in_the_line_of_a_few_boats(book, monkeypatch):
         assert len(list(book.against("b_weight", boat_type))) == slides
 
 
+def test_a_line_without_a_spread_explains_nothing_that_is_known(book, monkeypatch):
+    lines = iter([line(r2=None), line(r2=0.36)])
+    monkeypatch.setattr(book, "line", lambda *_: next(lines))
+    assert book.fit("b_weight", "galjas")(Speech("en")).startswith("R² is 36 % ")
+    lines = iter([None, line(r2=None)])
+    assert "R² is not known" in book.fit("b_weight", "galjas")(Speech("en"))
+
+
 @pytest.mark.parametrize(
     ("shift", "apart", "said"),
     [

@@ -50,7 +50,7 @@ SHOWN_ON = {
     "slides slides.html": (
         "hull_ratio slide_boat slide_hull slide_options slide_towed_at towed_at"
     ),
-    "slides slides.html types": "share share_explained",
+    "slides slides.html types": "share",
 }
 """By the surfaces the kinds of statement that they show."""
 
