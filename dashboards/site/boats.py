@@ -25,20 +25,10 @@ FOLLOWS = ["tow_id", "method"]
 ALIKE = ("runs", "wind", "line", "point", "declared", "stages", "assessments")
 """Frames of which most rows are the same under several methods."""
 
-LINE_COLUMNS = (
-    *("edition", "rowers", "crew_class", "tow_date", "valid_until", "status"),
-    *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
-    *("verification_code", "method"),
-)
 RUN_COLUMNS = (
-    *("run", "direction", "window_start_s", "window_end_s", "cut_reason", "used", "reason"),
-    *("choice", "speed_m_s", "gross_cw_kg_m", "inertia_cw_kg_m", "air_cw_kg_m"),
-    *("still_air_cw_kg_m", "temperature_cw_kg_m", "run_cw_kg_m", "cw_sd"),
-    *("wind_m_s", "wind_angle_deg"),
-)
-FACT_COLUMNS = (
-    *("name", "fsn_no", "ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m"),
-    "weight_kg",
+    "run direction window_start_s window_end_s cut_reason used reason choice speed_m_s "
+    "gross_cw_kg_m inertia_cw_kg_m air_cw_kg_m still_air_cw_kg_m temperature_cw_kg_m run_cw_kg_m "
+    "cw_sd wind_m_s wind_angle_deg"
 )
 HISTORY = (
     *("method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s", "power_w"),
@@ -48,9 +38,6 @@ WIND = ("run", "direction", "wind_m_s", "wind_angle_deg")
 WINDOW = ("run", "window_start_s", "window_end_s", "run_end_s", "cut_reason")
 STAGE = ("run", "direction", "speed_m_s")
 BUDGET = ("component", "shared", "u_ratio", "dof")
-CHECK_COLUMNS = ("check", "severity", "observed", "limit", "unit")
-BY_HAND_COLUMNS = ("run", "start_s", "end_s", "reason")
-LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash", "code_version")
 
 
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[tuple[str, Callable[[], Page]]]:
@@ -95,7 +82,9 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "register": _once(views.register()),
         "curves": curves,
         "history": curves.select("fsn_no", *HISTORY),
-        "runs": points.select(*own, *RUN_COLUMNS).sort("tow_id", "run", maintain_order=True),
+        "runs": points.select(*own, *RUN_COLUMNS.split()).sort(
+            "tow_id", "run", maintain_order=True
+        ),
         "wind": points.select(*own, *WIND),
         **curve_figure(views.table("curve_points"), points, curves),
         "stages": pl.concat(
@@ -138,7 +127,11 @@ def _page(
 ) -> Page:
     boat, curves = own["boats"].row(0, named=True), own["curves"]
     tows: dict[str, str] = dict(zip(curves["tow_id"], curves["tow"], strict=True))
-    measures = Table("boats", own["boats"], FACT_COLUMNS)
+    measures = Table(
+        "boats",
+        own["boats"],
+        "name fsn_no ht_no boat_type waterline_length_m beam_m bow_height_m weight_kg",
+    )
     facts = Section("facts", say("Dimensions"), tables=[measures], folded=bool(tows))
     selects = [
         Select("tow_id", say("Tow"), tows, [*tows, ""][len(tows) - 1]),
@@ -186,7 +179,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         follows = {name: name for name in FOLLOWS if "tow_id" in rows[0].columns}
         return Chart(figure, rows, caption, follows)
 
-    def listed(name: str, kind: str, columns: Sequence[str]) -> list[Table]:
+    def listed(name: str, kind: str, columns: str) -> list[Table]:
         rows = own[kind]
         follows = [one for one in FOLLOWS if one in rows.columns and kind != "register"]
         return [Table(name, rows, columns, follows=follows)]
@@ -195,7 +188,12 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         folded(
             "boat_lines",
             say("In the register"),
-            tables=listed("register", "register", LINE_COLUMNS),
+            tables=listed(
+                "register",
+                "register",
+                "edition rowers crew_class tow_date valid_until status declared_speed_m_s a_kg_m "
+                "b_m_s cw_kg_m cw_lo_kg_m cw_hi_kg_m verification_code method",
+            ),
         ),
         folded(
             "boat_history",
@@ -262,18 +260,20 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
             "assessments",
             say("Checks"),
             say("Only what lies beyond its limit; all checks are in the table assessments."),
-            tables=listed("assessments", "assessments", CHECK_COLUMNS),
+            tables=listed("assessments", "assessments", "check severity observed limit unit"),
         ),
         folded(
             "hand_windows",
             say("Windows chosen by hand"),
             say("Windows that a person chose, with the reason."),
-            tables=listed("hand_windows", "hand_windows", BY_HAND_COLUMNS),
+            tables=listed("hand_windows", "hand_windows", "run start_s end_s reason"),
         ),
         folded(
             "lineage",
             say("Lineage"),
             say("The files, the method and the code behind every register line."),
-            tables=listed("lineage", "lineage", LINEAGE_COLUMNS),
+            tables=listed(
+                "lineage", "lineage", "edition crew tow_id path sha256 method_hash code_version"
+            ),
         ),
     ]

@@ -58,31 +58,21 @@ def method_names(views: Views) -> list[str]:
     return [name for name in views.table("methods")["method"] if name != FIRST_PUBLISHED]
 
 
-REGISTER_COLUMNS = (
-    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "tow_date"),
-    *("valid_until", "status"),
-    *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
-    *("waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
-    "verification_code",
-)
-REGISTER_CARDS = (
-    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "cw_kg_m", "cw_lo_kg_m"),
-    *("cw_hi_kg_m", "valid_until", "status"),
-)
-EDITION_COLUMNS = (
-    *("edition", "method", "valid_from", "published_on", "decision", "previous"),
-    *("code_version", "seal"),
-)
-
-
 def _register(views: Views, methods: Sequence[str]) -> Page:
     lines = views.register()
     published = views.table("editions")
     select = editions_select("edition", lines["edition"], methods)
     table = Table(
-        "register", lines, REGISTER_COLUMNS, follows=["edition"], search=True,
-        cards=REGISTER_CARDS,
-    )  # fmt: skip
+        "register",
+        lines,
+        "name fsn_no boat_type rowers crew_class empty_thwart tow_date valid_until status "
+        "declared_speed_m_s a_kg_m b_m_s cw_kg_m cw_lo_kg_m cw_hi_kg_m waterline_length_m "
+        "beam_m bow_height_m weight_kg verification_code",
+        follows=["edition"],
+        search=True,
+        cards="name fsn_no boat_type rowers crew_class cw_kg_m cw_lo_kg_m cw_hi_kg_m valid_until "
+        "status",
+    )
     register = Section(
         "register",
         say("Register"),
@@ -99,29 +89,30 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
         "editions",
         say("Published editions"),
         links=[(edition_page(name), name, "") for name in published["edition"]],
-        tables=[Table("editions", published, EDITION_COLUMNS)],
+        tables=[
+            Table(
+                "editions",
+                published,
+                "edition method valid_from published_on decision previous code_version seal",
+            )
+        ],
     )
     return Page("register.html", say("Register"), [register, editions], selects=[select])
-
-
-DUE_COLUMNS = (
-    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "valid_until"),
-    "status",
-    *("tow_speed_m_s", "speed_reason", "beyond_curve", "declared_speed_m_s", "power_w"),
-    *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "last_tow", "as_of"),
-)
-DUE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "valid_until", "status", "tow_speed_m_s")
-CHOICE_COLUMNS = (
-    *("position", "name", "fsn_no", "rowers", "crew_class", "seasons", "valid_until"),
-    *("tow_speed_m_s", "factor_sd_before_percent", "factor_sd_after_percent"),
-)
 
 
 def _boats(views: Views, methods: Sequence[str]) -> Page:
     """Who has to tow again, at what speed, and which boats to tow again."""
     rows = views.ask("due_list").filter(method=default_method(methods))
     rows = rows.rename({"tow_date": "last_tow"})
-    due = Table("due_list", rows, DUE_COLUMNS, search=True, cards=DUE_CARDS)
+    due = Table(
+        "due_list",
+        rows,
+        "name fsn_no boat_type rowers crew_class empty_thwart valid_until status "
+        "tow_speed_m_s speed_reason beyond_curve declared_speed_m_s power_w raced_speed_m_s "
+        "lowest_speed_m_s highest_speed_m_s last_tow as_of",
+        search=True,
+        cards="name fsn_no rowers crew_class valid_until status tow_speed_m_s",
+    )
     choice = views.ask("retow_choice").filter(method=default_method(methods))
     sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
     due_list = Section(
@@ -144,7 +135,14 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
             "factors most; the first one most. Sd: standard deviation of a factor, "
             "before and after."
         ),
-        tables=[Table("retow_choice", choice.hstack(sd), CHOICE_COLUMNS)],
+        tables=[
+            Table(
+                "retow_choice",
+                choice.hstack(sd),
+                "position name fsn_no rowers crew_class seasons valid_until tow_speed_m_s "
+                "factor_sd_before_percent factor_sd_after_percent",
+            )
+        ],
         headline=of_due.retow(choice) if choice.height else None,
     )
     return Page("boats.html", say("Boats"), [due_list, to_tow])
@@ -273,7 +271,6 @@ def _drawn(
 
 PART = pl.col("part") + 1
 """Parts of a season as people count them."""
-LINK_COLUMNS = ("season", "part", "source", "n_tows", "n_links", "factor", "lo", "hi")
 
 
 def _season_links(views: Views) -> Section:
@@ -285,16 +282,19 @@ def _season_links(views: Views) -> Section:
             "Where a log was replaced within a season each part has its own factor; "
             "the chart above shows their mean."
         ),
-        tables=[Table("season_links", links, LINK_COLUMNS, follows=["method"])],
+        tables=[
+            Table(
+                "season_links",
+                links,
+                "season part source n_tows n_links factor lo hi",
+                follows=["method"],
+            )
+        ],
         folded=True,
     )
 
 
 SOUND_VERDICTS = ("sound", "estimated")
-DIAGNOSIS_COLUMNS = (
-    *("season", "part", "instrument", "verdict", "p_fault", "size", "size_lo", "size_hi"),
-    *("unit", "first_tow", "confused_with"),
-)
 
 
 def _season_diagnosis(views: Views) -> Section:
@@ -315,7 +315,15 @@ def _season_diagnosis(views: Views) -> Section:
             "interval counts how seldom such a fault is, so it can be 0 to 0. What is not "
             "in the table: no fault was seen, and a usual one would show."
         ),
-        tables=[Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, follows=["method"])],
+        tables=[
+            Table(
+                "season_diagnosis",
+                rows,
+                "season part instrument verdict p_fault size size_lo size_hi unit first_tow "
+                "confused_with",
+                follows=["method"],
+            )
+        ],
         folded=True,
     )
 
@@ -326,13 +334,22 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
     days = views.race_days()
     select = editions_select("to_edition", changed["to_edition"], methods)
     table = Table(
-        "changes", changed, CHANGE_COLUMNS, follows=["to_edition"], search=True, cards=CHANGE_CARDS,
-    )  # fmt: skip
+        "changes",
+        changed,
+        "name fsn_no rowers crew_class change old_cw_kg_m new_cw_kg_m cw_ratio "
+        "gain_in_two_hours_s exceeds_interval old_speed_rank new_speed_rank causes",
+        follows=["to_edition"],
+        search=True,
+        cards="name fsn_no rowers crew_class old_cw_kg_m new_cw_kg_m gain_in_two_hours_s "
+        "exceeds_interval",
+    )
     drawn = changed.select(*DRAWN_CHANGES).drop_nulls("gain_in_two_hours_s")
     chart = Chart(
-        "changes", [drawn], say("Time that crews gain or lose in two hours"),
+        "changes",
+        [drawn],
+        say("Time that crews gain or lose in two hours"),
         {"to_edition": "to_edition"},
-    )  # fmt: skip
+    )
     lines = Section(
         "changes_list",
         say("Changed lines"),
@@ -361,23 +378,7 @@ def _changes(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Pag
     return Page("changes.html", MENU["changes"], [lines, races], selects=selects)
 
 
-CHANGE_COLUMNS = (
-    *("name", "fsn_no", "rowers", "crew_class", "change", "old_cw_kg_m", "new_cw_kg_m"),
-    *("cw_ratio", "gain_in_two_hours_s", "exceeds_interval", "old_speed_rank", "new_speed_rank"),
-    "causes",
-)
-CHANGE_CARDS = (
-    *("name", "fsn_no", "rowers", "crew_class", "old_cw_kg_m", "new_cw_kg_m"),
-    *("gain_in_two_hours_s", "exceeds_interval"),
-)
 DRAWN_CHANGES = ("to_edition", "fsn_no", "name", "rowers", "crew_class", "gain_in_two_hours_s")
-
-
-RACE_COLUMNS = (
-    *("name", "fsn_no", "crew_class", "rowers", "rowing_time_s", "old_power_w", "new_power_w"),
-    *("old_rank", "new_rank", "podium_changed", "old_remark", "new_remark"),
-)
-RACE_CARDS = ("name", "fsn_no", "new_power_w", "old_rank", "new_rank")
 
 
 def _races(views: Views, methods: Sequence[str]) -> Iterator[Page]:
@@ -390,9 +391,14 @@ def _races(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     chances = race_chances(views, now["from_edition"][0], select.chosen)
     for race, day in views.race_days():
         table = Table(
-            "race_changes", races.filter(race=race, race_date=day), RACE_COLUMNS,
-            follows=["to_edition"], search=True, cards=RACE_CARDS,
-        )  # fmt: skip
+            "race_changes",
+            races.filter(race=race, race_date=day),
+            "name fsn_no crew_class rowers rowing_time_s old_power_w new_power_w old_rank "
+            "new_rank podium_changed old_remark new_remark",
+            follows=["to_edition"],
+            search=True,
+            cards="name fsn_no new_power_w old_rank new_rank",
+        )
         results = Section(
             "race_results",
             say("Results by both editions"),
@@ -417,11 +423,16 @@ def _about() -> Page:
 def _quality(views: Views, methods: Sequence[str]) -> Page:
     statuses = views.ask("statuses").filter(method=default_method(methods))
     by_method = ["method"]
-    flags = Table("flagged_boats", views.ask("flagged_boats"), FLAG_COLUMNS, follows=by_method)
-    reasons = Table(
-        "run_reasons", views.ask("counts", "run"), ("code", "number"), follows=by_method
+    flags = Table(
+        "flagged_boats",
+        views.ask("flagged_boats"),
+        "flag name fsn_no rowers crew_class tow_date",
+        follows=by_method,
     )
-    checks = Table("check_counts", views.ask("checks"), CHECK_COLUMNS, follows=by_method)
+    reasons = Table("run_reasons", views.ask("counts", "run"), "code number", follows=by_method)
+    checks = Table(
+        "check_counts", views.ask("checks"), "check severity tows beyond", follows=by_method
+    )
     sections = [
         Section("statuses", say("Status of the curves"), headline=season.statuses(statuses)),
         _set_aside(views),
@@ -445,14 +456,6 @@ def _quality(views: Views, methods: Sequence[str]) -> Page:
     return Page("quality.html", say("Quality"), sections, selects=[methods_select(methods)])
 
 
-FLAG_COLUMNS = ("flag", "name", "fsn_no", "rowers", "crew_class", "tow_date")
-CHECK_COLUMNS = ("check", "severity", "tows", "beyond")
-FAULT_COLUMNS = (
-    *("path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"),
-    "first_seen",
-)
-
-
 def _set_aside(views: Views) -> Section:
     faults = views.table("quarantine").with_columns(
         lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
@@ -461,6 +464,15 @@ def _set_aside(views: Views) -> Section:
         "set_aside",
         say("Set aside"),
         say("Files, lines and tows not used, with the reason."),
-        tables=[Table("quarantine", faults, FAULT_COLUMNS, search=True)] if faults.height else [],
+        tables=[
+            Table(
+                "quarantine",
+                faults,
+                "path tow_id line lost run lost_s reason_code messages first_seen",
+                search=True,
+            )
+        ]
+        if faults.height
+        else [],
         empty=None if faults.height else say("Nothing was set aside."),
     )

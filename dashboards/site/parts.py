@@ -26,7 +26,8 @@ class Table:
     Attributes:
         name: names the download.
         frame: its rows; columns keep the names they have in the warehouse.
-        columns: what is shown, in order, where it says something; the download holds the same.
+        columns: what is shown, names with blanks between them, where it says something; the
+            download holds the same.
         caption: the text above it; left out, the title of its section.
         follows: columns that a selector of the page filters on.
         search: whether it has a search box.
@@ -36,19 +37,18 @@ class Table:
 
     name: str
     frame: pl.DataFrame
-    columns: Sequence[str]
+    columns: str
     caption: Sentence | None = None
     follows: Sequence[str] = ()
     search: bool = False
     linked: bool = False
-    cards: Sequence[str] = ()
+    cards: str = ""
 
     @cached_property
     def shown(self) -> list[str]:
         """The columns in which some row says something."""
-        if self.frame.is_empty():
-            return list(self.columns)
-        return [name for name in self.columns if _says_something(self.frame[name])]
+        names = self.columns.split()
+        return [n for n in names if self.frame.is_empty() or _says_something(self.frame[n])]
 
     @cached_property
     def numeric(self) -> set[str]:

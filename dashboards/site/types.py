@@ -35,20 +35,15 @@ SCATTERS = ("b_weight", "b_speed", "cw_standard_weight", "cw_standard_speed", "a
 SIDES = ("before", "after")
 """Selectors of the two methods that stand side by side."""
 TOW_COLUMNS = (
-    *("name", "fsn_no", "rowers", "crew_class", "season", "weight_kg", "declared_speed_m_s"),
-    *("a_kg_m", "b_m_s", "cw_standard_kg_m"),
+    "name fsn_no boat_type rowers crew_class season weight_kg declared_speed_m_s a_kg_m b_m_s "
+    "cw_standard_kg_m"
 )
-TYPE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "season", "cw_standard_kg_m", "b_m_s")
 TYPE_FIGURES = {
     "cw_weight": "cw_standard_weight",
     "cw_speed": "cw_standard_speed",
     "b_weight": "b_weight",
 }
 """Of `dashboards.figures.slides`, with the figure that has its caption."""
-OUTLIER_COLUMNS = (
-    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
-    *("expected", "deviation_sd", "candidates"),
-)
 OF_TYPE = ("after", "boat_type")
 
 
@@ -61,12 +56,9 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     after = pl.col("method").alias("after")
     shown = pl.col("method").is_in(methods)
     tows = with_page(views.ask("type_tows")).filter("newest", shown).with_columns(after)
-    columns = (*TOW_COLUMNS[:2], "boat_type", *TOW_COLUMNS[2:])
-    table = Table(
-        "type_boats", tows, columns, say("Boats"), OF_TYPE, search=True, linked=True,
-    )  # fmt: skip
+    table = Table("type_boats", tows, TOW_COLUMNS, say("Boats"), OF_TYPE, search=True, linked=True)
     follows = {"method": SIDES, "boat_type": "boat_type"}
-    drawn = [tows.select("method", "page", *columns)]
+    drawn = [tows.select("method", "page", *TOW_COLUMNS.split())]
     charts = [Chart(name, drawn, labels.FIGURES[name], follows) for name in SCATTERS]
     outliers = views.ask("outliers").filter(shown).with_columns(after)
     sections = [
@@ -96,7 +88,15 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
                 "(sd) of that prediction. A possible cause is something to look at, not "
                 "proven."
             ),
-            tables=[Table("type_outliers", outliers, OUTLIER_COLUMNS, follows=OF_TYPE)],
+            tables=[
+                Table(
+                    "type_outliers",
+                    outliers,
+                    "name fsn_no boat_type rowers crew_class season quantity value expected "
+                    "deviation_sd candidates",
+                    follows=OF_TYPE,
+                )
+            ],
         ),
     ]
     selects = [
@@ -126,11 +126,10 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
         return
     shown = pl.col("method").is_in(methods)
     tows = views.ask("type_tows").filter("newest", shown)
-    tows = once_for_methods(tows.select("method", "boat_type", *TOW_COLUMNS))
+    tows = once_for_methods(tows.select("method", *TOW_COLUMNS.split()))
     judge = _judged(views, default_method(methods))
     book = Book(views)
     for boat_type in views.type_names():
-        own = pl.col("boat_type") == boat_type
         drawn = [book.drawn(boat_type, NEWEST)]
         charts = [
             Chart(
@@ -142,9 +141,14 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             for name, caption in TYPE_FIGURES.items()
         ]
         listed_tows = Table(
-            "type_boats", tows.filter(own), TOW_COLUMNS, say("Boats"), ["method"], search=True,
-            cards=TYPE_CARDS,
-        )  # fmt: skip
+            "type_boats",
+            tows.filter(boat_type=boat_type),
+            TOW_COLUMNS.replace("boat_type ", ""),
+            say("Boats"),
+            ["method"],
+            search=True,
+            cards="name fsn_no rowers crew_class season cw_standard_kg_m b_m_s",
+        )
         yield Page(
             type_path(boat_type),
             say("Types"),
