@@ -68,7 +68,9 @@ def report_pages(
         name: pl.DataFrame(getattr(changes, name), infer_schema_length=None) for name in changed
     } | {"checks": of_checks}
     sections = [
-        Section(f"report_{name}", _TITLES[name], tables=[Table(name, frame, _COLUMNS[name])])
+        Section(
+            f"report_{name}", _TITLES[name], tables=[Table(name, frame, " ".join(_COLUMNS[name]))]
+        )
         if frame.height
         else Section(f"report_{name}", _TITLES[name], empty=say("Nothing."))
         for name, frame in frames.items()

@@ -15,7 +15,7 @@ from dashboards import option_labels as texts
 from dashboards.figures.style import SCENARIO
 from dashboards.guard import listen
 from dashboards.workbench.bench import Saving
-from dashboards.workbench.form import CONTROLS, control, write
+from dashboards.workbench.form import CONTROLS, write
 from dashboards.workbench.results import results
 from dashboards.workbench.server import LOOPBACK
 from pipeline.assessment.checks import CODES
@@ -53,7 +53,6 @@ def test_every_option_of_the_model_has_a_control():
         for option in field.annotation.model_fields
     }
     assert set(CONTROLS) == model
-    assert "fixed" not in {one.kind for one in CONTROLS.values()}
 
 
 @pytest.mark.parametrize(("step", "option"), CONTROLS)
@@ -64,30 +63,16 @@ def test_what_a_control_offers_is_a_value_of_the_model(step, option):
     needed = {name: CONTROLS[step, name].values[0] for name, f in model.model_fields.items()
               if f.is_required()}  # fmt: skip
     for value in [one.least, one.most] if one.kind == "number" else several:
-        read = one.read(write(int(value) if one.whole else value))
+        read = one.read(write(value))
         model.model_validate(needed | {option: read})
 
 
 def test_kinds_of_options():
     assert CONTROLS["wind", "model"].values == ["head", "oblique"]
     factor, seconds = CONTROLS["speed", "factor"], CONTROLS["wind", "averaging_s"]
-    assert (factor.least, factor.most, factor.whole) == (0.85, 1.2, False)
-    assert (seconds.whole, seconds.unit) == (True, "s")
+    assert (factor.least, factor.most) == (0.85, 1.2)
+    assert (seconds.most, seconds.unit) == (15, "s")
     assert set(CONTROLS["assessment", "reject"].values) == set(CODES)
-
-
-@pytest.mark.parametrize(
-    ("rule", "kind"),
-    [
-        ({"type": "boolean"}, "choice"),
-        ({"type": "number", "minimum": 0.0}, "fixed"),
-        ({"type": "string"}, "fixed"),
-        ({"anyOf": [{"type": "integer"}, {"type": "null"}]}, "fixed"),
-        ({"type": "array", "items": {"type": "string"}}, "fixed"),
-    ],
-)
-def test_an_option_of_a_new_kind_appears_too(rule, kind):
-    assert control("step", "option", rule).kind == kind
 
 
 def test_every_option_and_value_has_a_text():

@@ -11,7 +11,6 @@ from dashboards.documents import certificate, proposal, slides
 from dashboards.site.boats import boat_pages
 from dashboards.site.pages import shared_pages
 from dashboards.site.render import Edition
-from dashboards.site.slides import slides_page
 from dashboards.speech import Speech
 from dashboards.statements import Change, Number, Statement
 from dashboards.statements.rebuild import headlines, mail
@@ -94,8 +93,7 @@ def surfaces(built, herijk, papers):
     }
 
     def pages(views):
-        made = shared_pages(views, by_reports=False) | {"slides": lambda: [slides_page(views)]}
-        for make in made.values():
+        for make in shared_pages(views, by_reports=False).values():
             for page in make():
                 yield "/".join(page.path.split("/")[:-1]) or page.path, page
         yield "boats", dict(boat_pages(views, METHODS))[line["fsn_no"]]()
