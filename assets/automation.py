@@ -20,7 +20,7 @@ from assets.report import failed_checks
 from assets.resources import Setup
 from assets.settings import Settings
 from dashboards.guard import LOOPBACK
-from dashboards.report import mail
+from dashboards.statements.rebuild import mail
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say, speaker
 from warehouse.intake.seasons import listing

@@ -11,12 +11,9 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from dashboards.report import (
-    Check,
-    found_in_words,
-    headlines,
-)
-from pipeline.messages import LANGUAGE, speaker
+from dashboards.speech import Speech
+from dashboards.statements.rebuild import Check, found, headlines
+from pipeline.messages import LANGUAGE
 from warehouse.derive.step import QUARANTINE
 from warehouse.queries.change_report import ChangeReport, change_report, remember
 from warehouse.store.code import code_version
@@ -80,7 +77,7 @@ def write_report(
         code_version=code_version(),
         done=done,
         checks=checks,
-        headlines=headlines(changes, checks, speaker("en")),
+        headlines=[line(Speech("en")) for line in headlines(changes, checks)],
     )
     text = json.dumps(asdict(report), default=str, indent=1)
     folder = store.root / "report"
@@ -125,8 +122,9 @@ def _write(path: Path, text: str) -> None:
 
 def failed_checks(checks: Sequence[Check]) -> list[str]:
     """Checks whose failing means that a table is not what it promises."""
+    speech = Speech(LANGUAGE.get())
     return [
-        f"{check.check}: {found_in_words(check, speaker(LANGUAGE.get()))}"
+        f"{check.check}: {found(check)(speech)}"
         for check in checks
         if not check.passed and check.severity == ERROR
     ]

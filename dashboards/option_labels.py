@@ -10,21 +10,30 @@ from dashboards.speech import Speech
 from pipeline.messages import Sentence, pgettext, say
 from pipeline.method.definition import LAST_SEASON
 
+_PLAIN: Final = {
+    "step": (
+        say("Speed"), say("Window"), say("Wind"), say("Run point"), say("Curve"), say("Assessment"),
+    ),
+    "status": (say("decided"), say("proposed"), say("inferred")),
+    "choice": (
+        say("prescribed"), say("estimated"), say("fixed"), say("mean of ratios"),
+        say("ratio of means"), say("free"), say("capped"),
+    ),
+}  # fmt: skip
+"""Texts whose key is the same words: steps, where an option comes from, and values."""
+
 TEXTS: Final[dict[str, Sentence]] = {
+    **{
+        f"{kind}.{text.lower().replace(' ', '_')}": text
+        for kind, texts in _PLAIN.items()
+        for text in texts
+    },
     "workbench": say("Workbench"),
-    # Steps
-    "step.speed": say("Speed"),
     "step.force": say("Tow force"),
     "step.calibration": say("Calibration on GPS"),
-    "step.window": say("Window"),
-    "step.wind": say("Wind"),
-    "step.run_point": say("Run point"),
     "step.temperature": say("Water temperature"),
     "step.unrecorded": say("What nobody recorded"),
     "step.runs": say("Runs that count"),
-    "step.curve": say("Curve"),
-    "step.assessment": say("Assessment"),
-    # Options
     "speed.correction": say("Error of the log"),
     "speed.factor": say("Prescribed factor"),
     "force.ratio": say("Load cell reading / true force"),
@@ -44,34 +53,21 @@ TEXTS: Final[dict[str, Sentence]] = {
     "runs.highest_target_ratio": say("Fastest run / declared speed"),
     "curve.b": say("B of the curve"),
     "assessment.reject": say("Rejects a tow"),
-    # Where an option comes from
-    "status.decided": say("decided"),
-    "status.proposed": say("proposed"),
-    "status.inferred": say("inferred"),
-    # Values
     "choice.none": pgettext("option", "none"),
-    "choice.prescribed": say("prescribed"),
-    "choice.estimated": say("estimated"),
     "choice.gps_per_tow": say("per tow"),
     "choice.all": pgettext("option", "all"),
     "choice.steady": say("the steady part"),
     "choice.head": say("head wind"),
     "choice.oblique": say("oblique wind"),
-    "choice.fixed": say("fixed"),
     "choice.per_run": say("searched per run"),
     "choice.archive": say("one from all tows"),
     "choice.as_is": say("left as it is"),
     "choice.expected": say("as in other tows"),
     "choice.as_read": say("as it reads"),
-    "choice.mean_of_ratios": say("mean of ratios"),
-    "choice.ratio_of_means": say("ratio of means"),
     "choice.end_speeds": say("from the end speeds"),
     "choice.ittc57": say("ITTC-57"),
-    "choice.free": say("free"),
-    "choice.capped": say("capped"),
-    "choice.True": say("yes"),
-    "choice.False": say("no"),
 }
+"""Steps, options of a step, where an option comes from, and its values."""
 
 
 def text(key: str) -> Sentence:
@@ -84,7 +80,7 @@ def value_in_words(value: object, speech: Speech) -> str:
     if isinstance(value, (list, tuple)):
         codes = [speech.say(labels.code(code)) for code in value]
         return "; ".join(codes) or speech.say("nothing")
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
+    if isinstance(value, (int, float)):
         return f"{value:.10g}".replace(".", speech.decimal)
     known = TEXTS.get(f"choice.{value}")
     return speech.say(labels.code(str(value)) if known is None else known)

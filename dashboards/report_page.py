@@ -9,9 +9,16 @@ from typing import Final
 import polars as pl
 from markupsafe import Markup
 
-from dashboards.report import PAGES, Check, in_short, outcome_of, values_found, verdict
 from dashboards.site.parts import Page, Section, Table
 from dashboards.site.render import Edition
+from dashboards.statements.rebuild import (
+    PAGES,
+    Check,
+    in_short,
+    outcome_of,
+    values_found,
+    verdict,
+)
 from pipeline.messages import LANGUAGES, pgettext, say, speaker
 from warehouse.queries.change_report import ChangeReport
 from warehouse.queries.views import Views
@@ -61,7 +68,9 @@ def report_pages(
         name: pl.DataFrame(getattr(changes, name), infer_schema_length=None) for name in changed
     } | {"checks": of_checks}
     sections = [
-        Section(f"report_{name}", _TITLES[name], tables=[Table(name, frame, _COLUMNS[name])])
+        Section(
+            f"report_{name}", _TITLES[name], tables=[Table(name, frame, " ".join(_COLUMNS[name]))]
+        )
         if frame.height
         else Section(f"report_{name}", _TITLES[name], empty=say("Nothing."))
         for name, frame in frames.items()
@@ -69,9 +78,9 @@ def report_pages(
     in_words = Section(
         "report_summary",
         say("In short"),
-        headline=lambda speech: verdict(checks, speech.say),
+        headline=verdict(checks),
         state="good" if all(check.passed for check in checks) else "bad",
-        prose=lambda speech: Markup("<p>{}</p>").format(in_short(changes, speech.say)),
+        prose=lambda speech: Markup("<p>{}</p>").format(in_short(changes)(speech)),
     )
     with Views(store) as views:
         return {

@@ -27,9 +27,9 @@ class Speech:
             return self.day(what)
         return what(self) if callable(what) else str(spoken(what, self.language))
 
-    def text(self, text: str) -> Markup:
-        """A text, escaped."""
-        return escape(self.say(text))
+    def text(self, text: "str | Headline") -> Markup:
+        """A text or a statement, escaped."""
+        return escape(text(self) if callable(text) else self.say(text))
 
     def number(self, value: float, digits: int, sign: str = "") -> str:
         """A number with so many decimals; `sign` is "+" where a plus is to be shown."""

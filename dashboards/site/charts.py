@@ -17,6 +17,7 @@ from dashboards import drawn, labels
 from dashboards.figures import FIGURES
 from dashboards.html import as_json
 from dashboards.site.parts import Chart, Page, is_chosen
+from dashboards.speech import Speech
 from pipeline.messages import speaker
 
 DRAWN: Final = 5
@@ -30,7 +31,7 @@ def vega_bundle() -> str:
 
 
 def charts_script(language: str) -> str:
-    """A script with the figures and their words in one language."""
+    """A script with the figures, their words and how numbers are written, in one language."""
     say = speaker(language)
     words = {name: say(text) for name, text in labels.named().items()} | {
         "yes": say("yes"),
@@ -39,7 +40,8 @@ def charts_script(language: str) -> str:
         "picture": say("Save as a picture"),
     }
     figures = as_json({name: drawn.specification(name, language) for name in FIGURES})
-    return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
+    held = {"FIGURES": figures, "WORDS": as_json(words), "LOCALE": as_json(drawn.LOCALES[language])}
+    return "".join(f"window.HERIJK_{name} = {json};\n" for name, json in held.items())
 
 
 def page_json(page: Page) -> str:
@@ -58,12 +60,12 @@ def json_of(frame: pl.DataFrame) -> str:
 
 def stills(page: Page, language: str) -> dict[str, Markup]:
     """The picture of the first chart that is seen at once, by the name of its figure."""
-    for section in page.sections:
+    for section in page.shown:
         for chart in section.charts:
             rows = _shown(page, chart)
             if section.folded or rows.is_empty():
                 continue
-            caption = speaker(language)(chart.caption or section.title)
+            caption = Speech(language).text(chart.caption or section.title)
             return {chart.figure: _still(chart.figure, rows, language, caption)}
     return {}
 

@@ -1,7 +1,7 @@
 """What a page is made of: sections with tables, charts and selectors, as plain data."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -11,10 +11,12 @@ from markupsafe import Markup
 from dashboards import labels
 from dashboards.addresses import boat_path
 from dashboards.speech import Headline, Speech, Text
+from dashboards.statements import EditionName
 from dashboards.statements.boat import Answer
 from pipeline.messages import Sentence, say
 from pipeline.register.register import draft_name
 from warehouse.derive.studies import STUDIED_METHOD
+from warehouse.queries.answers import newest_edition
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,8 @@ class Table:
     Attributes:
         name: names the download.
         frame: its rows; columns keep the names they have in the warehouse.
-        columns: what is shown, in order, where it says something; the download holds the same.
+        columns: what is shown, names with blanks between them, where it says something; the
+            download holds the same.
         caption: the text above it; left out, the title of its section.
         follows: columns that a selector of the page filters on.
         search: whether it has a search box.
@@ -34,19 +37,18 @@ class Table:
 
     name: str
     frame: pl.DataFrame
-    columns: Sequence[str]
+    columns: str
     caption: Sentence | None = None
     follows: Sequence[str] = ()
     search: bool = False
     linked: bool = False
-    cards: Sequence[str] = ()
+    cards: str = ""
 
     @cached_property
     def shown(self) -> list[str]:
         """The columns in which some row says something."""
-        if self.frame.is_empty():
-            return list(self.columns)
-        return [name for name in self.columns if _says_something(self.frame[name])]
+        names = self.columns.split()
+        return [n for n in names if self.frame.is_empty() or _says_something(self.frame[n])]
 
     @cached_property
     def numeric(self) -> set[str]:
@@ -103,28 +105,26 @@ class Select:
     """A selector: what is chosen filters the charts and tables that follow it.
 
     Attributes:
-        named: what an option is called in a language.
+        options: what each choice is called; the empty choice shows everything.
         asks: whether another choice is another question to the workbench; else it filters here.
     """
 
     name: str
     caption: Sentence
-    options: Sequence[str]
+    options: Mapping[str, Text]
     chosen: str
-    with_all: bool = False
-    named: Callable[[str, Speech], str] = lambda option, _: option
     asks: bool = False
 
 
 @dataclass(frozen=True)
 class Section:
-    """A heading, a note, and what is under them.
+    """A heading, a note, and what is under them; nothing where its charts and tables have no rows.
 
     Attributes:
         name: by which links find it.
         links: path of a page, its name, and what is said of it.
         files: path of a file to download, and its name, which is data.
-        empty: what is said where there is nothing to show.
+        empty: what is said, and the section kept, where there is nothing to show.
         folded: whether it opens only when asked for.
         headline: what it shows, in each language; see `dashboards.statements`.
         state: `good` or `bad`, where that is what the headline says.
@@ -135,7 +135,7 @@ class Section:
     """
 
     name: str
-    title: Sentence
+    title: Sentence | Headline
     note: Sentence | None = None
     charts: Sequence[Chart] = ()
     tables: Sequence[Table] = ()
@@ -150,6 +150,13 @@ class Section:
     grid: Grid | None = None
     prose: Callable[[Speech], Markup] | None = None
 
+    @property
+    def is_there(self) -> bool:
+        """Whether it has something to show, or says that it has not."""
+        frames = [*(rows for chart in self.charts for rows in chart.rows)]
+        frames += [table.frame for table in self.tables]
+        return bool(self.empty) or not frames or any(frame.height for frame in frames)
+
 
 @dataclass(frozen=True)
 class Page:
@@ -157,7 +164,7 @@ class Page:
 
     Attributes:
         path: within the site.
-        sections: in order.
+        sections: in order; those that have nothing to show are left out.
         name: of a boat, type or race, data rather than a text; empty elsewhere.
         subtitle: what tells a boat from one of the same name: its numbers and type.
         selects: selectors.
@@ -177,10 +184,15 @@ class Page:
     subtitle: str = ""
 
     @cached_property
+    def shown(self) -> list[Section]:
+        """The sections that have something to show."""
+        return [section for section in self.sections if section.is_there]
+
+    @cached_property
     def data(self) -> dict[str, Sequence[pl.DataFrame]]:
         """What charts draw, once for all that draw the same, by the figure that is the first."""
         drawn: dict[str, Sequence[pl.DataFrame]] = {}
-        for chart in (chart for section in self.sections for chart in section.charts):
+        for chart in (chart for section in self.shown for chart in section.charts):
             if all(chart.rows is not rows for rows in drawn.values()):
                 again = sum(name.split()[0] == chart.figure for name in drawn)
                 drawn[f"{chart.figure} {again + 1}" if again else chart.figure] = chart.rows
@@ -201,22 +213,6 @@ class Page:
         return self.site or "../" * self.path.count("/")
 
 
-def listed(
-    section: Section,
-    name: str,
-    frame: pl.DataFrame,
-    columns: Sequence[str],
-    charts: Sequence[Chart] = (),
-    follows: Sequence[str] = ("method",),
-    headline: Headline | None = None,
-) -> list[Section]:
-    """A section with one table, called as the section is; none where there are no rows."""
-    if frame.is_empty():
-        return []
-    table = Table(name, frame, columns, follows=follows)
-    return [replace(section, charts=charts, tables=[table], headline=headline)]
-
-
 def is_chosen(value: object, *wanted: str) -> bool:
     """Whether selectors that say `wanted` show a value, or one of a list; "all" says nothing."""
     values = value if isinstance(value, (list, tuple)) else (value,)
@@ -230,9 +226,10 @@ def default_method(names: Sequence[str]) -> str:
     return [*names, *wanted][-1]
 
 
-def draft_of(methods: Sequence[str]) -> str:
-    """The draft of the method that is shown first."""
-    return draft_name(default_method(methods))
+def first_edition(editions: pl.Series, methods: Sequence[str]) -> str:
+    """Of these editions what is shown first: the last that is published, or else the best draft."""
+    draft = draft_name(default_method(methods))
+    return newest_edition(editions.unique().sort().to_list(), draft)
 
 
 METHOD_SELECTORS: Final = {"method": say("Method"), "before": say("Before"), "after": say("After")}
@@ -240,19 +237,20 @@ METHOD_SELECTORS: Final = {"method": say("Method"), "before": say("Before"), "af
 
 def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "") -> Select:
     """A selector of methods, by what people call them."""
-    first = chosen or default_method(methods)
-    return Select(
-        name,
-        METHOD_SELECTORS[name],
-        methods,
-        first,
-        named=lambda m, speech: speech.say(labels.method(m)),
-    )
+    options = {method: labels.method(method) for method in methods}
+    return Select(name, METHOD_SELECTORS[name], options, chosen or default_method(methods))
 
 
-def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
-    """A selector of editions; drafts by the name of their method."""
-    return Select(name, say("Edition"), editions, chosen, named=lambda e, speech: speech.edition(e))
+def editions_select(name: str, editions: pl.Series, methods: Sequence[str]) -> Select:
+    """A selector of the editions that rows are of."""
+    options = {edition: EditionName(edition) for edition in editions.unique().sort()}
+    return Select(name, say("Edition"), options, first_edition(editions, methods))
+
+
+def types_select(types: pl.Series) -> Select:
+    """A selector of the types that rows are of, or all of them."""
+    names = {name: name for name in types.drop_nulls().unique().sort()}
+    return Select("boat_type", say("Type"), {"": labels.code("all"), **names}, "")
 
 
 def once_for_methods(rows: pl.DataFrame) -> pl.DataFrame:

@@ -1,20 +1,30 @@
-"""Pages that are read: how to read an audit, and what goes with an edition."""
+"""Pages that are read: the methods, how to read an audit, the slides, and each edition."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 from markupsafe import Markup
 
+from dashboards import labels
 from dashboards.addresses import edition_page
-from dashboards.guides import GUIDES, guide_file
-from dashboards.markdown import to_html
-from dashboards.site.downloads import files_of
-from dashboards.site.parts import Page, Section
+from dashboards.documents import pdf
+from dashboards.documents.slides import SOURCE
+from dashboards.guides import GUIDES, guide_file, method_guide
+from dashboards.html import keep_units
+from dashboards.markdown import to_blocks, to_html
+from dashboards.measured import CAPTION, picture
+from dashboards.site.parts import Chart, Page, Section, default_method
 from dashboards.speech import Speech
-from pipeline.messages import LANGUAGES, Sentence, say
+from dashboards.statements import Statement, together
+from dashboards.statements.method import BASES, EACH_STEP, VOTE, WORKED, Explained, explained
+from dashboards.statements.slides import Slide, slides
+from pipeline.messages import Sentence, say
+from warehouse.derive.studies import STUDIED_METHOD
 from warehouse.queries.views import Views
-from warehouse.store.editions import NOTICE, NOTICE_EN, edition_path
+from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_names, edition_path
+from warehouse.store.store import Store
 
 TITLES: Final = {
     "method": (
@@ -25,21 +35,25 @@ TITLES: Final = {
 }
 """Title of each document, and a sentence about it."""
 
-
 LINKS: Final = {f"{name}.md": f"{name}.html" for name in GUIDES}
 """Where links between the documents lead on the site."""
 
 
 def audit_guide() -> Page:
     """The document on audits, as it is shipped with the program."""
-    nl, en = (_below_title(guide_file("audit", language)) for language in LANGUAGES)
-    title = TITLES["audit"][0]
-    return Page("audit.html", title, [Section("guide", title, prose=in_language((nl, en), LINKS))])
+    title, prose = TITLES["audit"][0], _read(partial(guide_file, "audit"))
+    return Page("audit.html", title, [Section("guide", title, prose=prose)])
 
 
-def _below_title(file: Path) -> str:
-    """A document without its title: the page or section has one."""
-    return file.read_bytes().decode().split("\n", 1)[1]
+def _read(
+    file: Callable[[str], Path], links: Mapping[str, str] = LINKS
+) -> Callable[[Speech], Markup]:
+    """A document in the language of the page, without its title: the section has one."""
+    return lambda speech: _below_title(file(speech.language).read_text("utf-8"), links)
+
+
+def _below_title(text: str, links: Mapping[str, str] = LINKS) -> Markup:
+    return to_html(text.split("\n", 1)[1], links)
 
 
 def guide_links() -> list[tuple[str, Sentence, Sentence]]:
@@ -47,25 +61,133 @@ def guide_links() -> list[tuple[str, Sentence, Sentence]]:
     return [(f"{name}.html", *TITLES[name]) for name in GUIDES]
 
 
+def method_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
+    """The page of each method; that of the default one is the page of the method."""
+    paths = {name: f"method-{name}.html" for name in methods}
+    paths[default_method(methods)] = "method.html"
+    for name, path in paths.items():
+        others = {other: to for other, to in paths.items() if other != name}
+        yield _page(path, explained(views, name), others)
+
+
+def _page(path: str, told: Explained, others: dict[str, str]) -> Page:
+    name = told.method.name
+    links = [(to, labels.method(other), "") for other, to in others.items()]
+    sections = [
+        Section("measured", say("What is measured"), prose=_measured),
+        Section(
+            "steps",
+            EACH_STEP,
+            BASES,
+            terms=[(step.name, together(step.statements, " ")) for step in told.steps],
+        ),
+        *_worked(told),
+        Section("certain", say("How certain it is"), prose=_certain(told)),
+        Section("vote", VOTE, prose=_listed(told.vote)),
+        _folded("runs", say("From six runs to a curve")),
+        *([_folded("added", say("What re-based adds"))] if name == STUDIED_METHOD else []),
+        _folded("register", say("From curve to register")),
+        Section("methods", say("Other methods"), links=links),
+    ]
+    title = say("The method: {method}", method=labels.method(name))
+    return Page(path, title, sections)
+
+
+def _worked(told: Explained) -> Iterator[Section]:
+    if told.worked is not None:
+        chart = Chart("resistance_curve", [told.worked.drawn], say("Resistance curve"))
+        yield Section("worked", WORKED, charts=[chart], prose=_listed(told.worked.statements))
+
+
+def _measured(speech: Speech) -> Markup:
+    """The picture, and below it the text."""
+    drawing = Markup('<figure>{}<figcaption class="says">{}</figcaption></figure>')
+    return drawing.format(picture(speech), speech.say(CAPTION)) + _text("measured")(speech)
+
+
+def _certain(told: Explained) -> Callable[[Speech], Markup]:
+    return lambda speech: _listed(told.uncertainty)(speech) + _text("certain")(speech)
+
+
+def _folded(part: str, title: Sentence) -> Section:
+    return Section(f"guide_{part}", title, prose=_text(part), folded=True)
+
+
+def _text(part: str) -> Callable[[Speech], Markup]:
+    """A section of the document on methods."""
+    return lambda speech: _below_title(getattr(method_guide(speech.language), part))
+
+
+def _listed(statements: Sequence[Statement]) -> Callable[[Speech], Markup]:
+    """A paragraph for each statement."""
+    paragraph = Markup("<p>{}</p>")
+    return lambda speech: Markup("").join(
+        paragraph.format(keep_units(statement(speech))) for statement in statements
+    )
+
+
+def slides_page(views: Views) -> Page:
+    """The slides below each other, the same as in the PDF; those between are folded."""
+    made = list(slides(views)) if views.has("compared_tows") else []
+    sections = [
+        Section(
+            f"slide_{place}",
+            slide.finding,
+            charts=[Chart(slide.figure, [slide.rows], says=partial(_under, slide))],
+            folded=0 < place < len(made) - 1,
+        )
+        for place, slide in enumerate(made)
+    ]
+    return Page("slides.html", say("Presentation 2015"), sections)
+
+
+def _under(slide: Slide, speech: Speech) -> str:
+    notes = (*slide.notes, say(SOURCE, table=slide.source))
+    return Markup("<br>").join(map(speech.words, notes))
+
+
+DOWNLOADS: Final = "downloads"
+SHEETS: Final = (CSV, XLSX)
+NOTICES: Final = {"nl": NOTICE, "en": NOTICE_EN}
+PAPERS: Final = {"bericht.pdf": "nl", "notice.pdf": "en"}
+"""The notice as it is made for paper, and its language."""
+
+
 def edition_pages(views: Views) -> Iterator[Page]:
     """Per published edition its notice, in the language of the page."""
     for edition in views.table("editions")["edition"]:
-        folder = edition_path(views.store, edition)
-        dutch, english = (_below_title(folder / file) for file in (NOTICE, NOTICE_EN))
-        yield Page(
-            edition_page(edition),
-            say("Edition"),
-            [
-                Section(
-                    "notice", say("Notice to the members"), prose=in_language((dutch, english), {})
-                ),
-                Section("downloads", say("Downloads"), files=files_of(edition)),
-            ],
-            name=edition,
-        )
+        notice = _read(partial(_notice_file, edition_path(views.store, edition)), {})
+        sections = [
+            Section("notice", say("Notice to the members"), prose=notice),
+            Section("downloads", say("Downloads"), files=files_of(edition)),
+        ]
+        yield Page(edition_page(edition), say("Edition"), sections, name=edition)
 
 
-def in_language(in_each: tuple[str, str], links: Mapping[str, str]) -> Callable[[Speech], Markup]:
-    """The document in the language of the page."""
-    texts = dict(zip(LANGUAGES, in_each, strict=True))
-    return lambda speech: to_html(texts[speech.language], links)
+def _notice_file(folder: Path, language: str) -> Path:
+    return folder / NOTICES[language]
+
+
+def files_of(edition: str) -> list[tuple[str, str]]:
+    """Path within the site and name of all there is to download of an edition."""
+    return [(f"{DOWNLOADS}/{edition}/{f}", f"{edition} {f}") for f in (*SHEETS, *PAPERS)]
+
+
+def copy_sheets(store: Store, folder: Path) -> None:
+    """Copies the sheets of every edition to `downloads/<edition>/`, byte for byte, with papers."""
+    for edition in edition_names(store):
+        source, target = edition_path(store, edition), folder / DOWNLOADS / edition
+        target.mkdir(parents=True)
+        for name in SHEETS:
+            (target / name).write_bytes((source / name).read_bytes())
+        for name, language in PAPERS.items():
+            text = _notice_file(source, language).read_text("utf-8")
+            (target / name).write_bytes(notice(text, language))
+
+
+def notice(text: str, language: str) -> bytes:
+    """A notice to the members, written in Markdown, as PDF."""
+    blocks = to_blocks(text)
+    title = "".join(run["text"] for run in blocks[0]["runs"])
+    content = {"title": title, "language": language, "simulated": "", "blocks": blocks}
+    return pdf("notice.typ", content)

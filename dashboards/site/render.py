@@ -21,11 +21,10 @@ from dashboards.html import as_json, environment
 from dashboards.site.boats import boat_pages
 from dashboards.site.cells import Cells
 from dashboards.site.charts import charts_script, page_json, stills, vega_bundle
-from dashboards.site.downloads import copy_sheets
 from dashboards.site.glossary import TERMS, Glossed
 from dashboards.site.pages import method_names, shared_pages
 from dashboards.site.parts import Page
-from dashboards.site.slides import slides_page
+from dashboards.site.prose import copy_sheets
 from dashboards.site.start import MENU
 from dashboards.speech import Speech
 from pipeline.messages import LANGUAGES
@@ -135,8 +134,7 @@ def _write_pages(
 ) -> None:
     """Writes every page in a language."""
     edition, methods = Edition(views, language), method_names(views)
-    makers = shared_pages(views, by_reports) | {"slides": lambda: [slides_page(views)]}
-    for name, make in makers.items():
+    for name, make in shared_pages(views, by_reports).items():
         with border(f"pages {name}"):
             for page in make():
                 with border(f"page {page.path}"):

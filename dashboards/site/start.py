@@ -1,18 +1,17 @@
 """The start page: where things stand, and where to find what."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import polars as pl
 from markupsafe import Markup
 
 from dashboards import labels
-from dashboards.report import PAGES, in_short
-from dashboards.site.parts import Chart, Page, Section, default_method, draft_of
+from dashboards.site.parts import Chart, Page, Section, default_method, first_edition
 from dashboards.speech import Headline, Speech
 from dashboards.statements import edition, season
+from dashboards.statements.rebuild import PAGES, in_short
 from pipeline.messages import Sentence, pgettext, say
-from warehouse.queries.answers import newest_edition
 from warehouse.queries.change_report import last_changes
 from warehouse.queries.views import Views
 
@@ -64,8 +63,7 @@ def start_page(
     Args:
         by_reports: whether the site lies beside the reports of rebuilds, so that it can lead there.
     """
-    editions = changes["to_edition"].unique().sort().to_list() if changes.height else []
-    chosen = newest_edition(editions, draft_of(methods))
+    now = changes.filter(to_edition=first_edition(changes["to_edition"], methods))
     years = views.table("season_changes").filter(pl.col("method").is_in(methods))
     sections = [
         Section(
@@ -82,37 +80,29 @@ def start_page(
             "now",
             say("The current state"),
             key_figures=_figures(views),
-            headline=edition.changes(changes.filter(to_edition=chosen)) if editions else None,
+            headline=edition.changes(now) if now.height else None,
         ),
+        Section(
+            "years",
+            say("Through the seasons"),
+            say(
+                "Cw by the method / Cw as published, of the same tow: median, and lowest to "
+                "highest."
+            ),
+            [Chart("season_change", [years], say("Relative to the published Cw"))],
+            headline=season.changes(years, default_method(methods)),
+        ),
+        *_last_rebuild(views, by_reports),
     ]
-    if years.height:
-        chart = Chart("season_change", [years], say("Relative to the published Cw"))
-        note = say(
-            "Cw by the method / Cw as published, of the same tow: median, and lowest to highest."
-        )
-        most = season.changes(years, default_method(methods))
-        title = say("Through the seasons")
-        sections.append(Section("years", title, note, [chart], headline=most))
-    return Page(
-        "index.html",
-        say("Start"),
-        [*sections, *_last_rebuild(views, by_reports)],
-    )
+    return Page("index.html", say("Start"), sections)
 
 
-def _last_rebuild(views: Views, by_reports: bool) -> list[Section]:
+def _last_rebuild(views: Views, by_reports: bool) -> Iterator[Section]:
     """What the rebuild that last changed something changed."""
     changes = last_changes(views.store)
-    if changes is None:
-        return []
-    return [
-        Section(
-            "last_rebuild",
-            say("What the last rebuild changed"),
-            headline=lambda speech: in_short(changes, speech.say),
-            prose=_to_report if by_reports else None,
-        )
-    ]
+    if changes is not None:
+        title, prose = say("What the last rebuild changed"), _to_report if by_reports else None
+        yield Section("last_rebuild", title, headline=in_short(changes), prose=prose)
 
 
 def _to_report(speech: Speech) -> Markup:

@@ -16,18 +16,17 @@ from dashboards.site.parts import (
     Grid,
     Page,
     Section,
-    Select,
     Table,
     default_method,
-    listed,
     methods_select,
     once_for_methods,
+    types_select,
     with_page,
 )
-from dashboards.slide_book import Book
 from dashboards.speech import Headline, Text
 from dashboards.statements import together
 from dashboards.statements.boat_type import LINES, SPREAD, Slopes, homogeneity, level, slopes
+from dashboards.statements.slides import Book
 from pipeline.messages import Sentence, say
 from warehouse.queries.audit import WEIGHT_LINE
 from warehouse.queries.views import NEWEST, Views
@@ -36,20 +35,15 @@ SCATTERS = ("b_weight", "b_speed", "cw_standard_weight", "cw_standard_speed", "a
 SIDES = ("before", "after")
 """Selectors of the two methods that stand side by side."""
 TOW_COLUMNS = (
-    *("name", "fsn_no", "rowers", "crew_class", "season", "weight_kg", "declared_speed_m_s"),
-    *("a_kg_m", "b_m_s", "cw_standard_kg_m"),
+    "name fsn_no boat_type rowers crew_class season weight_kg declared_speed_m_s a_kg_m b_m_s "
+    "cw_standard_kg_m"
 )
-TYPE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "season", "cw_standard_kg_m", "b_m_s")
 TYPE_FIGURES = {
     "cw_weight": "cw_standard_weight",
     "cw_speed": "cw_standard_speed",
     "b_weight": "b_weight",
 }
 """Of `dashboards.figures.slides`, with the figure that has its caption."""
-OUTLIER_COLUMNS = (
-    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
-    *("expected", "deviation_sd", "candidates"),
-)
 OF_TYPE = ("after", "boat_type")
 
 
@@ -62,61 +56,55 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     after = pl.col("method").alias("after")
     shown = pl.col("method").is_in(methods)
     tows = with_page(views.ask("type_tows")).filter("newest", shown).with_columns(after)
-    columns = (*TOW_COLUMNS[:2], "boat_type", *TOW_COLUMNS[2:])
-    table = Table(
-        "type_boats", tows, columns, say("Boats"), OF_TYPE, search=True, linked=True,
-    )  # fmt: skip
+    table = Table("type_boats", tows, TOW_COLUMNS, say("Boats"), OF_TYPE, search=True, linked=True)
     follows = {"method": SIDES, "boat_type": "boat_type"}
-    drawn = [tows.select("method", "page", *columns)]
+    drawn = [tows.select("method", "page", *TOW_COLUMNS.split())]
     charts = [Chart(name, drawn, labels.FIGURES[name], follows) for name in SCATTERS]
     outliers = views.ask("outliers").filter(shown).with_columns(after)
-    return Page(
-        "types.html",
-        say("Types"),
-        [
-            _slopes_section(views, book, book.chosen_types(())),
-            Section(
-                "types_verdicts",
-                say("Are equal boats equal?"),
-                say("By the newest tow of each boat and crew; every type has a page."),
-                links=[(type_path(name), name, judge(name)) for name in views.type_names()],
+    sections = [
+        _slopes_section(views, book, book.chosen_types(())),
+        Section(
+            "types_verdicts",
+            say("Are equal boats equal?"),
+            say("By the newest tow of each boat and crew; every type has a page."),
+            links=[(type_path(name), name, judge(name)) for name in views.type_names()],
+        ),
+        Section(
+            "types_charts",
+            say("B and Cw per type"),
+            say(
+                "The newest tows under two methods, on the same axes. Standard speed: the "
+                "median declared speed of the type. Drag over a chart to list the boats "
+                "there; click a point to go to its boat."
             ),
-            Section(
-                "types_charts",
-                say("B and Cw per type"),
-                say(
-                    "The newest tows under two methods, on the same axes. Standard speed: the "
-                    "median declared speed of the type. Drag over a chart to list the boats "
-                    "there; click a point to go to its boat."
-                ),
-                charts,
-                [table],
+            charts,
+            [table],
+        ),
+        Section(
+            "types_outliers",
+            say("Newest tows that differ from their type"),
+            say(
+                "Far from what the other boats of the type predict, in standard deviations "
+                "(sd) of that prediction. A possible cause is something to look at, not "
+                "proven."
             ),
-            *listed(
-                Section(
-                    "types_outliers",
-                    say("Newest tows that differ from their type"),
-                    say(
-                        "Far from what the other boats of the type predict, in standard deviations "
-                        "(sd) of that prediction. A possible cause is something to look at, not "
-                        "proven."
-                    ),
-                ),
-                "type_outliers",
-                outliers,
-                OUTLIER_COLUMNS,
-                follows=OF_TYPE,
-            ),
-        ],
-        selects=[
-            methods_select(methods, "before", methods[0]),
-            methods_select(methods, "after"),
-            Select(
-                "boat_type", say("Type"), tows["boat_type"].unique().sort().to_list(), "",
-                with_all=True,
-            ),
-        ],
-    )  # fmt: skip
+            tables=[
+                Table(
+                    "type_outliers",
+                    outliers,
+                    "name fsn_no boat_type rowers crew_class season quantity value expected "
+                    "deviation_sd candidates",
+                    follows=OF_TYPE,
+                )
+            ],
+        ),
+    ]
+    selects = [
+        methods_select(methods, "before", methods[0]),
+        methods_select(methods, "after"),
+        types_select(tows["boat_type"]),
+    ]
+    return Page("types.html", say("Types"), sections, selects=selects)
 
 
 def _judged(views: Views, method: str) -> Callable[[str], Headline]:
@@ -138,25 +126,29 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
         return
     shown = pl.col("method").is_in(methods)
     tows = views.ask("type_tows").filter("newest", shown)
-    tows = once_for_methods(tows.select("method", "boat_type", *TOW_COLUMNS))
+    tows = once_for_methods(tows.select("method", *TOW_COLUMNS.split()))
     judge = _judged(views, default_method(methods))
     book = Book(views)
     for boat_type in views.type_names():
-        own = pl.col("boat_type") == boat_type
         drawn = [book.drawn(boat_type, NEWEST)]
         charts = [
             Chart(
                 f"slide_{name}",
                 drawn,
                 labels.FIGURES[caption],
-                says=_said(book.in_words(name, boat_type, NEWEST)),
+                says=together(book.in_words(name, boat_type, NEWEST), " "),
             )
             for name, caption in TYPE_FIGURES.items()
         ]
         listed_tows = Table(
-            "type_boats", tows.filter(own), TOW_COLUMNS, say("Boats"), ["method"], search=True,
-            cards=TYPE_CARDS,
-        )  # fmt: skip
+            "type_boats",
+            tows.filter(boat_type=boat_type),
+            TOW_COLUMNS.replace("boat_type ", ""),
+            say("Boats"),
+            ["method"],
+            search=True,
+            cards="name fsn_no rowers crew_class season cw_standard_kg_m b_m_s",
+        )
         yield Page(
             type_path(boat_type),
             say("Types"),
@@ -213,7 +205,3 @@ def _row_name(one: Slopes) -> Sentence:
         method=labels.method(one.method),
         n=one.n,
     )
-
-
-def _said(sentences: Sequence[Sentence]) -> Headline:
-    return lambda speech: " ".join(map(speech.say, sentences))

@@ -49,6 +49,10 @@ class Change:
         return speech.per_cent(self.ratio)
 
 
+FIGURES: Final = (Number, Change, int, dt.date)
+"""What a program is given as it is."""
+
+
 @dataclass(frozen=True)
 class EditionName:
     """An edition, or a draft by its method."""
@@ -82,6 +86,35 @@ class Statement:
         """The sentence in the language of a page."""
         values = {name: _spoken(value, speech) for name, value in self.values.items()}
         return speech.say(self.wording, **values)
+
+    def said(self, speech: Speech, about: str) -> "Said":
+        """The statement as `--json` prints it."""
+        values = {
+            name: value if isinstance(value, FIGURES) else _spoken(value, speech)
+            for name, value in self.values.items()
+        }
+        return Said(about, self.kind, self(speech), self.verdict, values, list(self.rests_on))
+
+
+@dataclass(frozen=True)
+class Said:
+    """A statement as a program is given it.
+
+    Attributes:
+        about: the boat and crew, type, edition, draft or method.
+        kind: its code.
+        text: in the language of the command.
+        verdict: code of a judgement in it.
+        values: numbers with unit, interval and decimals, changes as a ratio, and words.
+        rests_on: tables.
+    """
+
+    about: str
+    kind: str
+    text: str
+    verdict: str
+    values: dict[str, Any]
+    rests_on: list[str]
 
 
 Value: TypeAlias = Headline | Sentence | str | int | dt.date | Sequence["Value"]

@@ -173,7 +173,7 @@ def _with_changes(block: SeasonSteps, changes: Mapping[str, str]) -> Steps:
         try:
             held[step][option] = control.read(changes[key])
             steps = Steps.model_validate(held)
-        except (ValueError, ValidationError) as error:
+        except ValidationError as error:
             raise _refusal(control, changes[key]) from error
     return steps
 

@@ -12,7 +12,7 @@ from dashboards import labels
 from dashboards.figures.style import SCENARIO
 from dashboards.option_labels import text
 from dashboards.site.cells import Cells, Show
-from dashboards.site.parts import Chart, Page, Section, Select, Table
+from dashboards.site.parts import Chart, Page, Section, Select, Table, types_select
 from dashboards.speech import Headline
 from dashboards.statements import Change
 from dashboards.statements.season import reproducibility
@@ -22,21 +22,8 @@ from warehouse.queries.scenario import Scenario
 from warehouse.queries.views import ALL, NEWEST
 
 REGISTER_COLUMNS = (
-    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "change", "old_cw_kg_m"),
-    *("new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s", "old_rank", "new_rank"),
-    "exceeds_interval",
-)
-HOMOGENEITY_COLUMNS = (
-    *("method", "boat_type", "n_boats", "p_value", "power_at_10pct", "noise_share"),
-    "shared_b_m_s",
-)
-REPEATS_COLUMNS = (
-    *("method", "scope", "n_pairs", "sd_ratio", "lo", "hi", "share_within_1pct"),
-    "share_within_2pct",
-)
-CURVE_COLUMNS = (
-    *("method", "tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m"),
-    *("cw_hi_kg_m", "runs_used", "status", "flags"),
+    "name fsn_no boat_type rowers crew_class change old_cw_kg_m new_cw_kg_m cw_ratio "
+    "gain_in_two_hours_s old_rank new_rank exceeds_interval"
 )
 OF_TYPE = {"boat_type": "boat_type"}
 
@@ -92,7 +79,7 @@ def _summary(scenario: Scenario) -> Section:
 
 
 def _register(scenario: Scenario, asked: Asked) -> Section:
-    lines = scenario.register_lines.select(*REGISTER_COLUMNS, "time_ratio", "to_edition")
+    lines = scenario.register_lines.select(*REGISTER_COLUMNS.split(), "time_ratio", "to_edition")
     return Section(
         "register",
         say("The register"),
@@ -138,7 +125,14 @@ def _boat(scenario: Scenario, asked: Asked) -> Section:
                 {"tow_id": "tow"},
             )
         ],
-        tables=[Table("boat_curves", scenario.boat_curves(asked.boat), CURVE_COLUMNS)],
+        tables=[
+            Table(
+                "boat_curves",
+                scenario.boat_curves(asked.boat),
+                "method tow_id declared_speed_m_s a_kg_m b_m_s cw_kg_m cw_lo_kg_m cw_hi_kg_m "
+                "runs_used status flags",
+            )
+        ],
     )
 
 
@@ -162,7 +156,14 @@ def _types(scenario: Scenario, asked: Asked) -> Section:
                 OF_TYPE,
             ),
         ],
-        tables=[Table("homogeneity", tests, HOMOGENEITY_COLUMNS, follows=["boat_type"])],
+        tables=[
+            Table(
+                "homogeneity",
+                tests,
+                "method boat_type n_boats p_value power_at_10pct noise_share shared_b_m_s",
+                follows=["boat_type"],
+            )
+        ],
     )
 
 
@@ -173,7 +174,13 @@ def _repeats(scenario: Scenario) -> Section:
         say("Reproducibility: the same boat again"),
         note=say("Two consecutive tows of an unaltered boat with the same crew."),
         charts=[Chart("reproducibility", [repeats], say("Standard deviation of one tow"))],
-        tables=[Table("reproducibility", repeats, REPEATS_COLUMNS)],
+        tables=[
+            Table(
+                "reproducibility",
+                repeats,
+                "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
+            )
+        ],
     )
 
 
@@ -182,26 +189,13 @@ def _reproducibility(scenario: Scenario) -> pl.DataFrame:
 
 
 def _selects(bench: Bench, scenario: Scenario, asked: Asked) -> Sequence[Select]:
-    names = dict(bench.boats.select("fsn_no", "name").iter_rows())
+    names = bench.boats.select("fsn_no", "name").iter_rows()
+    boats = {fsn_no: f"{name or ''} ({fsn_no})" for fsn_no, name in names}
     tows = scenario.boat_curves(asked.boat)["tow_id"].unique().sort(descending=True).to_list()
-    types = bench.boats["boat_type"].drop_nulls().unique().sort().to_list()
+    judged = {tows: labels.code(tows) for tows in (ALL, NEWEST)}
     return [
-        Select(
-            "boat",
-            say("Choose boat"),
-            list(names),
-            asked.boat,
-            named=lambda boat, _: f"{names[boat] or ''} ({boat})",
-            asks=True,
-        ),
-        Select("tow", say("Tow"), tows, tows[0] if tows else ""),
-        Select("boat_type", say("Type"), types, "", with_all=True),
-        Select(
-            "tows",
-            say("Types judged by tows"),
-            (ALL, NEWEST),
-            asked.tows,
-            named=lambda tows, speech: speech.say(labels.code(tows)),
-            asks=True,
-        ),
+        Select("boat", say("Choose boat"), boats, asked.boat, asks=True),
+        Select("tow", say("Tow"), dict(zip(tows, tows, strict=True)), tows[0] if tows else ""),
+        types_select(bench.boats["boat_type"]),
+        Select("tows", say("Types judged by tows"), judged, asked.tows, asks=True),
     ]

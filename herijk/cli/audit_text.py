@@ -254,7 +254,12 @@ def _slopes(report: TypesAudit, methods: Sequence[str]) -> Section:
             "Do B, A and Cw follow weight or tow speed? Cw at the standard speed, of the newest "
             "tow of each crew."
         ),
-        rows=[one._asdict() | dict(zip(names, one.slopes, strict=True)) for one in found],
+        rows=[
+            one._asdict()
+            | {"about": f"{one.boat_type} {one.quantity} {one.method}"}
+            | dict(zip(names, one.slopes, strict=True))
+            for one in found
+        ],
         columns=f"boat_type quantity method n {' '.join(names)} spread",
         heads=dict(zip(names, LINES.values(), strict=True)) | {"spread": SPREAD},
     )

@@ -105,7 +105,7 @@ def slides(
     store: "Store", out: Path | None, types: tuple[str, ...], boats: tuple[str, ...]
 ) -> None:
     """What the 2015 presentation asked, over this archive: a finding and a chart per slide."""
-    from dashboards.slides import slide_book
+    from dashboards.documents.slides import slide_book
     from warehouse.queries.views import Views
     from warehouse.store.unforeseen import documents
 

@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from pydantic import TypeAdapter
 
+from dashboards.statements import Said
 from herijk.cli.check_text import Checked
 from herijk.cli.compare_text import Compared
 from herijk.cli.methods_text import MethodReport
@@ -67,7 +68,14 @@ FORMS: Final[dict[str, Any]] = {
 }
 """Classes by the call."""
 
+PLAIN: Final = (Files, Simulated, Methods)
+"""Classes of which nothing is said in words."""
+
 
 def schema(call: str) -> dict[str, Any]:
     """The JSON Schema of what a call prints."""
-    return TypeAdapter(FORMS[call]).json_schema()
+    form = TypeAdapter(FORMS[call]).json_schema()
+    if FORMS[call] not in PLAIN:
+        form["properties"]["statements"] = TypeAdapter(list[Said]).json_schema()
+        form["required"].append("statements")
+    return form

@@ -46,7 +46,7 @@ def report_on(store: Store, name_or_file: str) -> MethodReport:
     return MethodReport(
         method=shown.name,
         title=shown.titled(LANGUAGE.get()),
-        description=shown.description.strip(),
+        description=shown.described(LANGUAGE.get()).strip(),
         content_hash=shown.content_hash,
         extends=shown.extends,
         options=list(options),

@@ -3,6 +3,7 @@
 import datetime as dt
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -92,15 +93,20 @@ def as_json() -> bool:
 
 
 def show(report: R, as_page: "Callable[[R], Iterable[Part]]") -> None:
-    """Prints a result: as a page for a person, or as JSON for a program."""
-    if as_json():
-        from pydantic_core import to_json
-
-        click.echo(to_json(report, indent=1, fallback=str).decode())
-    else:
+    """Prints a result: as a page for a person, or as JSON with its statements for a program."""
+    if not as_json():
         from herijk.cli.render import page
 
         click.echo(page(as_page(report)))
+        return
+    from pydantic_core import to_json
+
+    result: object = report
+    if is_dataclass(report):
+        from herijk.cli.render import statements
+
+        result = vars(report) | {"statements": statements(as_page(report))}
+    click.echo(to_json(result, indent=1, fallback=str).decode())
 
 
 def show_files(files: Iterable[Path], said: str | None = None) -> None:

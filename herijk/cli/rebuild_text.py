@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from assets.report import Report
-from dashboards.report import headlines
+from dashboards.statements.rebuild import headlines
 from herijk.cli.render import Part, Section, marked, set_aside
-from pipeline.messages import LANGUAGE, speaker, tell
+from pipeline.messages import tell
 from warehouse.queries.reports import RebuildReport
 
 
@@ -36,8 +36,8 @@ def text(made: Rebuilt) -> Iterator[Part]:
         if done.database
         else tell("Nothing changed: no file was read again, all tables are up to date.")
     )
-    news = headlines(made.since, made.since.checks, speaker(LANGUAGE.get()))
-    yield Section(tell("Since the last report:"), lines=[f"  {line}" for line in news])
+    news = headlines(made.since, made.since.checks)
+    yield Section(tell("Since the last report:"), news)
     tows = ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
     yield tell("Tows accepted: ") + tows
     yield from _set_aside(report)

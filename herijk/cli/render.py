@@ -23,7 +23,7 @@ from pipeline.messages import LANGUAGE, tell
 from pipeline.tables.row import Row
 
 if TYPE_CHECKING:
-    from dashboards.statements import Statement
+    from dashboards.statements import Said, Statement
 
 WIDTH: Final = 110
 """Characters on a line of prose."""
@@ -88,6 +88,22 @@ Part: TypeAlias = str | Section
 def page(parts: Iterable[Part]) -> str:
     """The parts below each other, without those that are empty."""
     return "\n\n".join(filter(None, map(str, parts)))
+
+
+def statements(parts: Iterable[Part]) -> "list[Said]":
+    """All that is said on a page, below headings and in the cells of tables."""
+    return [
+        one.said(speech(), about)
+        for part in parts
+        if isinstance(part, Section)
+        for about, said in [(part.about, part.said), *map(_in_cells, part.rows)]
+        for one in said
+    ]
+
+
+def _in_cells(row: Row) -> "tuple[str, list[Statement]]":
+    """The statements in a row, and what they are about."""
+    return row.get("about", ""), [cell for cell in row.values() if callable(cell)]
 
 
 def marked(simulated: bool) -> str:

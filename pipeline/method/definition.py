@@ -278,13 +278,14 @@ class Method(_Options):
     """A complete method: for every season of its range the option of every step.
 
     Attributes:
-        title_en: the title where a text is English; that of a file without one is `title`.
+        title_en, description_en: in English; in a file without them as `title`, `description`.
     """
 
     name: str
     title: str
     title_en: str
     description: str
+    description_en: str
     extends: str | None
     ranges: tuple[SeasonSteps, ...]
     validity: RegisterRule = RegisterRule()
@@ -292,6 +293,10 @@ class Method(_Options):
     def titled(self, language: str) -> str:
         """The title in `nl` or `en`."""
         return self.title if language == "nl" else self.title_en
+
+    def described(self, language: str) -> str:
+        """The description in `nl` or `en`."""
+        return self.description if language == "nl" else self.description_en
 
     def for_season(self, season: int) -> Steps:
         """The steps of a season.
@@ -404,6 +409,7 @@ def parse_method(
         title=head.title,
         title_en=head.title_en or head.title,
         description=head.description,
+        description_en=head.description_en or head.description,
         extends=head.extends,
         ranges=_ranges(reader, [layer for one in lineage for layer in _layers(one)]),
         validity=_register_rule(lineage),
@@ -423,6 +429,7 @@ class _Head(_Options):
     title: str
     title_en: str = ""
     description: str = ""
+    description_en: str = ""
     extends: str | None = None
     seasons: str = "2009:"
     validity: dict[str, Any] = Field(default={}, alias="register")

@@ -80,6 +80,7 @@ def variant(
         title=title,
         title_en=title,
         description=description,
+        description_en=description,
         extends=base.name if ships else base.extends,
         ranges=joined(ranges),
         validity=base.validity,

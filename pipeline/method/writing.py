@@ -18,6 +18,7 @@ def method_text(method: Method) -> str:
                 "title": method.title,
                 "title_en": method.title_en,
                 "description": method.description,
+                "description_en": method.description_en,
                 "seasons": covered(method),
             }
         ),

@@ -8,8 +8,8 @@ import polars as pl
 import pytest
 
 from assets.report import Done, failed_checks
-from dashboards.report import Check, headlines
-from pipeline.messages import speaker
+from dashboards.speech import Speech
+from dashboards.statements.rebuild import Check, headlines
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.edition_bench import EditionBench
@@ -86,8 +86,8 @@ def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):
     change_reported(bench, "tows", season=was)
     summary = change_report(bench.store)
     assert summary.seasons_gone == [2002]
-    first = headlines(summary, [], speaker("en"))[0]
-    assert first == "Seasons of which the archive has no tow any more: 2002"
+    first = headlines(summary, [])[0]
+    assert first(Speech("en")) == "Seasons of which the archive has no tow any more: 2002"
 
 
 def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, monkeypatch):

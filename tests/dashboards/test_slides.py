@@ -6,8 +6,10 @@ import polars as pl
 import pypdf
 import pytest
 
-from dashboards import slide_book
-from dashboards.slides import slide_book as as_pdf
+from dashboards.documents.slides import slide_book as as_pdf
+from dashboards.speech import Speech
+from dashboards.statements import slides as slide_book
+from dashboards.statements import together
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGES
 from warehouse.queries.views import NEWEST, Views
@@ -32,6 +34,7 @@ def line(**differs):
         "n": 9,
         "n_boats": 7,
         "slope": 0.5,
+        "boat_type": "galjas",
     } | differs
 
 
@@ -43,7 +46,7 @@ def test_every_slide_has_a_finding_rows_and_a_source(views, language):
         assert slide.rows.height
         assert set(slide.rows["method"]) <= set(views.table("methods")["method"])
         assert views.table(slide.source).height
-        texts = [text.spoken(language) for text in (slide.finding, *slide.notes)]
+        texts = [Speech(language).words(text) for text in (slide.finding, *slide.notes)]
         assert all(texts)
         assert "{" not in "".join(texts)
     pairs = views.table("reproducibility").filter(scope="all")["n_pairs"].min()
@@ -60,7 +63,7 @@ def test_every_slide_has_a_finding_rows_and_a_source(views, language):
     ],
 )
 def test_a_verdict_follows_the_interval_of_the_slope(differs, verdict):
-    assert slide_book._verdict("b_weight", line(**differs)) == verdict
+    assert slide_book.relation("b_weight", line(**differs))(Speech("en")) == verdict
 
 
 def test_nothing_is_found_in_the_line_of_a_few_boats(book, monkeypatch):
@@ -68,6 +71,14 @@ def test_nothing_is_found_in_the_line_of_a_few_boats(book, monkeypatch):
     for boats, slides in ((slide_book.FEWEST, 1), (slide_book.FEWEST - 1, 0)):
         monkeypatch.setattr(book, "line", lambda *_, n=boats: line(n_boats=n))
         assert len(list(book.against("b_weight", boat_type))) == slides
+
+
+def test_a_line_without_a_spread_explains_nothing_that_is_known(book, monkeypatch):
+    lines = iter([line(r2=None), line(r2=0.36)])
+    monkeypatch.setattr(book, "line", lambda *_: next(lines))
+    assert book.fit("b_weight", "galjas")(Speech("en")).startswith("R² is 36 % ")
+    lines = iter([None, line(r2=None)])
+    assert "R² is not known" in book.fit("b_weight", "galjas")(Speech("en"))
 
 
 @pytest.mark.parametrize(
@@ -80,13 +91,13 @@ def test_nothing_is_found_in_the_line_of_a_few_boats(book, monkeypatch):
 )
 def test_an_era_is_compared_from_old_to_new(shift, apart, said):
     row = {"method": "rebased", "shift_ratio": shift, "apart": apart}
-    assert slide_book._shift(row) == said
+    assert slide_book.shift(row)(Speech("en")) == said
 
 
 def test_a_page_says_of_a_type_how_many_tows_its_line_rests_on(book):
     for boat_type in book.chosen_types(()):
         found = book.line("cw_weight", boat_type, NEWEST, book.ends[1])
-        said = " ".join(book.in_words("cw_weight", boat_type, NEWEST))
+        said = together(book.in_words("cw_weight", boat_type, NEWEST), " ")(Speech("en"))
         assert (f"{found['n']} tow" in said) == (found["slope"] is not None)
         drawn = book.drawn(boat_type, NEWEST)
         assert set(drawn["boat_type"]) == {boat_type}
@@ -104,5 +115,5 @@ def test_the_pdf_has_a_page_for_each_slide(views):
     assert len(pages) == len(made)
     for slide, page in zip(made, pages, strict=True):
         text = " ".join(page.extract_text().split())
-        assert slide.finding.spoken("nl") in text
+        assert slide.finding(Speech("nl")) in text
         assert "GESIMULEERD" in text

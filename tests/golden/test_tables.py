@@ -16,7 +16,6 @@ import pytest
 
 from dashboards.site.boats import boat_pages
 from dashboards.site.pages import method_names, shared_pages
-from dashboards.site.slides import slides_page
 from dashboards.speech import Speech
 from dashboards.statements import Statement
 from herijk.simulate import WorldSettings, world_settings
@@ -101,7 +100,6 @@ def of_statements(store: Store) -> dict[str, pl.DataFrame]:
     with mock.patch.object(Statement, "__init__", noted), Views(store) as views:
         pages = [page for make in shared_pages(views, by_reports=True).values() for page in make()]
         pages += [make() for _, make in boat_pages(views, method_names(views))]
-        pages.append(slides_page(views))
     assert len(pages) > len(said) > 20
     return {kind: pl.DataFrame(rows, infer_schema_length=None) for kind, rows in said.items()}
 

@@ -7,7 +7,8 @@ from dataclasses import fields
 import pytest
 from pydantic import TypeAdapter
 
-from herijk.cli.forms import FORMS
+from dashboards.statements import Said
+from herijk.cli.forms import FORMS, PLAIN
 from herijk.cli.main import main
 from tests.warehouse.conftest import edition_archive, published
 
@@ -17,9 +18,12 @@ __all__ = ["edition_archive", "published"]
 def hold_against_form(command, printed):
     """Fails where a result has no form that is documented for its command."""
     result = json.loads(printed)
+    told = result.pop("statements", None)
     forms = [form for call, form in FORMS.items() if call.split()[0] == command]
     (form,) = {form for form in forms if {field.name for field in fields(form)} == set(result)}
     TypeAdapter(form).validate_python(result)
+    assert (told is None) == (form in PLAIN)
+    TypeAdapter(list[Said]).validate_python(told or [])
 
 
 @pytest.fixture

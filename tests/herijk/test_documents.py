@@ -5,9 +5,9 @@ import shutil
 import pypdf
 import pytest
 
-from dashboards import slide_book, slides
-from dashboards.documents import certificate, proposal
+from dashboards.documents import certificate, proposal, slides
 from dashboards.site import render
+from dashboards.statements.slides import Book
 from tests.conftest import METHODS
 from warehouse.store.unforeseen import failures
 
@@ -58,7 +58,7 @@ def test_of_all_certificates(fails, herijk, data, built, tmp_path):
     ("lost", "owner", "name", "command", "made"),
     [
         (f"proposal-{METHODS[1]}", proposal, "_types", ("proposal", METHODS[1]), False),
-        ("slide-hull-speed", slide_book.Book, "hull_speed", ("slides",), True),
+        ("slide-hull-speed", Book, "hull_speed", ("slides",), True),
         ("slides", slides, "pdf", ("slides",), False),
     ],
 )

@@ -1,109 +1,166 @@
 """A statement says the same wherever it stands: another value of it is shown on every surface."""
 
 import json
+from collections import defaultdict
 from dataclasses import replace
+from itertools import count
 
 import pytest
 
-from dashboards.documents import certificate, proposal
+from dashboards.documents import certificate, proposal, slides
 from dashboards.site.boats import boat_pages
 from dashboards.site.pages import shared_pages
 from dashboards.site.render import Edition
-from dashboards.site.types import type_pages
+from dashboards.speech import Speech
 from dashboards.statements import Change, Number, Statement
+from dashboards.statements.rebuild import headlines, mail
 from tests.conftest import METHODS
+from warehouse.queries.answers import line_changes
+from warehouse.queries.change_report import ChangeReport
 from warehouse.queries.views import Views
 from warehouse.store.methods import KnownMethods
 
 DRAFT = f"concept-{METHODS[-1]}"
-SENTINEL = 7654321
+SENTENCE = 40
+"""What is shorter may be said by chance."""
 SHOWN_ON = {
-    "register": {"register.html", "register"},
-    "changed_lines": {"index.html", "changes.html", "proposal"},
-    "statuses": {"quality.html"},
-    "cw": {"boat", "audit"},
-    "interval": {"boat", "audit", "certificate"},
-    "cause": {"boat", "audit"},
-    "two_hours": {"boat", "audit"},
-    "next_tow": {"boat", "audit"},
-    "level": {"types", "type", "audit of a type"},
-    "slope": {"types", "type", "audit of a type"},
-    "bends": {"types", "type", "audit of a type"},
+    "assess assess--json": "like_boats provisional",
+    "assess assess--json audit-boat audit-boat--json boats certificate": "interval",
+    "audit-boat audit-boat--json boats": (
+        "cause cw next_tow place_in_type power race_place two_hours"
+    ),
+    "audit-type audit-type--json types types.html": "bends level slope spread",
+    "boats.html register-due register-due--json": "due",
+    "certificate": "before certified",
+    "changes.html index.html proposal": "beyond changed_lines",
+    "index.html mail rebuild": "number",
+    "index.html seasons.html": "season_change",
+    "mail": "by",
+    "mail rebuild": "factors lines",
+    "method-as-published.html method.html proposal": "register_rule runs_alone",
+    "method.html proposal": (
+        "correction effect worked_cause worked_change worked_corrections worked_curve "
+        "worked_power worked_run worked_tow"
+    ),
+    "proposal": "flagged",
+    "quality.html": "statuses",
+    "register register--json register.html": "register",
+    "seasons seasons--json seasons.html": "log_off",
+    "seasons.html": "reproducibility",
+    "slides slides.html": (
+        "hull_ratio slide_boat slide_hull slide_options slide_towed_at towed_at"
+    ),
+    "slides slides.html types": "share",
 }
-"""Pages, commands and documents that show a kind of statement."""
+"""By the surfaces the kinds of statement that they show."""
 
 
-def level_known(views):
-    """The type of which most tows are on a line against weight."""
-    lines = views.table("type_lines").filter(
-        method=METHODS[-1], quantity="cw_standard_kg_m", explaining="weight_kg", within="all",
-        tows="newest",
-    )  # fmt: skip
-    return lines.drop_nulls("slope").sort("n")["boat_type"][-1]
+def most_of(frame, column):
+    return frame.group_by(column).len().sort("len", column)[column][-1]
 
 
-def surfaces(store, herijk, kept):
-    """The text of every surface by its name."""
-    shown = {}
-    with Views(store) as views:
-        line = views.register().filter(edition=DRAFT).drop_nulls("cw_kg_m").row(0, named=True)
-        site, made = Edition(views, "en"), shared_pages(views, by_reports=False)
-        pages = [
-            page for name in ("start", "register", "changes", "quality") for page in made[name]()
-        ]
-        shown |= {page.path: site.html(page) for page in pages}
-        own = dict(boat_pages(views, METHODS))[line["fsn_no"]]
-        shown["boat"] = site.html(own())
-        of_type = level_known(views)
-        shown["types"] = site.html(made["types"]()[0])
-        shown["type"] = next(
-            site.html(page) for page in type_pages(views, METHODS) if page.name == of_type
+@pytest.fixture
+def papers(monkeypatch):
+    """What is set as PDF, instead of setting it."""
+    kept = {}
+    for module in (certificate, proposal, slides):
+        name = module.__name__.rpartition(".")[2]
+        monkeypatch.setattr(
+            module, "pdf", lambda _, content, name=name: kept.update({name: content}) or b""
         )
-        certificate.certificates(views, DRAFT, line["fsn_no"], "en", certificate.Issued())
-        against = f"concept-{METHODS[0]}"
-        proposal.proposal(views, [METHODS[-1]], against, "en", KnownMethods.of(store))
-    shown |= dict(zip(("certificate", "proposal"), map(json.dumps, kept), strict=True))
-    kept.clear()
+    return kept
+
+
+@pytest.fixture
+def surfaces(built, herijk, papers):
+    """Gives the text of every surface by its name."""
+    with Views(built.store) as views:
+        lines = views.register().filter(edition=DRAFT).drop_nulls("cw_kg_m")
+        line = lines.row(0, named=True)
+        boat_type = most_of(views.table("compared_tows"), "boat_type")
+        changed = line_changes(views).filter(change="changed").head(3).to_dicts()
+    news = ChangeReport(
+        first=False, tows=[{"what": "new"}], seasons_gone=[], methods=[], set_aside=[],
+        factors=[{}], lines=changed,
+    )  # fmt: skip
     commands = {
-        "audit": ("audit", line["fsn_no"], "--edition", DRAFT),
+        "audit-boat": ("audit", line["fsn_no"], "--edition", DRAFT),
+        "audit-type": ("audit", boat_type),
         "register": ("register", DRAFT),
-        "audit of a type": ("audit", of_type),
+        "register-due": ("register", DRAFT, "--due"),
+        "seasons": ("seasons", "--method", METHODS[-1]),
+        "assess": ("assess", line["tow_id"], "--archive", built.archive),
     }
-    for name, command in commands.items():
-        shown[name] = herijk(*command, "--data", store.root)[1]
-    return {name: " ".join(text.split()) for name, text in shown.items()}
+
+    def pages(views):
+        for make in shared_pages(views, by_reports=False).values():
+            for page in make():
+                yield "/".join(page.path.split("/")[:-1]) or page.path, page
+        yield "boats", dict(boat_pages(views, METHODS))[line["fsn_no"]]()
+
+    def shown():
+        with Views(built.store) as views:
+            site = Edition(views, "en")
+            texts = defaultdict(str)
+            for path, page in pages(views):
+                texts[path] += site.html(page)
+            certificate.certificates(views, DRAFT, line["fsn_no"], "en", certificate.Issued())
+            against = f"concept-{METHODS[0]}"
+            proposal.proposal(views, [METHODS[-1]], against, "en", KnownMethods.of(built.store))
+            slides.slide_book(views, "en")
+        texts |= {name: json.dumps(content, default=str) for name, content in papers.items()}
+        for name, command in commands.items():
+            for form in ((), ("--json",)):
+                text = herijk(*command, *form, "--data", built.store.root)[1]
+                texts["".join((name, *form))] = text
+        texts["mail"] = "\n".join(mail(news, (), simulated=True))
+        texts["rebuild"] = "\n".join(one(Speech("en")) for one in headlines(news, ()))
+        return {name: " ".join(text.split()) for name, text in texts.items()}
+
+    return shown
 
 
-def planted(kind, made):
-    """Makes statements of a kind say the sentinel in place of their first number."""
+def with_sentinels(kinds):
+    """Makes the first number of every statement a number of its kind."""
     real = Statement.__init__
 
     def init(self, *parts, **named):
         real(self, *parts, **named)
-        if self.kind != kind:
-            return
-        numbers = [(n, v) for n, v in self.values.items() if isinstance(v, Number | Change | int)]
-        if not numbers:
-            return
-        name, value = numbers[0]
-        if isinstance(value, Change):
-            other = Change(SENTINEL)
-        else:
-            other = SENTINEL if isinstance(value, int) else replace(value, value=SENTINEL)
-        object.__setattr__(self, "values", {**self.values, name: other})
-        made.append(self)
+        for name, value in self.values.items():
+            if isinstance(value, Number | Change) or type(value) is int:
+                mark = kinds[self.kind]
+                if isinstance(value, Number):
+                    other = replace(value, value=mark)
+                else:
+                    other = Change(1 + mark / 100) if isinstance(value, Change) else mark
+                object.__setattr__(self, "values", {**self.values, name: other})
+                return
 
     return init
 
 
-@pytest.mark.parametrize("kind", SHOWN_ON)
-def test_another_value_of_a_statement_is_shown_everywhere(kind, built, herijk, monkeypatch):
-    kept = []
-    for module in (certificate, proposal):
-        monkeypatch.setattr(module, "pdf", lambda _, content: kept.append(content) or b"")
-    made = []
-    monkeypatch.setattr(Statement, "__init__", planted(kind, made))
-    shown = surfaces(built.store, herijk, kept)
-    sentinel = str(100 * (SENTINEL - 1) if kind == "cause" else SENTINEL)
-    assert {name for name, text in shown.items() if sentinel in text} == SHOWN_ON[kind]
-    assert made
+def test_another_value_of_a_statement_is_shown_everywhere(surfaces, monkeypatch):
+    said = set()
+    speak = Statement.__call__
+    numbers = count(7_000_001)
+    kinds = defaultdict(lambda: next(numbers))
+
+    def recorded(self, speech):
+        text = speak(self, speech)
+        if any(isinstance(value, Number | Change | int) for value in self.values.values()):
+            said.add(" ".join(text.split()))
+        return text
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Statement, "__call__", recorded)
+        surfaces()
+    monkeypatch.setattr(Statement, "__init__", with_sentinels(kinds))
+    shown = surfaces()
+    found = {
+        kind: " ".join(sorted(name for name, text in shown.items() if str(mark) in text))
+        for kind, mark in kinds.items()
+    }
+    assert found == {kind: on for on, of in SHOWN_ON.items() for kind in of.split()}
+    old = [text for text in said if len(text) > SENTENCE]
+    assert old
+    assert [(name, one) for name, text in shown.items() for one in old if one in text] == []

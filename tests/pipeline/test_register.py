@@ -130,5 +130,5 @@ def test_the_rule_stands_in_the_method_and_changes_no_curve():
 def test_a_method_written_out_reads_back_as_itself(name):
     method = shipped_method(name)
     read = parse_method(method_text(method), "x.toml")
-    for part in ("definition", "validity", "title", "title_en", "description"):
+    for part in ("definition", "validity", "title", "title_en", "description", "description_en"):
         assert getattr(read, part) == getattr(method, part)

@@ -25,7 +25,7 @@ def values(control):
         return st.sampled_from(control.values)
     if control.kind == "several":
         return st.lists(st.sampled_from(control.values), unique=True)
-    number = st.integers if control.whole else st.floats
+    number = st.integers if isinstance(control.most, int) else st.floats
     return number(control.least, control.most)
 
 

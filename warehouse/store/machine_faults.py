@@ -42,7 +42,14 @@ _NO_MEMORY: Final = _Fault(
         "close other programs, or read fewer seasons at a time with --seasons"
     ),
     (ENOMEM,),
-    ("out of memory", "cannot allocate memory", "failed to map segment", "can't start new thread"),
+    # The last is Python's, where a library in C got no memory and did not say so.
+    (
+        "out of memory",
+        "cannot allocate memory",
+        "failed to map segment",
+        "can't start new thread",
+        "without setting an exception",
+    ),
 )
 _FAULTS: Final = (
     _FULL,

@@ -3,27 +3,26 @@
 (() => {
   const { lang: language, dataset: { site, root } } = document.documentElement;
   const all = (selector, within = document) => [...within.querySelectorAll(selector)];
-  const make = (tag, properties = {}) => Object.assign(document.createElement(tag), properties);
+  const make = (tag, properties = {}, ...children) => {
+    const made = Object.assign(document.createElement(tag), properties);
+    made.append(...children);
+    return made;
+  };
   let form = document.querySelector(".selects");
   const choice = (name) => form?.elements[name]?.value ?? "";
-  const LOCALE = {
-    nl: { decimal: ",", thousands: ".", grouping: [3], currency: ["€ ", ""], minus: "\u2212" },
-    en: { decimal: ".", thousands: ",", grouping: [3], currency: ["€", ""], minus: "\u2212" },
-  }[language];
+  const [DECIMAL, SEPARATOR] = { nl: [",", ";"], en: [".", ","] }[language]; // as spreadsheets have them
   const plain = (text) => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
   const wordsOf = (text) => plain(text).split(/\s+/).filter(Boolean);
 
   // -- Scripts and data, when they are needed ---------------------------------------------------
-  const loaded = new Map();
+  const loaded = {};
 
   function load(path) {
-    if (!loaded.has(path)) {
-      loaded.set(path, new Promise((resolve, reject) => {
-        const onerror = () => reject(new Error(`${path} cannot be read`));
-        document.head.append(make("script", { src: path, onload: resolve, onerror }));
-      }));
-    }
-    return loaded.get(path);
+    loaded[path] ??= new Promise((resolve, reject) => {
+      const onerror = () => reject(new Error(`${path} cannot be read`));
+      document.head.append(make("script", { src: path, onload: resolve, onerror }));
+    });
+    return loaded[path];
   }
 
   // What the charts draw: column by column, deflated in a script, as a page from disk loads no other.
@@ -70,11 +69,8 @@
     }
     const list = find.querySelector("ul");
     list.hidden = words.length === 0;
-    list.replaceChildren(...found.slice(0, MOST_FOUND).map(([, [name, , page]]) => {
-      const item = make("li");
-      item.append(make("a", { href: root + page, textContent: name }));
-      return item;
-    }));
+    list.replaceChildren(...found.slice(0, MOST_FOUND).map(([, [name, , page]]) =>
+      make("li", {}, make("a", { href: root + page, textContent: name }))));
     if (!found.length) list.append(make("li", { textContent: "\u2013" }));
   }
 
@@ -140,7 +136,7 @@
 
   function valueOf(cell) {
     if (cell.className) return cell.textContent;
-    const text = cell.textContent.replace(LOCALE.decimal, ".").replace("\u2212", "-");
+    const text = cell.textContent.replace(DECIMAL, ".").replace("\u2212", "-");
     return text === "" ? "" : Number(text);
   }
 
@@ -158,12 +154,10 @@
     table.querySelector("tbody").append(...rows.map(([, row]) => row));
   }
 
-  // As the spreadsheets of the language write it. Text that one would take for a formula, also
-  // after a separator of another language, is kept text.
-  const SEPARATOR = { nl: ";", en: "," }[language];
-
+  // Text that a spreadsheet would take for a formula, also after a separator of another language,
+  // is kept text.
   function csvCell(value) {
-    if (typeof value === "number") return String(value).replace(".", LOCALE.decimal);
+    if (typeof value === "number") return String(value).replace(".", DECIMAL);
     const text = value.replace(/[\u00ad\u200b]/g, "").trim().replace(/(^|[;,\t\r\n])(\s*)([=+\-@])/g, "$1$2'$3");
     return /[",;\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
   }
@@ -178,12 +172,17 @@
     setTimeout(() => URL.revokeObjectURL(href), 1000);
   }
 
-  function startTable(table) {
-    table.querySelector(".search")?.addEventListener("input", () => { filter(table); writeAddress(); });
-    table.querySelector(".clear")?.addEventListener("click", () => select(null));
-    table.querySelector(".csv").addEventListener("click", () => download(table));
-    all("th", table).forEach((head) => head.firstElementChild.addEventListener("click", () => sort(table, head)));
-  }
+  document.addEventListener("click", ({ target }) => {
+    const table = target.closest(".table");
+    if (target.matches(".sort")) sort(table, target.parentElement);
+    if (target.matches(".csv")) download(table);
+    if (target.matches(".clear")) select(null);
+  });
+  document.addEventListener("input", ({ target }) => {
+    if (!target.matches(".tools .search")) return;
+    filter(target.closest(".table"));
+    writeAddress();
+  });
 
   // -- Charts ---------------------------------------------------------------------------------------
   const views = new Map(); // figure -> its Vega view
@@ -242,7 +241,7 @@
       actions: { export: true, source: false, compiled: false, editor: false },
       i18n: { CLICK_TO_VIEW_ACTIONS: words.picture, PNG_ACTION: "PNG", SVG_ACTION: "SVG" },
       downloadFileName: name, ast: true, // expressions are interpreted: the page forbids eval
-      renderer: "svg", formatLocale: LOCALE, loader: { target: "_self" },
+      renderer: "svg", formatLocale: window.HERIJK_LOCALE, loader: { target: "_self" },
       config: { aria: false, mark: { aria: false } }, // the picture is described as a whole
     });
     views.get(figure)?.finalize();
@@ -278,26 +277,16 @@
   function tabulate(figure, rows, words) {
     const table = figure.querySelector(".values .table");
     const columns = [...new Set(rows.flatMap(Object.keys))].filter((column) => !["page", "kind"].includes(column));
-    const head = make("tr");
-    head.append(...columns.map((column) => {
-      const cell = make("th", { scope: "col" });
-      cell.append(make("button", { type: "button", className: "sort", textContent: words[`column.${column}`] ?? column }));
-      return cell;
-    }));
-    table.querySelector("thead").replaceChildren(head);
-    table.querySelector("tbody").replaceChildren(...rows.map((row) => {
-      const line = make("tr");
-      line.append(...columns.map((column) => {
-        const value = row[column] ?? "";
-        if (typeof value === "number" && !words[`code.${column}.${value}`]) {
-          return make("td", { textContent: String(Number(value.toPrecision(5))).replace(".", LOCALE.decimal) });
-        }
-        const text = words[`code.${column}.${value}`] ?? words[`${column}.${value}`] ?? words[`code.${value}`] ?? words[value];
-        return make("td", { className: "t", textContent: text ?? value });
-      }));
-      return line;
-    }));
-    all("th", table).forEach((cell) => cell.firstElementChild.addEventListener("click", () => sort(table, cell)));
+    table.querySelector("thead").replaceChildren(make("tr", {}, ...columns.map((column) =>
+      make("th", { scope: "col" }, make("button", { type: "button", className: "sort", textContent: words[`column.${column}`] ?? column })))));
+    table.querySelector("tbody").replaceChildren(...rows.map((row) => make("tr", {}, ...columns.map((column) => {
+      const value = row[column] ?? "";
+      const word = words[`code.${column}.${value}`] ?? words[`${column}.${value}`];
+      if (typeof value === "number" && !word) {
+        return make("td", { textContent: String(Number(value.toPrecision(5))).replace(".", DECIMAL) });
+      }
+      return make("td", { className: "t", textContent: word ?? words[`code.${value}`] ?? words[value] ?? value });
+    }))));
     filter(table);
   }
 
@@ -326,7 +315,6 @@
     readAddress();
     views.forEach((made) => made.finalize());
     views.clear();
-    all(".table", part).forEach(startTable);
     all("figure[data-figure]", part).forEach((figure) => watcher.observe(figure));
     choose();
   }

@@ -1,20 +1,20 @@
 """The slides: what the presentation of 24 January 2015 asked, over this archive.
 
 Each slide says one finding, shows it in one chart before and after correction, and explains its
-marks. All numbers come from tables. Does not belong here: what a chart looks like
-(`dashboards.figures.slides`), and the PDF and the page (`dashboards.slides`, `.site.slides`).
+marks. Does not belong here: what a chart looks like (`dashboards.figures.slides`), and the PDF and
+the page (`dashboards.documents.slides`, `.site.slides`).
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import nullcontext
 from functools import partial
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeAlias
 
 import polars as pl
 
 from dashboards import labels
 from dashboards.figures.slides import ENDS, PAIRS
-from dashboards.statements import Statement
+from dashboards.statements import Number, Statement, Value, told
 from dashboards.statements.method import voted_steps
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
@@ -56,11 +56,15 @@ TOW_COLUMNS: Final = (
 )
 
 CREWS_MARKED: Final = say("A circle is a men's crew, a triangle a women's crew.")
+UNKNOWN: Final = say("not known")
 LINE_MARKED: Final = say(
     "The line is the best straight fit with its 95 % interval. A bar is the 95 % interval of a "
     "tow; a dashed bar leaves out the error of the log. An open mark was towed too slowly or too "
     "fast for the standard speed. A tow that is an outlier in Cw is named."
 )
+
+
+Notes: TypeAlias = Sequence[Sentence | Statement]
 
 
 class Slide(NamedTuple):
@@ -69,10 +73,13 @@ class Slide(NamedTuple):
     name: str
     figure: str
     rows: pl.DataFrame
-    finding: Sentence
-    notes: Sequence[Sentence | Statement]
-    source: str
-    """The table that the finding comes from."""
+    finding: Statement
+    notes: Notes
+
+    @property
+    def source(self) -> str:
+        """The table that the finding comes from."""
+        return self.finding.rests_on[0]
 
 
 def slides(
@@ -130,6 +137,8 @@ class Book:
             )
         wanted = [name for name in methods if name == STUDIED_METHOD]
         self.ends = (methods[0], [*methods, *wanted][-1]) if methods else ("", "")
+        old_method, method = map(labels.method, self.ends)
+        self.methods = {"old_method": old_method, "method": method}
         self.tows = compared.filter(pl.col("method").is_in(self.ends))
         self._lines = views.table("type_lines").filter(within="all")
         self._line_points = views.table("type_line_points")
@@ -180,13 +189,15 @@ class Book:
         """Whether a quantity follows what may explain it; of few boats nothing is said."""
         line = self.line(figure, boat_type, ALL, self.ends[1])
         if line and line["slope"] is not None and line["n_boats"] >= FEWEST:
+            said = relation(figure, line)
             yield Slide(
                 f"{figure} {boat_type}",
                 f"slide_{figure}",
                 self.drawn(boat_type, figure=figure),
-                say("{type}: {verdict}", type=boat_type, verdict=_verdict(figure, line)),
+                told(
+                    "slide_type", say("{boat_type}: {relation}"), line, "type_lines", relation=said
+                ),
                 [self.fit(figure, boat_type), CREWS_MARKED, LINE_MARKED],
-                "type_lines",
             )
 
     def line(self, figure: str, boat_type: str, tows: str, method: str) -> Row | None:
@@ -197,28 +208,29 @@ class Book:
         )
         return found.row(0, named=True) if found.height else None
 
-    def in_words(self, figure: str, boat_type: str, tows: str) -> list[Sentence]:
+    def in_words(self, figure: str, boat_type: str, tows: str) -> list[Statement]:
         """What the line of a type says, and how well it fits."""
         line = self.line(figure, boat_type, tows, self.ends[1])
         if line is None or line["slope"] is None:
-            return [say("Too few boats for a line ({boats}).", boats=_boats(line))]
-        return [
-            say("{verdict}.", verdict=_verdict(figure, line)),
-            self.fit(figure, boat_type, tows),
-        ]
+            wording = say("Too few boats for a line ({boats}).")
+            return [told("no_line", wording, boats=_boats(line))]
+        return [_finished(relation(figure, line)), self.fit(figure, boat_type, tows)]
 
-    def fit(self, figure: str, boat_type: str, tows: str = ALL) -> Sentence:
+    def fit(self, figure: str, boat_type: str, tows: str = ALL) -> Statement:
         """The share of the spread that a line explains, before and after."""
         before, after = (self.line(figure, boat_type, tows, method) for method in self.ends)
         assert after, "a line that is described was fitted"  # noqa: S101
-        return say(
-            "R² is {after:.0f} % {method}, {before} {old_method}: the share of the spread that {x} "
-            "explains, in {tows} of {boats}.",
+        return told(
+            "share_explained",
+            say(
+                "R² is {after} {method}, {before} {old_method}: the share of the spread that {x} "
+                "explains, in {tows} of {boats}."
+            ),
+            self.methods,
+            "type_lines",
             x=EXPLAINING[PAIRS[figure][1]],
-            after=100 * after["r2"],
-            before=say("{:.0f} %", 100 * before["r2"]) if before else say("not known"),
-            method=labels.method(self.ends[1]),
-            old_method=labels.method(self.ends[0]),
+            after=_explained(after),
+            before=_explained(before),
             tows=ngettext("1 tow", "{n} tows", after["n"]),
             boats=_boats(after),
         )
@@ -231,23 +243,20 @@ class Book:
             pl.col("shift_ratio").is_not_null(), pl.col("method").is_in(self.ends), boat_type=ALL
         )
         of = {(row["method"], row["era"]): row for row in shifts.iter_rows(named=True)}
+        wording = say("From a tow of {era} to the next of the same boat: {before}, {after}")
         said = [
-            say(
-                "From a tow of {era} to the next of the same boat: {before}, {after}",
-                era=era,
-                before=_shift(of[self.ends[0], era]),
-                after=_shift(of[self.ends[1], era]),
-            )
+            told("slide_era", wording, {}, "era_shifts", era=era, before=before, after=after)
             for era in shifts["era"].unique().sort()
             if all((method, era) in of for method in self.ends)
+            for before, after in [[shift(of[method, era]) for method in self.ends]]
         ]
         if said:
             marks = say(
                 "A point is the median over boats that were towed again, with ageing taken off; "
                 "a bar is its 95 % interval. At 1 nothing differs."
             )
-            rest = [say("{finding}.", finding=finding) for finding in said[1:]]
-            yield Slide("eras", "eras", shifts, said[0], [*rest, marks], "era_shifts")
+            rest = map(_finished, said[1:])
+            yield Slide("eras", "eras", shifts, said[0], [*rest, marks])
 
     def hull_speed(self) -> Iterator[Slide]:
         """Whether B, which only the fit gives, is hull speed, which the length gives."""
@@ -255,47 +264,39 @@ class Book:
         is_it = of_all["b_is_hull_speed"]
         if is_it is None or of_all["n_boats"] < FEWEST:
             return
-        verdict = say("B may be hull speed") if is_it else say("B is not hull speed")
-        finding = say(
-            "{verdict}: it lies at {ratio:.2f} times hull speed",
-            verdict=verdict,
-            ratio=of_all["b_ratio"],
+        said = say("B may be hull speed") if is_it else say("B is not hull speed")
+        wording = say("{said}: it lies at {ratio} times hull speed")
+        ratio, low, high = (Number(of_all[f"b_ratio{end}"], unit="1") for end in ("", "_lo", "_hi"))
+        finding = told("slide_hull", wording, {}, "hull_speed", said=said, ratio=ratio)
+        wording = say(
+            "Median of {boats} {method}, 95 % interval {low} to {high}; {share} % of the tows lie "
+            "within 5 %."
         )
-        notes = [
-            say(
-                "Median of {boats} {method}, 95 % interval {lo:.2f} to {hi:.2f}; {share:.0f} % of "
-                "the tows lie within 5 %.",
-                boats=_boats(of_all),
-                method=labels.method(self.ends[1]),
-                lo=of_all["b_ratio_lo"],
-                hi=of_all["b_ratio_hi"],
-                share=100 * of_all["b_share_within_5pct"],
-            ),
+        words = self.methods | {"boats": _boats(of_all)}
+        share = _share(of_all["b_share_within_5pct"])
+        notes: Notes = [
+            told("hull_ratio", wording, words, "hull_speed", low=low, high=high, share=share),
             say("On the dashed line B is hull speed."),
             CREWS_MARKED,
         ]
-        rows = self._tows_with("b_m_s")
-        yield Slide("hull speed", "slide_hull_speed", rows, finding, notes, "hull_speed")
+        yield Slide("hull speed", "slide_hull_speed", self._tows_with("b_m_s"), finding, notes)
 
     def towed_at(self) -> Iterator[Slide]:
         """At what part of hull speed boats are towed."""
         of_all = self._hull_speed()
         if of_all["n_boats"] < FEWEST:
             return
-        finding = say(
-            "Half of the tows were made above {ratio:.0f} % of hull speed",
-            ratio=100 * of_all["tow_ratio"],
+        wording = say("Half of the tows were made above {ratio} % of hull speed")
+        ratio = _share(of_all["tow_ratio"])
+        finding = told("slide_towed_at", wording, {}, "hull_speed", ratio=ratio)
+        wording = say(
+            "{share} % of the tows lie between 60 and 70 % of hull speed, where the presentation "
+            "puts rowing: between the dashed lines."
         )
-        notes = [
-            say(
-                "{share:.0f} % of the tows lie between 60 and 70 % of hull speed, where the "
-                "presentation puts rowing: between the dashed lines.",
-                share=100 * of_all["tow_share_60_70"],
-            ),
-            CREWS_MARKED,
-        ]
+        share = _share(of_all["tow_share_60_70"])
+        notes: Notes = [told("towed_at", wording, {}, "hull_speed", share=share), CREWS_MARKED]
         rows = self._tows_with("tow_hull_ratio").filter(method=self.ends[1])
-        yield Slide("towed at", "slide_towed_at", rows, finding, notes, "hull_speed")
+        yield Slide("towed at", "slide_towed_at", rows, finding, notes)
 
     def _hull_speed(self) -> Row:
         """The statistics of all types together, after correction."""
@@ -313,20 +314,16 @@ class Book:
         if rows.is_empty():
             return
         most = rows.sort((pl.col("median_ratio") - 1).abs(), "option").row(-1, named=True)
-        finding = say(
-            "Of the options of 2015, {option} changes Cw most: by {by:.1f} %",
-            option=labels.code(most["option"]),
-            by=100 * abs(most["median_ratio"] - 1),
+        wording = say("Of the options of 2015, {option} changes Cw most: by {by} %")
+        option, by = labels.code(most["option"]), _off(most["median_ratio"])
+        finding = told("slide_options", wording, {}, "option_summary", option=option, by=by)
+        wording = say(
+            "A point is the median change of Cw over {tows} ({method}); a bar holds the middle "
+            "90 % of the tows. At 1 an option changes nothing."
         )
-        notes = [
-            say(
-                "A point is the median change of Cw over {tows} ({method}); a bar holds the middle "
-                "90 % of the tows. At 1 an option changes nothing.",
-                method=labels.method(most["method"]),
-                tows=ngettext("1 tow", "{n} tows", most["tows"]),
-            )
-        ]
-        yield Slide("options", "options", rows, finding, notes, "option_summary")
+        tows, method = ngettext("1 tow", "{n} tows", most["tows"]), labels.method(most["method"])
+        notes = [told("options_marked", wording, tows=tows, method=method)]
+        yield Slide("options", "options", rows, finding, notes)
 
     def boat(self, fsn_no: str) -> Iterator[Slide]:
         """How far the tows of one boat lie apart through the years."""
@@ -339,15 +336,13 @@ class Book:
         ]
         if any(frame.is_empty() for frame in largest):
             return
-        before, after = (100 * abs(frame["cw_ratio"][0] - 1) for frame in largest)
-        finding = say(
-            "{name}: from one tow to the next Cw differs by up to {after:.1f} %, "
-            "{method} by {before:.1f} %",
-            name=points["name"][0],
-            before=before,
-            after=after,
-            method=labels.method(self.ends[0]),
+        before, after = (_off(frame["cw_ratio"][0]) for frame in largest)
+        wording = say(
+            "{name}: from one tow to the next Cw differs by up to {after} %, {old_method} by "
+            "{before} %"
         )
+        words = self.methods | {"name": points["name"][0]}
+        finding = told("slide_boat", wording, words, "repeat_pairs", before=before, after=after)
         notes = [
             say(
                 "The curves of all seasons; each from 85 to 115 % of the declared speed. Compared "
@@ -355,7 +350,7 @@ class Book:
             )
         ]
         rows = points.select("method", "tow_id", "season", "crew", "speed_m_s", "cw_kg_m")
-        yield Slide(f"years {fsn_no}", "slide_boat_years", rows, finding, notes, "repeat_pairs")
+        yield Slide(f"years {fsn_no}", "slide_boat_years", rows, finding, notes)
 
     def conclusion(self, made: Sequence[Slide]) -> Iterator[Slide]:
         """How well a tow repeats itself, before and after; then what other slides found."""
@@ -367,52 +362,74 @@ class Book:
         if len(of_all) < len(self.ends):
             return
         before, after = (of_all[method] for method in self.ends)
-        finding = say(
-            "Conclusion: the random error of one tow is {after:.1f} %; it was {before:.1f} %",
-            after=100 * after["sd_ratio"],
-            before=100 * before["sd_ratio"],
+        wording = say("Conclusion: the random error of one tow is {after} %; it was {before} %")
+        errors = {
+            "after": _per_cent(after["sd_ratio"]),
+            "before": _per_cent(before["sd_ratio"]),
+        }
+        finding = told("slide_conclusion", wording, errors, "reproducibility")
+        wording = say(
+            "Of {n_pairs} repeat tows {share} % lie within 2 % of the tow before; {old_method} it "
+            "was {then} %. The presentation promised a large majority."
         )
-        notes: list[Sentence | Statement] = [
-            say(
-                "Of {pairs} repeat tows {after:.0f} % lie within 2 % of the tow before; "
-                "{method} it was {before:.0f} %. The presentation promised a large majority.",
-                pairs=after["n_pairs"],
-                after=100 * after["share_within_2pct"],
-                before=100 * before["share_within_2pct"],
-                method=labels.method(self.ends[0]),
-            ),
-            *(
-                say("{finding}.", finding=slide.finding)
-                for slide in made
-                if slide.name.startswith(CONCLUDING)
-            ),
-            *voted_steps(self.views, self.ends[-1]),
-        ]
-        yield Slide("conclusion", "reproducibility", rows, finding, notes, "reproducibility")
+        share, then = (_share(row["share_within_2pct"]) for row in (after, before))
+        repeats = told(
+            "repeats", wording, self.methods | after, "reproducibility", share=share, then=then
+        )
+        others = (slide.finding for slide in made if slide.name.startswith(CONCLUDING))
+        notes = [repeats, *map(_finished, others), *voted_steps(self.views, self.ends[-1])]
+        yield Slide("conclusion", "reproducibility", rows, finding, notes)
 
 
 def _boats(line: Row | None) -> Sentence:
     return ngettext("1 boat", "{n} boats", line["n_boats"] if line else 0)
 
 
-def _verdict(figure: str, line: Row) -> Sentence:
+def _explained(line: Row | None) -> Value:
+    """The share of the spread that a line explains, where one was fitted and there is a spread."""
+    if line is None or line["r2"] is None:
+        return UNKNOWN
+    return told("share", say("{r2} %"), r2=_share(line["r2"]))
+
+
+def _finished(finding: Statement) -> Statement:
+    """A finding as a sentence among others."""
+    return told("finding", say("{finding}."), finding=finding)
+
+
+def _share(ratio: float) -> Number:
+    return Number(100 * ratio, 0, "%")
+
+
+def _per_cent(ratio: float) -> Number:
+    return Number(100 * ratio, 1, "%")
+
+
+def _off(ratio: float) -> Number:
+    """How far from 1, whatever the side."""
+    return _per_cent(abs(ratio - 1))
+
+
+def relation(figure: str, line: Row) -> Statement:
     """Whether a slope's interval leaves out zero, and on which side; else whether it could."""
     quantity, explaining = PAIRS[figure]
-    words = {"y": QUANTITIES[quantity], "x": EXPLAINING[explaining]}
+    wording, verdict = say("no relation seen between {y} and {x}"), "none"
     if line["slope_lo"] > 0:
-        return say("{y} rises with {x}", **words)
-    if line["slope_hi"] < 0:
-        return say("{y} falls with {x}", **words)
-    if (line["r2"] or 0.0) >= CLEAR_R2:
-        return say("too few boats to tell whether {y} goes with {x}", **words)
-    return say("no relation seen between {y} and {x}", **words)
+        wording, verdict = say("{y} rises with {x}"), "rises"
+    elif line["slope_hi"] < 0:
+        wording, verdict = say("{y} falls with {x}"), "falls"
+    elif (line["r2"] or 0.0) >= CLEAR_R2:
+        wording, verdict = say("too few boats to tell whether {y} goes with {x}"), "not known"
+    y, x = QUANTITIES[quantity], EXPLAINING[explaining]
+    return told("relation", wording, {}, "type_lines", verdict=verdict, y=y, x=x)
 
 
-def _shift(row: Row) -> Sentence:
+def shift(row: Row) -> Statement:
     """What becomes of Cw at the next tow of the same boat."""
-    words = {"by": 100 * abs(row["shift_ratio"] - 1), "method": labels.method(row["method"])}
-    if not row["apart"]:
-        return say("{method} no difference is seen", **words)
-    if row["shift_ratio"] < 1:
-        return say("{method} Cw falls by {by:.1f} %", **words)
-    return say("{method} Cw rises by {by:.1f} %", **words)
+    wording, verdict = say("{method} no difference is seen"), "none"
+    if row["apart"] and row["shift_ratio"] < 1:
+        wording, verdict = say("{method} Cw falls by {by} %"), "falls"
+    elif row["apart"]:
+        wording, verdict = say("{method} Cw rises by {by} %"), "rises"
+    method, by = labels.method(row["method"]), _off(row["shift_ratio"])
+    return told("shift", wording, {}, "era_shifts", verdict=verdict, method=method, by=by)

@@ -7,8 +7,8 @@ from typing import Any, Final
 from dashboards import drawn, labels
 from dashboards.documents import pdf
 from dashboards.html import keep_units
-from dashboards.slide_book import Slide, slides
 from dashboards.speech import Speech
+from dashboards.statements.slides import Slide, slides
 from pipeline.messages import say
 from warehouse.queries.views import Views
 from warehouse.store.unforeseen import Border
@@ -56,7 +56,7 @@ def _page(slide: Slide, speech: Speech) -> dict[str, Any]:
     else:
         spec |= WIDE if isinstance(spec.get("height"), int) else {"width": WIDE["width"]}
     return {
-        "finding": keep_units(speech.say(slide.finding)),
+        "finding": keep_units(slide.finding(speech)),
         "chart": drawn.svg(spec, slide.rows, speech.language),
         "notes": [keep_units(speech.words(note)) for note in slide.notes],
         "source": speech.say(SOURCE, table=slide.source),
