@@ -9,7 +9,7 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import exp
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -43,7 +43,6 @@ CHANGES: Final = {
 SHARES: Final = re.compile("share|_sd_ratio|^sd_|u_ratio|rmse|most_|r2|at_10pct|p_fault")
 """Columns with a part of a whole, shown in per cent."""
 
-NO_HEADS: Final[Mapping[str, str]] = {}
 _NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0[%sN])?\*?|-?")
 """A cell that is aligned to the right."""
 
@@ -69,7 +68,7 @@ class Section:
     lines: Sequence[str] = ()
     rows: Sequence[Row] = ()
     columns: str = ""
-    heads: Mapping[str, str] = NO_HEADS
+    heads: Mapping[str, str] = field(default_factory=dict)
     empty: str = ""
     note: str = ""
 
@@ -121,7 +120,7 @@ def speech() -> Speech:
     return Speech(LANGUAGE.get())
 
 
-def table(rows: Sequence[Row], columns: str, heads: Mapping[str, str] = NO_HEADS) -> str:
+def table(rows: Sequence[Row], columns: str, heads: Mapping[str, str] | None = None) -> str:
     """Rows as lines of text, numbers to the right; no text where there are none."""
     if not rows:
         return ""
@@ -130,7 +129,7 @@ def table(rows: Sequence[Row], columns: str, heads: Mapping[str, str] = NO_HEADS
     cells = {name: [cell(name, row.get(name)) for row in shown] for name in columns.split()}
     for name, texts in cells.items():
         to_the_right = all(map(_NUMBER.fullmatch, texts))
-        heading = labels.unbroken(tell(heads.get(name) or labels.column(name)))
+        heading = labels.unbroken(tell((heads or {}).get(name) or labels.column(name)))
         width = max(NARROW, *map(len, texts))
         drawn.add_column(
             "\n".join(textwrap.wrap(heading, width, break_long_words=False)),
