@@ -152,6 +152,23 @@ class Workbench:
         }
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--snapshot-update", action="store_true", help="write kept texts anew")
+
+
+@pytest.fixture
+def snapshot(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
+    """Holds a text against the one that is kept in `tests/data/texts`."""
+
+    def hold(name: str, text: str) -> None:
+        kept = Path(__file__).parent / "data" / "texts" / f"{name}.txt"
+        if request.config.getoption("snapshot_update"):
+            kept.write_text(text, encoding="utf-8")
+        assert text == kept.read_text(encoding="utf-8")
+
+    return hold
+
+
 @pytest.fixture(autouse=True, scope="session")
 def _disks_need_not_sync() -> Iterator[None]:
     """No test loses power; a rebuild waits for the disk two hundred times."""

@@ -1,6 +1,5 @@
-"""The site of the small archive, with two editions and names that attack; a running workbench."""
+"""The site of the small archive, with two editions and names that attack; workbench; browser."""
 
-import contextlib
 import datetime as dt
 import shutil
 import threading
@@ -10,10 +9,13 @@ import pytest
 
 from dashboards.guard import listen
 from dashboards.site.render import build_site
+from dashboards.workbench.bench import Bench
 from dashboards.workbench.server import LOOPBACK, address, serving
 from pipeline.method.definition import shipped_method
 from tests.conftest import METHODS, Workbench, shared
+from tests.dashboards.browser import CHROMIUM, FLAGS, HIDDEN_BARS, OWN, WIDTHS
 from warehouse.editions.publish import Terms, publish
+from warehouse.queries.history import History
 from warehouse.store.store import Store
 
 ATTACK = "</script><script>alert(1)</script>"
@@ -70,13 +72,58 @@ def attacked(built):
     return built.table("tows")["fsn_no"].min()
 
 
-@contextlib.contextmanager
-def served(bench):
-    """The address of a workbench that runs meanwhile."""
+@pytest.fixture(scope="session")
+def history(built):
+    return History.of(built.store)
+
+
+@pytest.fixture
+def workbench(history, built, tmp_path):
+    """A workbench that saves into a folder of its own."""
+    (tmp_path / "warehouse.duckdb").symlink_to(built.store.database)
+    return Bench(Store(tmp_path), history)
+
+
+@pytest.fixture
+def url(workbench):
+    """The address at which it is served."""
     held = listen(LOOPBACK, 0)
-    server = serving(bench)
+    server = serving(workbench)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [held]})
     thread.start()
     yield address(held)
     server.should_exit = True
     thread.join()
+
+
+@pytest.fixture(scope="module")
+def context(site, history):
+    """A browser of a module, which reads the scripts of the site once.
+
+    Playwright keeps an event loop running in this thread, in which Dagster could not run its own:
+    the site is built before, and the browser closed with the module.
+    """
+    assert CHROMIUM is not None, "CI has to test in a browser: install the package chromium"
+    from playwright.sync_api import expect, sync_playwright  # noqa: PLC0415 - not needed when skipped
+
+    expect.set_options(timeout=30_000)  # other tests run beside these
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=FLAGS, ignore_default_args=HIDDEN_BARS
+        )
+        yield browser.new_context(accept_downloads=True, viewport=WIDTHS["desktop"])
+        browser.close()
+
+
+@pytest.fixture
+def page(context):
+    """An empty page; what pages should not do makes the test fail."""
+    faults = []
+    with context.new_page() as page:
+        page.set_default_timeout(30_000)
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
+        page.on("request", lambda r: None if r.url.startswith(OWN) else faults.append(r.url))
+        page.on("dialog", lambda dialog: (faults.append("dialog"), dialog.dismiss()))
+        yield page
+    assert faults == []
