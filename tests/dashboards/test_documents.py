@@ -21,9 +21,6 @@ from warehouse.store.methods import KnownMethods
 
 ISSUED = certificate.Issued(dt.date(2016, 1, 1), "Federatie", "https://register.example/")
 
-OF_TODAY = ("boats", "curves", "curve_points", "run_points", "due_list", "log_factors")
-"""Tables that another rebuild makes anew."""
-
 
 @pytest.fixture(scope="module")
 def views(store):
@@ -65,41 +62,18 @@ def test_a_certificate_says_what_the_register_says(views, contents):
     assert power == pytest.approx(float(exact), abs=0.05)
 
 
-def test_a_certificate_of_an_edition_stays_when_the_warehouse_makes_other_methods(store, contents):
-    with Views(store) as views:
-        line = lines_of(views, EDITIONS[-1]).row(0, named=True)
-        certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en", ISSUED)
-    with Views(store) as views:
-        views._db.execute("CREATE TEMP TABLE methods AS SELECT * FROM main.methods LIMIT 0")
-        views._db.execute(
-            "CREATE TEMP TABLE about AS SELECT key, CASE key WHEN 'code_version' THEN 'other' "
-            "ELSE value END AS value FROM main.about"
-        )
-        for table in OF_TODAY:
-            views._db.execute(f"CREATE TEMP TABLE {table} AS FROM main.{table} LIMIT 0")
-        certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en", ISSUED)
-    assert contents[0] == contents[1]
-
-
-def test_all_certificates_of_an_edition_are_in_one_file(views, contents):
-    certificate.certificates(views, EDITIONS[-1], None, "nl", ISSUED)
-    assert len(contents[0]["certificates"]) == lines_of(views, EDITIONS[-1]).height
-
-
-def test_an_expired_certificate_says_so(views, contents, monkeypatch):
-    line = certificate.certificate_lines(views, EDITIONS[-1], None)[0]
-    for status, said in (
-        ("expired", "geldt niet meer op 1"),
-        ("valid", "Geldig op 1"),
-    ):
-        monkeypatch.setattr(
-            certificate, "certificate_lines", lambda *_, s=status: [line | {"status": s}]
-        )
-        certificate.certificates(views, EDITIONS[-1], None, "nl", ISSUED)
-        assert said in contents[-1]["certificates"][0]["validity"]
-    later = certificate.Issued(line["valid_until"] + dt.timedelta(days=1))
-    certificate.certificates(views, EDITIONS[-1], None, "nl", later)
-    assert "geldt niet meer" in contents[-1]["certificates"][0]["validity"]
+@pytest.mark.parametrize(
+    ("status", "days_after", "said"),
+    [("valid", 0, "Geldig op"), ("valid", 1, "geldt niet meer op"), ("expired", 0, "geldt niet")],
+)
+def test_a_certificate_says_whether_it_holds(
+    views, contents, monkeypatch, status, days_after, said
+):
+    (line, *_) = certificate.certificate_lines(views, EDITIONS[-1], None)
+    monkeypatch.setattr(certificate, "certificate_lines", lambda *_: [line | {"status": status}])
+    issued = certificate.Issued(line["valid_until"] + dt.timedelta(days=days_after))
+    certificate.certificates(views, EDITIONS[-1], None, "nl", issued)
+    assert said in contents[0]["certificates"][0]["validity"]
 
 
 def test_a_draft_is_no_certificate(views, contents):
@@ -116,13 +90,13 @@ def test_what_is_not_there_is_told(views, edition, fsn_no):
         certificate.certificates(views, edition, fsn_no, "nl", ISSUED)
 
 
-def proposed(views, methods, against, language):
+def proposed(views, methods, language, *letter):
     known = KnownMethods.of(views.store)
-    return proposal.proposal(views, methods, against, language, known)
+    return proposal.proposal(views, methods, EDITIONS[0], language, known, *letter)
 
 
 def test_a_proposal_counts_every_line_that_changes(views, contents):
-    proposed(views, [METHODS[1]], EDITIONS[0], "en")
+    proposed(views, [METHODS[1]], "en")
     lines = proposal.compared(views, EDITIONS[0], f"concept-{METHODS[1]}")
     changed = lines.filter(change="changed").height
     parts = {part["title"]: part for part in contents[0]["parts"]}
@@ -157,7 +131,7 @@ def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, contents,
     monkeypatch.setattr(
         Views, "ask", lambda v, q, *of: flagged if q == "flagged_boats" else ask(v, q, *of)
     )
-    proposed(views, [METHODS[1]], EDITIONS[0], "en")
+    proposed(views, [METHODS[1]], "en")
     said = [s for part in contents[0]["parts"] for s in part["sentences"]]
     assert any(f"still has to look at: 1 of {tows.len()}." in sentence for sentence in said)
 
@@ -169,7 +143,7 @@ def test_drafts_and_the_due_list_judge_on_one_day(views):
 
 
 def test_several_methods_make_a_ballot(views, contents):
-    proposed(views, METHODS, EDITIONS[0], "nl")
+    proposed(views, METHODS, "nl")
     assert [row[0] for row in contents[0]["parts"][0]["rows"]] == [
         "zoals gepubliceerd",
         "regels van 2015",
@@ -186,8 +160,7 @@ def test_the_same_tables_give_the_same_document(views):
 
 def test_a_proposal_is_a_letter_of_six_pages_at_most_with_the_method_as_its_annex(views):
     letter = proposal.Letter("Bestuur <FSN>", dt.date(2026, 4, 1), dt.date(2026, 5, 1))
-    known = KnownMethods.of(views.store)
-    made = proposal.proposal(views, [METHODS[1]], EDITIONS[0], "nl", known, letter)
+    made = proposed(views, [METHODS[1]], "nl", letter)
     texts = [page.extract_text() for page in PdfReader(io.BytesIO(made)).pages]
     annex = next(place for place, text in enumerate(texts) if "Bijlage" in text)
     assert annex <= 6

@@ -2,6 +2,8 @@
 
 import datetime as dt
 
+import duckdb
+
 from dashboards.documents import certificate
 from dashboards.speech import Speech
 from dashboards.statements.boat import answers_by_boat
@@ -50,4 +52,7 @@ def test_an_edition_stays_on_pages_register_and_certificates(bench):
     change_lists(bench.archive)
     bench.rebuild(("as-published", METHOD))
     assert register_report(bench.store, f"concept-{METHOD}") != draft
+    with duckdb.connect(bench.store.database) as db:
+        db.execute("UPDATE about SET value = 'other' WHERE key = 'code_version'")
+        db.execute("DELETE FROM methods")
     assert shown(bench.store) == before

@@ -20,14 +20,19 @@ JSON = {"content-type": "application/json"}
     ("method", "path", "headers", "status"),
     [
         ("GET", "/", OWN, 200),
-        ("GET", "/", {"host": "evil.example"}, 403),
+        *(
+            ("GET", "/", {"host": host}, 403)
+            for host in ("evil.example", "evil.example:80", "127.0.0.1.evil.example", "")
+        ),
         ("GET", "/graphql", OWN, 200),
         ("GET", "/graphql?query=mutation", OWN, 403),
         ("GET", "/graphql?%71uery=mutation", OWN, 403),
         ("HEAD", "/graphql/?id=1", OWN, 403),
         ("POST", "/graphql", OWN | JSON, 200),
         ("POST", "/graphql", OWN | {"content-type": "text/plain"}, 403),
+        ("POST", "/graphql", OWN | {"content-type": "application/x-www-form-urlencoded"}, 403),
         ("POST", "/graphql", OWN | JSON | {"origin": "http://evil.example"}, 403),
+        ("POST", "/graphql", OWN | JSON | {"origin": "http://127.0.0.1:1"}, 403),
         ("POST", "/graphql", OWN | JSON | {"origin": "null"}, 403),
         ("POST", "/graphql", JSON | {"host": "127.0.0.1:3000"}, 200),  # Dagster's own client
     ],

@@ -29,11 +29,6 @@ def told(views):
     return explained(views, METHOD)
 
 
-def numbers_in(text):
-    found = re.findall(r"[-+]?\d+(?:\.\d+)?", text.replace("\N{MINUS SIGN}", "-"))
-    return [float(number) for number in found]
-
-
 def the_step(told, name):
     (step,) = (step for step in told.steps if step.name == text(f"step.{name}"))
     return step

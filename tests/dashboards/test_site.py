@@ -24,7 +24,6 @@ from dashboards.site.render import build_pages, build_site
 from dashboards.site.start import ABOUT
 from dashboards.speech import Speech
 from dashboards.statements.boat_type import LINES, QUANTITIES, slope
-from dashboards.statements.race import winners
 from pipeline.tables.schemas import TABLES
 from pipeline.tables.views import VIEWS
 from tests.conftest import METHODS
@@ -167,29 +166,14 @@ def test_power_that_repeats_cw_is_not_shown_beside_it(site):
     assert "vermogen verandert evenveel" in (site / "changes.html").read_text("utf-8")
 
 
-def test_a_race_page_says_among_how_many_it_compares():
-    rows = pl.DataFrame(
-        {"name": ["A", "B", "C"], "race": "R", "race_date": "2025-06-04",
-         "crew_class": "H",
-         "old_power_w": [70.0, None, 60.0], "new_power_w": [69.0, 80.0, 61.0],
-         "old_rank": [1, None, 2], "new_rank": [1, None, 2]}
-    )  # fmt: skip
-    text = winners(rows, {("R 2025-06-04", "H"): 0.1})(Speech("nl"))
-    assert "maar 2 van de 3 ploegen" in text
-    assert "wint A, net als eerst" in text
-    assert "Kans" not in text
-
-
-def test_every_crew_stands_on_the_due_list(site, store):
+@pytest.mark.parametrize(
+    ("page", "table", "of_all"), [("boats", "due_list", False), ("seasons", "season_links", True)]
+)
+def test_a_table_is_shown_whole(site, store, page, table, of_all):
     with Views(store) as views:
-        due = views.table("due_list").filter(method=default_method(method_names(views)))
-    assert len(list(rows_of(site, "boats.html", "due_list"))) == due.height > 0
-
-
-def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
-    with Views(store) as views:
-        shown = list(rows_of(site, "seasons.html", "season_links"))
-        assert len(shown) == views.table("season_links").height > 0
+        rows = views.table(table)
+        of_one = rows if of_all else rows.filter(method=default_method(method_names(views)))
+    assert len(list(rows_of(site, f"{page}.html", table))) == of_one.height > 0
 
 
 def test_a_column_and_a_code_on_a_page_have_a_text(store, site):
@@ -242,18 +226,16 @@ def test_a_column_without_anything_in_it_is_not_shown():
     assert Table("x", frame.clear(), "a b c d").shown == frame.columns
 
 
-def test_nothing_half_made_is_left(store, tmp_path, monkeypatch):
+def test_a_failing_build_leaves_nothing_half_made_and_the_old_site(
+    store, site, tmp_path, monkeypatch
+):
+    before = hashes(site)
     monkeypatch.setattr("dashboards.site.render.boat_pages", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build_pages(store, tmp_path / "site")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_failing_build_leaves_the_old_site(store, site, monkeypatch):
-    before = hashes(site)
-    monkeypatch.setattr("dashboards.site.render.shared_pages", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build_site(store)
+    assert list(tmp_path.iterdir()) == []
     assert hashes(site) == before
 
 
@@ -269,10 +251,14 @@ def test_a_boat_s_file_stays_in_its_folder(fsn_no, path):
     assert re.fullmatch(path, boat_path(fsn_no))
 
 
-def test_the_default_method_is_shown_first():
+def test_what_is_shown_first_is_among_what_there_is():
     assert default_method(["as-published", "rebased", "rebased-2015"]) == "rebased"
     assert default_method(["concept-rebased", "concept-x"]) == "concept-rebased"
     assert default_method(["a", "b"]) == "b"
+    drafts = ["concept-as-published", "concept-corrected-2013"]
+    assert newest_edition([*drafts, "2026-1"], "concept-as-published") == "2026-1"
+    assert newest_edition(drafts, "concept-as-published") == "concept-as-published"
+    assert newest_edition(drafts, "concept-rebased") == "concept-corrected-2013"
 
 
 def test_every_number_in_a_chart_stands_in_the_warehouse(store, site):
@@ -330,13 +316,6 @@ def test_an_edition_is_there_with_its_codes_and_sheets(store, site):
         for name in SHEETS:
             published = store.root / "editions" / edition / name
             assert (site / "downloads" / edition / name).read_bytes() == published.read_bytes()
-
-
-def test_what_is_shown_first_is_among_what_there_is():
-    drafts = ["concept-as-published", "concept-corrected-2013"]
-    assert newest_edition([*drafts, "2026-1"], "concept-as-published") == "2026-1"
-    assert newest_edition(drafts, "concept-as-published") == "concept-as-published"
-    assert newest_edition(drafts, "concept-rebased") == "concept-corrected-2013"
 
 
 def test_a_word_of_the_glossary_opens_its_line_where_it_is_first_used():

@@ -8,19 +8,20 @@ import pytest
 
 READING = "warehouse.intake"
 HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy", "sqlalchemy"}
-HEAVY |= {READING}
+WEB = {"starlette", "uvicorn"}
+HEAVY |= {READING} | WEB
 NEEDED = {
     "herijk.cli.main": set(),
     "herijk.cli.render": set(),
     "herijk.cli.registers_text": {"duckdb", "numpy", "polars"},
-    "herijk.cli.audit_text": HEAVY - {"altair", "dagster", "sqlalchemy"},
+    "herijk.cli.audit_text": HEAVY - WEB - {"altair", "dagster", "sqlalchemy"},
     "pipeline.method.definition": set(),
     "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
-    "warehouse.queries.audit": HEAVY - {"altair", "dagster", "sqlalchemy", READING},
+    "warehouse.queries.audit": HEAVY - WEB - {"altair", "dagster", "sqlalchemy", READING},
     "warehouse.editions.compare": {"dataframely", "numpy", "polars", "scipy"},
     # Columns of later, which an old edition lacks, are read from their declaration.
     "warehouse.editions.lineage": {"dataframely", "numpy", "polars"},
-    "assets.rebuild": HEAVY - {"altair", "dagster", "sqlalchemy"},
+    "assets.rebuild": HEAVY - WEB - {"altair", "dagster", "sqlalchemy"},
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}
 
