@@ -168,6 +168,17 @@ def published(report: "Published") -> Iterator[Part]:
     )
 
 
+KINDS: Final = {
+    "altered": say("altered"),
+    "differs": say("differs"),
+    "missing": say("missing"),
+    "notice": say("notice"),
+    "swapped": say("swapped"),
+    "unchecked": say("unchecked"),
+}
+"""What a check of editions can find."""
+
+
 def verify(report: "Verification") -> Iterator[Part]:
     """What was checked and what is wrong."""
     if not report.editions and not report.findings:
@@ -183,10 +194,11 @@ def verify(report: "Verification") -> Iterator[Part]:
     )
     yield Section(
         rows=[
-            vars(one) | {"verdict": tell("WRONG" if one.wrong else "notice")}
+            vars(one)
+            | {"verdict": tell("WRONG" if one.wrong else "notice"), "kind": tell(KINDS[one.kind])}
             for one in report.findings
         ],
-        columns="edition verdict where message",
+        columns="edition verdict kind where message",
     )
     if report.head:
         yield Section(
