@@ -51,30 +51,6 @@ def test_deviance_and_its_slope_equal_the_dense_formula(sd):
     assert at.gradient == pytest.approx(slope, rel=1e-3, abs=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("boat_sd", "other_sd", "error"), [(2.0, 1.0, 1.0), (0.1, 0.1, 1e-5), (0.0, 1.0, 1.0)]
-)
-def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd, error):
-    rng = np.random.default_rng(4)
-    n, boat, other = 60, np.r_[np.arange(20), rng.integers(0, 20, 40)], np.arange(60) % 6
-    y = 3.4 + boat_sd * rng.normal(size=20)[boat] + other_sd * rng.normal(size=6)[other]
-    y += np.sqrt(error) * rng.normal(size=n)
-    x = np.column_stack([np.ones(n), rng.normal(size=n)])
-    fits = [
-        mixed.fit(Problem(y * noise, np.full(n, error**2), x, boat, other), *mixed.COMPONENTS)
-        for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
-    ]
-    sds, intervals = (
-        np.array([getter(f) for f in fits], dtype=np.float64)
-        for getter in (lambda f: f.sd, lambda f: list(f.intervals().values()))
-    )
-    spread = fits[0].problem.spread
-    assert sds[0] == pytest.approx(sds[1], abs=1e-9 * spread)
-    assert intervals[0] == pytest.approx(intervals[1], abs=1e-7 * spread, nan_ok=True)
-    # A variance on its bound is none at all, not almost none.
-    assert ((sds == 0.0) | (sds > 1e-3 * spread)).all()
-
-
 def one_row_a_boat(variance, true_sd=0.0, seed=3):
     rng = np.random.default_rng(seed)
     x = np.column_stack([np.ones(12), rng.normal(size=12)])
@@ -103,17 +79,6 @@ def test_equal_errors_give_ordinary_and_known_ones_weighted_least_squares():
         beta, interval = least_squares(problem, weights)
         assert found.value == pytest.approx(beta, rel=1e-9)
         assert np.column_stack([found.lo, found.hi]) == pytest.approx(interval, rel=1e-9)
-
-
-def test_variance_components_are_those_of_another_search():
-    problem = grouped_data(known=1e-9)
-    found = mixed.fit(problem, *mixed.COMPONENTS)
-    other = optimize.minimize(
-        lambda ln_sd: dense_deviance(problem, np.exp(ln_sd)), np.zeros(3), method="Nelder-Mead"
-    )
-    assert found.sd == pytest.approx(np.exp(other.x), rel=1e-3)
-    # The deviance is flat at its least, so its height agrees more closely than the components.
-    assert likelihood(problem, found.sd).deviance == pytest.approx(other.fun, abs=1e-6)
 
 
 def test_intervals_of_components_cover_the_truth():

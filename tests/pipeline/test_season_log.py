@@ -10,12 +10,10 @@ import polars as pl
 import pytest
 from scipy.stats import binom, chi2
 
-from pipeline import curve
 from pipeline.errors import BrokenPromiseError
 from pipeline.season_log import estimate_season_factors, faults, fit, retow_choice
 from pipeline.season_log.archive_tows import ArchiveTows
 from pipeline.season_log.assumed import USUAL
-from pipeline.season_log.effects import slopes
 from pipeline.season_log.factors import refused
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
@@ -46,21 +44,6 @@ def renamed(tows, which):
     """Tows of boats that are towed only once."""
     once = pl.when(which).then("once " + pl.col("fsn_no")).otherwise("fsn_no")
     return tows.with_columns(once.alias("fsn_no"))
-
-
-@pytest.mark.parametrize("factor", [0.94, 1.06])
-def test_a_scale_error_does_what_refitting_the_hyperbola_does(factor):
-    a, b, v0 = 31.6, 4.44, 2.35
-    by_log = curve.cw(a * factor**2, curve.s_of_b(b / factor), v0)
-    r = (v0 / b) ** 2
-    q, force, reference = (np.array([x]) for x in (r / (1 - r), 300.0, 0.0))
-    at, above, below = (
-        slopes(q, force, np.array([math.log(factor) + x]), reference) for x in (0, 1e-6, -1e-6)
-    )
-    ln_ratio = math.log(by_log / curve.cw(a, curve.s_of_b(b), v0))
-    assert at.predicted[0, 0] == pytest.approx(ln_ratio, abs=1e-12)
-    difference = (above.predicted - below.predicted)[0, :2] / 2e-6
-    assert at.ways["speed"][0, :2] == pytest.approx(difference, rel=1e-6)
 
 
 def test_without_noise_factors_are_exact_and_ageing_is_told_from_them():
@@ -213,17 +196,6 @@ def test_a_season_without_any_repeat_or_gps_is_not_determined():
     assert row["component"] > 0
     assert (found.factors.filter(~IN_2010)["source"] == "estimated").all()
     assert found.covariance.shape == (4, 4)
-
-
-def test_a_season_that_hangs_on_one_boat_says_so():
-    world, sound = estimated(CLEAN, 1000)
-    boat = world.tows.filter(IN_2010)["fsn_no"][0]
-    found = estimate_season_factors(
-        renamed(world.tows, IN_2010 & (pl.col("fsn_no") != boat))
-    ).factors
-    row = found.row(by_predicate=IN_2010, named=True)
-    assert row["n_links"] == 1
-    assert (row["hi"] - row["lo"]) > 2 * (sound.factors["hi"] - sound.factors["lo"])[1]
 
 
 def test_parts_of_a_season_have_factors_of_their_own():
