@@ -14,8 +14,8 @@ pytestmark = NEEDED
 
 
 @pytest.fixture
-def page(page, url):
-    """The open workbench."""
+def page(url, page):
+    """The open workbench; its server ends after the page, which may still load scripts."""
     page.goto(url)
     settle(page)
     return page
