@@ -21,7 +21,7 @@ def export() -> None:
     "boat", required=False, help="A boat by number or name; without it all boats of the edition."
 )
 @data_option
-@option("--edition", help="Edition; the newest when left out.")
+@option("--edition", help="Edition. Default: the newest.")
 @option("--out", type=PATH, help="File to write, a PDF.")
 @json_option
 def certificate(
