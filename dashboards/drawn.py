@@ -80,11 +80,18 @@ def _specification(figure: str, language: str) -> str:
     return json.dumps(spec | {"config": CONFIG}).replace(f'"{placeholder}"', '"rows"')
 
 
+LIVE: Final = ("href", "tooltip")
+"""What a picture cannot keep: a link that leads nowhere here would lead to vega.github.io."""
+
+
 def svg(spec: dict[str, Any], rows: pl.DataFrame, language: str) -> str:
     """A chart of these rows as SVG, its numbers as people of a language write them."""
-    _drop(spec, "href", "tooltip")
+    still = json.loads(
+        json.dumps(spec),
+        object_hook=lambda part: {name: held for name, held in part.items() if name not in LIVE},
+    )
     drawn = vl_convert.vegalite_to_svg(
-        json.dumps(spec | {"datasets": {"rows": rows.to_dicts()}}, default=str),
+        json.dumps(still | {"datasets": {"rows": rows.to_dicts()}}, default=str),
         vl_version=VEGA_LITE,
         format_locale=LOCALES[language],
     )
@@ -92,14 +99,3 @@ def svg(spec: dict[str, Any], rows: pl.DataFrame, language: str) -> str:
     names = dict.fromkeys(re.findall(r'id="(clip\d+)"', drawn))
     places = {name: f"clip{place}" for place, name in enumerate(names)}
     return re.sub(r"\bclip\d+\b", lambda name: places[name[0]], drawn)
-
-
-def _drop(part: object, *keys: str) -> None:
-    """Takes out of a specification what a picture cannot keep."""
-    if isinstance(part, dict):
-        for key in keys:
-            part.pop(key, None)
-    for inner in (
-        part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
-    ):
-        _drop(inner, *keys)

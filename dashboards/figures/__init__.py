@@ -3,7 +3,7 @@
 A figure draws the columns it names and computes nothing; its Vega-Lite does not depend on what the
 frame holds, so that one specification serves every boat. Axis titles carry units; colours are
 Okabe and Ito's, which colour-blind people tell apart, and a shape or dash says the same in print.
-Does not belong here: reading tables, pages, and texts (`words`).
+Does not belong here: reading tables, and pages.
 """
 
 from collections.abc import Sequence

@@ -32,11 +32,6 @@ SCENARIO: Final = "werkbank"
 """The method that is made on the workbench."""
 
 
-def colour(field: str, title: str, **more: Any) -> alt.Color:
-    """A category by colour."""
-    return alt.Color(f"{field}:N", title=title, scale=alt.Scale(range=list(OKABE_ITO)), **more)
-
-
 def _both(field: str, inks: alt.Scale, shapes: alt.Scale, **more: Any) -> Sequence[Any]:
     """A category by colour and shape, which share one legend."""
     return (

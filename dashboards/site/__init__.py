@@ -1,5 +1,5 @@
 """The site of plain files: every page made from the tables, written beside and swapped in whole.
 
-`pages` says what is on which page, `render` turns that into files; texts are in
-`words`, charts in `dashboards.figures`, numbers in the warehouse.
+`pages` says what is on which page, `parts` what a page is made of, and `render` turns that into
+files. Charts are in `dashboards.figures`, numbers in the warehouse.
 """

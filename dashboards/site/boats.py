@@ -1,6 +1,7 @@
 """One page per boat: the owner's answer, and folded below it how each number was made."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 
 import polars as pl
@@ -134,7 +135,7 @@ def _page(
     )
     facts = Section("facts", say("Dimensions"), tables=[measures], folded=bool(tows))
     selects = [
-        Select("tow_id", say("Tow"), tows, [*tows, ""][len(tows) - 1]),
+        Select("tow_id", say("Tow"), tows, next(reversed(tows), "")),
         methods_select([m for m in methods if m in curves["method"].unique()]),
     ]
     return Page(
@@ -165,15 +166,6 @@ def _related(answers: Sequence[Answer]) -> Iterator[Section]:
 def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     """How the numbers were made: all of it folded."""
 
-    def folded(
-        name: str,
-        title: Sentence,
-        note: Sentence | None = None,
-        charts: Sequence[Chart] = (),
-        tables: Sequence[Table] = (),
-    ) -> Section:
-        return Section(name, title, note, charts, tables, folded=True)
-
     def drawn(figure: str, *kinds: str, caption: Sentence | None = None) -> Chart:
         rows = [own[kind].drop("fsn_no") for kind in kinds]
         follows = {name: name for name in FOLLOWS if "tow_id" in rows[0].columns}
@@ -184,8 +176,8 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         follows = [one for one in FOLLOWS if one in rows.columns and kind != "register"]
         return [Table(name, rows, columns, follows=follows)]
 
-    return [
-        folded(
+    sections = [
+        Section(
             "boat_lines",
             say("In the register"),
             tables=listed(
@@ -195,7 +187,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
                 "b_m_s cw_kg_m cw_lo_kg_m cw_hi_kg_m verification_code method",
             ),
         ),
-        folded(
+        Section(
             "boat_history",
             say("Through the years"),
             say(
@@ -205,7 +197,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
             ),
             [drawn("history", "history")],
         ),
-        folded(
+        Section(
             "boat_curve",
             say("Resistance curve"),
             say(
@@ -217,7 +209,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
             ),
             [drawn("resistance_curve", "line", "point", "declared")],
         ),
-        folded(
+        Section(
             "boat_runs",
             say("Runs"),
             say(
@@ -226,7 +218,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
             ),
             tables=listed("run_points", "runs", RUN_COLUMNS),
         ),
-        folded(
+        Section(
             "boat_traces",
             say("What the instruments said"),
             say(
@@ -235,7 +227,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
             ),
             [drawn("traces", "trace", "window")],
         ),
-        folded(
+        Section(
             "boat_out_back",
             say("Out against back, and the wind"),
             say(
@@ -248,7 +240,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
                 drawn("wind", "wind", caption=say("Apparent wind [m/s]")),
             ],
         ),
-        folded(
+        Section(
             "uncertainty_budget",
             say("What the uncertainty is made of"),
             say(
@@ -256,19 +248,19 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
             ),
             [drawn("budget", "budget")],
         ),
-        folded(
+        Section(
             "assessments",
             say("Checks"),
             say("Only results beyond a limit; all checks are in the table assessments."),
             tables=listed("assessments", "assessments", "check severity observed limit unit"),
         ),
-        folded(
+        Section(
             "hand_windows",
             say("Windows chosen by hand"),
             say("Windows that a person chose, with the reason."),
             tables=listed("hand_windows", "hand_windows", "run start_s end_s reason"),
         ),
-        folded(
+        Section(
             "lineage",
             say("Lineage"),
             say("The files, the method and the code behind every register line."),
@@ -277,3 +269,4 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
             ),
         ),
     ]
+    return [replace(section, folded=True) for section in sections]

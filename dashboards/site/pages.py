@@ -18,7 +18,7 @@ from dashboards.site.parts import (
     with_page,
 )
 from dashboards.site.prose import audit_guide, edition_pages, guide_links, method_pages, slides_page
-from dashboards.site.start import ABOUT, MENU, start_page
+from dashboards.site.start import ABOUT, MENU, RELATIVE, season_change, start_page
 from dashboards.site.types import type_pages, types_page
 from dashboards.speech import Headline
 from dashboards.statements import due as of_due
@@ -155,18 +155,9 @@ def _seasons(views: Views, methods: Sequence[str]) -> Page:
     def rows(name: str) -> pl.DataFrame:
         return views.table(name).filter(shown)
 
-    change, logs, spread = map(rows, ("season_changes", "log_factors", "reproducibility"))
+    logs, spread = rows("log_factors"), rows("reproducibility")
     sections = [
-        _drawn(
-            "season_change",
-            say("Relative to the published Cw"),
-            say(
-                "Cw by the method / Cw as published, of the same tow: median, and lowest to "
-                "highest."
-            ),
-            change,
-            headline=season.changes(change, first),
-        ),
+        season_change("season_change", RELATIVE, views, methods),
         _drawn(
             "log_factors",
             say("Log factor per season"),

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Final
 
 import jinja2
-from markupsafe import Markup
 
 from dashboards import fonts, labels
 from dashboards.addresses import boat_path, race_path, type_path
@@ -39,13 +38,6 @@ QUICK: Final = 4
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
-
-HEADING: Final = Markup(
-    '<th scope="col" data-c="{column}"{title}{kind}>'
-    '<button type="button" class="sort">{text}</button></th>'
-)
-TITLE: Final = Markup(' title="{}"')
-NUMERIC: Final = Markup(' class="n"')
 
 IN_GLOSSARY: Final = {
     "crew_class": "crew_class",
@@ -175,21 +167,15 @@ class Edition:
             "column_text": labels.column,
             "unbroken": labels.unbroken,
             "speech": self.speech,
-            "heading": cache(self._heading),
+            "meaning": self._meaning,
             "about": self.about,
         }
 
-    def _heading(self, table: str, column: str, is_number: bool) -> Markup:
-        """The heading of a column, which says what it means when pointed at."""
-        meaning = self._comments.get(f"{table}.{column}") or self._comments.get(column)
-        if not meaning and column in IN_GLOSSARY:
-            meaning = self.speech.say(TERMS[IN_GLOSSARY[column]][1])
-        return HEADING.format(
-            column=column,
-            title=TITLE.format(meaning) if meaning else "",
-            kind=NUMERIC if is_number else "",
-            text=self.speech.text(labels.column(column)),
-        )
+    def _meaning(self, table: str, column: str) -> str | None:
+        """What a column means, for who points at its heading."""
+        term = IN_GLOSSARY.get(column)
+        said = self._comments.get(f"{table}.{column}") or self._comments.get(column)
+        return said or (self.speech.say(TERMS[term][1]) if term else None)
 
     def address(self, page: Page) -> str:
         """Where the page lies within the site."""
@@ -228,7 +214,7 @@ def _data_path(page: Page) -> str:
 def _data_script(page: Page) -> str:
     """What charts draw, by name, as a script: a page from disk may load no JSON.
 
-    It is deflated to a seventh.
+    It is deflated: of 1,020 tows 3.8 MB instead of 22, and the site 27 MB of the 40 it may have.
     """
     packed = base64.b64encode(zlib.compress(page_json(page).encode(), QUICK))
     return f'window.HERIJK_DATA = "{packed.decode("ascii")}";\n'

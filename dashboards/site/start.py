@@ -54,6 +54,8 @@ DOORS: Final = (
 )
 """What people come for: the page of each, its name on the start page, and what it says."""
 
+RELATIVE: Final = say("Relative to the published Cw")
+
 
 def start_page(
     views: Views, methods: Sequence[str], changes: pl.DataFrame, by_reports: bool
@@ -64,7 +66,6 @@ def start_page(
         by_reports: whether the site lies beside the reports of rebuilds, so that it can lead there.
     """
     now = changes.filter(to_edition=first_edition(changes["to_edition"], methods))
-    years = views.table("season_changes").filter(pl.col("method").is_in(methods))
     sections = [
         Section(
             "index_pages",
@@ -82,19 +83,22 @@ def start_page(
             key_figures=_figures(views),
             headline=edition.changes(now) if now.height else None,
         ),
-        Section(
-            "years",
-            say("Through the seasons"),
-            say(
-                "Cw by the method / Cw as published, of the same tow: median, and lowest to "
-                "highest."
-            ),
-            [Chart("season_change", [years], say("Relative to the published Cw"))],
-            headline=season.changes(years, default_method(methods)),
-        ),
+        season_change("years", say("Through the seasons"), views, methods),
         *_last_rebuild(views, by_reports),
     ]
     return Page("index.html", say("Start"), sections)
+
+
+def season_change(name: str, title: Sentence, views: Views, methods: Sequence[str]) -> Section:
+    """What each method makes of each season: the history in one chart."""
+    years = views.table("season_changes").filter(pl.col("method").is_in(methods))
+    return Section(
+        name,
+        title,
+        say("Cw by the method / Cw as published, of the same tow: median, and lowest to highest."),
+        [Chart("season_change", [years], RELATIVE)],
+        headline=season.changes(years, default_method(methods)),
+    )
 
 
 def _last_rebuild(views: Views, by_reports: bool) -> Iterator[Section]:

@@ -149,6 +149,7 @@ class BenchPage:
             stills={},
             site="" if self.language == "nl" else "../",
             root="",
+            data_path="",
             asked=asked,
             changed=changed,
             refused=refused,

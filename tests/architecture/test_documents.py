@@ -1,13 +1,16 @@
-"""The documents say what the code does: options, reason codes, commands, links."""
+"""The documents say what the code does; the ledger of the sources names only what exists."""
 
 import ast
 import re
 
 import pytest
 
+from dashboards.figures import FIGURES
 from herijk.cli.main import app
 from pipeline.assessment.checks import CODES
 from pipeline.method.definition import Steps, shipped_methods
+from pipeline.tables.schemas import TABLES
+from pipeline.tables.views import VIEWS
 from tests.architecture.repository import ROOT, modules, read, tracked_files
 from tests.reason_codes import REASON_CODES
 
@@ -18,11 +21,24 @@ OPTIONS = {
 }
 
 LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
-
-
-def commands():
-    """Names of the commands that the command line has."""
-    return sorted(app.commands)
+LEDGER = read("docs/sources.md")
+NAMED = re.compile(r"\b(table|view|command|figure|test|check|method|option)s? `([^`]+)`")
+COLUMNS = re.compile(r"columns? ((?:`\w+`(?:, | and )?)+) of table `(\w+)`")
+ROWS = [line for line in LEDGER.splitlines() if re.match(r"\| [PCS]\d+ \|", line)]
+COMMANDS = {
+    " ".join(("herijk", *path))
+    for name, command in app.commands.items()
+    for path in [(name,), *((name, inner) for inner in getattr(command, "commands", ()))]
+}
+KNOWN = {
+    "table": set(TABLES),
+    "view": set(VIEWS),
+    "figure": set(FIGURES),
+    "check": set(CODES),
+    "method": set(shipped_methods()),
+    "option": OPTIONS,
+    "command": COMMANDS,
+}
 
 
 def rows_named(page, known):
@@ -64,11 +80,6 @@ def test_reason_codes_are_documented_and_no_others():
     assert REASON_CODES - texts == set()
 
 
-def test_readme_names_no_command_that_is_not_there():
-    named = set(re.findall(r"herijk ([a-z][a-z-]+)", read("README.md")))
-    assert named - set(commands()) == set()
-
-
 def test_every_link_leads_somewhere():
     pages = [f for f in tracked_files() if f.suffix == ".md"]
     broken = [
@@ -85,3 +96,18 @@ def test_every_page_is_reached_from_the_map_or_the_page_on_development():
     linked = {(ROOT / "docs" / target).resolve() for page in maps for target in LINK.findall(page)}
     pages = set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs" / "index.md"}
     assert {p.relative_to(ROOT) for p in pages if p.resolve() not in linked} == set()
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.split("|")[1].strip())
+def test_a_row_names_what_exists_or_says_why_not(row):
+    answer = row.split("|")[3]
+    named = NAMED.findall(answer)
+    assert named or "not answered" in answer or "`" in answer
+    for kind, name in named:
+        if kind == "test":
+            assert (ROOT / name).is_file(), name
+        else:
+            assert name in KNOWN[kind], (kind, name)
+    for columns, table in COLUMNS.findall(answer):
+        for column in re.findall(r"`(\w+)`", columns):
+            assert column in TABLES[table].column_names(), (table, column)

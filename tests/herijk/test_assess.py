@@ -69,10 +69,8 @@ def test_what_to_do_now(built):
     assert "tow_again" in said(found)
 
 
-def test_the_command_and_a_tow_that_no_list_names(built, herijk):
+def test_the_command_says_that_it_is_provisional(built, herijk):
     tow_id = built.table("tows")["tow_id"][-1]
     folders = ("--archive", built.archive, "--data", built.data)
     code, out, _ = herijk("assess", tow_id, *folders)
     assert (code, "Provisional: Cw is" in out, "Its runs" in out) == (0, True, True)
-    code, _, err = herijk("assess", "2014-999", *folders)
-    assert (code, "no tow 2014-999" in err) == (1, True)

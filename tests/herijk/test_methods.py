@@ -42,24 +42,6 @@ def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeyp
     assert "wind.side" in herijk("compare", "concept-rebased-2015", "ours.toml", *data)[1]
 
 
-def test_a_name_that_is_taken_is_refused(herijk, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert "another" in herijk("methods", "new", "rebased")[2]
-    (tmp_path / "ours.toml").touch()
-    assert "is there already" in herijk("methods", "new", "ours")[2]
-
-
-def test_an_error_in_a_file_is_named_with_its_line(herijk, tmp_path):
-    file = tmp_path / "ours.toml"
-    file.write_text('name = "ours"\ntitle = "x"\nextends = "rebased"\n[steps.wind]\nzij = 1\n')
-    status, _, err = herijk("methods", "check", file)
-    assert status == 1
-    assert "line 5" in err
-    script = tmp_path / "cmp.py"
-    script.write_text("print(1)")
-    assert f"{script} is no method file" in herijk("methods", "check", script)[2]
-
-
 def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
     file = tmp_path / "ours.toml"
     file.write_text('name = "ours"\ntitle = "Onze"\nextends = "rebased-2015"\n', encoding="utf-8")

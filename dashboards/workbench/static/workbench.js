@@ -26,7 +26,7 @@
     const refused = page.getElementById("refused").textContent.trim();
     byId("refused").textContent = refused;
     if (refused) return;
-    for (const id of ["results", "changed", "sources"]) byId(id).replaceWith(page.getElementById(id));
+    for (const id of ["content", "changed", "sources"]) byId(id).replaceWith(page.getElementById(id));
     const here = (part) => part.contains(document.activeElement);
     const options = byId("options");
     if (!here(options)) options.replaceWith(page.getElementById("options"));
@@ -35,7 +35,7 @@
     }
     history.replaceState(null, "", `?${asked}${location.hash}`);
     document.querySelector(".language").href = page.querySelector(".language").getAttribute("href");
-    window.herijk.start(byId("results"));
+    window.herijk.start(byId("content"));
   }
 
   // A change for all seasons takes the place of those for some.
