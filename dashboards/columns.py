@@ -12,7 +12,7 @@ from pipeline.tables.row import Row
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
     ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_percent", 3), ("after_percent", 3),
-    ("_percent", 1), ("size", 1), ("size_lo", 1), ("e_n", 2), ("p_value", 3),
+    ("_seconds", 0), ("_percent", 1), ("size", 1), ("size_lo", 1), ("e_n", 2), ("p_value", 3),
     ("size_hi", 1), ("_1pct", 2), ("_2pct", 2), ("cw_ratio", 3),
 )  # fmt: skip
 """Decimals shown by the ending of a column's name; 4 otherwise."""

@@ -136,7 +136,7 @@ def _page(
     facts = Section("facts", say("Dimensions"), tables=[measures], folded=bool(tows))
     selects = [
         Select("tow_id", say("Tow"), tows, next(reversed(tows), "")),
-        methods_select([m for m in methods if m in curves["method"].unique()]),
+        methods_select([m for m in methods if m in curves["method"].unique()] or methods),
     ]
     return Page(
         boat_path(fsn_no),

@@ -76,12 +76,7 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
     register = Section(
         "register",
         say("Register"),
-        say(
-            "A and B hold from 85 to 115 % of the declared speed; Cw holds at that speed. "
-            "Its interval is a 95 % interval for a method that estimates the log's error. "
-            "For other methods it is the spread of the runs alone: the log's error is not "
-            "in it. An expired line has no A, B and Cw. A draft is not published."
-        ),
+        edition.REGISTER,
         tables=[table],
         headline=edition.register(lines.filter(edition=select.chosen)),
     )
@@ -118,23 +113,14 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
     due_list = Section(
         "due_list",
         say("Who has to tow again"),
-        say(
-            "Until when each tow counts, as judged on the day of the last tow or race (As "
-            "of), and the speed of the next one. Lowest and Highest: 70 to 90 W per rower "
-            "(men) or 40 to 55 W (women) on the known curve. Beyond the curve: outside 85 "
-            "to 115 % of the declared speed."
-        ),
+        of_due.SPEEDS,
         tables=[due],
         headline=of_due.due(rows),
     )
     to_tow = Section(
         "retow_choice",
-        say("Which boats to tow again"),
-        say(
-            "Boats that, towed again with dGPS, reduce the uncertainty of the log "
-            "factors most; the first one most. Sd: standard deviation of a factor, "
-            "before and after."
-        ),
+        of_due.RETOW_TITLE,
+        of_due.RETOW,
         tables=[
             Table(
                 "retow_choice",
@@ -298,14 +284,7 @@ def _season_diagnosis(views: Views) -> Section:
     return Section(
         "season_diagnosis",
         say("Instruments by season"),
-        say(
-            "What may be wrong in a season with log, GPS, load cell, anemometer or "
-            "temperature. Fault: likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 "
-            "standard deviations from what is usual. Would not show: a fault of the usual "
-            "size would be taken for something else. Size: in per cent, or in N; the "
-            "interval counts how seldom such a fault is, so it can be 0 to 0. What is not "
-            "in the table: no fault was seen, and a usual one would show."
-        ),
+        season.DIAGNOSIS,
         tables=[
             Table(
                 "season_diagnosis",

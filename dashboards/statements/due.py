@@ -1,6 +1,7 @@
 """Who has to tow again, and whether towing more would be worth it."""
 
 import datetime as dt
+from typing import Final
 
 import polars as pl
 
@@ -10,6 +11,21 @@ from pipeline.messages import say
 MONTHS_AHEAD = dt.timedelta(days=365)
 WORTH = 0.9
 """A set of tows is worth its trouble where it takes a tenth or more off the uncertainty."""
+
+SPEEDS: Final = say(
+    "Until when each tow counts, as judged on the day of the last tow or race, and the speed of "
+    "the next one. Lowest and Highest: 70 to 90 W per rower (men) or 40 to 55 W (women) on the "
+    "known curve; a boat that was altered since may be towed at another speed. Beyond the curve: "
+    "outside 85 to 115 % of the declared speed, where it does not hold."
+)
+"""What a reader of the due list should know."""
+
+RETOW_TITLE: Final = say("Which boats to tow again")
+RETOW: Final = say(
+    "Boats that, towed again with dGPS, reduce the uncertainty of the log factors most; the first "
+    "one most. Sd: standard deviation of a factor, before and after."
+)
+"""What the most informative tows are."""
 
 
 def due(lines: pl.DataFrame) -> Statement:

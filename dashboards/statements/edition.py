@@ -17,6 +17,14 @@ from pipeline.tables.row import Row
 NEGLIGIBLE: Final = 5e-4
 """A cause that moves Cw by less than this is 0.0 % and is summed with the others."""
 
+REGISTER: Final = say(
+    "A and B hold from 85 to 115 % of the declared speed; Cw holds at that speed. Its interval is "
+    "a 95 % interval for a method that estimates the log's error. For other methods it is the "
+    "spread of the runs alone: the log's error is not in it. An expired line has no A, B and Cw. A "
+    "draft is not published."
+)
+"""What a reader of a register should know."""
+
 
 def register(lines: pl.DataFrame) -> Statement:
     """How many lines have a curve, and on which day that was judged."""

@@ -1,6 +1,7 @@
 """The commands about an archive that come before a rebuild: `init`, `simulate` and `check`."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -10,11 +11,14 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import tell
 from warehouse.store.machine_faults import machine_faults_explained
 
+if TYPE_CHECKING:
+    from warehouse.store.store import Store
+
 
 @click.command(cls=Command)
 @argument("directory", type=PATH, help="Folder to make.")
 @json_option
-def init(directory: Path, as_json: bool) -> None:
+def init(directory: Path) -> None:
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
     from warehouse.archive.files.empty_archive import write_templates
 
@@ -26,7 +30,7 @@ def init(directory: Path, as_json: bool) -> None:
         ) from error
     files = sorted(file for file in directory.rglob("*") if file.is_file())
     said = tell("An empty archive is in {}; begin with LEESMIJ.md.", directory)
-    show_files(files, as_json, said)
+    show_files(files, said)
 
 
 @click.command(cls=Command)
@@ -46,7 +50,6 @@ def simulate(
     seed: int,
     world: str,
     worlds: bool,
-    as_json: bool,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
     from herijk.cli.progress import tows_counted
@@ -64,7 +67,7 @@ def simulate(
     with machine_faults_explained(directory), tows_counted() as counted:
         truth = write_simulated_archive(directory, simulate_world(settings), counted)
     made = {"archive": str(directory), "truth": str(truth)}
-    show(made, lambda m: tell("Simulated archive: {archive}\nIts truth: {truth}", **m), as_json)
+    show(made, lambda made: [tell("Simulated archive: {archive}\nIts truth: {truth}", **made)])
 
 
 @click.command(cls=Command)
@@ -77,14 +80,14 @@ def simulate(
 )
 @data_option
 @json_option
-def check(archive: Path | None, data: Path, as_json: bool) -> None:
+def check(archive: Path | None, store: "Store") -> None:
     """What is wrong in an archive, by cause, and whether this machine is ready for a rebuild.
 
     Reads lists, headers and a sample of the data; then settings, methods, tables and disk space.
     """
     from herijk.cli.check_text import checked, text
 
-    report = checked(archive, data)
-    show(report, text, as_json)
+    report = checked(archive, store)
+    show(report, text)
     if not report.sound:
         raise click.exceptions.Exit(1)

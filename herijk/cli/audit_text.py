@@ -1,27 +1,25 @@
 """The pages of `herijk audit`: the answer, and tables of all that is behind it."""
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from math import exp
 from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
-from dashboards.labels import code_in_words
+from dashboards import labels
 from dashboards.statements import Statement
 from dashboards.statements.boat import Answer, answers_by_boat
 from dashboards.statements.boat_type import LINES, SPREAD, homogeneity, level, slopes
-from herijk.cli.options import Told
+from dashboards.statements.tow import statements as tow_statements
 from herijk.cli.render import (
+    Part,
+    Section,
     cell,
     codes,
-    interval_of_runs_alone,
-    page,
-    place,
-    section,
+    marked,
+    set_aside,
     speech,
     table,
-    why_set_aside,
-    with_crew,
 )
 from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
@@ -39,24 +37,25 @@ if TYPE_CHECKING:
 # A boat
 
 
-def boat_text(report: BoatAudit, answers: Sequence[Answer], steps: bool) -> str:
+def boat(report: BoatAudit, answers: Sequence[Answer], steps: bool) -> Iterator[Part]:
     """What there is to say of each crew of a boat; how it came about where that is asked."""
-    parts = [
-        "\n".join(
-            [
-                f"{report.boat['fsn_no']} {report.boat['name']}, {answer.crew(speech())}",
-                *map(_worded, answer.statements),
-            ]
-        )
-        for answer in answers
-    ]
-    if steps:
-        parts += list(_boat_steps(report))
-    else:
-        parts.append(
-            tell("All methods, tows and runs: herijk audit {} --steps", report.boat["fsn_no"])
-        )
-    return page(parts, report.simulated)
+    fsn_no = report.boat["fsn_no"]
+    yield marked(report.simulated)
+    for answer in answers:
+        title = f"{fsn_no} {report.boat['name']}, {answer.crew(speech())}"
+        about = "{fsn_no} {rowers}{crew_class}".format(**answer.line)
+        yield Section(title, answer.statements, about)
+    if not steps:
+        yield tell("All methods, tows and runs: herijk audit {} --steps", fsn_no)
+        return
+    none = tell("No tow of this boat was accepted.")
+    yield Section(tell("Its tows"), rows=report.tows, columns=TOWS, empty=none)
+    for tow in report.tows:
+        yield from _tow_steps(tow)
+    for name, (heading, columns) in BOAT.items():
+        yield Section(tell(heading), rows=getattr(report, name), columns=f"method {columns}")
+    title = tell("Set aside, by its number or the name of its file")
+    yield Section(title, lines=list(map(set_aside, report.set_aside)))
 
 
 def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
@@ -73,35 +72,26 @@ def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
         return answers_by_boat(views, chosen, boat["fsn_no"]).get(boat["fsn_no"], [])
 
 
-def said_of_boat(answers: Sequence[Answer]) -> Told:
-    """All that is said of each crew of a boat."""
-    return {
-        "{fsn_no} {rowers}{crew_class}".format(**answer.line): answer.statements
-        for answer in answers
-    }
+def assessment(report: "Assessment", log_known: bool) -> Iterator[Part]:
+    """What a tow on the quay shows, its runs, and what to look at."""
+    tow = report.tow
+    yield marked(report.simulated)
+    yield Section(
+        f"{tow['tow_id']} {tow['name'] or tow['fsn_no']}, {tow['rowers']}{tow['crew_class']}",
+        tow_statements(report, log_known),
+        tow["tow_id"],
+    )
+    yield Section(tell("Its runs"), rows=report.runs, columns=TOW, heads=RUN_HEADS)
+    yield Section(tell("To look at"), rows=report.checks, columns="check observed limit unit")
+    yield Section(tell("Set aside"), lines=list(map(set_aside, report.lost)))
+    yield tell("Nothing was stored; the next rebuild makes the number anew.")
 
 
+RUN_HEADS: Final = {"cw_kg_m": labels.column("run_cw_kg_m")}
+"""A run has a Cw at its own speed."""
 TOW: Final = (
     "run direction window_start_s window_end_s cut_reason speed_m_s cw_kg_m fitted_cw_kg_m reason"
 )
-
-
-def assessment_text(report: "Assessment", said: Sequence[Statement]) -> str:
-    """What a tow on the quay shows, its runs, and what to look at."""
-    tow = with_crew(report.tow)
-    parts = [
-        f"{tow['tow_id']} {tow['name'] or tow['fsn_no']}, {tow['crew']}\n"
-        + "\n".join(map(_worded, said)),
-        section(tell("Its runs"), table(report.runs, TOW)),
-        section(tell("To look at"), table(report.checks, "check observed limit unit")),
-        section(
-            tell("Set aside"), *(f"  {place(row)}: {why_set_aside(row)}" for row in report.lost)
-        ),
-        tell("Nothing was stored; the next rebuild makes the number anew."),
-    ]
-    return page(parts, report.simulated)
-
-
 TOWS: Final = (
     "tow_id tow_date crew declared_speed_m_s waterline_length_m beam_m bow_height_m weight_kg "
     "altered"
@@ -123,7 +113,7 @@ BOAT: Final = {
     "slow_tows": (say("Slow tow"), "tow_id declared_speed_m_s power_w slow"),
     "repeat_pairs": (
         say("Its repeat tows (E_n above 1: they disagree)"),
-        "tow_id_before tow_id shift_ratio e_n",
+        "tow_id_before tow_id ln_ratio e_n",
     ),
     "predicted": (
         say("As predicted from weight, length, beam and type by the other boats"),
@@ -141,68 +131,50 @@ BOAT: Final = {
 """Tables about a boat, with the columns shown."""
 
 
-def _boat_steps(report: BoatAudit) -> Iterator[str]:
-    """Tables of all that is known of a boat, in the order in which it is made."""
-    tows = table(report.tows, TOWS)
-    yield section(tell("Its tows"), tows or tell("  No tow of this boat was accepted."))
-    for tow in report.tows:
-        yield from _tow_steps(tow)
-    for name, (heading, columns) in BOAT.items():
-        rows = list(map(_shown, getattr(report, name)))
-        yield section(tell(heading), table(rows, f"method {columns}"))
-    faults = [f"  {place(row)}: {why_set_aside(row)}" for row in report.set_aside]
-    yield section(tell("Set aside, by its number or the name of its file"), *faults)
-
-
-def _shown(row: Row) -> Row:
-    """A row with what columns show that the table has in another form."""
-    shown = dict(row)
-    if "ln_ratio" in row:
-        shown["shift_ratio"] = None if row["ln_ratio"] is None else exp(row["ln_ratio"])
-    return shown
-
-
-def _tow_steps(tow: Row) -> Iterator[str]:
+def _tow_steps(tow: Row) -> Iterator[Part]:
     """What each step did to a tow, and its curve and runs under every method."""
-    ends = ("from_method", "to_method")
     ladders: dict[tuple[str, str], Row] = {}
     for step in tow["steps"]:
-        ladder = ladders.setdefault((step[ends[0]], step[ends[1]]), {"total": 1.0})
+        ends = {name: step[name] for name in ("from_method", "to_method")}
+        ladder = ladders.setdefault(tuple(ends.values()), ends | {"total": 1.0})
         ladder["total"] *= step["factor"]
         if step["position"] > 0:
             ladder[step["step"]] = cell("cw_ratio", step["factor"])
-    rows = [dict(zip(ends, pair, strict=True)) | row for pair, row in ladders.items()]
-    names = dict.fromkeys(name for row in rows for name in row)
-    heads = {name: code_in_words(name) for name in names if name not in (*ends, "total")}
-    yield section(
+    yield Section(
         tell("Tow {}: change of Cw by each step", tow["tow_id"]),
-        table(rows, " ".join(names), heads),
+        rows=list(ladders.values()),
+        columns=" ".join(dict.fromkeys(name for row in ladders.values() for name in row)),
+        heads={step["step"]: labels.code(step["step"]) for step in tow["steps"]},
     )
     runs_alone = [c["method"] for c in tow["curves"] if c["interval"] != COMPLETE]
-    yield section(
+    yield Section(
         tell("Tow {}: curves", tow["tow_id"]),
-        table(tow["curves"], CURVES),
-        interval_of_runs_alone(", ".join(runs_alone)) if runs_alone else "",
+        rows=tow["curves"],
+        columns=CURVES,
+        note=tell(
+            "The interval of {} is the spread of the runs alone: the log's error is not in it.",
+            ", ".join(runs_alone),
+        )
+        if runs_alone
+        else "",
     )
-    for methods, runs in _alike(tow["curves"]).items():
-        yield section(tell("Tow {}: runs under {}", tow["tow_id"], methods), runs)
+    alike: dict[str, list[str]] = defaultdict(list)  # methods that agree share a table
+    for curve in tow["curves"]:
+        causes = [row for row in curve["budget"] if row["u_ratio"]]
+        tables = (
+            table(curve["run_points"], RUNS, RUN_HEADS),
+            table(causes, "component shared u_ratio"),
+        )
+        alike["\n".join(filter(None, tables))].append(curve["method"])
+    for runs, methods in alike.items():
+        title = tell("Tow {}: runs under {}", tow["tow_id"], ", ".join(methods))
+        yield Section(title, lines=[runs])
 
 
-def _alike(curves: Sequence[Row]) -> dict[str, str]:
-    """The runs of every curve with what makes it uncertain; methods that agree share a table."""
-    methods: dict[str, list[str]] = {}
-    for curve in curves:
-        budget = [row for row in curve["budget"] if row["u_ratio"]]
-        runs = table(curve["run_points"], RUNS)
-        causes = table(budget, "component shared u_ratio")
-        methods.setdefault(f"{runs}\n{causes}", []).append(curve["method"])
-    return {", ".join(names): runs for runs, names in methods.items()}
-
-
-def lineage_text(report: "Lineage") -> str:
+def lineage(report: "Lineage") -> Iterator[Part]:
     """From the lines of a published edition to files, runs and seconds."""
     about = report.about
-    head = tell(
+    yield tell(
         "Edition {}, valid from {}, method {} ({}), code {}. Decision: {}",
         about["edition"],
         about["valid_from"],
@@ -211,81 +183,58 @@ def lineage_text(report: "Lineage") -> str:
         about["code_version"],
         about["decision"],
     )
-    return "\n\n".join([head, *map(_line_history, report.lines)])
-
-
-def _line_history(line: Row) -> str:
-    printed = "; ".join(f"{header} {cell}" for header, cell in line["printed"].items() if cell)
-    head = tell("Verification code {}", line["code"])
-    if line["tow"] is None:
-        return section(head, printed, tell("No tow of the archive is behind this line."))
-    runs = "run window_start_s window_end_s speed_m_s cw_kg_m used reason"
-    return section(
-        head,
-        f"  {printed}",
-        tell("Tow {} of {}, from", line["tow"]["tow_id"], line["tow"]["tow_date"]),
-        *(f"  {file['path']}  sha256 {file['sha256']}" for file in line["files"]),
-        table(line["runs"], runs),
-    )
+    for line in report.lines:
+        printed = "; ".join(f"{header} {cell}" for header, cell in line["printed"].items() if cell)
+        tow = line["tow"]
+        yield Section(
+            tell("Verification code {}", line["code"]),
+            lines=[
+                f"  {printed}",
+                tell("Tow {} of {}, from", tow["tow_id"], tow["tow_date"])
+                if tow
+                else tell("No tow of the archive is behind this line."),
+                *(f"  {file['path']}  sha256 {file['sha256']}" for file in line["files"]),
+            ],
+            rows=line["runs"],
+            columns="run window_start_s window_end_s speed_m_s cw_kg_m used reason",
+            heads=RUN_HEADS,
+        )
 
 
 # Types
 
 
-def said_of_types(report: TypesAudit) -> Told:
-    """Whether the boats of each type are equal, and what their A, B and Cw follow."""
-    newest = report.methods[-1]
-    said = {one["boat_type"]: _equal(one, newest) for one in report.types}
-    for one in slopes(_rows(report, _ends(report), "lines")):
-        about = f"{one.boat_type} {one.quantity} {one.method}"
-        said[about] = [*one.slopes, one.spread]
-    return said
-
-
-def _ends(report: TypesAudit) -> Sequence[str]:
-    """The first and the last method."""
-    return list(dict.fromkeys([report.methods[0], report.methods[-1]]))
-
-
-def types_text(report: TypesAudit, steps: bool) -> str:
+def types(report: TypesAudit, steps: bool) -> Iterator[Part]:
     """Whether the boats of one or two types are equal; with which statistics where asked."""
     newest = report.methods[-1]
-    compared = report.methods if steps else _ends(report)
-    parts = [_slopes(report, compared)]
-    parts += ["\n".join([_facts(one), *map(_worded, _equal(one, newest))]) for one in report.types]
+    yield marked(report.simulated)
+    yield _slopes(report, report.methods if steps else [report.methods[0], newest])
+    for one in report.types:
+        yield Section(_facts(one), _equal(one, newest), one["boat_type"])
     if differing := report.differences[newest]:
-        parts.append(
-            tell("What differs by more than chance: {}", ", ".join(map(_named, differing)))
-        )
-    if steps:
-        parts += list(_type_steps(report))
-    else:
+        named = (" / ".join(map(codes, difference.split())) for difference in differing)
+        yield tell("What differs by more than chance: {}", ", ".join(named))
+    if not steps:
         names = " ".join(f'"{one["boat_type"]}"' for one in report.types)
-        parts.append(tell("All methods and statistics: herijk audit {} --steps", names))
-    return page(parts, report.simulated)
-
-
-def _named(difference: str) -> str:
-    return " / ".join(map(codes, difference.split()))
+        yield tell("All methods and statistics: herijk audit {} --steps", names)
+        return
+    for name, (title, columns) in STEPS.items():
+        rows = _rows(report, report.methods, name)
+        yield Section(tell(title), rows=rows, columns=f"boat_type method {columns}")
+    yield Section(
+        tell("How well repeat tows of all types agree"),
+        rows=report.reproducibility,
+        columns="method scope within_sd_ratio sd_ratio lo hi n_pairs",
+    )
 
 
 def _facts(of_type: Row) -> str:
     return tell(
-        "{}: {} boats, {} of them towed; {} tows of {} to {}; weight {} to {} kg; declared "
-        "speed {} to {} m/s",
-        *(of_type[name] for name in ("boat_type", "n_boats", "n_towed", "n_tows")),
-        *(cell(name, of_type[name]) for name in RANGES),
+        "{boat_type}: {n_boats} boats, {n_towed} of them towed; {n_tows} tows of {first_season} to "
+        "{last_season}; weight {lightest_kg} to {heaviest_kg} kg; declared speed {slowest_m_s} to "
+        "{fastest_m_s} m/s",
+        **{name: cell(name, value) for name, value in of_type.items() if name != "under"},
     )
-
-
-RANGES: Final = (
-    *("first_season", "last_season", "lightest_kg", "heaviest_kg"),
-    *("slowest_m_s", "fastest_m_s"),
-)
-
-
-def _worded(statement: Statement) -> str:
-    return statement(speech())
 
 
 def _equal(of_type: Row, method: str) -> list[Statement]:
@@ -296,19 +245,24 @@ def _equal(of_type: Row, method: str) -> list[Statement]:
     return [homogeneity(tested), level(newest, lines)]
 
 
-def _slopes(report: TypesAudit, methods: Sequence[str]) -> str:
+def _slopes(report: TypesAudit, methods: Sequence[str]) -> Section:
     """B, A and Cw on weight and on tow speed, of every type by method."""
-    names = {f"slope_{place}": tell(heading) for place, heading in enumerate(LINES.values())}
-    rows = []
-    for one in slopes(_rows(report, methods, "lines")):
-        cells = dict(zip(names, (statement(speech()) for statement in one.slopes), strict=True))
-        rows.append(one._asdict() | cells | {"spread": one.spread(speech())})
-    title = tell(
-        "Do B, A and Cw follow weight or tow speed? Cw at the standard speed, of the newest tow of "
-        "each crew."
+    names = [f"slope_{place}" for place in range(len(LINES))]
+    found = slopes(_rows(report, list(dict.fromkeys(methods)), "lines"))
+    return Section(
+        tell(
+            "Do B, A and Cw follow weight or tow speed? Cw at the standard speed, of the newest "
+            "tow of each crew."
+        ),
+        rows=[
+            one._asdict()
+            | {"about": f"{one.boat_type} {one.quantity} {one.method}"}
+            | dict(zip(names, one.slopes, strict=True))
+            for one in found
+        ],
+        columns=f"boat_type quantity method n {' '.join(names)} spread",
+        heads=dict(zip(names, LINES.values(), strict=True)) | {"spread": SPREAD},
     )
-    columns = f"boat_type quantity method n {' '.join(names)} spread"
-    return section(title, table(rows, columns, names | {"spread": tell(SPREAD)}))
 
 
 def _rows(report: TypesAudit, methods: Sequence[str], name: str) -> list[Row]:
@@ -348,11 +302,3 @@ STEPS: Final = {
     ),
 }
 """Statistics of a type with the columns shown."""
-
-
-def _type_steps(report: TypesAudit) -> Iterator[str]:
-    for name, (title, columns) in STEPS.items():
-        rows = _rows(report, report.methods, name)
-        yield section(tell(title), table(rows, f"boat_type method {columns}"))
-    shown = table(report.reproducibility, "method scope within_sd_ratio sd_ratio lo hi n_pairs")
-    yield section(tell("How well repeat tows of all types agree"), shown)

@@ -4,7 +4,6 @@ import shutil
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Final
@@ -57,65 +56,55 @@ class Checked:
         return not causes and all(finding.sound for finding in self.findings)
 
 
-def checked(archive: Path | None, data: Path) -> Checked:
+def checked(archive: Path | None, store: Store) -> Checked:
     """Looks at everything, the archive only where one is named."""
-    found = None
-    if archive is not None:
-        found = check_archive(archive, LANGUAGE.get())
-    return Checked(list(_findings(data)), found)
+    found = None if archive is None else check_archive(archive, LANGUAGE.get())
+    return Checked(list(_findings(store)), found)
 
 
-def _findings(data: Path) -> Iterator[Finding]:
+def _findings(store: Store) -> Iterator[Finding]:
     """How the machine, the settings, each method and the tables are."""
     yield Finding("Herijk", True, f"{version('herijk')}, Python {sys.version.split()[0]}")
-    yield _space(data)
-    known = KnownMethods.of(Store(data))
-    looks: dict[str, Callable[[], str]] = {say("settings"): partial(_applied, data)}
-    for name in known.own:
-        looks[tell("method {}", name)] = partial(_title, known, name)
-    if data.is_dir():
-        looks |= {say("lock"): partial(_free, data), say("tables"): partial(_tows, data)}
-    for what, look in looks.items():
-        try:
-            yield Finding(what, True, look())
-        except (HerijkError, OSError) as error:
-            yield Finding(what, False, spoken(error, LANGUAGE.get()))
-
-
-def _space(data: Path) -> Finding:
-    folders = (data.resolve(), *data.resolve().parents)
-    nearest = next(folder for folder in folders if folder.exists())
+    folder = store.root.resolve()
+    nearest = next(part for part in (folder, *folder.parents) if part.exists())
     free = shutil.disk_usage(nearest).free
     said = tell("{:.1f} GB free at {}", free / 2**30, nearest)
-    return Finding(say("disk"), free >= LEAST_FREE, said)
+    yield Finding(say("disk"), free >= LEAST_FREE, said)
+    known = KnownMethods.of(store)
+    yield _looked(say("settings"), lambda: tell("applies {}", ", ".join(applied(store.root))))
+    for name in known.own:
+        yield _looked(tell("method {}", name), lambda: known.get(name).title)  # noqa: B023
+    if store.root.is_dir():
+        yield _looked(say("lock"), lambda: _free(store))
+        yield _looked(say("tables"), lambda: _tows(store))
 
 
-def _applied(data: Path) -> str:
-    return tell("applies {}", ", ".join(applied(data)))
+def _looked(what: str, look: Callable[[], str]) -> Finding:
+    """What is found; an error says what is wrong."""
+    try:
+        return Finding(what, True, look())
+    except (HerijkError, OSError) as error:
+        return Finding(what, False, spoken(error, LANGUAGE.get()))
 
 
-def _title(known: KnownMethods, name: str) -> str:
-    return known.get(name).title
-
-
-def _free(data: Path) -> str:
-    with only_writer(data):
+def _free(store: Store) -> str:
+    with only_writer(store.root):
         return tell("free")
 
 
-def _tows(data: Path) -> str:
-    seasons = rebuild_report(Store(data)).seasons
+def _tows(store: Store) -> str:
+    seasons = rebuild_report(store).seasons
     return tell("{} tows in {} seasons", sum(row["tows"] for row in seasons), len(seasons))
 
 
-def text(report: Checked) -> str:
+def text(report: Checked) -> list[str]:
     """What is wrong in the archive, a paragraph per cause; then the machine, a line per finding."""
     findings = [
         f"{tell('ok' if f.sound else 'WRONG'):5}  {tell(f.what)}: {f.found}"
         for f in report.findings
     ]
     of_archive = [] if report.archive is None else archive_text(report.archive)
-    return "\n\n".join([*of_archive, "\n".join(findings)])
+    return [*of_archive, "\n".join(findings)]
 
 
 def archive_text(report: CheckReport) -> list[str]:

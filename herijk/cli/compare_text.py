@@ -1,12 +1,15 @@
 """Two editions, drafts or methods side by side: who gains, who loses, and why."""
 
+import json
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+
+import polars as pl
 
 from dashboards import labels
-from dashboards.labels import code_in_words
-from herijk.cli.methods_text import options_text
-from herijk.cli.render import cell, codes, interval_of_runs_alone, page, section, speech, table
+from dashboards.statements.edition import changes
+from herijk.cli.methods_text import options_table
+from herijk.cli.render import Part, Section, codes, marked, prose, speech
 from pipeline.messages import in_per_cent, say, tell
 from pipeline.method.variant import Difference, differences
 from pipeline.register.register import draft_name
@@ -63,111 +66,98 @@ def compared(store: Store, old: str, new: str, rules: RaceRules) -> Compared:
     return Compared(old, new, options, report_with_races(store, first, second, rules))
 
 
-def text(report: Compared) -> str:
+def text(report: Compared) -> Iterator[Part]:
     """Which options differ, and what that does to all boats and races."""
     if not report.options and report.effect is None:
-        return tell("{} and {} say the same of every season.", report.old, report.new)
-    options = options_text(report.options, report.old, report.new) if report.options else ""
-    if report.effect is None:
-        return options
-    return page([options, *_effect(report.effect)], report.effect.simulated)
+        yield tell("{} and {} say the same of every season.", report.old, report.new)
+    if report.effect is not None:
+        yield marked(report.effect.simulated)
+    yield options_table(report.options, report.old, report.new)
+    if report.effect is not None:
+        yield from _effect(report.effect)
 
 
-def seconds(value: float | None) -> str:
-    """Seconds with their sign."""
-    return "-" if value is None else f"{speech().number(value, 0, '+')}\u00a0s"
-
-
-def _effect(report: DiffReport) -> list[str]:
+def _effect(report: DiffReport) -> Iterator[Part]:
     """Who gains and loses, why, and what that does to races."""
-    counts = ", ".join(f"{n} {codes(change)}" for change, n in report.changes.items())
-    known = report.changes.get("changed", 0) > report.interval_unknown
-    causes = [cause | {"cause": tell(labels.cause(cause))} for cause in report.causes]
-    return [
-        f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.",
-        tell(
-            "Gain (more power for the same race): {}\nLose: {}\nLarger than the "
-            "uncertainty: {}; uncertainty not known for {}.",
-            _group(report.gain),
-            _group(report.loss),
-            str(report.exceeds_interval) if known else tell("not known"),
-            report.interval_unknown,
+    yield prose(changes(_lines(report))(speech()) if report.rows else tell("no lines"))
+    groups = {say("more power for the same race"): report.gain, say("less"): report.loss}
+    yield Section(
+        tell("Who gains and who loses, by the median:"),
+        rows=[group | {"what": tell(what)} for what, group in groups.items()],
+        columns="what lines median_power_ratio median_seconds",
+    )
+    yield Section(
+        tell("Causes, with their factor on Cw:"),
+        rows=[cause | {"cause": tell(labels.cause(cause))} for cause in report.causes],
+        columns="cause lines median_factor lowest_factor highest_factor",
+    )
+    yield Section(
+        tell("Every line:"),
+        rows=list(map(_line, report.rows)),
+        columns="fsn_no name crew change old_a_kg_m new_a_kg_m old_b_m_s new_b_m_s old_cw_kg_m "
+        "new_cw_kg_m old_power_w new_power_w power_ratio gain_in_two_hours_s old_speed_rank "
+        "new_speed_rank causes",
+        note=tell(
+            "Power at the old declared speed. Speed rank: among all boats of the class at equal "
+            "power."
         ),
-        interval_of_runs_alone(", ".join(report.runs_alone)) if report.runs_alone else "",
-        section(tell("Causes, with their factor on Cw:"), table(causes, CAUSES)),
-        section(
-            tell(
-                "Every line: A and Cw in kg/m, B in m/s, W per rower at the old declared "
-                "speed, seconds that the new register gives in\na two-hour race, rank at "
-                "equal power among all boats of the class:"
-            ),
-            table(list(map(_line, report.rows)), LINE),
-        ),
-        _races(report),
+    )
+    yield from _races(report)
+
+
+def _lines(report: DiffReport) -> pl.DataFrame:
+    """The lines as `statements.edition` reads them."""
+    known = {
+        f"{side}_log_known": pl.lit(edition not in report.runs_alone)
+        for side, edition in (("old", report.from_edition), ("new", report.to_edition))
+    }
+    names = ("from_edition", "to_edition", "change", "exceeds_interval")
+    rows = [
+        {name: row[name] for name in names} | {"causes": json.dumps(row["causes"])}
+        for row in report.rows
     ]
-
-
-CAUSES: Final = "cause lines median_factor lowest_factor highest_factor"
-LINE: Final = (
-    "fsn_no name crew change old_a_kg_m new_a_kg_m old_b_m_s new_b_m_s old_cw_kg_m new_cw_kg_m "
-    "old_power_w new_power_w power_ratio in_2_h old_rank new_rank causes"
-)
+    return pl.DataFrame(rows, infer_schema_length=None).with_columns(**known)
 
 
 def _line(row: Row) -> Row:
-    change = code_in_words(row["change"])
+    change = codes(row["change"])
     if row["change"] == "removed":
-        change += f": {code_in_words(row['new_status'] or 'gone')}"
-    in_2_h = seconds(row["gain_in_two_hours_s"])
-    return row | {"change": change, "in_2_h": in_2_h}
+        change += f": {codes(row['new_status'] or 'gone')}"
+    ranks = {f"{side}_speed_rank": row[f"{side}_rank"] for side in ("old", "new")}
+    return row | {"change": change} | ranks
 
 
-def _group(group: Row) -> str:
-    if not group["lines"]:
-        return tell("no lines")
-    return tell(
-        "{} lines, median {}, {} in two hours",
-        group["lines"],
-        cell("power_ratio", group["median_power_ratio"]),
-        seconds(group["median_seconds"]),
-    )
-
-
-FATIGUE: Final = {
-    "none": say("Races, not corrected for fatigue: "),
-    "known": say("Races, corrected for fatigue as published: "),
-    "extend": (
-        say("Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): ")
-    ),
-}
-
-
-def _races(report: DiffReport) -> str:
+def _races(report: DiffReport) -> Iterator[Part]:
     if report.races is None or report.race_rules is None or report.winners is None:
-        return tell("Races: the archive holds none.")
+        yield tell("Races: the archive holds none.")
+        return
     ranked = [r for r in report.races if r["new_rank"] is not None]
     moved = [r for r in ranked if r["old_rank"] != r["new_rank"]]
-    text = tell(
-        "{}{} results, {} of them ranked by both editions: {} change rank among those, "
-        "{} on or off the podium.",
-        tell(FATIGUE[report.race_rules.fatigue]),
-        len(report.races),
-        len(ranked),
-        len(moved),
-        sum(r["podium_changed"] for r in ranked),
+    yield prose(
+        tell(
+            "Races, corrected for fatigue by the rule {}: {} results, {} of them ranked by both "
+            "editions: {} change rank among those, {} on or off the podium.",
+            report.race_rules.fatigue,
+            len(report.races),
+            len(ranked),
+            len(moved),
+            sum(r["podium_changed"] for r in ranked),
+        )
     )
-    winners = [winner | {"chance": _chance(winner)} for winner in report.winners]
-    parts = [
-        text,
-        section(tell("Winners:"), table(winners, WINNER)),
-        tell("  The chance: in how many of the equally likely new registers the old winner loses."),
-        section(tell("Ranks that change:"), table(moved, MOVED)),
-    ]
-    return "\n".join(filter(None, parts))
-
-
-WINNER: Final = "race race_date crew_class old_winner new_winner winner_changed chance"
-MOVED: Final = "race race_date fsn_no crew old_power_w new_power_w old_rank new_rank podium_changed"
+    yield Section(
+        tell("Winners:"),
+        rows=[winner | {"change_probability": _chance(winner)} for winner in report.winners],
+        columns="race race_date crew_class old_winner new_winner winner_changed change_probability",
+        note=tell(
+            "The chance: in how many of the equally likely new registers the old winner loses."
+        ),
+    )
+    yield Section(
+        tell("Ranks that change:"),
+        rows=moved,
+        columns="race race_date fsn_no crew old_power_w new_power_w old_rank new_rank "
+        "podium_changed",
+    )
 
 
 def _chance(winner: Row) -> str:

@@ -2,6 +2,7 @@
 
 import datetime as dt
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -9,6 +10,11 @@ from herijk.cli.options import PATH, Day, as_of_option, data_option, json_option
 from herijk.cli.speaking import Group, argument, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGE, tell
+
+if TYPE_CHECKING:
+    from warehouse.store.store import Store
+
+out_option = option("--out", type=PATH, help="File to write, a PDF.")
 
 
 @click.group(cls=Group)
@@ -22,44 +28,37 @@ def export() -> None:
 )
 @data_option
 @option("--edition", help="Edition. Default: the newest.")
-@option("--out", type=PATH, help="File to write, a PDF.")
+@out_option
 @json_option
-def certificate(
-    boat: str | None, data: Path, edition: str | None, out: Path | None, as_json: bool
-) -> None:
+def certificate(boat: str | None, store: "Store", edition: str | None, out: Path | None) -> None:
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
     from assets.settings import read_settings
     from dashboards.documents.certificate import Issued, certificates
     from warehouse.queries.answers import current_edition
     from warehouse.queries.views import Views
     from warehouse.store.boats import the_boat
-    from warehouse.store.store import Store
     from warehouse.store.unforeseen import documents
 
-    store = Store(data)
     with documents(store.root, "certificate") as border, Views(store) as views:
         chosen = edition or current_edition(views)
         fsn_no = boat and the_boat(views.table("boats"), boat)
-        settings = read_settings(data)
+        settings = read_settings(store.root)
         issued = Issued(issuer=settings.issuer, site=settings.site)
         made = certificates(views, chosen, fsn_no, LANGUAGE.get(), issued, border)
-        name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
-        _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
+        _write(store, made, "-".join(filter(None, ("certificate", chosen, fsn_no))), out)
 
 
 @export.command()
 @option("--out", type=PATH, required=True, help="Folder for them, new or of pages.")
 @data_option
 @as_of_option
-def pages(out: Path, data: Path, as_of: dt.date | None) -> None:
+def pages(out: Path, store: "Store", as_of: dt.date | None) -> None:
     """All pages of the site in a folder of their own, for instance as of an earlier day."""
     from dashboards.site.render import OWN_FILES, build_pages
-    from warehouse.store.store import Store
     from warehouse.store.unforeseen import documents
 
     if out.exists() and not (out / "static" / OWN_FILES[0]).is_file():
         raise MissingKnowledgeError("{} is there and holds no pages; give a new folder", out)
-    store = Store(data)
     with documents(store.root, "pages") as border:
         made = build_pages(store, out, as_of, bordered=border)
         click.echo(tell("{} files in {}; begin with index.html", made["files"], out))
@@ -72,64 +71,58 @@ def pages(out: Path, data: Path, as_of: dt.date | None) -> None:
 @option("--sender", default="", help="Who sends it.")
 @option("--date", type=Day(), help="Day of the letter.")
 @option("--valid-from", type=Day(), help="First day on which the register would count.")
-@option("--out", type=PATH, help="File to write, a PDF.")
+@out_option
 @json_option
 def proposal(
     methods: tuple[str, ...],
-    data: Path,
+    store: "Store",
     against: str,
     sender: str,
     date: dt.date | None,
     valid_from: dt.date | None,
     out: Path | None,
-    as_json: bool,
 ) -> None:
     """What a board sends its members before they vote: what changes, for whom, how uncertain."""
-    from dashboards.documents.proposal import Letter
-    from dashboards.documents.proposal import proposal as make_proposal
+    from dashboards.documents import proposal as letters
     from warehouse.queries.views import Views
     from warehouse.store.methods import KnownMethods
-    from warehouse.store.store import Store
     from warehouse.store.unforeseen import documents
 
-    store, name = Store(data), "-".join(("proposal", *methods))
+    name, letter = "-".join(("proposal", *methods)), letters.Letter(sender, date, valid_from)
     with documents(store.root, name), Views(store) as views:
         known = KnownMethods.of(store)
-        letter = Letter(sender, date, valid_from)
-        made = make_proposal(views, methods, against, LANGUAGE.get(), known, letter)
-        _write(made, out or store.root / "documents" / f"{name}.pdf", as_json)
+        made = letters.proposal(views, methods, against, LANGUAGE.get(), known, letter)
+        _write(store, made, name, out)
 
 
 @export.command()
 @data_option
-@option("--out", type=PATH, help="File to write, a PDF.")
+@out_option
 @option("--type", "types", multiple=True, help="Type of boat; repeat for more.")
 @option("--boat", "boats", multiple=True, help="Boat, by number or name; repeat for more.")
 @json_option
 def slides(
-    data: Path, out: Path | None, types: tuple[str, ...], boats: tuple[str, ...], as_json: bool
+    store: "Store", out: Path | None, types: tuple[str, ...], boats: tuple[str, ...]
 ) -> None:
     """What the 2015 presentation asked, over this archive: a finding and a chart per slide."""
     from dashboards.documents.slides import slide_book
     from warehouse.queries.views import Views
-    from warehouse.store.store import Store
     from warehouse.store.unforeseen import documents
 
-    store = Store(data)
     with documents(store.root, "slides") as border, Views(store) as views:
-        made = slide_book(views, LANGUAGE.get(), types, boats, border)
-        _write(made, out or store.root / "documents" / "slides.pdf", as_json)
+        _write(store, slide_book(views, LANGUAGE.get(), types, boats, border), "slides", out)
 
 
-def _write(content: bytes | None, path: Path, as_json: bool) -> None:
+def _write(store: "Store", content: bytes | None, name: str, out: Path | None) -> None:
     """Writes the file whole, and says where; nothing where nothing could be made."""
     if content is None:
         return
     from warehouse.store.files import written_beside
     from warehouse.store.machine_faults import machine_faults_explained
 
+    path = out or store.root / "documents" / f"{name}.pdf"
     with machine_faults_explained(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
         with written_beside(path) as beside:
             beside.write_bytes(content)
-    show_files([path], as_json)
+    show_files([path])

@@ -68,16 +68,14 @@ FORMS: Final[dict[str, Any]] = {
 }
 """Classes by the call."""
 
-TOLD: Final = (
-    *("assess TOW", "audit BOAT", "audit TYPE", "register", "register --due", "seasons"),
-)
-"""Calls whose result has `statements`, too."""
+PLAIN: Final = (Files, Simulated, Methods)
+"""Classes of which nothing is said in words."""
 
 
 def schema(call: str) -> dict[str, Any]:
     """The JSON Schema of what a call prints."""
     form = TypeAdapter(FORMS[call]).json_schema()
-    if call in TOLD:
+    if FORMS[call] not in PLAIN:
         form["properties"]["statements"] = TypeAdapter(list[Said]).json_schema()
         form["required"].append("statements")
     return form

@@ -11,71 +11,63 @@ from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, tell
 
 if TYPE_CHECKING:
-    from warehouse.store.methods import KnownMethods
+    from warehouse.store.store import Store
 
 method_argument = argument(
     "name", metavar="METHOD_OR_FILE", help="A method's name, or a TOML file."
 )
 
 
-def _known(data: Path) -> "KnownMethods":
-    """The methods of a data folder."""
-    from warehouse.store.methods import KnownMethods
-    from warehouse.store.store import Store
-
-    return KnownMethods.of(Store(data))
-
-
 @click.group(cls=Group, invoke_without_command=True)
 @data_option
 @json_option
 @click.pass_context
-def methods(context: click.Context, data: Path, as_json: bool) -> None:
+def methods(context: click.Context, store: "Store") -> None:
     """The methods: those that ship, and your own."""
     if context.invoked_subcommand is not None:
         return
     from herijk.cli import methods_text as text
+    from warehouse.store.methods import KnownMethods
 
-    known = _known(data)
+    known = KnownMethods.of(store)
     rows = [
         {
             "method": method.name,
             "title": method.titled(LANGUAGE.get()),
             "content_hash": method.content_hash,
-            "ships": name not in known.own,
+            "ships": method.name not in known.own,
         }
-        for name in known.names
-        for method in [known.get(name)]
+        for method in map(known.get, known.names)
     ]
-    show({"methods": rows}, text.methods, as_json)
+    show({"methods": rows}, text.methods)
 
 
 @methods.command("show")
 @method_argument
 @data_option
 @json_option
-def show_method(name: str, data: Path, as_json: bool) -> None:
+def show_method(name: str, store: "Store") -> None:
     """What a method does other than the one it extends; all its options where it extends none."""
     from herijk.cli import methods_text as text
 
-    show(text.report_on(_known(data), name), text.method, as_json)
+    show(text.report_on(store, name), text.method)
 
 
 @methods.command()
-@argument("file", metavar="METHOD_OR_FILE", help="A method's name, or a TOML file.")
+@method_argument
 @data_option
 @json_option
-def check(file: str, data: Path, as_json: bool) -> None:
+def check(name: str, store: "Store") -> None:
     """Read a method file and say what it does; an error is named with its line."""
     from herijk.cli import methods_text as text
 
-    report = text.report_on(_known(data), file)
+    report = text.report_on(store, name)
     sound = tell(
         "The file is sound. What it does to all boats: herijk compare {} {}",
         report.extends or report.method,
-        file,
+        name,
     )
-    show(report, lambda shown: f"{text.method(shown)}\n\n{sound}", as_json)
+    show(report, lambda shown: [*text.method(shown), sound])
 
 
 @methods.command()
@@ -83,12 +75,13 @@ def check(file: str, data: Path, as_json: bool) -> None:
 @option("--from", "base", default="rebased", help="Method that it begins from.")
 @data_option
 @json_option
-def new(name: str, base: str, data: Path, as_json: bool) -> None:
+def new(name: str, base: str, store: "Store") -> None:
     """Begin a method file NAME.toml here, which extends another; every option is listed in it."""
     from pipeline.method.writing import beginning_text
     from warehouse.store.files import write_new
+    from warehouse.store.methods import KnownMethods
 
-    known = _known(data)
+    known = KnownMethods.of(store)
     file = Path(f"{name}.toml")
     if name in known.names:
         raise HerijkError("{} is the name of another method; choose another", name)
@@ -98,7 +91,7 @@ def new(name: str, base: str, data: Path, as_json: bool) -> None:
     except FileExistsError as error:
         raise HerijkError("{} is there already; choose another name", file) from error
     said = tell("{} extends {}. Change it, then: herijk methods check {}", file, base, file)
-    show_files([file], as_json, said)
+    show_files([file], said)
 
 
 @click.command(cls=Command)
@@ -112,7 +105,7 @@ def new(name: str, base: str, data: Path, as_json: bool) -> None:
     help="Fatigue correction of races between editions: none, known (2 to 3 h only) or extend.",
 )
 @json_option
-def compare(old: str, new: str, data: Path, fatigue: str, as_json: bool) -> None:
+def compare(old: str, new: str, store: "Store", fatigue: str) -> None:
     """Two editions or methods side by side: who gains, who loses, and why.
 
     Published editions are compared as they are, with races. For a draft, a method or a method file
@@ -122,7 +115,6 @@ def compare(old: str, new: str, data: Path, fatigue: str, as_json: bool) -> None
 
     from herijk.cli import compare_text as text
     from pipeline.register.replay import Fatigue, RaceRules
-    from warehouse.store.store import Store
 
     rules = RaceRules(fatigue=cast(Fatigue, fatigue))
-    show(text.compared(Store(data), old, new, rules), text.text, as_json)
+    show(text.compared(store, old, new, rules), text.text)

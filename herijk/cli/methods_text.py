@@ -1,17 +1,18 @@
 """A method as text for a committee member: what it is, and its options with what they were."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from dashboards.option_labels import text
-from herijk.cli.render import table
+from herijk.cli.render import Part, Section, prose
 from pipeline.messages import LANGUAGE, say, tell
 from pipeline.method.definition import Method, basis_of
 from pipeline.method.variant import Difference, differences
 from pipeline.method.writing import range_text
 from pipeline.tables.row import Row
 from warehouse.store.methods import KnownMethods
+from warehouse.store.store import Store
 
 
 @dataclass(frozen=True)
@@ -33,12 +34,13 @@ class MethodReport:
     options: list[Difference]
 
 
-def report_on(known: KnownMethods, name_or_file: str) -> MethodReport:
+def report_on(store: Store, name_or_file: str) -> MethodReport:
     """What there is to say of a method.
 
     Raises:
         HerijkError: there is no such method or file, or it has an error.
     """
+    known = KnownMethods.of(store)
     shown = known.named(name_or_file)
     options = differences(shown, known.get(shown.extends)) if shown.extends else _all_options(shown)
     return MethodReport(
@@ -60,27 +62,26 @@ def _all_options(shown: Method) -> list[Difference]:
     ]
 
 
-def methods(report: dict[str, list[Row]]) -> str:
+def methods(report: dict[str, list[Row]]) -> Iterator[Part]:
     """The list of methods."""
     rows = [row | {"content_hash": row["content_hash"][:12]} for row in report["methods"]]
-    return table(rows, "method title content_hash")
+    yield Section(rows=rows, columns="method title content_hash")
 
 
-def method(report: MethodReport) -> str:
+def method(report: MethodReport) -> Iterator[Part]:
     """A method with its options."""
-    about = tell("It extends {}, and differs from it in:", report.extends)
-    heads = (report.extends or "", report.method)
-    parts = [
-        f"{report.method}: {report.title}",
-        report.description,
-        about if report.extends else tell("It extends no other method; all its options:"),
-        options_text(report.options, *heads),
-        tell("Content hash {}", report.content_hash),
-    ]
-    return "\n\n".join(filter(None, parts))
+    yield f"{report.method}: {report.title}"
+    yield prose(report.description)
+    about = (
+        tell("It extends {}, and differs from it in:", report.extends)
+        if report.extends
+        else tell("It extends no other method; all its options:")
+    )
+    yield options_table(report.options, report.extends or "", report.method, about)
+    yield tell("Content hash {}", report.content_hash)
 
 
-def options_text(options: Sequence[Difference], old: str, new: str) -> str:
+def options_table(options: Sequence[Difference], old: str, new: str, title: str = "") -> Section:
     """Options, one a line, as a method's file has them and in words, with what they were."""
     rows = [
         {
@@ -94,4 +95,5 @@ def options_text(options: Sequence[Difference], old: str, new: str) -> str:
         for one in options
     ]
     heads = {"name": say("option"), "seasons": say("seasons"), "before": old, "after": new}
-    return table(rows, f"name seasons {'before ' if old else ''}after in_words status", heads)
+    columns = f"name seasons {'before ' if old else ''}after in_words status"
+    return Section(title, rows=rows, columns=columns, heads=heads)

@@ -2,35 +2,51 @@
 
 import datetime as dt
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable
+from dataclasses import is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
 from herijk.cli.speaking import flag, option
-from pipeline.messages import LANGUAGE, tell
+from pipeline.messages import tell
 
 if TYPE_CHECKING:
-    from dashboards.statements import Statement
+    from herijk.cli.render import Part
+    from warehouse.store.store import Store
 
-Told: TypeAlias = "Mapping[str, Sequence[Statement]]"
-"""The statements about each thing."""
 F = TypeVar("F", bound=Callable[..., Any])
 R = TypeVar("R")
 
 PATH: Final = click.Path(path_type=Path)
+AS_JSON: Final = "herijk.as_json"
+"""Where click keeps that the result is for a program."""
 
 
-def folder_option(name: str, **settings: Any) -> Callable[[F], F]:
+def folder_option(name: str, *parameter: str, **settings: Any) -> Callable[[F], F]:
     """The option of a folder, which may also be in the environment."""
     envvar = f"HERIJK_{name.upper()}"
-    return option(f"--{name}", type=PATH, envvar=envvar, show_envvar=True, **settings)
+    return option(f"--{name}", *parameter, type=PATH, envvar=envvar, show_envvar=True, **settings)
+
+
+def _store(_: click.Context, __: click.Parameter, folder: Path) -> "Store":
+    from warehouse.store.store import Store
+
+    return Store(folder)
+
+
+def _keep_as_json(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+    context.meta[AS_JSON] = wanted or as_json()
 
 
 archive_option = folder_option("archive", required=True, help="The archive folder.")
-data_option = folder_option("data", default="data", help="Folder with everything Herijk writes.")
-json_option = flag("--json", "as_json", help="Print the result as JSON.")
+data_option = folder_option(
+    "data", "store", default="data", callback=_store, help="Folder with everything Herijk writes."
+)
+json_option = flag(
+    "--json", expose_value=False, callback=_keep_as_json, help="Print the result as JSON."
+)
 
 
 class Day(click.ParamType[dt.date]):
@@ -71,27 +87,29 @@ as_of_option = option(
 )
 
 
-def show(
-    report: R, as_text: Callable[[R], str], as_json: bool, said: "Callable[[R], Told] | None" = None
-) -> None:
-    """Prints a result for a person, or for a program with what is said of it."""
-    click.echo(as_json_text(report, said and said(report)) if as_json else as_text(report))
+def as_json() -> bool:
+    """Whether the result is for a program."""
+    return bool(click.get_current_context().meta.get(AS_JSON))
 
 
-def as_json_text(report: object, said: "Told | None" = None) -> str:
-    """A result for a program, with the statements about it."""
+def show(report: R, as_page: "Callable[[R], Iterable[Part]]") -> None:
+    """Prints a result: as a page for a person, or as JSON with its statements for a program."""
+    if not as_json():
+        from herijk.cli.render import page
+
+        click.echo(page(as_page(report)))
+        return
     from pydantic_core import to_json
 
-    if said is not None:
-        from dashboards.speech import Speech
+    result: object = report
+    if is_dataclass(report):
+        from herijk.cli.render import statements
 
-        speech = Speech(LANGUAGE.get())
-        told = [one.said(speech, about) for about, of in said.items() for one in of]
-        report = vars(report) | {"statements": told}
-    return to_json(report, indent=1, fallback=str).decode()
+        result = vars(report) | {"statements": statements(as_page(report))}
+    click.echo(to_json(result, indent=1, fallback=str).decode())
 
 
-def show_files(files: Iterable[Path], as_json: bool, said: str | None = None) -> None:
+def show_files(files: Iterable[Path], said: str | None = None) -> None:
     """Says which files were written: their names, or a sentence about them."""
     names = [str(file) for file in files]
-    show({"files": names}, lambda _: said or "\n".join(names), as_json)
+    show({"files": names}, lambda _: [said or "\n".join(names)])

@@ -1,12 +1,12 @@
 """The closing summary of a rebuild."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from assets.report import Report
 from dashboards.statements.rebuild import headlines
-from herijk.cli.render import page, place, section, speech, table, why_set_aside
+from herijk.cli.render import Part, Section, marked, set_aside
 from pipeline.messages import tell
-from pipeline.tables.row import Row
 from warehouse.queries.reports import RebuildReport
 
 
@@ -23,37 +23,42 @@ class Rebuilt:
     since: Report
 
 
-def text(made: Rebuilt) -> str:
+def text(made: Rebuilt) -> Iterator[Part]:
     """What was done, what that changed, what was set aside, and where the results are."""
-    report, news = made.report, made.since
-    done = tell("Nothing changed: no file was read again, all tables are up to date.")
-    if news.done.database:
-        seasons = ", ".join(map(str, news.done.seasons)) or tell("none")
-        methods = ", ".join(news.done.methods) or tell("none")
-        done = tell("Seasons read: {}. Methods applied: {}.", seasons, methods)
-    lines = [line(speech()) for line in headlines(news, news.checks)]
+    report, done = made.report, made.since.done
+    yield marked(report.simulated)
+    yield (
+        tell(
+            "Seasons read: {}. Methods applied: {}.",
+            ", ".join(map(str, done.seasons)) or tell("none"),
+            ", ".join(done.methods) or tell("none"),
+        )
+        if done.database
+        else tell("Nothing changed: no file was read again, all tables are up to date.")
+    )
+    news = headlines(made.since, made.since.checks)
+    yield Section(tell("Since the last report:"), news)
     tows = ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
-    places = tell("Tables: {}\nSite: {}\nReport: {}", report.database, report.site, report.report)
-    since = section(tell("Since the last report:"), *(f"  {line}" for line in lines))
-    parts = [done, since, tell("Tows accepted: ") + tows, _set_aside(report), places]
-    return page(parts, report.simulated)
+    yield tell("Tows accepted: ") + tows
+    yield from _set_aside(report)
+    yield tell("Tables: {}\nSite: {}\nReport: {}", report.database, report.site, report.report)
 
 
-def _set_aside(report: RebuildReport) -> str:
+def _set_aside(report: RebuildReport) -> Iterator[Part]:
     """How much was set aside, and the first fault of each cause."""
-    if not report.set_aside:
-        return tell("Set aside: nothing.")
     counted = [row | {"lost": f"lost_{row['lost']}"} for row in report.set_aside]
+    yield Section(
+        tell("Set aside:"),
+        rows=counted,
+        columns="lost reason_code number",
+        empty=tell("nothing"),
+    )
+    faults = [
+        set_aside(fault, tell(" and {} more", fault["number"] - 1) if fault["number"] > 1 else "")
+        for fault in report.first_faults
+    ]
     shown = sum(fault["number"] for fault in report.first_faults)
     more = sum(row["number"] for row in report.set_aside) - shown
-    return section(
-        tell("Set aside:"),
-        table(counted, "lost reason_code number"),
-        *map(_fault, report.first_faults),
-        tell("  and {} more: see the table quarantine", more) if more else "",
-    )
-
-
-def _fault(fault: Row) -> str:
-    more = tell(" and {} more", fault["number"] - 1) if fault["number"] > 1 else ""
-    return f"  {place(fault)}{more}: {why_set_aside(fault)}"
+    if more:
+        faults.append(tell("  and {} more: see the table quarantine", more))
+    yield Section(lines=faults)

@@ -1,7 +1,6 @@
 """The commands about registers: `register`, `seasons`, `publish` and `verify`."""
 
 import datetime as dt
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -29,21 +28,15 @@ BEST: Final = "rebased"
 @data_option
 @as_of_option
 @json_option
-def register(
-    edition: str | None, due: bool, data: Path, as_of: dt.date | None, as_json: bool
-) -> None:
+def register(edition: str | None, due: bool, store: "Store", as_of: dt.date | None) -> None:
     """The register: every line with its sizes, and whether it is valid on a day."""
     from herijk.cli import registers_text as text
     from warehouse.queries.registers import due_report, register_report
-    from warehouse.store.store import Store
 
-    store = Store(data)
     if due:
-        expiring = due_report(store, _method_of(store, edition), as_of)
-        show(expiring, text.due, as_json, text.said_of_due)
+        show(due_report(store, _method_of(store, edition), as_of), text.due)
     else:
-        report = register_report(store, edition, as_of)
-        show(report, text.register, as_json, text.said_of_register)
+        show(register_report(store, edition, as_of), text.register)
 
 
 def _method_of(store: "Store", edition: str | None) -> str:
@@ -63,16 +56,14 @@ def _method_of(store: "Store", edition: str | None) -> str:
 @data_option
 @option("--method", default=BEST, help="Method whose factors are shown.")
 @json_option
-def seasons(data: Path, method: str, as_json: bool) -> None:
+def seasons(store: "Store", method: str) -> None:
     """What was wrong with log, force and wind in each season, and how sure that is."""
     from herijk.cli import registers_text as text
     from warehouse.queries.reports import log_error_report
     from warehouse.store.methods import KnownMethods
-    from warehouse.store.store import Store
 
-    store = Store(data)
     KnownMethods.of(store).text(method)
-    show(log_error_report(store, method), text.seasons, as_json, text.said_of_seasons)
+    show(log_error_report(store, method), text.seasons)
 
 
 @click.command(cls=Command)
@@ -93,46 +84,41 @@ def publish(
     printed: int | None,
     carry: str | None,
     published_on: dt.date | None,
-    data: Path,
-    as_json: bool,
+    store: "Store",
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
     from herijk.cli import registers_text as text
-    from warehouse.editions.publish import Terms, publish_printed, published
-    from warehouse.editions.publish import publish as publish_edition
+    from warehouse.editions import publish as editions
     from warehouse.store.methods import KnownMethods
-    from warehouse.store.store import Store
 
     if (method is None) == (printed is None):
         raise click.UsageError(tell("give --method NAME, or --printed YEAR, and not both"))
     if printed is not None and carry is not None:
         raise click.UsageError(tell("--carry goes with --method"))
-    terms = Terms(edition, valid_from, decision, published_on or dt.date.today())
-    store = Store(data)
+    terms = editions.Terms(edition, valid_from, decision, published_on or dt.date.today())
     if printed is not None:
-        folder = publish_printed(store, printed, terms)
+        folder = editions.publish_printed(store, printed, terms)
     else:
-        folder = publish_edition(store, KnownMethods.of(store).get(str(method)), terms, carry)
-    show(published(store, folder), text.published, as_json)
+        chosen = KnownMethods.of(store).get(str(method))
+        folder = editions.publish(store, chosen, terms, carry)
+    show(editions.published(store, folder), text.published)
 
 
 @click.command(cls=Command)
 @data_option
 @option("--head", help="The seal of the last edition, from the minutes.")
 @json_option
-def verify(data: Path, head: str | None, as_json: bool) -> None:
+def verify(store: "Store", head: str | None) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
     from herijk.cli import registers_text as text
     from warehouse.editions.verify import verify as verify_editions
     from warehouse.store.editions import edition_names
-    from warehouse.store.store import Store
 
-    store = Store(data)
     if not edition_names(store) and not store.database.exists():
         raise MissingKnowledgeError(
-            "{} holds no editions and no tables; is it the right data folder?", data
+            "{} holds no editions and no tables; is it the right data folder?", store.root
         )
     report = verify_editions(store, head=head)
-    show(report, text.verify, as_json)
+    show(report, text.verify)
     if report.wrong:
         raise click.exceptions.Exit(1)

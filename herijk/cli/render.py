@@ -1,4 +1,4 @@
-"""How results look as text: a page of sentences and tables, in the language of this command.
+"""How results look as text: a page of sections, in the language of this command.
 
 What a number, a code or a column is called and how it is written is in `dashboards`.
 """
@@ -7,8 +7,11 @@ import io
 import re
 import shutil
 import sys
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Final
+from dataclasses import dataclass, field
+from math import exp
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from rich.console import Console
 from rich.table import Table
@@ -16,72 +19,100 @@ from rich.table import Table
 from dashboards import labels
 from dashboards.columns import written
 from dashboards.speech import Speech
-from pipeline.messages import LANGUAGE, say, tell
+from pipeline.messages import LANGUAGE, tell
 from pipeline.tables.row import Row
+
+if TYPE_CHECKING:
+    from dashboards.statements import Said, Statement
+
+WIDTH: Final = 110
+"""Characters on a line of prose."""
 
 UNLIMITED: Final = 1000
 """Characters on a line of a table that is not for a terminal."""
 
+NARROW: Final = 9
+"""Characters that a heading may take however narrow its column is."""
+
 CHANGES: Final = {
     *("cw_ratio", "power_ratio", "total", "median_factor", "lowest_factor", "highest_factor"),
-    *("cw_effect_ratio", "shift_ratio"),
+    *("cw_effect_ratio", "shift_ratio", "median_power_ratio", "ln_ratio"),
 }
 """Columns with new over old, shown as a change in per cent."""
 
 SHARES: Final = re.compile("share|_sd_ratio|^sd_|u_ratio|rmse|most_|r2|at_10pct|p_fault")
 """Columns with a part of a whole, shown in per cent."""
 
-HEADS: Final = {
-    "gross_cw_kg_m": say("gross kg/m"),
-    "inertia_cw_kg_m": say("-inertia"),
-    "air_cw_kg_m": say("-air"),
-    "still_air_cw_kg_m": say("+still"),
-    "temperature_cw_kg_m": say("+temp"),
-    "cw_kg_m": say("Cw kg/m"),
-    "fitted_cw_kg_m": say("curve"),
-    "speed_factor": say("factor"),
-    "cw_effect_ratio": say("Cw"),
-    "pooling": say("bend"),
-    "median_b_m_s": say("median B [m/s]"),
-    "b_sd_ratio": say("spread of B"),
-    "most_115": say("most that Cw moves"),
-    "most_fsn_no": say("of boat"),
-    "follows": say("follows"),
-    "equal_possible": say("possible"),
-    "n_disagree": say("disagree"),
-    "in_words": say("in words"),
-    "made_again": say("made again"),
-    "equal": say("equal"),
-    "lines": say("lines"),
-    "title": say("title"),
-    "total": say("total"),
-    "median_factor": say("median"),
-    "lowest_factor": say("lowest"),
-    "highest_factor": say("highest"),
-    "old_winner": say("old winner"),
-    "new_winner": say("new winner"),
-    "winner_changed": say("changes"),
-    "chance": say("chance that another wins"),
-    "where": say("where"),
-    "old_a_kg_m": say("A old"),
-    "new_a_kg_m": say("new"),
-    "old_b_m_s": say("B old"),
-    "new_b_m_s": say("new"),
-    "old_cw_kg_m": say("Cw old"),
-    "new_cw_kg_m": say("new"),
-    "old_power_w": say("W old"),
-    "new_power_w": say("new"),
-    "power_ratio": say("W %"),
-    "in_2_h": say("in 2 h"),
-    "n_predicted": say("predicted"),
-    "rmse_ratio": say("off by"),
-    "tow_sd_ratio": say("error of the tow"),
-}
-"""Headings on the terminal that are shorter than those of pages, or are there alone."""
-
-NO_HEADS: Final[Mapping[str, str]] = {}
-_NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0%|\u00a0s|\u00a0N)?\*?|-?")
+_NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0[%sN])?\*?|-?")
 """A cell that is aligned to the right."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading with what belongs below it, in this order; left out where that is nothing.
+
+    Attributes:
+        said: statements, a line each.
+        about: what they are about, for `--json`.
+        lines: other lines of text.
+        rows: of a table: values by name of column; of a line of a register also with its `crew`.
+        columns: names of the columns shown, with blanks between them.
+        heads: headings of this table alone.
+        empty: what is said where there is none of these.
+        note: what a reader should know of them.
+    """
+
+    title: str = ""
+    said: "Sequence[Statement]" = ()
+    about: str = ""
+    lines: Sequence[str] = ()
+    rows: Sequence[Row] = ()
+    columns: str = ""
+    heads: Mapping[str, str] = field(default_factory=dict)
+    empty: str = ""
+    note: str = ""
+
+    def __str__(self) -> str:
+        """The section as text."""
+        said = [statement(speech()) for statement in self.said]
+        shown = [*said, *self.lines, table(self.rows, self.columns, self.heads)]
+        body = list(filter(None, shown)) or [f"  {self.empty}"] * bool(self.empty)
+        return "\n".join(filter(None, [self.title, *body, prose(self.note)])) if body else ""
+
+
+Part: TypeAlias = str | Section
+"""What a page is made of: a paragraph, or a section."""
+
+
+def page(parts: Iterable[Part]) -> str:
+    """The parts below each other, without those that are empty."""
+    return "\n\n".join(filter(None, map(str, parts)))
+
+
+def statements(parts: Iterable[Part]) -> "list[Said]":
+    """All that is said on a page, below headings and in the cells of tables."""
+    return [
+        one.said(speech(), about)
+        for part in parts
+        if isinstance(part, Section)
+        for about, said in [(part.about, part.said), *map(_in_cells, part.rows)]
+        for one in said
+    ]
+
+
+def _in_cells(row: Row) -> "tuple[str, list[Statement]]":
+    """The statements in a row, and what they are about."""
+    return row.get("about", ""), [cell for cell in row.values() if callable(cell)]
+
+
+def marked(simulated: bool) -> str:
+    """The first paragraph, where the boats are simulated."""
+    return tell(labels.SIMULATED) if simulated else ""
+
+
+def prose(text: str) -> str:
+    """A text on lines that are easily read."""
+    return textwrap.fill(text, WIDTH)
 
 
 def speech() -> Speech:
@@ -89,24 +120,8 @@ def speech() -> Speech:
     return Speech(LANGUAGE.get())
 
 
-def page(parts: Iterable[str], simulated: bool) -> str:
-    """Paragraphs, without those that are empty; the first says so where the boats are simulated."""
-    return "\n\n".join(filter(None, [tell(labels.SIMULATED) if simulated else "", *parts]))
-
-
-def section(heading: str, *parts: str) -> str:
-    """A heading with what belongs below it; nothing where there is nothing below it."""
-    return "\n".join([heading, *filter(None, parts)]) if any(parts) else ""
-
-
-def table(rows: Sequence[Row], columns: str, heads: Mapping[str, str] = NO_HEADS) -> str:
-    """Rows as lines of text, numbers to the right; no text where there are none.
-
-    Args:
-        rows: each with a value by name of column; of a line of a register also with its `crew`.
-        columns: names of the columns shown, with blanks between them.
-        heads: headings of this table alone.
-    """
+def table(rows: Sequence[Row], columns: str, heads: Mapping[str, str] | None = None) -> str:
+    """Rows as lines of text, numbers to the right; no text where there are none."""
     if not rows:
         return ""
     drawn = Table(box=None, pad_edge=False, header_style="", collapse_padding=True)
@@ -114,10 +129,12 @@ def table(rows: Sequence[Row], columns: str, heads: Mapping[str, str] = NO_HEADS
     cells = {name: [cell(name, row.get(name)) for row in shown] for name in columns.split()}
     for name, texts in cells.items():
         to_the_right = all(map(_NUMBER.fullmatch, texts))
-        heading = heads.get(name) or HEADS.get(name) or labels.column(name)
+        heading = labels.unbroken(tell((heads or {}).get(name) or labels.column(name)))
+        width = max(NARROW, *map(len, texts))
         drawn.add_column(
-            labels.unbroken(tell(heading)),
+            "\n".join(textwrap.wrap(heading, width, break_long_words=False)),
             justify="right" if to_the_right else "left",
+            vertical="bottom",
             overflow="fold",
         )
     for line in zip(*cells.values(), strict=True):
@@ -138,8 +155,10 @@ def cell(name: str, value: Any) -> str:
     """A value as it is shown in the column of this name."""
     if value is None:
         return "-"
+    if callable(value):  # a statement
+        return str(value(speech()))
     if isinstance(value, float) and name in CHANGES:
-        return speech().per_cent(value)
+        return speech().per_cent(exp(value) if name.startswith("ln_") else value)
     if isinstance(value, float) and SHARES.search(name):
         return f"{speech().number(100 * value, 1)}\u00a0%"
     return written(name, value, speech())
@@ -163,13 +182,7 @@ def place(fault: Row) -> str:
     return f"{fault['path']}{line}{tow}"
 
 
-def why_set_aside(fault: Row) -> str:
-    """What is wrong with something that was set aside."""
-    return str(fault["message_nl" if LANGUAGE.get() == "nl" else "message"])
-
-
-def interval_of_runs_alone(whose: str) -> str:
-    """That an interval is too small, as it leaves out the error of the log."""
-    return tell(
-        "The interval of {} is the spread of the runs alone: the log's error is not in it.", whose
-    )
+def set_aside(fault: Row, more: str = "") -> str:
+    """A line about something that was set aside: where, and what is wrong with it."""
+    why = fault["message_nl" if LANGUAGE.get() == "nl" else "message"]
+    return f"  {place(fault)}{more}: {why}"

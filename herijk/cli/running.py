@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -10,6 +11,9 @@ from herijk.cli.speaking import Command, flag, option
 from pipeline.errors import BrokenPromiseError
 from pipeline.messages import tell
 from warehouse.store.machine_faults import machine_faults_explained
+
+if TYPE_CHECKING:
+    from warehouse.store.store import Store
 
 
 @click.command(cls=Command)
@@ -25,9 +29,7 @@ from warehouse.store.machine_faults import machine_faults_explained
 )
 @option("--seasons", type=Seasons(), help="Read these seasons only.")
 @json_option
-def rebuild(
-    archive: Path, data: Path, methods: tuple[str, ...], seasons: range | None, as_json: bool
-) -> None:
+def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: range | None) -> None:
     """From the archive to registers and tables; only what changed is done again."""
     from assets.rebuild import rebuild as run
     from assets.report import failed_checks
@@ -36,13 +38,12 @@ def rebuild(
     from herijk.cli.rebuild_text import Rebuilt, text
     from warehouse.queries.reports import rebuild_report
     from warehouse.store.methods import KnownMethods
-    from warehouse.store.store import Store
 
-    known = KnownMethods.of(Store(data))
-    chosen = applied(data, [known.kept(name) for name in methods])
+    known = KnownMethods.of(store)
+    chosen = applied(store.root, [known.kept(name) for name in methods])
     with log_shown():
-        news = run(archive, data, chosen, seasons)
-    show(Rebuilt(rebuild_report(Store(data)), news), text, as_json)
+        news = run(archive, store.root, chosen, seasons)
+    show(Rebuilt(rebuild_report(store), news), text)
     if failed := failed_checks(news.checks):
         raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
 
@@ -58,21 +59,19 @@ def rebuild(
     help="Port of Dagster's page; the site has the next.",
 )
 @flag("--may-start", help="Let Dagster's page start rebuilds and switch schedules.")
-def serve(archive: Path, data: Path, host: str, port: int, may_start: bool) -> None:
+def serve(archive: Path, store: "Store", host: str, port: int, may_start: bool) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
     from assets.instance import end_lost_runs, instance_of, prepare_home
     from assets.rebuild import check_apart
     from assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
-    from warehouse.store.store import Store
 
-    check_apart(archive, data)
-    read_settings(data)
-    store = Store(data)
-    with machine_faults_explained(data):
+    check_apart(archive, store.root)
+    read_settings(store.root)
+    with machine_faults_explained(store.root):
         with instance_of(store) as instance:
             end_lost_runs(instance, {})
-        served = Served(archive, data, host, port, may_start)
+        served = Served(archive, store.root, host, port, may_start)
         serve_until_stopped(served, prepare_home(store), lambda line: click.echo(line, err=True))
 
 
@@ -84,15 +83,14 @@ def serve(archive: Path, data: Path, host: str, port: int, may_start: bool) -> N
     default=8765,
     help="Port on this machine; 0 for any that is free.",
 )
-def workbench(data: Path, port: int) -> None:
+def workbench(store: "Store", port: int) -> None:
     """Change a method's options in a browser and see at once what happens to all boats."""
     from dashboards.guard import listen
     from dashboards.workbench.bench import Bench
     from dashboards.workbench.server import LOOPBACK, address, serving
     from warehouse.queries.history import History
-    from warehouse.store.store import Store
 
-    listening, store = listen(LOOPBACK, port), Store(data)
+    listening = listen(LOOPBACK, port)
     bench = Bench(store, History.of(store))
     click.echo(
         tell("The workbench is at {} (on this machine only); Ctrl-C stops it.", address(listening))

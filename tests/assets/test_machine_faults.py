@@ -4,11 +4,13 @@ import errno
 import os
 import resource  # noqa: TID251 - of limits, which Windows has not
 import shutil
+import sqlite3
 import subprocess
 import sys
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -70,6 +72,7 @@ def test_a_full_disk_leaves_the_old_tables_and_the_next_run_goes_on(bench, built
         (OSError(errno.ENOSPC, ""), "no room left"),
         (OSError(errno.EROFS, "", "/archief"), "/archief cannot be read or written"),
         (OSError(errno.EIO, ""), "the disk under"),
+        (sqlite3.OperationalError("database or disk is full"), "no room left"),
         (OSError(errno.EFBIG, ""), "none as large"),
         (MemoryError(), "not enough memory"),
         (type("PanicException", (BaseException,), {})("Too many open files"), "more files"),
@@ -80,6 +83,12 @@ def test_each_machine_fault_is_a_sentence_with_a_way_out(error, words, tmp_path)
         raise RuntimeError("wrapped") from error
     assert words in str(told.value)
     assert "Earlier results are intact" in str(told.value)
+
+
+def test_sqlite_calls_a_full_disk_one_that_gives_errors(tmp_path, monkeypatch):
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: mock.Mock(free=1000))
+    with pytest.raises(UnavailableError, match="no room left"), machine_faults_explained(tmp_path):
+        raise sqlite3.OperationalError("disk I/O error")
 
 
 @contextmanager
@@ -101,22 +110,10 @@ def damaged_records(bench, _):
     shutil.rmtree(bench.store.dagster_home)
 
 
-@contextmanager
-def no_room_for_records(_, tmp_path):
-    """SQLite says it in words of its own."""
-    mounted(tmp_path / "disk", 400_000)
-    try:
-        (tmp_path / "disk" / "filler").write_bytes(bytes(300_000))
-        yield {"env": os.environ | {"DAGSTER_HOME": str(tmp_path / "disk")}}
-    finally:
-        subprocess.run(["umount", str(tmp_path / "disk")], check=True)
-
-
 MACHINE_FAULTS = {
     few_file_handles: "may not open more files",
     little_memory: "memory",  # Polars and DuckDB end the process themselves where they lack it
     damaged_records: "Remove that folder",
-    no_room_for_records: "no room left",
 }
 
 

@@ -12,10 +12,6 @@ def imported(folder):
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
-def test_among_its_own_neighbours_it_is_imported(tmp_path):
-    assert imported(tmp_path).returncode == 0
-
-
 @pytest.mark.parametrize("stranger", ["pipeline.py", "assets/__init__.py"])
 def test_a_room_of_somebody_else_is_told(tmp_path, stranger):
     path = tmp_path / stranger

@@ -12,7 +12,6 @@ from pipeline.blocks.run_blocks import SUM_NAMES, WindowSums, stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import BrokenPromiseError
-from pipeline.steps.wind import mean_angle_deg
 
 EXACT = 1e-12
 
@@ -94,18 +93,6 @@ def test_every_window_mean_is_that_over_samples(rate_hz, lengths, window, gps, s
             assert abs(sums.mean(name)[i] - mean) <= EXACT * size, name
 
 
-@given(angle=st.integers(0, 64 * 360 - 1), spread=st.integers(8, 64 * 60), seed=st.integers(0, 99))
-def test_mean_wind_angle_goes_round_north(angle, spread, seed):
-    samples = samples_of([100], seed)
-    offsets = np.random.default_rng(seed).integers(-spread, spread, 50)
-    around = np.mod(angle + np.concatenate([offsets, -offsets]), 64 * 360) / 64  # exact in 32 bits
-    samples = samples.with_columns(pl.Series("wind_angle_deg", around, pl.Float32))
-    blocks = stacked(samples, 10)
-    sums = WindowSums(blocks, blocks.n > 0)
-    found = mean_angle_deg(sums.mean("wind_sin"), sums.mean("wind_cos"))[0]
-    assert abs((found - angle / 64 + 180.0) % 360.0 - 180.0) < 1e-9
-
-
 @given(
     share=st.floats(0.01, 0.999),
     channel=st.sampled_from([c for c in SAMPLE_SCHEMA if c not in ("run", "gps_m_s")]),
@@ -129,33 +116,6 @@ def test_samples_that_are_no_numbers_are_left_out_however_many(share, channel, s
     assert found.select(pl.selectors.float().is_finite().all()).row(0) == (True,) * len(SUM_NAMES)
     if channel != "force_n":
         assert np.allclose(found["force"], expected["force"], rtol=EXACT)
-
-
-def test_the_last_block_may_be_short():
-    blocks = block_sums(samples_of([25, 20, 1]), 10)
-    assert blocks.select("run", "second", "n").rows() == [
-        (1, 0, 10), (1, 1, 10), (1, 2, 5), (2, 0, 10), (2, 1, 10), (3, 0, 1),
-    ]  # fmt: skip
-
-
-def test_a_tow_does_not_depend_on_its_neighbours_nor_on_the_order_of_tows():
-    frames = {
-        name: block_sums(samples_of([40, 70], seed), 10).with_columns(pl.lit(name).alias("tow_id"))
-        for seed, name in enumerate("abc")
-    }
-    runs = pl.DataFrame({"tow_id": [t for t in "abc" for _ in "12"], "run": [1, 2] * 3})
-    runs = runs.with_columns(pl.col("run").cast(pl.Int8))
-    in_order = stack_blocks(pl.concat(frames[t] for t in "abc"), runs)
-    shuffled = stack_blocks(
-        pl.concat(frames[t] for t in "cab").sample(fraction=1.0, shuffle=True, seed=3),
-        runs.reverse(),
-    )
-    alone = stack_blocks(frames["b"], runs.filter(tow_id="b"))
-    assert shuffled.runs.equals(in_order.runs)
-    middle = in_order.take((in_order.runs["tow_id"] == "b").to_numpy())
-    for name in SUM_NAMES:
-        assert np.array_equal(shuffled[name], in_order[name])
-        assert np.array_equal(middle[name], alone[name])
 
 
 def test_a_run_without_blocks_breaks_a_promise():

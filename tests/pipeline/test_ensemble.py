@@ -55,25 +55,6 @@ def test_a_line_keeps_its_members_when_others_go(made, lines):
     assert errors(made, lines.head(3)) == pytest.approx(errors(made, lines)[:3])
 
 
-def test_who_is_heavier_is_told_apart_by_what_is_not_shared():
-    """Two tows that share a large error: as good as certain which is heavier."""
-    tows, ln_cw = pl.Series(["a", "b"]), np.log([[40.0], [40.4]])
-    held = pl.DataFrame(
-        {
-            "tow_id": ["a", "b", "a", "b"],
-            "key": ["season/2010", "season/2010", "random/a", "random/b"],
-            "effect_ratio": [0.05, 0.05, 0.002, 0.002],
-        }
-    )
-    a, b = ln_cw + ensemble.ln_errors(tows, held, None)
-    # ln(40.4 / 40) is 3.5 standard deviations of the difference.
-    assert (b > a).mean() > 0.99
-    apart = held.with_columns((pl.col("key") + "/" + pl.col("tow_id")).alias("key"))
-    a, b = ln_cw + ensemble.ln_errors(tows, apart, None)
-    # ln(40.4 / 40) is 0.14 standard deviations, so 0.56 of the members, four errors either way.
-    assert (b > a).mean() == pytest.approx(0.56, abs=0.14)
-
-
 def test_members_lie_around_the_number_of_the_register(made, lines):
     """As wide as its interval: half as wide for a best estimate with half the interval."""
     cw = pl.col("cw_kg_m")

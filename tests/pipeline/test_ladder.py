@@ -44,11 +44,6 @@ def test_every_tow_has_every_step_in_order(rungs):
         assert steps["position"].to_list() == list(range(len(STEP_ORDER) + 1))
 
 
-def test_a_step_that_both_methods_share_changes_nothing(rungs):
-    shared = rungs.filter(pl.col("step").is_in(["run_point", "temperature", "unrecorded"]))
-    assert set(shared["factor"]) == {1.0}
-
-
 @pytest.fixture(scope="module")
 def effects(world):
     links = recompute(NEW, world.tows, world.blocks).tow_instruments

@@ -20,10 +20,6 @@ def test_reference_share_falls_ever_more_slowly():
     assert np.all(np.diff(shares, 2) > 0)
 
 
-def test_the_winner_gets_no_compensation():
-    assert race.fatigue_factor(8000.0, 8000.0) == pytest.approx(1.0)
-
-
 @pytest.mark.parametrize("time_s", [7199.0, 10801.0])
 def test_outside_the_published_points_nothing_is_guessed(time_s):
     with pytest.raises(MissingKnowledgeError, match="2 to 3 h"):

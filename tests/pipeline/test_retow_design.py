@@ -8,7 +8,6 @@ import pytest
 
 from pipeline.season_log import estimate_season_factors, retow_choice
 from pipeline.season_log.archive_tows import with_state
-from pipeline.season_log.retow_design import RETOW_SCHEMA
 from tests.pipeline.season_worlds import CLEAN, simulate
 
 LINE = ["fsn_no", "rowers", "crew_class"]
@@ -50,18 +49,6 @@ def with_boats_as_unknowns(found, new=None):
         design[-1, len(seasons) + max(i for i, b in enumerate(boats) if b[:3] == new)] = 1.0
     information = design.T @ (design / variance[:, None])
     return np.linalg.inv(information)[: len(seasons), : len(seasons)]
-
-
-def test_each_boat_is_chosen_once_and_tells_less_than_the_one_before(found):
-    choice = retow_choice(found)
-    assert choice.schema == RETOW_SCHEMA
-    assert choice["position"].to_list() == list(range(1, 11))
-    assert choice.select(LINE).n_unique() == 10
-    before, after = (choice[f"factor_sd_{when}_ratio"].to_numpy() for when in ("before", "after"))
-    assert before[0] == pytest.approx(typical_sd(found.covariance))
-    assert before[1:] == pytest.approx(after[:-1])
-    gain = before**2 - after**2
-    assert (np.diff(gain) <= 1e-12).all()
 
 
 def test_the_first_choice_is_the_best_of_all_by_brute_force(tows):

@@ -7,7 +7,6 @@ import polars as pl
 import pytest
 from scipy import stats
 
-from pipeline.quantiles import LEVEL, MAD_TO_SD, NORMAL
 from pipeline.uncertainty.propagation import (
     COMPONENTS,
     Assumed,
@@ -35,13 +34,6 @@ def tows(assumed=None, **changed):
 
 def u_of(held, component):
     return held.filter(pl.col("component") == component)["u_ratio"][0]
-
-
-def test_what_is_said_of_a_normal_number_is_so():
-    assert pytest.approx(stats.norm.ppf(0.5 * (1.0 + LEVEL)), rel=1e-15) == NORMAL
-    assert stats.median_abs_deviation([-1, 0, 1], scale="normal") == pytest.approx(
-        MAD_TO_SD, rel=1e-4
-    )
 
 
 def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():

@@ -48,13 +48,6 @@ def test_both_formulas_written_out(wind, angle):
     assert oblique * SPEED**2 == pytest.approx(1.225 / 2 * area * along2 * sign, abs=1e-9)
 
 
-@given(wind=st.floats(0.1, 12.0), angle=st.floats(0.0, 359.9), width=st.integers(1, 15))
-def test_averaging_a_steady_wind_changes_nothing(wind, angle, width):
-    blocks = blocks_of(wind, angle)
-    for name, averaged in averaged_terms(blocks, width).items():
-        assert averaged == pytest.approx(blocks.block_means(name), abs=1e-9)
-
-
 def test_averaging_goes_round_north_and_keeps_the_speed_of_a_jittering_wind():
     angles = np.tile([350.0, 0.0, 10.0, 0.0, 0.0], 4)
     terms = averaged_terms(blocks_of(6.0, angles), 3)

@@ -16,6 +16,7 @@ from warehouse.archive import (
     read_published_registers,
     read_races,
 )
+from warehouse.archive.files.finding import files_of
 from warehouse.archive.sheets import reading
 
 SAMPLE_ARCHIVE = Path(__file__).parents[2] / "data" / "sample-archive"
@@ -169,6 +170,19 @@ def test_nothing_outside_the_archive_is_read(archive: Archive) -> None:
     index = index_archive(archive.root, hash_file)
     assert {fault.reason_code for fault in index.faults} == {"path_outside_archive"}
     assert not [path for path in hashed if "meetdata" in str(path)]
+
+
+def test_a_folder_of_samples_has_the_season_that_it_or_its_name_in_the_profile_tells(
+    tmp_path: Path,
+) -> None:
+    seasons = {"meetdata": 0, "Meetdata 2014": 2014, "los": 0, "oud": 2013}
+    for folder in seasons:
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "a.csv").touch()
+    found = files_of(tmp_path, {"los": "meetdata", "oud": "meetdata_2013"})
+    assert {file.path: file.season for file in found} == {
+        f"{folder}/a.csv": season for folder, season in seasons.items()
+    }
 
 
 def test_sample_archive_reads_without_faults() -> None:

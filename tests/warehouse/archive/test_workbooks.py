@@ -2,6 +2,7 @@
 
 import io
 import zipfile
+from pathlib import Path
 
 import pytest
 import xlsxwriter
@@ -12,7 +13,7 @@ from tests.warehouse.archive.conftest import TOWS, Archive, Scan
 from tests.warehouse.archive.test_formats import assert_same
 from warehouse.archive import FileHashes
 from warehouse.archive.check import check_archive
-from warehouse.archive.sheets.extent import check_workbook
+from warehouse.archive.sheets.extent import check_workbook, sheets_of
 from warehouse.archive.sheets.sheet import grids_of_workbook
 
 LAST = 1_048_575, 16_383
@@ -109,6 +110,17 @@ def test_a_workbook_that_unpacks_to_too_much_is_not_read() -> None:
     with pytest.raises(DefectiveInputError, match="unpacked") as told:
         grids_of_workbook(file.getvalue(), ())
     assert told.value.reason_code == "too_large"
+
+
+@pytest.mark.parametrize(("blanks", "sheets"), [(0, ["een"]), (10_000_000, [])])
+def test_a_directory_of_sheets_of_ten_megabytes_is_not_read(
+    tmp_path: Path, blanks: int, sheets: list[str]
+) -> None:
+    path = tmp_path / "a.xlsx"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as book:
+        book.writestr("xl/workbook.xml", '<sheet name="een" r:id="a"/>' + " " * blanks)
+        book.writestr("xl/_rels/workbook.xml.rels", '<Relationship Id="a" Target="b.xml"/>')
+    assert sheets_of(path) == sheets
 
 
 @pytest.mark.parametrize("named", ["Proeven.xlsx#{}", "{}"])
