@@ -221,9 +221,9 @@ def is_chosen(value: object, *wanted: str) -> bool:
 
 
 def default_method(names: Sequence[str]) -> str:
-    """What is shown first: the default method or its draft, else the last, "" without any."""
+    """What is shown first: the default method or its draft, else the last."""
     wanted = [n for n in names if n in (STUDIED_METHOD, draft_name(STUDIED_METHOD))]
-    return ["", *names, *wanted][-1]
+    return [*names, *wanted][-1]
 
 
 def first_edition(editions: pl.Series, methods: Sequence[str]) -> str:
