@@ -52,4 +52,4 @@ class UnavailableError(HerijkError):
 def unexpected(error: BaseException) -> str:
     """One sentence for an error that nobody foresaw."""
     what = " ".join(str(error).split())[:300]
-    return say("something went wrong that was not foreseen: {}: {}", type(error).__name__, what)
+    return say("an unexpected error: {}: {}", type(error).__name__, what)

@@ -222,8 +222,8 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
             "boat_traces",
             say("What the instruments said"),
             say(
-                "Means per second; speed: solid log 1, dashed GPS. What is grey is cut for the "
-                "reason above it; the rest counts."
+                "Means per second; speed: solid log 1, dashed GPS. Grey parts are cut, for "
+                "the reason above them; the rest counts."
             ),
             [drawn("traces", "trace", "window")],
         ),
@@ -251,7 +251,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Section(
             "assessments",
             say("Checks"),
-            say("Only what lies beyond its limit; all checks are in the table assessments."),
+            say("Only results beyond a limit; all checks are in the table assessments."),
             tables=listed("assessments", "assessments", "check severity observed limit unit"),
         ),
         Section(

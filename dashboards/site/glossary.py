@@ -36,9 +36,7 @@ TERMS: Final = {
     ),
     "interval": (
         say("95 % interval"),
-        say(
-            "Where the value lies with 95 % confidence, given all that the uncertainty is made of."
-        ),
+        say("Where the value lies with 95 % confidence, with all causes of uncertainty included."),
     ),
     "as_measured": (
         say("As measured"),

@@ -165,7 +165,7 @@ def headline(line: Row) -> Statement:
 def _power(line: Row) -> Iterator[Statement]:
     """What it asks of each rower."""
     if line["new_power_w"] is not None:
-        wording = say("That asks {power} W of each rower at {declared_speed_m_s} m/s.")
+        wording = say("That takes {power} W per rower at {declared_speed_m_s} m/s.")
         yield told("power", wording, line, "register", power=number(line, "new_power_w", 0))
 
 
@@ -182,9 +182,9 @@ def _change(line: Row) -> Iterator[Statement]:
     yield from _tows(line)
     if line["old_declared_speed_m_s"] != line["declared_speed_m_s"]:
         wording = say(
-            "The declared speed is another one: {declared_speed_m_s} instead of "
-            "{old_declared_speed_m_s} m/s. At the old speed Cw changes by {by}; what follows is "
-            "about that."
+            "The declared speed has changed: {declared_speed_m_s} instead of "
+            "{old_declared_speed_m_s} m/s. At the old speed Cw changes by {by}; the rest is"
+            " about that change."
         )
         yield told("declared_speed", wording, line, by=Change(line["cw_ratio"]))
     if line["change"] == "same":
@@ -221,9 +221,9 @@ def _tows(line: Row) -> Iterator[Statement]:
 def two_hours(seconds: float) -> Statement:
     """What a change is worth in a race of two hours [s]."""
     wording = (
-        say("For the same power the crew may take {seconds} s longer over a race of two hours.")
+        say("At the same power the crew may take {seconds} s longer over a two-hour race.")
         if seconds > 0
-        else say("For the same power the crew has to row a race of two hours {seconds} s faster.")
+        else say("At the same power the crew must finish a two-hour race {seconds} s sooner.")
     )
     by = Number(abs(seconds), 0, "s")
     return told("two_hours", wording, {}, "register_changes", seconds=by)
@@ -261,8 +261,7 @@ def interval(line: Row, log_known: bool) -> Statement:
 
 
 UNKNOWN_VERDICT: Final = say(
-    "Whether the change is larger than the uncertainty cannot be told: that of one "
-    "of the numbers is not known."
+    "Whether the change is larger than the uncertainty is not known: one of the numbers has none."
 )
 VERDICTS: Final = {
     True: (
@@ -294,9 +293,9 @@ def _best(line: Row) -> Iterator[Statement]:
     yield told("best_estimate", wording, line, "curves", "best_estimate_weights", share=share)
     if line["best_moved_ratio"] is not None and abs(line["moved_ratio"] - 1) >= NEGLIGIBLE:
         wording = say(
-            "Against the tow of {season_before} Cw at equal speed is {moved}; by the best "
-            "estimate {kept}. What differs between the two comes from measuring rather "
-            "than from the boat."
+            "Compared with the tow of {season_before}, Cw at equal speed is {moved}; by the"
+            " best estimate {kept}. That difference comes from the measurement rather than "
+            "the boat."
         )
         moved, kept = Change(line["moved_ratio"]), Change(line["best_moved_ratio"])
         yield told("since_last_tow", wording, line, "repeat_pairs", moved=moved, kept=kept)
@@ -340,15 +339,15 @@ FAULTS: Final = {
         "In {season} something is probably wrong: {instrument}, {size} (chance {chance} %)."
     ),
     "cannot be told": say(
-        "Whether something was wrong in {season} ({instrument}) cannot be told (chance {chance} %)."
+        "Something may have been wrong in {season} ({instrument}; chance {chance} %)."
     ),
     "not settled": say(
-        "The search for the errors of the instruments did not settle. What is "
-        "estimated of {season} cannot be relied on."
+        "The estimate of the instrument errors did not converge: the numbers of {season} "
+        "are unreliable."
     ),
     "alarm": say(
-        "In {season} an instrument lies far from what is assumed: {instrument}, "
-        "{size}. A person should look."
+        "In {season} an instrument is far from what is assumed: {instrument}, {size}. "
+        "Someone should look at it."
     ),
 }
 """What is said of a season, by the verdict on an instrument."""

@@ -18,21 +18,15 @@ from pipeline.tables.row import Row
 BENDS: Final = {
     True: (
         "equal",
-        say("No sign that the bends of the curves of these {n} tows differ (p = {p})."),
+        say("No evidence that the curves of these {n} tows bend differently (p = {p})."),
     ),
     False: (
         "differ",
-        say(
-            "The bends of the curves of these {n} tows differ by more than noise explains "
-            "(p = {p})."
-        ),
+        say("The curves of these {n} tows differ in bend by more than noise explains (p = {p})."),
     ),
     None: (
         "cannot be told",
-        say(
-            "Whether the bends of the curves of these {n} tows differ cannot be told: the "
-            "test is too weak."
-        ),
+        say("The test is too weak to show whether the curves of these {n} tows bend differently."),
     ),
 }
 """The verdict on the bends of a type and what is said of it, by `equal_possible`."""

@@ -69,7 +69,7 @@ def _beyond_interval(changed: pl.DataFrame) -> Iterator[Statement]:
     known = changed["exceeds_interval"].drop_nulls()
     if known.is_empty():
         if changed.height:
-            wording = say("; whether by more than the uncertainty is not known of any")
+            wording = say("; none can be compared with the uncertainty")
             yield told("beyond_unknown", wording)
         return
     wording = say("; {beyond} by more than the uncertainty")
@@ -77,7 +77,7 @@ def _beyond_interval(changed: pl.DataFrame) -> Iterator[Statement]:
     yield told("beyond", wording, {}, "register_changes", beyond=beyond)
     unknown = changed.height - known.len()
     if unknown:
-        wording = say(", and of {unknown} that is not known")
+        wording = say(", and for {unknown} that is not known")
         yield told("beyond_unknown_of", wording, unknown=unknown)
 
 
@@ -91,9 +91,12 @@ def _main_cause(changed: pl.DataFrame) -> Iterator[Statement]:
     if not most:
         return
     wording = (
-        say("; why is not known, as how the printed register was computed is not recorded")
+        say(
+            "; the cause is not known, because nobody recorded how the printed register was "
+            "computed"
+        )
         if most[0][0] == labels.code("printed")
-        else say("; most often mainly: {cause}")
+        else say("; mostly because of {cause}")
     )
     yield told("main_cause", wording, {}, "register_changes", cause=most[0][0])
 
@@ -128,12 +131,9 @@ def undecided(lines: pl.DataFrame, flagged: pl.Series) -> list[Statement]:
     """
     unknown = int(lines["exceeds_interval"].null_count())
     wording = (
-        say(
-            "Lines of which it cannot be told whether the change is larger than the "
-            "uncertainty: {unknown}."
-        )
+        say("Lines whose change cannot be compared with the uncertainty: {unknown}.")
         if unknown
-        else say("Of every line it can be told whether the change is larger than the uncertainty.")
+        else say("Every change can be compared with its uncertainty.")
     )
     voted = lines.drop_nulls("new_cw_kg_m")["new_tow_id"]
     of_flags = say(

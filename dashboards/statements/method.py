@@ -344,7 +344,7 @@ def _curve(curve: Row) -> Iterator[Statement]:
         "{declared_speed_m_s} m/s that is Cw = A / (1 \u2212 (v/B)\u00b2) = {cw_kg_m} kg/m."
     )
     yield told("worked_curve", wording, curve, "curves")
-    wording = say("To row that speed asks {power} W of each rower: Cw v\u00b3 / n.")
+    wording = say("Rowing at that speed takes {power} W per rower: Cw v³ / n.")
     yield told("worked_power", wording, {}, "curves", power=number(curve, "power_w", 0))
 
 

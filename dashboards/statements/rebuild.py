@@ -113,7 +113,7 @@ FAILED: Final = {
     "log_factors_stayed": say("log factors moved"),
     "boats_stayed_within_their_intervals": say("boats moved beyond their intervals"),
     "editions_can_be_made_again": say(
-        "editions, or the files that they were made from, are not what they were"
+        "editions, or the files that they were made from, have changed"
     ),
     "every_listed_tow_accounted_for": say("listed tows are not accounted for"),
     "every_tow_has_a_curve_row": say("tows have no row among the curves"),

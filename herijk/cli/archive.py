@@ -38,7 +38,7 @@ def init(directory: Path) -> None:
 @option("--seasons", type=Seasons(), default="2009:2018", help="Seasons, both ends included.")
 @option("--tows-per-season", type=click.IntRange(1, 1000), default=24, help="Tows in each.")
 @option("--rate", type=click.IntRange(5, 1000), default=1000, help="Samples per second.")
-@option("--seed", type=click.IntRange(0), default=1, help="Decides all that is drawn.")
+@option("--seed", type=click.IntRange(0), default=1, help="Seed of the random numbers.")
 @option("--world", default="history", help="What is wrong in it; see --worlds.")
 @flag("--worlds", help="List the worlds, and stop.")
 @json_option

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     help='A boat by number or name, FSN211 or "Razende Snol", or one or two types.',
 )
 @data_option
-@option("--edition", help="Edition or draft that a boat's answer is about; else the newest.")
+@option("--edition", help="Edition or draft that a boat's answer is about. Default: the newest.")
 @flag("--steps", help="Also show the methods, tows, runs and statistics behind the answer.")
 @option("--method", help="Show this method only.")
 @option("--plots", type=PATH, help="Draw the plots in this folder.")
@@ -80,7 +80,7 @@ def audit(
 @argument("tow_id", metavar="TOW", help="Number of the tow in the list of the season.")
 @archive_option
 @data_option
-@option("--method", help="Method; that of the newest edition, or else rebased, when left out.")
+@option("--method", help="Method. Default: that of the newest edition, or rebased.")
 @json_option
 def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> None:
     """What a tow shows while the boat waits: provisional, and nothing is stored."""

@@ -27,7 +27,7 @@ def export() -> None:
     "boat", required=False, help="A boat by number or name; without it all boats of the edition."
 )
 @data_option
-@option("--edition", help="Edition; the newest when left out.")
+@option("--edition", help="Edition. Default: the newest.")
 @out_option
 @json_option
 def certificate(boat: str | None, store: "Store", edition: str | None, out: Path | None) -> None:

@@ -99,7 +99,7 @@ def main() -> None:
 
 
 def _stopped() -> NoReturn:
-    said = tell("stopped, as it was told to. {} Run it again to go on", REASSURANCE)
+    said = tell("stopped as requested. {} Run it again to continue", REASSURANCE)
     click.echo(f"herijk: {said}", err=True)
     sys.exit(INTERRUPTED)
 

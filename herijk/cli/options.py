@@ -82,8 +82,8 @@ class Seasons(click.ParamType[range]):
 as_of_option = option(
     "--as-of",
     type=Day(),
-    help="Judge on this day, as if nothing later were known; without: on the day of the "
-    "archive's last tow or race.",
+    help="Judge on this day, ignoring everything later. Default: the day of the archive's last "
+    "tow or race.",
 )
 
 

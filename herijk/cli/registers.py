@@ -19,7 +19,7 @@ BEST: Final = "rebased"
 
 
 @click.command(cls=Command)
-@argument("edition", required=False, help="Edition or draft; the newest when left out.")
+@argument("edition", required=False, help="Edition or draft. Default: the newest.")
 @flag(
     "--due",
     help="When each tow expires, at what speed to tow next, and which boats to tow again, by the "
@@ -73,7 +73,7 @@ def seasons(store: "Store", method: str) -> None:
 @option("--method", help="Method that the last rebuild applied.")
 @option("--printed", type=int, help="Instead of a method: the register printed that year.")
 @option("--carry", help="Printed edition whose lines are re-based for boats without measurements.")
-@option("--published-on", type=Day(), help="Day of publication; else today.")
+@option("--published-on", type=Day(), help="Day of publication. Default: today.")
 @data_option
 @json_option
 def publish(

@@ -165,7 +165,7 @@ def fit(
     points = hyperbola.Points.of(speed, values / speed**2 if cw_kg_m is None else values)
     fitted = hyperbola.fit(points)
     if not fitted.converged[0]:
-        raise HerijkError("the points determine no curve; two different speeds are the least")
+        raise HerijkError("the points determine no curve; at least two different speeds are needed")
     return Fit(Curve(float(fitted.a_kg_m[0]), float(fitted.s_s2_m2[0])), points, fitted)
 
 

@@ -98,7 +98,7 @@ def apply_method(
     if missing:
         raise HerijkError("missing: {}", ", ".join(missing))
     if sample_rate_hz < 1:
-        raise HerijkError("sample_rate_hz is {}; 1 or more can be right", sample_rate_hz)
+        raise HerijkError("sample_rate_hz is {}; it must be at least 1", sample_rate_hz)
     day: dt.date = tow["tow_date"]
     columns = {**Tows.create_empty().schema, "boat_type": pl.String()}
     known = {"season": day.year, "sample_rate_hz": sample_rate_hz, **DEFAULTS, **tow}

@@ -82,7 +82,7 @@ def test_each_machine_fault_is_a_sentence_with_a_way_out(error, words, tmp_path)
     with pytest.raises(UnavailableError) as told, machine_faults_explained(tmp_path):
         raise RuntimeError("wrapped") from error
     assert words in str(told.value)
-    assert "What was there before is whole" in str(told.value)
+    assert "Earlier results are intact" in str(told.value)
 
 
 def test_sqlite_calls_a_full_disk_one_that_gives_errors(tmp_path, monkeypatch):

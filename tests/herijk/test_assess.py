@@ -54,7 +54,7 @@ def test_what_to_do_now(built):
     assert "Run 4 " in said(found)["run_off"]
     assert "+5,0" in said(found)["run_off"]
     run |= {"cw_kg_m": None}
-    assert "geen stabiel stuk" in said(found)["run_lost"]
+    assert "geen gelijkmatig deel" in said(found)["run_lost"]
     assert "let_go" not in said(found)
     for run in found.runs:
         run |= {"cw_kg_m": 30.0, "fitted_cw_kg_m": 30.0}

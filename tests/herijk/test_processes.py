@@ -65,5 +65,5 @@ def test_what_systemd_stops_says_so(tmp_path: Path):
     )  # fmt: skip
     assert run.returncode == 130
     assert run.stderr.lstrip().startswith(
-        "herijk: stopped, as it was told to. What was there before"
+        "herijk: stopped as requested. Earlier results are intact"
     )

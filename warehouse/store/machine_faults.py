@@ -91,7 +91,7 @@ _FAULTS: Final = (
 _LITTLE: Final = 1 << 20
 """Bytes: with less a disk is full."""
 
-REASSURANCE: Final = say("What was there before is whole, and what was finished is kept.")
+REASSURANCE: Final = say("Earlier results are intact, and finished work is kept.")
 
 
 @contextmanager

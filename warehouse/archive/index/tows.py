@@ -115,9 +115,7 @@ def with_own_samples(rows: pl.DataFrame, faults: list[Fault]) -> pl.DataFrame:
     text = say("meetfile and meetfile2 hold the same samples.")
     is_twice = pl.col(own) == pl.col(second)
     rows = keep(rows, faults, is_twice, "samples_listed_twice", text)
-    text = say(
-        "the samples are also used for {boat} {crew} on {where}; nobody can know whose they are."
-    )
+    text = say("the samples are also used for {boat} {crew} on {where}; whose they are is unclear.")
     facts = {"boat": pl.col("other_boat"), "crew": pl.col("other_crew")}
     facts |= {"where": pl.col("other_place")}
     is_of_others = pl.col("other").is_not_null()
