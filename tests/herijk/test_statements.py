@@ -32,7 +32,7 @@ SHOWN_ON = {
     "audit-type audit-type--json types types.html": "bends level slope spread",
     "boats.html register-due register-due--json": "due",
     "certificate": "before certified",
-    "changes.html index.html proposal": "beyond changed_lines",
+    "changes.html compare index.html proposal": "beyond changed_lines",
     "index.html mail rebuild": "number",
     "index.html seasons.html": "season_change",
     "mail": "by",
@@ -88,6 +88,7 @@ def surfaces(built, herijk, papers):
         "audit-type": ("audit", boat_type),
         "register": ("register", DRAFT),
         "register-due": ("register", DRAFT, "--due"),
+        "compare": ("compare", METHODS[0], METHODS[-1]),
         "seasons": ("seasons", "--method", METHODS[-1]),
         "assess": ("assess", line["tow_id"], "--archive", built.archive),
     }
