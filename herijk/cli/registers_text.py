@@ -156,9 +156,13 @@ def published(report: "Published") -> Iterator[Part]:
     look = report.to_look_at
     yield Section(
         tell(
-            "{} lines need a look; they are marked in the register. Look at each with "
-            "herijk audit, and write what you decide in besluiten.toml:",
-            len(look),
+            ngettext(
+                "1 line needs a look; it is marked in the register. Look at it with herijk audit, "
+                "and write what you decide in besluiten.toml:",
+                "{n} lines need a look; they are marked in the register. Look at each with herijk "
+                "audit, and write what you decide in besluiten.toml:",
+                len(look),
+            )
         ),
         rows=look,
         columns="fsn_no crew tow_id flags",
