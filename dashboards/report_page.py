@@ -26,7 +26,7 @@ from warehouse.store.store import Store
 
 TO_SITE: Final = "../site/"
 
-OF_A_CHECK: Final = ("check", "outcome", "quantity", "value")
+OF_A_CHECK: Final = "check outcome quantity value"
 _TITLES: Final = {
     "lines": say("Changed lines of the drafts"),
     "tows": pgettext("number", "Tows"),
@@ -35,13 +35,12 @@ _TITLES: Final = {
     "checks": say("Checks"),
 }
 _COLUMNS: Final = {
-    "tows": ("what", "tow_id", "fsn_no", "season"),
-    "set_aside": ("what", "path", "tow_id", "line", "reason_code", "message"),
-    "factors": ("method", "season", "old_factor", "new_factor", "ratio"),
+    "tows": "what tow_id fsn_no season",
+    "set_aside": "what path tow_id line reason_code message",
+    "factors": "method season old_factor new_factor ratio",
     "lines": (
-        *("to_edition", "name", "fsn_no", "rowers", "crew_class", "change"),
-        *("old_cw_kg_m", "new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s"),
-        *("exceeds_interval", "causes"),
+        "to_edition name fsn_no rowers crew_class change old_cw_kg_m new_cw_kg_m cw_ratio "
+        "gain_in_two_hours_s exceeds_interval causes"
     ),
     "checks": OF_A_CHECK,
 }
@@ -60,7 +59,7 @@ def report_pages(
             for check in sorted(checks, key=lambda check: check.passed)
             for found in ([("", "")] if check.passed else values_found(check))
         ],
-        schema=dict.fromkeys(OF_A_CHECK, pl.String),
+        schema=dict.fromkeys(OF_A_CHECK.split(), pl.String),
         orient="row",
     )
     changed = ("lines", "tows", "set_aside", "factors")
@@ -68,9 +67,7 @@ def report_pages(
         name: pl.DataFrame(getattr(changes, name), infer_schema_length=None) for name in changed
     } | {"checks": of_checks}
     sections = [
-        Section(
-            f"report_{name}", _TITLES[name], tables=[Table(name, frame, " ".join(_COLUMNS[name]))]
-        )
+        Section(f"report_{name}", _TITLES[name], tables=[Table(name, frame, _COLUMNS[name])])
         if frame.height
         else Section(f"report_{name}", _TITLES[name], empty=say("Nothing."))
         for name, frame in frames.items()

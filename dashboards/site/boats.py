@@ -134,16 +134,20 @@ def _page(
         "name fsn_no ht_no boat_type waterline_length_m beam_m bow_height_m weight_kg",
     )
     facts = Section("facts", say("Dimensions"), tables=[measures], folded=bool(tows))
-    selects = [
-        Select("tow_id", say("Tow"), tows, next(reversed(tows), "")),
-        methods_select([m for m in methods if m in curves["method"].unique()] or methods),
-    ]
+    selects = (
+        [
+            Select("tow_id", say("Tow"), tows, next(reversed(tows))),
+            methods_select([m for m in methods if m in curves["method"].unique()]),
+        ]
+        if tows
+        else []
+    )
     return Page(
         boat_path(fsn_no),
         say("Boat"),
         [*_related(told), facts, *_sections(own)] if tows else [facts],
         name=boat["name"],
-        selects=selects if tows else [],
+        selects=selects,
         answers=told if tows else (),
         subtitle=" · ".join(filter(None, (fsn_no, boat["ht_no"], boat["boat_type"]))),
     )

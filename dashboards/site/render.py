@@ -172,7 +172,7 @@ class Edition:
         }
 
     def _meaning(self, table: str, column: str) -> str | None:
-        """What a column means, for who points at its heading."""
+        """What a column means, shown when the pointer is over its heading."""
         term = IN_GLOSSARY.get(column)
         said = self._comments.get(f"{table}.{column}") or self._comments.get(column)
         return said or (self.speech.say(TERMS[term][1]) if term else None)

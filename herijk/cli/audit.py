@@ -46,15 +46,17 @@ def audit(
     With --edition also the files, runs and seconds behind a line of a published edition.
     """
     from herijk.cli import audit_text as text
-    from warehouse.editions.lineage import lineage
     from warehouse.queries import audit as query
     from warehouse.store.editions import edition_names
     from warehouse.store.methods import KnownMethods
 
     if len(names) > 2:
         raise click.UsageError(tell("give a boat, or one or two types; quote a name with blanks"))
-    published = edition in edition_names(store)
-    behind = lineage(store, str(edition), names[0]) if published else None
+    behind = None
+    if edition in edition_names(store):
+        from warehouse.editions.lineage import lineage
+
+        behind = lineage(store, str(edition), names[0])
     if behind and (as_json() or not store.database.exists()):  # an edition says this by itself
         show(behind, text.lineage)
         return
