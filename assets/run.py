@@ -55,8 +55,13 @@ def run_assets(
         seasons = [s for s in archive.know_seasons(records, setup.store) if setup.wanted([s])]
         ends = {"start": seasons[0], "end": seasons[-1]} if seasons else {}
         ranges = {f"dagster/asset_partition_range_{end}": season for end, season in ends.items()}
+        # A partitioned asset cannot run without a partition: with no season there are no samples.
+        made = [asset for asset in ASSETS if seasons or asset is not archive.samples_and_blocks]
         result = job.execute_in_process(
-            instance=records, run_config=QUIET_LOG, tags=instance.OF_A_COMMAND | ranges
+            instance=records,
+            run_config=QUIET_LOG,
+            tags=instance.OF_A_COMMAND | ranges,
+            asset_selection=[key for asset in made for key in asset.keys],
         )
     for event in result.get_asset_materialization_events():
         _note(done, event.materialization, setup.methods)

@@ -41,6 +41,10 @@ class MissingKnowledgeError(HerijkError):
     """No method, profile or parameter covers this case; nothing is guessed."""
 
 
+class NoTowsYetError(MissingKnowledgeError):
+    """The archive has no tow that can be used, and never had one: there is nothing to compute."""
+
+
 class BrokenPromiseError(HerijkError):
     """A schema, hash or frozen edition is not what it was declared to be."""
 

@@ -23,7 +23,7 @@ from pipeline.studies.options import SPEEDS, TICKS
 from pipeline.tables.row import Row
 from warehouse.derive.studies import STUDIED_METHOD
 from warehouse.queries.views import ALL, Views
-from warehouse.store.boats import the_boat
+from warehouse.store.boats import choose_boat
 from warehouse.store.unforeseen import Border
 
 TYPES: Final = ("kromhout", "kuiken")
@@ -161,7 +161,7 @@ class Book:
     def chosen_boats(self, wanted: Sequence[str]) -> list[str]:
         """FSN numbers of the boats asked for, or those of the presentation, or towed most often."""
         if wanted:
-            return [the_boat(self.views.table("boats"), name) for name in wanted]
+            return [choose_boat(self.views.table("boats"), name) for name in wanted]
         seasons = (
             self.tows.group_by("fsn_no", "name", maintain_order=True)
             .agg(pl.col("season").n_unique())

@@ -36,12 +36,12 @@ def certificate(boat: str | None, store: "Store", edition: str | None, out: Path
     from dashboards.documents.certificate import Issued, certificates
     from warehouse.queries.answers import current_edition
     from warehouse.queries.views import Views
-    from warehouse.store.boats import the_boat
+    from warehouse.store.boats import choose_boat
     from warehouse.store.unforeseen import documents
 
     with documents(store.root, "certificate") as border, Views(store) as views:
         chosen = edition or current_edition(views)
-        fsn_no = boat and the_boat(views.table("boats"), boat)
+        fsn_no = boat and choose_boat(views.table("boats"), boat)
         settings = read_settings(store.root)
         issued = Issued(issuer=settings.issuer, site=settings.site)
         made = certificates(views, chosen, fsn_no, LANGUAGE.get(), issued, border)

@@ -23,6 +23,17 @@ class Rebuilt:
     since: Report
 
 
+@dataclass(frozen=True)
+class NoTowsYet:
+    """What a rebuild of a new archive says: nothing was made, because no tow can be used yet.
+
+    Attributes:
+        reason: why, and what to do.
+    """
+
+    reason: str
+
+
 def text(made: Rebuilt) -> Iterator[Part]:
     """What was done, what that changed, what was set aside, and where the results are."""
     report, done = made.report, made.since.done

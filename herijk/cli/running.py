@@ -8,8 +8,8 @@ import click
 
 from herijk.cli.options import Seasons, archive_option, data_option, json_option, show
 from herijk.cli.speaking import Command, flag, option
-from pipeline.errors import BrokenPromiseError
-from pipeline.messages import tell
+from pipeline.errors import BrokenPromiseError, NoTowsYetError
+from pipeline.messages import LANGUAGE, spoken, tell
 from warehouse.store.machine_faults import machine_faults_explained
 
 if TYPE_CHECKING:
@@ -35,14 +35,19 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     from assets.report import failed_checks
     from assets.settings import applied
     from herijk.cli.progress import log_shown
-    from herijk.cli.rebuild_text import Rebuilt, text
+    from herijk.cli.rebuild_text import NoTowsYet, Rebuilt, text
     from warehouse.queries.reports import rebuild_report
     from warehouse.store.methods import KnownMethods
 
     known = KnownMethods.of(store)
     chosen = applied(store.root, [known.kept(name) for name in methods])
-    with log_shown():
-        news = run(archive, store.root, chosen, seasons)
+    try:
+        with log_shown():
+            news = run(archive, store.root, chosen, seasons)
+    except NoTowsYetError as error:  # a new archive is no failure
+        reason = spoken(error, LANGUAGE.get())
+        show(NoTowsYet(reason), lambda made: [tell("Nothing to compute yet: {}", made.reason)])
+        return
     show(Rebuilt(rebuild_report(store), news), text)
     if failed := failed_checks(news.checks):
         raise BrokenPromiseError("a check failed: {}", "; ".join(failed))

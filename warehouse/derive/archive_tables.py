@@ -1,11 +1,12 @@
 """The tables about the archive: boats, tows with their runs, and everything that is set aside."""
 
 import datetime as dt
+from typing import Final
 
 import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.errors import MissingKnowledgeError
+from pipeline.errors import MissingKnowledgeError, NoTowsYetError
 from pipeline.messages import say
 from pipeline.recompute.facts import with_boat_types
 from pipeline.tables.lake import Faults
@@ -15,6 +16,9 @@ from warehouse.derive.inputs import Blocks
 from warehouse.derive.plausible import gross_faults, judge, with_doubts
 from warehouse.derive.same_samples import CONTENT, same_samples
 from warehouse.store.unforeseen import UNFORESEEN, sentence
+
+SAMPLES_MISSING: Final = "samples_missing"
+"""Reason code of a listed tow whose file of samples is not there."""
 
 
 def archive_tables(
@@ -27,12 +31,16 @@ def archive_tables(
     blocks: Blocks,
     failed_tows: pl.DataFrame,
     quarantine_before: pl.DataFrame,
+    has_earlier_tows: bool,
     today: dt.date,
 ) -> dict[str, pl.DataFrame]:
     """Boats, sound tows with their runs and windows, and everything that was set aside.
 
     Raises:
-        MissingKnowledgeError: no tow is sound.
+        NoTowsYetError: no tow is listed or has samples, and no earlier rebuild had a tow: the
+            archive is new.
+        MissingKnowledgeError: no tow is sound for another reason, or where an earlier rebuild had
+            some. A disk that is not mounted must not empty the register.
     """
     index = _with_failed(season_index, season_tows, failed_tows)
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
@@ -64,7 +72,10 @@ def archive_tables(
         "quarantine": _dated(set_aside, quarantine_before, today),
     }
     if tables["tows"].is_empty():
-        raise MissingKnowledgeError(_why_nothing(tables["quarantine"]))
+        reason = _explain_no_tows(tables["quarantine"])
+        if has_earlier_tows or not _waits_for_samples(tables["quarantine"]):
+            raise MissingKnowledgeError(reason)
+        raise NoTowsYetError(reason)
     return tables
 
 
@@ -141,16 +152,30 @@ def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) ->
     )
 
 
-def _why_nothing(set_aside: pl.DataFrame) -> str:
-    """Why no tow can be used, by cause, and what to do."""
+def _waits_for_samples(set_aside: pl.DataFrame) -> bool:
+    """Return whether nothing is wrong but that tows are not listed, or have no samples, yet."""
+    reasons = set_aside.drop_nulls("tow_id")["reason_code"].unique().to_list()
+    return set_aside.is_empty() or reasons == [SAMPLES_MISSING]
+
+
+def _explain_no_tows(set_aside: pl.DataFrame) -> str:
+    """Return a sentence that says why no tow can be used, by cause, and what to do."""
     if set_aside.is_empty():
         return say(
             "no tow can be used: the tow lists hold none in the seasons that were read; "
             "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
         )
+    first = set_aside.row(0, named=True)
+    if _waits_for_samples(set_aside):
+        first = set_aside.row(by_predicate=pl.col("reason_code") == SAMPLES_MISSING, named=True)
+        return say(
+            "no tow has samples yet: put the files that the tow lists name in meetdata_<jaar>/. "
+            "The first that is missing: {}: {}",
+            first["path"],
+            first["message"],
+        )
     causes = set_aside["reason_code"].value_counts(sort=True).sort("count", descending=True).rows()
     counted = ", ".join(f"{number} x {reason}" for reason, number in causes)
-    first = set_aside.row(0, named=True)
     return say(
         "no tow can be used: {} rows or files are set aside ({}). See them by cause with: herijk "
         "check ARCHIVE. The first: {}: {}",

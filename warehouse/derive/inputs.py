@@ -194,15 +194,15 @@ def _failed_tows(scope: Scope) -> pl.DataFrame:
     return unforeseen.failed_tows(scope.store)
 
 
-def _quarantine_before(scope: Scope) -> pl.DataFrame:
-    """What was set aside until now; from the database where the lake lost it."""
-    if scope.store.made_from("quarantine") is not None:
-        return scope.store.read("quarantine")
+def _read_earlier(scope: Scope, table: str) -> pl.DataFrame:
+    """Return a table as the last rebuild made it; from the database where the lake lost it."""
+    if scope.store.made_from(table) is not None:
+        return scope.store.read(table)
     try:
         with open_database(scope.store.database) as db:
-            return pl.DataFrame(db.table("quarantine").pl())
+            return pl.DataFrame(db.table(table).pl())
     except (HerijkError, duckdb.Error):  # not made yet, or damaged too
-        return TABLES["quarantine"].create_empty()
+        return TABLES[table].create_empty()
 
 
 def _run_cache(scope: Scope) -> RunCache:
@@ -250,7 +250,8 @@ OTHERS: Final[Mapping[str, Other]] = {
         tables=IN_DATABASE,
     ),
     "run_cache": Other(_run_cache),
-    "quarantine_before": Other(_quarantine_before),
+    "quarantine_before": Other(lambda scope: _read_earlier(scope, "quarantine")),
+    "has_earlier_tows": Other(lambda scope: not _read_earlier(scope, "tows").is_empty()),
     "today": Other(lambda scope: scope.today),
     "store": Other(lambda scope: scope.store),
 }

@@ -12,7 +12,7 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.register.register import LINE
 from pipeline.tables.row import Row
 from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed
-from warehouse.store.boats import boats_named, the_boat
+from warehouse.store.boats import choose_boat, find_boats
 from warehouse.store.editions import Edition, Manifest, edition_path, read_edition
 from warehouse.store.store import Store
 
@@ -46,11 +46,11 @@ def lineage(store: Store, edition: str, boat: str) -> Lineage:
     """
     published = read_edition(store, edition)
     boats = published.register.select("fsn_no", "name").unique()
-    if not boats_named(boats, boat):
+    if not find_boats(boats, boat):
         raise MissingKnowledgeError(
             "boat {} is not in edition {}; its register.csv lists the boats", boat, edition
         )
-    lines = published.register.filter(pl.col("fsn_no") == the_boat(boats, boat))
+    lines = published.register.filter(pl.col("fsn_no") == choose_boat(boats, boat))
     return Lineage(
         about=published.manifest.model_dump(mode="json", include=SAID),
         folder=str(edition_path(store, edition)),

@@ -15,7 +15,13 @@ import duckdb
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.row import Row
-from warehouse.store.boats import boats_named, plain, the_boat
+from warehouse.store.boats import (
+    choose_boat,
+    find_boats,
+    match_names,
+    normalize_name,
+    suggest_names,
+)
 from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
 
@@ -91,8 +97,8 @@ def audit(store: Store, names: Sequence[str], method: str | None = None) -> Boat
 
     Args:
         store: where the database lies.
-        names: an FSN number or name of a boat, or one or two names of types; case, blanks and
-            accents do not matter.
+        names: an FSN number or name of a boat, or one or two names of types, or the beginning
+            of any of these; case, blanks and accents do not matter.
         method: show this method only.
 
     Raises:
@@ -102,14 +108,9 @@ def audit(store: Store, names: Sequence[str], method: str | None = None) -> Boat
         methods = _methods(db, method)
         usual: list[str] = [name for name in TYPE_METHODS if name in methods]
         of_types = methods if method or not usual else usual
-        types = {plain(row["boat_type"]): row for row in rows(db, _TYPES)}
-        asked = {name: types.get(plain(name)) for name in names}
-        if len(names) == 1 and asked[names[0]] is None and (boat := _boat(db, names[0])):
+        if len(names) == 1 and (boat := _find_boat(db, names[0])):
             return _boat_audit(db, boat, methods)
-        for name, found in asked.items():
-            if found is None:
-                raise _no_such_type(db, name, list(types.values()))
-        known = dict.fromkeys(row["boat_type"] for row in asked.values() if row)
+        known = dict.fromkeys(_choose_type(db, name) for name in names)
         return _types_audit(db, list(known), of_types)
 
 
@@ -124,29 +125,59 @@ def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
     return [method]
 
 
-def _boat(db: duckdb.DuckDBPyConnection, name: str) -> Row | None:
-    """The boat of that number or name."""
+def _find_boat(db: duckdb.DuckDBPyConnection, wanted: str) -> Row | None:
+    """Return the boat that a name stands for, unless a type answers to it.
+
+    A whole number or name of a boat goes before the beginning of a type, and that before the
+    beginning of a boat.
+
+    Raises:
+        MissingKnowledgeError: several boats answer to the name, and no type.
+    """
     boats = db.sql("SELECT * FROM boats").pl()
-    if not boats_named(boats, name):
+    types = [row["boat_type"] for row in rows(db, _TYPES)]
+    is_whole_type = normalize_name(wanted) in {normalize_name(name) for name in types}
+    begins_type = bool(match_names(wanted, types))
+    is_whole_boat = bool(find_boats(boats, wanted, whole=True))
+    if is_whole_type or (begins_type and not is_whole_boat) or not find_boats(boats, wanted):
         return None
-    return rows(db, "SELECT * FROM boats WHERE fsn_no = ?", the_boat(boats, name))[0]
+    fsn_no = choose_boat(boats, wanted)
+    return rows(db, "SELECT * FROM boats WHERE fsn_no = ?", fsn_no)[0]
 
 
-def _no_such_type(
-    db: duckdb.DuckDBPyConnection, name: str, types: list[Row]
-) -> MissingKnowledgeError:
-    if boat := _boat(db, name):
-        return MissingKnowledgeError(
-            "{} is a boat, not a type; a boat has a page of its own: herijk audit {}",
-            boat["fsn_no"],
-            boat["fsn_no"],
+def _choose_type(db: duckdb.DuckDBPyConnection, wanted: str) -> str:
+    """Return the type that a name, or its beginning, stands for.
+
+    Raises:
+        MissingKnowledgeError: no type answers to the name, or several do.
+    """
+    types = rows(db, _TYPES)
+    found = match_names(wanted, [row["boat_type"] for row in types])
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise MissingKnowledgeError(
+            "{!r} may be any of {} types: {}; write more of the name",
+            wanted,
+            len(found),
+            ", ".join(found),
         )
-    return MissingKnowledgeError(
+    boats = db.sql("SELECT * FROM boats").pl()
+    if find_boats(boats, wanted):
+        fsn_no = choose_boat(boats, wanted)
+        raise MissingKnowledgeError(
+            "{} is a boat, not a type; a boat has a page of its own: herijk audit {}",
+            fsn_no,
+            fsn_no,
+        )
+    known = [*(row["boat_type"] for row in types), *boats["fsn_no"], *boats["name"].drop_nulls()]
+    raise MissingKnowledgeError(
         "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by "
-        "FSN number or name, for example {}",
-        name,
+        "FSN number or name, for example {}.{}",
+        wanted,
         ", ".join(f"{row['boat_type']} ({row['n']})" for row in types),
         rows(db, "SELECT min(fsn_no) AS fsn_no FROM tows")[0]["fsn_no"],
+        suggest_names(wanted, known),
     )
 
 
