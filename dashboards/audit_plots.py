@@ -13,8 +13,8 @@ import polars as pl
 from markupsafe import Markup
 
 from dashboards import drawn, labels
-from dashboards.site.parts import default_method
 from pipeline.messages import speaker
+from warehouse.derive.studies import default_method
 from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.views import Views
 from warehouse.store.files import written_beside

@@ -13,13 +13,13 @@ from dashboards.site.parts import (
     Section,
     Select,
     Table,
-    default_method,
     first_edition,
     methods_select,
     once_for_methods,
 )
 from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say
+from warehouse.derive.studies import default_method
 from warehouse.queries.views import DRAFT, Views, curve_figure
 
 FOLLOWS = ["tow_id", "method"]

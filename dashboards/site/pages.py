@@ -12,7 +12,6 @@ from dashboards.site.parts import (
     Page,
     Section,
     Table,
-    default_method,
     editions_select,
     methods_select,
     with_page,
@@ -25,7 +24,7 @@ from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
 from dashboards.statements.race import winners
 from pipeline.messages import Sentence, say
-from warehouse.derive.studies import FIRST_PUBLISHED, JUDGEMENT
+from warehouse.derive.studies import FIRST_PUBLISHED, JUDGEMENT, default_method
 from warehouse.queries.answers import line_changes, race_chances
 from warehouse.queries.views import Views
 
@@ -54,8 +53,12 @@ def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Itera
 
 
 def method_names(views: Views) -> list[str]:
-    """Names of the methods, in the order of the database, but for how 2014 was first printed."""
-    return [name for name in views.table("methods")["method"] if name != FIRST_PUBLISHED]
+    """Return the names of the methods that pages show, in the order of the database.
+
+    How 2014 was first printed is left out, unless it is the only method.
+    """
+    names = views.table("methods")["method"].to_list()
+    return [name for name in names if name != FIRST_PUBLISHED] or names
 
 
 def _register(views: Views, methods: Sequence[str]) -> Page:

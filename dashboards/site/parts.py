@@ -15,7 +15,7 @@ from dashboards.statements import EditionName
 from dashboards.statements.boat import Answer
 from pipeline.messages import Sentence, say
 from pipeline.register.register import draft_name
-from warehouse.derive.studies import STUDIED_METHOD
+from warehouse.derive.studies import default_method
 from warehouse.queries.answers import newest_edition
 
 
@@ -218,12 +218,6 @@ def is_chosen(value: object, *wanted: str) -> bool:
     values = value if isinstance(value, (list, tuple)) else (value,)
     said = [text for text in wanted if text]
     return not said or any(str(one) in said for one in values)
-
-
-def default_method(names: Sequence[str]) -> str:
-    """What is shown first: the default method or its draft, else the last."""
-    wanted = [n for n in names if n in (STUDIED_METHOD, draft_name(STUDIED_METHOD))]
-    return [*names, *wanted][-1]
 
 
 def first_edition(editions: pl.Series, methods: Sequence[str]) -> str:

@@ -15,13 +15,13 @@ from dashboards.guides import GUIDES, guide_file, method_guide
 from dashboards.html import keep_units
 from dashboards.markdown import to_blocks, to_html
 from dashboards.measured import CAPTION, picture
-from dashboards.site.parts import Chart, Page, Section, default_method
+from dashboards.site.parts import Chart, Page, Section
 from dashboards.speech import Speech
 from dashboards.statements import Statement, together
 from dashboards.statements.method import BASES, EACH_STEP, VOTE, WORKED, Explained, explained
 from dashboards.statements.slides import Slide, slides
 from pipeline.messages import Sentence, say
-from warehouse.derive.studies import STUDIED_METHOD
+from warehouse.derive.studies import STUDIED_METHOD, default_method
 from warehouse.queries.views import Views
 from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_names, edition_path
 from warehouse.store.store import Store

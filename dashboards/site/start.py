@@ -7,11 +7,12 @@ import polars as pl
 from markupsafe import Markup
 
 from dashboards import labels
-from dashboards.site.parts import Chart, Page, Section, default_method, first_edition
+from dashboards.site.parts import Chart, Page, Section, first_edition
 from dashboards.speech import Headline, Speech
 from dashboards.statements import edition, season
 from dashboards.statements.rebuild import PAGES, in_short
 from pipeline.messages import Sentence, pgettext, say
+from warehouse.derive.studies import default_method
 from warehouse.queries.change_report import last_changes
 from warehouse.queries.views import Views
 

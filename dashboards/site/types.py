@@ -17,7 +17,6 @@ from dashboards.site.parts import (
     Page,
     Section,
     Table,
-    default_method,
     methods_select,
     once_for_methods,
     types_select,
@@ -28,6 +27,7 @@ from dashboards.statements import together
 from dashboards.statements.boat_type import LINES, SPREAD, Slopes, homogeneity, level, slopes
 from dashboards.statements.slides import Book
 from pipeline.messages import Sentence, say
+from warehouse.derive.studies import default_method
 from warehouse.queries.audit import WEIGHT_LINE
 from warehouse.queries.views import NEWEST, Views
 

@@ -310,7 +310,7 @@ class Book:
         """What the options of the tool of 2015 do to all boats."""
         tool = pl.col("option").is_in([*TICKS, *SPEEDS])
         rows = self.views.table("option_summary").filter(tool, study="tool")
-        rows = rows.filter(pl.col("tows") >= FEWEST, method=rows["method"].max())
+        rows = rows.filter(pl.col("tows") >= FEWEST, pl.col("method") == pl.col("method").max())
         if rows.is_empty():
             return
         most = rows.sort((pl.col("median_ratio") - 1).abs(), "option").row(-1, named=True)

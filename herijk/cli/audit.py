@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import click
 
 from herijk.cli.options import PATH, archive_option, as_json, data_option, json_option, show
-from herijk.cli.registers import BEST
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, tell
@@ -88,6 +87,7 @@ def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> No
     """What a tow shows while the boat waits: provisional, and nothing is stored."""
     from herijk.cli import audit_text as text
     from pipeline.method.definition import COMPLETE
+    from warehouse.derive.studies import STUDIED_METHOD
     from warehouse.editions.publish import latest_before
     from warehouse.queries import assess as tows
     from warehouse.store.editions import read_edition
@@ -96,7 +96,7 @@ def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> No
     today = dt.date.today()
     edition = None if method else latest_before(store, today, today)
     in_force = None if edition is None else read_edition(store, edition).method
-    chosen = in_force or KnownMethods.of(store).get(method or BEST)
+    chosen = in_force or KnownMethods.of(store).get(method or STUDIED_METHOD)
     found = tows.assess(store, archive, tow_id, chosen)
     show(found, lambda report: text.assessment(report, chosen.interval == COMPLETE))
 

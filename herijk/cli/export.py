@@ -14,7 +14,7 @@ from pipeline.messages import LANGUAGE, tell
 if TYPE_CHECKING:
     from warehouse.store.store import Store
 
-out_option = option("--out", type=PATH, help="File to write, a PDF.")
+out_option = option("--out", type=PATH, help="PDF to write, or a folder for it.")
 
 
 @click.group(cls=Group)
@@ -57,7 +57,8 @@ def pages(out: Path, store: "Store", as_of: dt.date | None) -> None:
     from dashboards.site.render import OWN_FILES, build_pages
     from warehouse.store.unforeseen import documents
 
-    if out.exists() and not (out / "static" / OWN_FILES[0]).is_file():
+    is_new = not out.exists() or (out.is_dir() and not any(out.iterdir()))
+    if not is_new and not (out / "static" / OWN_FILES[0]).is_file():
         raise MissingKnowledgeError("{} is there and holds no pages; give a new folder", out)
     with documents(store.root, "pages") as border:
         made = build_pages(store, out, as_of, bordered=border)
@@ -114,13 +115,23 @@ def slides(
 
 
 def _write(store: "Store", content: bytes | None, name: str, out: Path | None) -> None:
-    """Writes the file whole, and says where; nothing where nothing could be made."""
+    """Write the file whole, and print where; do nothing where nothing could be made.
+
+    Args:
+        store: the data folder, which has the file where `out` is not given.
+        content: the document; None where it could not be made.
+        name: usual name of the document, without suffix.
+        out: the file, which ends in `.pdf`, or a folder.
+    """
     if content is None:
         return
     from warehouse.store.files import written_beside
     from warehouse.store.machine_faults import machine_faults_explained
 
-    path = out or store.root / "documents" / f"{name}.pdf"
+    usual = f"{name}.pdf"
+    path = out or store.root / "documents" / usual
+    if path.is_dir() or path.suffix.lower() != ".pdf":
+        path /= usual
     with machine_faults_explained(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
         with written_beside(path) as beside:

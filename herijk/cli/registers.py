@@ -1,7 +1,7 @@
 """The commands about registers: `register`, `seasons`, `publish` and `verify`."""
 
 import datetime as dt
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import click
 
@@ -12,10 +12,6 @@ from pipeline.messages import tell
 
 if TYPE_CHECKING:
     from warehouse.store.store import Store
-
-
-BEST: Final = "rebased"
-"""The method of the best draft, whose factors and due list are shown where none is named."""
 
 
 @click.command(cls=Command)
@@ -39,10 +35,10 @@ def register(edition: str | None, due: bool, store: "Store", as_of: dt.date | No
         show(register_report(store, edition, as_of), text.register)
 
 
-def _method_of(store: "Store", edition: str | None) -> str:
-    """The method of an edition or draft; that of the best draft without one."""
+def _method_of(store: "Store", edition: str | None) -> str | None:
+    """Return the method of an edition or draft; None where none is named."""
     if edition is None:
-        return BEST
+        return None
     from pipeline.register.register import draft_name
     from warehouse.store.editions import edition_names, method_of_edition
     from warehouse.store.methods import KnownMethods
@@ -54,15 +50,16 @@ def _method_of(store: "Store", edition: str | None) -> str:
 
 @click.command(cls=Command)
 @data_option
-@option("--method", default=BEST, help="Method whose factors are shown.")
+@option("--method", help="Method whose factors are shown. Default: the best that was applied.")
 @json_option
-def seasons(store: "Store", method: str) -> None:
+def seasons(store: "Store", method: str | None) -> None:
     """What was wrong with log, force and wind in each season, and how sure that is."""
     from herijk.cli import registers_text as text
     from warehouse.queries.reports import log_error_report
     from warehouse.store.methods import KnownMethods
 
-    KnownMethods.of(store).text(method)
+    if method is not None:
+        KnownMethods.of(store).text(method)
     show(log_error_report(store, method), text.seasons)
 
 

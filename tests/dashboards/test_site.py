@@ -18,7 +18,7 @@ from dashboards.site.boats import boat_pages
 from dashboards.site.charts import DRAWN
 from dashboards.site.glossary import Glossed
 from dashboards.site.pages import MENU, method_names, shared_pages
-from dashboards.site.parts import Table, default_method
+from dashboards.site.parts import Table
 from dashboards.site.prose import SHEETS
 from dashboards.site.render import build_pages, build_site
 from dashboards.site.start import ABOUT
@@ -31,7 +31,7 @@ from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 from tests.texts import said
 from warehouse.derive.inputs import LAKE_ONLY
-from warehouse.queries.answers import answers, line_changes, newest_edition
+from warehouse.queries.answers import answers, default_method, line_changes, newest_edition
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
 

@@ -11,7 +11,7 @@ import polars as pl
 
 from pipeline.method.definition import COMPLETE
 from pipeline.register.changes import compare_lines
-from pipeline.register.register import LINE, draft_name
+from pipeline.register.register import LINE
 from pipeline.register.replay import (
     RaceRules,
     race_changes,
@@ -20,7 +20,7 @@ from pipeline.register.replay import (
 )
 from pipeline.tables.row import Row
 from pipeline.tables.schemas import TABLES
-from warehouse.derive.studies import STUDIED_METHOD
+from warehouse.derive.studies import default_method
 from warehouse.editions.compare import compare
 from warehouse.editions.publish import drafted
 from warehouse.queries.views import DRAFT, Views
@@ -41,7 +41,8 @@ def current_edition(views: Views) -> str:
     """The edition that people ask about: the newest that is published, or the best draft."""
     published = views.table("editions").sort("valid_from", "published_on", "edition")["edition"]
     drafts = set(views.table("register")["edition"]) - set(published)
-    return newest_edition([*sorted(drafts), *published], draft_name(STUDIED_METHOD))
+    draft = default_method(sorted(drafts)) if drafts else ""
+    return newest_edition([*sorted(drafts), *published], draft)
 
 
 def line_changes(views: Views) -> pl.DataFrame:

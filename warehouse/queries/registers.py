@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pipeline.errors import MissingKnowledgeError
 from pipeline.register.register import draft_name
 from pipeline.tables.row import Row
+from warehouse.derive.studies import default_method
 from warehouse.queries.answers import current_edition
 from warehouse.queries.views import Views
 from warehouse.store.database import no_such_edition
@@ -76,35 +77,37 @@ def register_report(
     return RegisterReport(chosen, simulated, of_edition["as_of"][0], of_edition.to_dicts())
 
 
-def due_report(store: Store, method: str, as_of: dt.date | None = None) -> DueReport:
+def due_report(store: Store, method: str | None = None, as_of: dt.date | None = None) -> DueReport:
     """Who is due under a method, at what speed, and which boats to tow again.
 
     Args:
         store: the data folder.
-        method: whose curves give the speeds.
+        method: whose curves give the speeds; the best that was applied when left out.
         as_of: the day on which validity is judged; that of the last tow or race when left out.
 
     Raises:
         MissingKnowledgeError: the method was not applied by the last rebuild.
     """
     with Views(store, as_of) as views:
-        due, choice = (views.ask(name) for name in ("due_list", "retow_choice"))
-        simulated = views.simulated(draft_name(method))
-    lines = due.filter(method=method).to_dicts()
+        due = views.ask("due_list")
+        choice = views.ask("retow_choice")
+        chosen = method or default_method(views.table("methods")["method"].to_list())
+        simulated = views.simulated(draft_name(chosen))
+    lines = due.filter(method=chosen).to_dicts()
     if not lines:
         raise MissingKnowledgeError(
             "there is no due list of method {}; make it with: herijk rebuild "
             "--archive DIR --data {} --method {}",
-            method,
+            chosen,
             store.root,
-            method,
+            chosen,
         )
     return DueReport(
-        method=method,
+        method=chosen,
         simulated=simulated,
         as_of=lines[0]["as_of"],
         lines=[line | {"urgency": _urgency(line)} for line in lines],
-        retow_choice=choice.filter(method=method).to_dicts(),
+        retow_choice=choice.filter(method=chosen).to_dicts(),
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from pipeline.tables.row import Row
+from warehouse.derive.studies import default_method
 from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
 
@@ -86,15 +87,22 @@ def rebuild_report(store: Store) -> RebuildReport:
         )
 
 
-def log_error_report(store: Store, method: str) -> LogErrorReport:
-    """The log factor of every season under a method, and what the estimated ones rest on."""
+def log_error_report(store: Store, method: str | None = None) -> LogErrorReport:
+    """Return the log factor of every season under a method, and what the estimated ones rest on.
+
+    Args:
+        store: the data folder.
+        method: the method; the best that was applied when left out.
+    """
     with open_database(store.database) as db:
+        applied = [row["method"] for row in rows(db, "SELECT method FROM methods ORDER BY method")]
+        chosen = method or default_method(applied)
         return LogErrorReport(
             simulated=is_simulated(db),
-            method=method,
-            factors=rows(db, _LOG_FACTORS, method),
-            parts=rows(db, _LOG_PARTS, method),
-            diagnosis=rows(db, _DIAGNOSIS, method),
+            method=chosen,
+            factors=rows(db, _LOG_FACTORS, chosen),
+            parts=rows(db, _LOG_PARTS, chosen),
+            diagnosis=rows(db, _DIAGNOSIS, chosen),
         )
 
 
