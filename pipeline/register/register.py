@@ -18,6 +18,8 @@ LINE: Final = (*CREW, "empty_thwart")
 (Sleepproef, R. Pot 2017, "Bemanning"); `NO_EMPTY_THWART` where all are manned."""
 
 NO_EMPTY_THWART: Final = ""
+TOW_DAY: Final = (*LINE, "tow_date")
+"""What tells tows apart in lists and in print, which have no number of a tow."""
 CURVE_COLUMNS: Final = (
     "tow_id",
     "tow_date",
@@ -33,6 +35,9 @@ CURVE_COLUMNS: Final = (
 CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 DOUBTED: Final = "doubted"
 """Status of a line whose tows the rest of the archive rules out."""
+
+NEWER_TOW_UNMEASURED: Final = "newer_tow_without_samples"
+"""Flag of a line that rests on an older tow, because the newest tow has no samples."""
 
 EXCLUDE, PREFER = "exclude", "prefer"
 DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
@@ -145,6 +150,57 @@ def lines_of_all_days(
     curved = _towed(as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
     return _in_order(sound, rule, decisions).select(*LINE, *CURVE_COLUMNS)
+
+
+def tow_days(tows: pl.DataFrame) -> pl.DataFrame:
+    """Return the line and day of tows: columns `TOW_DAY`."""
+    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
+    return tows.select(*LINE[:-1], thwart, "tow_date")
+
+
+def unmeasured_tows(
+    listed: pl.DataFrame, printed: pl.DataFrame, tows: pl.DataFrame, day: dt.date
+) -> pl.DataFrame:
+    """Return the newest tow of each line, up to a day, that lists or print name without samples.
+
+    Args:
+        listed: rows of `listed_tows`, also those without samples.
+        printed: rows of `printed_registers`.
+        tows: rows of `tows`, all that have samples.
+        day: the day.
+
+    Returns:
+        Rows of `TOW_DAY`.
+    """
+    in_print = printed.filter("has_valid_curve").select(TOW_DAY)
+    named = pl.concat([tow_days(listed), in_print], how="vertical_relaxed")
+    unmeasured = named.filter(pl.col("tow_date") <= day).join(
+        tow_days(tows), on=TOW_DAY, how="anti"
+    )
+    return unmeasured.group_by(LINE, maintain_order=True).agg(pl.col("tow_date").max())
+
+
+def flag_unmeasured(
+    lines: pl.DataFrame, unmeasured: pl.DataFrame, decisions: pl.DataFrame
+) -> pl.DataFrame:
+    """Flag valid lines that rest on an older tow than the newest one, which has no samples.
+
+    Args:
+        lines: lines of a register.
+        unmeasured: rows of `unmeasured_tows`.
+        decisions: as for `draft_register`; a preferred tow counts whatever is newer.
+    """
+    newer = unmeasured.select(*LINE, unmeasured_on="tow_date")
+    joined = lines.join(newer, on=LINE, how="left", maintain_order="left")
+    preferred = _with_verdict(decisions, PREFER)["tow_id"].to_list()
+    is_older = (
+        (pl.col("status") == "valid")
+        & (pl.col("tow_date") < pl.col("unmeasured_on"))
+        & ~pl.col("tow_id").is_in(preferred).fill_null(False)
+    )
+    flags = pl.col("flags").fill_null([]).list.concat(pl.lit([NEWER_TOW_UNMEASURED]))
+    flagged = pl.when(is_older).then(flags).otherwise("flags")
+    return joined.with_columns(flagged.alias("flags")).drop("unmeasured_on")
 
 
 def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:

@@ -20,7 +20,8 @@ from warehouse.derive.registers import published_tables
 from warehouse.editions import publish as publish_module
 from warehouse.editions import sheets
 from warehouse.editions.making import MADE
-from warehouse.editions.publish import publish_printed
+from warehouse.editions.publish import lines_to_look_at, publish_printed
+from warehouse.editions.verify import verify
 from warehouse.store.decisions import FILE_NAME
 from warehouse.store.editions import (
     edition_names,
@@ -306,3 +307,54 @@ def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(wit
     causes = {row["fsn_no"]: json.loads(row["causes"]) for row in lines.iter_rows(named=True)}
     assert [c["cause"] for c in causes["FSN900"]] == ["closed_form"]
     assert [c["cause"] for c in causes[measured["fsn_no"]]] == ["printed_and_tow"]
+
+
+# The newest tow counts
+
+
+def with_newer_print(bench):
+    """A boat towed in 2009 alone, whose tow of 2011 is in print and has no samples."""
+    tows = bench.store.read("tows")
+    later = tows.filter(season=2014).select(LINE[:-1])
+    tow = tows.filter(season=2009).join(later, on=LINE[:-1], how="anti").row(0, named=True)
+    text = PRINTED.format(boat=tow["fsn_no"], rowers=tow["rowers"], crew=tow["crew_class"])
+    file = bench.archive / "sloepregister" / "sloepregister_2012.csv"
+    file.write_text(text, encoding="utf-8")
+    bench.rebuild()
+    publish_register_of(bench)
+    return tow
+
+
+def test_a_line_whose_newest_tow_has_no_samples_is_named(bench_of_editions):
+    tow = with_newer_print(bench_of_editions)
+    bench_of_editions.publish("x", "rebased")
+    line = line_of(bench_of_editions, tow)
+    assert (line["tow_id"], line["basis"]) == (tow["tow_id"], "measured")
+    assert "newer_tow_without_samples" in line["flags"]
+    look_at = lines_to_look_at(edition_of(bench_of_editions, "x"))
+    assert tow["tow_id"] in {one["tow_id"] for one in look_at}
+    notes = (folder(bench_of_editions, "x") / "notice.md").read_text("utf-8")
+    assert "Newest tow without samples.** 1 line rests on an older tow" in notes
+    assert verify(bench_of_editions.store, afresh=False).findings == []
+
+
+def test_carried_the_newer_printed_line_counts_instead_of_the_older_tow(bench_of_editions):
+    tow = with_newer_print(bench_of_editions)
+    bench_of_editions.publish("x", "rebased", carry="gedrukt-2012")
+    line = line_of(bench_of_editions, tow)
+    assert (line["tow_id"], line["basis"]) == (None, "printed_rebased")
+    assert line["tow_date"] == dt.date(2011, 3, 10)
+    assert verify(bench_of_editions.store, afresh=False).findings == []
+
+
+def test_an_excluded_tow_does_not_come_back_from_print(bench_of_editions):
+    bench = bench_of_editions
+    tow = with_newer_print(bench)
+    file = bench.archive / "sloepregister" / "sloepregister_2012.csv"
+    day = tow["tow_date"].isoformat()
+    file.write_text(file.read_text("utf-8").replace("2011-03-10", day), encoding="utf-8")
+    bench.rebuild()
+    publish_register_of(bench, edition="gedrukt-2")
+    decide(bench, tow["tow_id"], "uitsluiten")
+    bench.publish("x", "rebased", carry="gedrukt-2")
+    assert line_of(bench, tow)["status"] == "excluded"

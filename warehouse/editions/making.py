@@ -20,7 +20,12 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
 from pipeline.method.writing import method_text
 from pipeline.recompute.recompute import recompute
-from pipeline.register.register import LINE, draft_register
+from pipeline.register.register import (
+    LINE,
+    NEWER_TOW_UNMEASURED,
+    draft_register,
+    flag_unmeasured,
+)
 from pipeline.tables.archive import Boats
 from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import SIZES
@@ -34,8 +39,8 @@ from warehouse.editions.inputs import INPUTS_HASH, JUDGED, tables_of_today
 from warehouse.editions.printed import (
     NOT_REBASED,
     PRINTED_METHOD,
+    carry_over,
     printed_lines,
-    with_carried,
 )
 from warehouse.intake import seasons as intake
 from warehouse.store import decisions as decided
@@ -76,6 +81,7 @@ def recomputed(
     method: Method,
     decisions: pl.DataFrame,
     never_towed: pl.DataFrame,
+    unmeasured: pl.DataFrame,
     judged: pl.DataFrame | None = None,
     counting: Collection[str] = ("valid",),
 ) -> Edition:
@@ -87,6 +93,7 @@ def recomputed(
         method: the method.
         decisions: those about tows.
         never_towed: boats with their crews of which lines without a tow are made.
+        unmeasured: rows of `unmeasured_tows`, the newest tows that have no samples.
         judged: the tows to take, with what was judged of them; all, as they are judged now, when
             left out.
         counting: statuses of lines that have numbers.
@@ -105,7 +112,8 @@ def recomputed(
     lines = _with_facts(draft, tows, counting)
     if manifest.carried_from is not None:
         printed = read_edition(store, manifest.carried_from)
-        lines = with_carried(lines, printed, made.log_factors, manifest.valid_from, method)
+        lines = carry_over(lines, printed, made.log_factors, method, tows, manifest.valid_from)
+    lines = flag_unmeasured(lines, unmeasured, decisions)
     tables = {
         **today,
         **{name: conform(name, getattr(made, name)) for name in MADE},
@@ -141,7 +149,8 @@ def made_again(store: Store, edition: Edition) -> Edition:
     """A published edition again, by its own method, decisions and day.
 
     Measured lines are computed from those of its tows that the warehouse still has; lines carried
-    over are re-based again from the printed edition; a printed register is read again.
+    over are re-based again from the printed edition; a printed register is read again. Which lines
+    have a newer tow without samples is taken as the edition has it.
 
     Raises:
         MissingKnowledgeError: there is no warehouse, or the archive is not there.
@@ -164,6 +173,9 @@ def made_again(store: Store, edition: Edition) -> Edition:
         edition.method,
         decisions_of(store, edition),
         edition.register.filter(status="never_towed"),
+        edition.register.filter(pl.col("flags").list.contains(NEWER_TOW_UNMEASURED)).select(
+            *LINE, tow_date=edition.manifest.valid_from
+        ),
         tows.select("tow_id", *known),
     )
     return with_changes(store, again)

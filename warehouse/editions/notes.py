@@ -12,10 +12,12 @@ from pathlib import Path
 from typing import Final
 
 import jinja2
+import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import DECIMALS
 from pipeline.method.definition import COMPLETE
+from pipeline.register.register import NEWER_TOW_UNMEASURED
 from warehouse.editions.compare import report
 from warehouse.editions.printed import NOT_REBASED, REBASED
 from warehouse.store.editions import CHANGES, NOTICE, NOTICE_EN, Edition
@@ -53,6 +55,7 @@ def texts(edition: Edition, previous: Edition | None) -> dict[str, str]:
 def _facts(edition: Edition) -> dict[str, object]:
     register, method = edition.register, edition.method
     statuses = register["status"].value_counts().sort("count", "status", descending=True)
+    rests_on_older_tow = pl.col("flags").list.contains(NEWER_TOW_UNMEASURED)
     return {
         "about": edition.manifest,
         "decision": edition.manifest.decision.strip().rstrip("."),
@@ -60,6 +63,7 @@ def _facts(edition: Edition) -> dict[str, object]:
         "statuses": statuses.rows(),
         "carried": register.filter(basis=REBASED).height,
         "not_rebased": register.filter(basis=NOT_REBASED).height,
+        "unmeasured": register.filter(rests_on_older_tow).to_dicts(),
         "members": "ensemble" in edition.tables,
         "complete": method is not None and method.interval == COMPLETE,
     }

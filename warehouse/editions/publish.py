@@ -14,7 +14,13 @@ import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import Method
-from pipeline.register.register import DOUBTED, LINE, draft_name, reference_day
+from pipeline.register.register import (
+    DOUBTED,
+    LINE,
+    draft_name,
+    reference_day,
+    unmeasured_tows,
+)
 from pipeline.tables.row import Row
 from warehouse.derive.graph import METHOD as METHOD_STEP
 from warehouse.derive.inputs import Scope
@@ -68,7 +74,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
         method: a method that the last rebuild applied.
         terms: what a person decided.
         carry: a printed edition of which lines are taken over, re-based in closed form, for boats
-            and crews without a valid tow in the warehouse.
+            and crews whose newest tow has no samples. Without it such lines are flagged.
 
     Returns:
         The folder.
@@ -106,7 +112,13 @@ def as_decided(
     _check_decided_tows(decisions, store.read("tows"))
     manifest = _manifest(store, terms, method, carry)
     crews = store.read("listed_boats")
-    return recomputed(store, manifest, method, decisions, crews, counting=counting)
+    unmeasured = unmeasured_tows(
+        store.read("listed_tows"),
+        store.read("printed_registers"),
+        store.read("tows"),
+        terms.valid_from,
+    )
+    return recomputed(store, manifest, method, decisions, crews, unmeasured, counting=counting)
 
 
 def drafted(
