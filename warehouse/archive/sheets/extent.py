@@ -8,6 +8,8 @@ import zlib
 from pathlib import Path
 from typing import Final
 
+from pipeline.errors import DefectiveInputError
+from pipeline.messages import say
 from warehouse.archive.limits import (
     MOST_LISTED_ROWS,
     SAMPLES_MAX_BYTES,
@@ -30,23 +32,32 @@ _PLACE: Final = re.compile(rb"""\sr\s*=\s*["']([A-Za-z]{0,9})([0-9]{1,30})["']""
 _REPEATED: Final = re.compile(rb"""number-(?:rows|columns)-repeated\s*=\s*["']([0-9]{1,30})["']""")
 
 
+_OLD_EXCEL: Final = bytes.fromhex("d0cf11e0a1b11ae1")
+"""How a compound file begins: a workbook of Excel 97 to 2003, or a later one with a password."""
+
+
 def check_workbook(data: bytes, only: str = "", most_rows: int = MOST_LISTED_ROWS) -> None:
-    """Refuses a workbook whose cells lie too far apart, or that unpacks to too much.
+    """Refuse a workbook whose cells lie too far apart, that unpacks to too much, or that is .xls.
 
     One cell in the last row makes a reader ask for the memory of every cell above it. What a sheet
-    says of its own size may be absent or wrong, so the places of its cells count.
+    says of its own size may be absent or wrong, so the places of its cells count. An .xls file is
+    refused unread: one whose sector table points at itself makes a reader ask for gigabytes.
 
     Args:
-        data: content of the file; what is no zip file has no more cells than bytes.
+        data: content of the file.
         only: name of the sheet that is read; empty for all.
         most_rows: of a sheet.
 
     Raises:
-        DefectiveInputError: `too_large`.
-        BadZipFile, OSError, ValueError: the zip file is damaged.
+        DefectiveInputError: `too_large`, or `unreadable_file` for an old workbook.
+        BadZipFile, OSError, ValueError: the file is no zip file, or a damaged one.
     """
-    if not zipfile.is_zipfile(io.BytesIO(data)):
-        return
+    if data.startswith(_OLD_EXCEL):
+        said = say(
+            "This is an old Excel workbook (.xls), or one with a password: save it as .xlsx, "
+            "without a password."
+        )
+        raise DefectiveInputError("unreadable_file", said)
     with zipfile.ZipFile(io.BytesIO(data)) as book:
         members = book.infolist()
         if own := [part for name, part in _parts_of(book).items() if fold(name) == fold(only)]:
