@@ -15,6 +15,7 @@ from dashboards.statements.rebuild import (
     PAGES,
     Check,
     in_short,
+    judged,
     outcome_of,
     values_found,
     verdict,
@@ -75,9 +76,11 @@ def report_pages(
     in_words = Section(
         "report_summary",
         say("In short"),
-        headline=verdict(checks),
+        headline=verdict(changes, checks),
         state="good" if all(check.passed for check in checks) else "bad",
-        prose=lambda speech: Markup("<p>{}</p>").format(in_short(changes)(speech)),
+        prose=lambda speech: Markup("<p>{}</p><p>{}</p>").format(
+            in_short(changes)(speech), judged(changes)(speech)
+        ),
     )
     with Views(store) as views:
         return {

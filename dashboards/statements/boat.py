@@ -66,7 +66,13 @@ class Answer:
     def blocks(self) -> list[Block]:
         """The number, or why there is none; where it comes from; how far it can be trusted."""
         line = self.line
-        number = [headline(line), *_power(line), *_place(line), *_validity(line)]
+        number = [
+            headline(line),
+            *_flags(line),
+            *_power(line),
+            *_place(line),
+            *_validity(line),
+        ]
         why = [*_change(line), *_log(line), *map(place_in_race, self.races)]
         fair = [*_certainty(line), *_best(line), *_faults(self.faults), *_next_tow(line)]
         if line["cw_kg_m"] is None:
@@ -160,6 +166,13 @@ def headline(line: Row) -> Statement:
     )
     by, verdict = Number(100 * abs(ratio - 1), 1, "%"), "lower" if ratio < 1 else "higher"
     return told("cw", wording, line, *rests_on, verdict=verdict, by=by)
+
+
+def _flags(line: Row) -> Iterator[Statement]:
+    """State what somebody still has to look at before the number is trusted."""
+    if line["flags"]:
+        flags: list[Value] = [labels.code(flag) for flag in line["flags"]]
+        yield told("flags", say("Still to be looked at: {flags}."), {}, "register", flags=flags)
 
 
 def _power(line: Row) -> Iterator[Statement]:

@@ -74,12 +74,30 @@ def in_short(changes: ChangeReport) -> Headline:
     )
 
 
-def verdict(checks: Sequence[Check]) -> Statement:
-    """Whether all is well, in a line; what Herijk itself failed on comes first."""
+def verdict(changes: ChangeReport, checks: Sequence[Check]) -> Statement:
+    """Return whether all is well, in a line; what Herijk itself failed on comes first.
+
+    Tows with a flag are a person's work, so "in order" is not said while there are any.
+    """
     if wrong := list(_wrong(checks)):
         return told("checks", say("Not in order: {wrong}."), verdict="wrong", wrong=wrong)
-    wording = say("In order: all {number} checks passed.")
+    if changes.judged["flagged"]:
+        wording = say(
+            "All {number} checks of the tables passed. Tows that still need a look: {flagged}."
+        )
+        return told("checks", wording, changes.judged, verdict="look", number=len(checks))
+    wording = say("In order: all {number} checks passed, and no tow needs a look.")
     return told("checks", wording, verdict="passed", number=len(checks))
+
+
+def judged(changes: ChangeReport) -> Statement:
+    """Return how many tows are accepted, flagged and rejected now."""
+    wording = say(
+        "Tows by {method}: {accepted} accepted, {flagged} flagged for a look, {rejected} rejected."
+    )
+    return told(
+        "judged", wording, changes.judged, "curves", method=labels.method(changes.judged["method"])
+    )
 
 
 def mail(changes: ChangeReport, checks: Sequence[Check], simulated: bool) -> tuple[str, str]:
@@ -90,7 +108,7 @@ def mail(changes: ChangeReport, checks: Sequence[Check], simulated: bool) -> tup
     moved = [f"  {_line(line)(speech)}" for line in changes.lines[:LINES_IN_MAIL]]
     more = len(changes.lines) - len(moved)
     rest = [f"  + {more}"] if more > 0 else []
-    text = "\n".join([*marked, *lines, "", *moved, *rest])
+    text = "\n".join([*marked, *lines, judged(changes)(speech), "", *moved, *rest])
     return f"{speech.say('Tow tests re-based')}: {lines[0]}", f"{text}\n"
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from assets.report import Report
-from dashboards.statements.rebuild import headlines
+from dashboards.statements.rebuild import headlines, judged
 from herijk.cli.render import Part, Section, marked, set_aside
 from pipeline.messages import tell
 from warehouse.queries.reports import RebuildReport
@@ -50,7 +50,7 @@ def text(made: Rebuilt) -> Iterator[Part]:
     news = headlines(made.since, made.since.checks)
     yield Section(tell("Since the last report:"), news)
     tows = ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
-    yield tell("Tows accepted: ") + tows
+    yield Section(tell("Tows by season: ") + tows, [judged(made.since)])
     yield from _set_aside(report)
     yield tell("Tables: {}\nSite: {}\nReport: {}", report.database, report.site, report.report)
 

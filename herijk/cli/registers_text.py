@@ -26,7 +26,7 @@ def _frame(rows: Sequence[Row]) -> pl.DataFrame:
 
 
 REGISTER: Final = (
-    "fsn_no name crew empty_thwart status valid_until tow_id declared_speed_m_s a_kg_m b_m_s "
+    "fsn_no name crew empty_thwart status flags valid_until tow_id declared_speed_m_s a_kg_m b_m_s "
     "cw_kg_m cw_lo_kg_m cw_hi_kg_m waterline_length_m beam_m bow_height_m weight_kg"
 )
 DUE: Final = (

@@ -18,6 +18,7 @@ from pipeline.register.changes import NO_PARTS, compare_lines
 from pipeline.register.register import LINE, draft_name
 from pipeline.tables.row import Row
 from warehouse.derive.database import DATABASE_TABLE
+from warehouse.derive.studies import default_method
 from warehouse.editions.compare import grounds
 from warehouse.editions.inputs import INPUTS_HASH, same_tows
 from warehouse.store.code import code_version
@@ -29,6 +30,8 @@ NEEDED: Final = ("about", "tows", "tow_runs", "quarantine", "log_factors", "meth
 FAULT: Final = ("path", "tow_id", "line", "reason_code", "message")
 FACTOR: Final = ("method", "season")
 FILES: Final = ("samples_sha256", "second_sha256")
+STATUSES: Final = ("accepted", "flagged", "rejected")
+"""Statuses of a curve: sound, to be looked at, and without a number that counts."""
 SAME_FACTOR: Final = 5e-5
 """A log factor that moved by less did not move: it shows as 1.0000."""
 
@@ -49,6 +52,8 @@ class ChangeReport:
         factors: log factors that moved: `method`, `season`, `old_factor`, `new_factor`, `ratio`.
         lines: lines of draft registers that changed, as `pipeline.register.changes.compare_lines`
             has them, with the boat's `name`.
+        judged: the method that is shown first, as `method`, and how many of its tows are
+            `accepted`, `flagged` and `rejected` now, changed or not.
     """
 
     first: bool
@@ -58,6 +63,7 @@ class ChangeReport:
     set_aside: list[Row]
     factors: list[Row]
     lines: list[Row]
+    judged: Row
 
     @property
     def nothing(self) -> bool:
@@ -140,7 +146,16 @@ def _between(store: Store, was_state: object, now_state: object) -> ChangeReport
         set_aside=faults.to_dicts(),
         factors=_factors(before["log_factors"], now["log_factors"]).to_dicts(),
         lines=_lines(before, now, store.read("boats").select("fsn_no", "name")),
+        judged=count_statuses(store),
     )
+
+
+def count_statuses(store: Store) -> Row:
+    """Return how many tows the method that is shown first accepts, flags and rejects."""
+    method = default_method(store.read("methods")["method"].to_list())
+    statuses = store.read("curves", method, columns=["status"])["status"]
+    counts = {name: int((statuses == name).sum()) for name in STATUSES}
+    return {"method": method, **counts}
 
 
 def _tows(was: Tables, now: Tables) -> pl.DataFrame:
@@ -224,4 +239,5 @@ def last_changes(store: Store) -> ChangeReport | None:
     if not reports:
         return None
     last = json.loads(reports[-1].read_text(encoding="utf-8"))
-    return ChangeReport(**{f.name: last.get(f.name, []) for f in fields(ChangeReport)})
+    known = {f.name: last.get(f.name, []) for f in fields(ChangeReport)}
+    return ChangeReport(**known | {"judged": count_statuses(store)})
