@@ -35,6 +35,6 @@ class Era(NamedTuple):
 ERAS: Final = (
     Era("2009-2011", 2009, 2011, say("worn logs")),
     Era("2012-2013", 2012, 2013, say("Doppler logs")),
-    Era("2014-", 2014, 9999, say("dGPS, trimmed boats")),
+    Era("2014-", 2014, 9999, say("dGPS, runs cut")),
 )
 """Worn logs, Doppler logs, dGPS and trimming (Sleepproef, R. Pot 2017)."""

@@ -12,7 +12,7 @@ from dashboards.statements import Said
 from herijk.cli.check_text import Checked
 from herijk.cli.compare_text import Compared
 from herijk.cli.methods_text import MethodReport
-from herijk.cli.rebuild_text import Rebuilt
+from herijk.cli.rebuild_text import NoTowsYet, Rebuilt
 from pipeline.tables.row import Row
 from warehouse.editions.lineage import Lineage
 from warehouse.editions.publish import Published
@@ -60,6 +60,7 @@ FORMS: Final[dict[str, Any]] = {
     "methods show": MethodReport,
     "publish": Published,
     "rebuild": Rebuilt,
+    "rebuild of an archive without tows": NoTowsYet,
     "register": RegisterReport,
     "register --due": DueReport,
     "seasons": LogErrorReport,
