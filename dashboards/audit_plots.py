@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from dashboards import drawn, labels
 from pipeline.messages import speaker
-from warehouse.derive.studies import default_method
+from pipeline.register.register import default_method
 from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.views import Views
 from warehouse.store.files import written_beside

@@ -19,7 +19,7 @@ from dashboards.site.parts import (
 )
 from dashboards.statements.boat import Answer, answers_by_boat
 from pipeline.messages import Sentence, say
-from warehouse.derive.studies import default_method
+from pipeline.register.register import default_method
 from warehouse.queries.views import DRAFT, Views, curve_figure
 
 FOLLOWS = ["tow_id", "method"]

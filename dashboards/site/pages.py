@@ -24,7 +24,8 @@ from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
 from dashboards.statements.race import winners
 from pipeline.messages import Sentence, say
-from warehouse.derive.studies import FIRST_PUBLISHED, JUDGEMENT, default_method
+from pipeline.register.register import default_method
+from warehouse.derive.studies import FIRST_PUBLISHED, JUDGEMENT
 from warehouse.queries.answers import line_changes, race_chances
 from warehouse.queries.views import Views
 

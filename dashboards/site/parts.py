@@ -14,8 +14,7 @@ from dashboards.speech import Headline, Speech, Text
 from dashboards.statements import EditionName
 from dashboards.statements.boat import Answer
 from pipeline.messages import Sentence, say
-from pipeline.register.register import draft_name
-from warehouse.derive.studies import default_method
+from pipeline.register.register import default_method, draft_name
 from warehouse.queries.answers import newest_edition
 
 

@@ -21,7 +21,7 @@ from dashboards.statements import Statement, together
 from dashboards.statements.method import BASES, EACH_STEP, VOTE, WORKED, Explained, explained
 from dashboards.statements.slides import Slide, slides
 from pipeline.messages import Sentence, say
-from warehouse.derive.studies import STUDIED_METHOD, default_method
+from pipeline.register.register import STUDIED_METHOD, default_method
 from warehouse.queries.views import Views
 from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_names, edition_path
 from warehouse.store.store import Store

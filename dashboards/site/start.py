@@ -12,7 +12,7 @@ from dashboards.speech import Headline, Speech
 from dashboards.statements import edition, season
 from dashboards.statements.rebuild import PAGES, in_short
 from pipeline.messages import Sentence, pgettext, say
-from warehouse.derive.studies import default_method
+from pipeline.register.register import default_method
 from warehouse.queries.change_report import last_changes
 from warehouse.queries.views import Views
 

@@ -27,7 +27,7 @@ from dashboards.statements import together
 from dashboards.statements.boat_type import LINES, SPREAD, Slopes, homogeneity, level, slopes
 from dashboards.statements.slides import Book
 from pipeline.messages import Sentence, say
-from warehouse.derive.studies import default_method
+from pipeline.register.register import default_method
 from warehouse.queries.audit import WEIGHT_LINE
 from warehouse.queries.views import NEWEST, Views
 

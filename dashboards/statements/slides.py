@@ -19,9 +19,9 @@ from dashboards.statements.method import voted_steps
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import Sentence, ngettext, say
+from pipeline.register.register import STUDIED_METHOD
 from pipeline.studies.options import SPEEDS, TICKS
 from pipeline.tables.row import Row
-from warehouse.derive.studies import STUDIED_METHOD
 from warehouse.queries.views import ALL, Views
 from warehouse.store.boats import choose_boat
 from warehouse.store.unforeseen import Border

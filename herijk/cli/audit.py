@@ -87,7 +87,7 @@ def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> No
     """What a tow shows while the boat waits: provisional, and nothing is stored."""
     from herijk.cli import audit_text as text
     from pipeline.method.definition import COMPLETE
-    from warehouse.derive.studies import STUDIED_METHOD
+    from pipeline.register.register import STUDIED_METHOD
     from warehouse.editions.publish import latest_before
     from warehouse.queries import assess as tows
     from warehouse.store.editions import read_edition

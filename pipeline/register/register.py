@@ -6,6 +6,7 @@ pair A, B with Cw = 1 of the old spreadsheet never comes back.
 """
 
 import datetime as dt
+from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
@@ -39,6 +40,9 @@ DOUBTED: Final = "doubted"
 NEWER_TOW_UNMEASURED: Final = "newer_tow_without_samples"
 """Flag of a line that rests on an older tow, because the newest tow has no samples."""
 
+STUDIED_METHOD: Final = "rebased"
+"""The method of today, which is shown first."""
+
 EXCLUDE, PREFER = "exclude", "prefer"
 DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
 NO_DECISIONS: Final = pl.DataFrame(schema=DECISION_SCHEMA)
@@ -54,6 +58,17 @@ def with_empty_thwart(lines: pl.DataFrame) -> pl.DataFrame:
 def draft_name(method: str) -> str:
     """Name of the unpublished edition that a method would give."""
     return f"concept-{method}"
+
+
+def default_method(names: Sequence[str]) -> str:
+    """Return the method, or draft, that is shown where none is asked for.
+
+    It is the best method where that is among `names` or there are none, else the last of them.
+    """
+    for name in (STUDIED_METHOD, draft_name(STUDIED_METHOD)):
+        if name in names:
+            return name
+    return names[-1] if names else STUDIED_METHOD
 
 
 def valid_until(tow_date: pl.Expr, rule: RegisterRule) -> pl.Expr:

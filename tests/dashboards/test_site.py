@@ -24,6 +24,7 @@ from dashboards.site.render import build_pages, build_site
 from dashboards.site.start import ABOUT
 from dashboards.speech import Speech
 from dashboards.statements.boat_type import LINES, QUANTITIES, slope
+from pipeline.register.register import default_method
 from pipeline.tables.schemas import TABLES
 from pipeline.tables.views import VIEWS
 from tests.conftest import METHODS
@@ -31,7 +32,7 @@ from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 from tests.texts import said
 from warehouse.derive.inputs import LAKE_ONLY
-from warehouse.queries.answers import answers, default_method, line_changes, newest_edition
+from warehouse.queries.answers import answers, line_changes, newest_edition
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
 

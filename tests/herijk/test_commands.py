@@ -87,14 +87,14 @@ REFUSED = {
         audit FSN99999 --data {data}
         audit FSN101 --data {empty}
         assess 2014-999 --archive {archive} --data {data}
-        register --due --data {data}
+        register --due concept-rebased --data {data}
         register --due nothing --data {data}
         register --data {data} --as-of 1995-01-01
         simulate {archive} --rate 20
         init {file}/archief
         verify --data {tmp}/typo
         compare rebased nothing --data {data}
-        export pages --out {empty} --data {data}
+        export pages --out {archive} --data {data}
     """,
 }
 """Calls by the status they end with."""

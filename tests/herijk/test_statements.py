@@ -13,7 +13,7 @@ from dashboards.site.pages import shared_pages
 from dashboards.site.render import Edition
 from dashboards.speech import Speech
 from dashboards.statements import Change, Number, Statement
-from dashboards.statements.rebuild import headlines, mail
+from dashboards.statements.rebuild import headlines, judged, mail
 from tests.conftest import METHODS
 from warehouse.queries.answers import line_changes
 from warehouse.queries.change_report import ChangeReport
@@ -36,7 +36,7 @@ SHOWN_ON = {
     "index.html mail rebuild": "number",
     "index.html seasons.html": "season_change",
     "mail": "by",
-    "mail rebuild": "factors lines",
+    "mail rebuild": "factors judged lines",
     "method-as-published.html method.html proposal": "register_rule runs_alone",
     "method.html proposal": (
         "correction effect worked_cause worked_change worked_corrections worked_curve "
@@ -82,6 +82,7 @@ def surfaces(built, herijk, papers):
     news = ChangeReport(
         first=False, tows=[{"what": "new"}], seasons_gone=[], methods=[], set_aside=[],
         factors=[{}], lines=changed,
+        judged={"method": DRAFT, "accepted": 1, "flagged": 1, "rejected": 0},
     )  # fmt: skip
     commands = {
         "audit-boat": ("audit", line["fsn_no"], "--edition", DRAFT),
@@ -115,7 +116,9 @@ def surfaces(built, herijk, papers):
                 text = herijk(*command, *form, "--data", built.store.root)[1]
                 texts["".join((name, *form))] = text
         texts["mail"] = "\n".join(mail(news, (), simulated=True))
-        texts["rebuild"] = "\n".join(one(Speech("en")) for one in headlines(news, ()))
+        texts["rebuild"] = "\n".join(
+            one(Speech("en")) for one in [*headlines(news, ()), judged(news)]
+        )
         return {name: " ".join(text.split()) for name, text in texts.items()}
 
     return shown

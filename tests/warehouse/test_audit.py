@@ -93,8 +93,8 @@ def test_boats_without_a_type_have_a_page_without_claims(built):
 
 def test_an_unknown_name_lists_the_types_and_a_boat(built):
     with pytest.raises(MissingKnowledgeError) as error:
-        audit(built.store, ["Kromhout"])
-    for expected in (*types_of(built), "'Kromhout'", "FSN1"):
+        audit(built.store, ["Pollux"])
+    for expected in (*types_of(built), "'Pollux'", "FSN1"):
         assert expected in str(error.value)
 
 

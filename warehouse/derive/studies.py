@@ -8,7 +8,7 @@ import polars as pl
 from pipeline.method.definition import Method
 from pipeline.recompute.facts import with_hand_windows
 from pipeline.recompute.run_cache import RunCache
-from pipeline.register.register import draft_name
+from pipeline.register.register import STUDIED_METHOD
 from pipeline.studies.ladder import ladder
 from pipeline.studies.options import option_curves, option_effects, tick_effects
 from pipeline.tables.declare import dy
@@ -18,9 +18,6 @@ from warehouse.derive.inputs import Blocks
 FIRST_PUBLISHED: Final = "as-published-2014"
 """Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
 
-STUDIED_METHOD: Final = "rebased"
-"""The method of today, which is shown first."""
-
 JUDGED: Final = ("corrected-2013", "rebased-2015", STUDIED_METHOD)
 """Methods whose options of judgement are studied; the historical ones multiply or divide."""
 
@@ -29,15 +26,6 @@ TICKED: Final = ("corrected-2013", "rebased-2015")
 Without a speed correction the first is `as-published`."""
 
 JUDGEMENT, TOOL = "judgement", "tool"
-
-
-def default_method(names: Sequence[str]) -> str:
-    """Return the method, or draft, that is shown where none is asked for.
-
-    It is the best method where that is among `names`, else the last of them.
-    """
-    best = [name for name in names if name in (STUDIED_METHOD, draft_name(STUDIED_METHOD))]
-    return [*names, *best][-1]
 
 
 def study_tables(

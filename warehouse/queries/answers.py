@@ -11,7 +11,7 @@ import polars as pl
 
 from pipeline.method.definition import COMPLETE
 from pipeline.register.changes import compare_lines
-from pipeline.register.register import LINE
+from pipeline.register.register import LINE, default_method
 from pipeline.register.replay import (
     RaceRules,
     race_changes,
@@ -20,7 +20,6 @@ from pipeline.register.replay import (
 )
 from pipeline.tables.row import Row
 from pipeline.tables.schemas import TABLES
-from warehouse.derive.studies import default_method
 from warehouse.editions.compare import compare
 from warehouse.editions.publish import drafted
 from warehouse.queries.views import DRAFT, Views

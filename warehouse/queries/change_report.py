@@ -15,10 +15,9 @@ import polars as pl
 
 from pipeline.recompute.facts import with_boat_types, with_hand_windows
 from pipeline.register.changes import NO_PARTS, compare_lines
-from pipeline.register.register import LINE, draft_name
+from pipeline.register.register import LINE, default_method, draft_name
 from pipeline.tables.row import Row
 from warehouse.derive.database import DATABASE_TABLE
-from warehouse.derive.studies import default_method
 from warehouse.editions.compare import grounds
 from warehouse.editions.inputs import INPUTS_HASH, same_tows
 from warehouse.store.code import code_version

@@ -7,9 +7,8 @@ import datetime as dt
 from dataclasses import dataclass
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.register.register import draft_name
+from pipeline.register.register import default_method, draft_name
 from pipeline.tables.row import Row
-from warehouse.derive.studies import default_method
 from warehouse.queries.answers import current_edition
 from warehouse.queries.views import Views
 from warehouse.store.database import no_such_edition

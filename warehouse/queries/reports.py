@@ -7,8 +7,8 @@ or one type is in `warehouse.queries.audit`.
 from dataclasses import dataclass
 from typing import Final
 
+from pipeline.register.register import default_method
 from pipeline.tables.row import Row
-from warehouse.derive.studies import default_method
 from warehouse.store.database import is_simulated, open_database, rows
 from warehouse.store.store import Store
 
