@@ -95,8 +95,8 @@ def log_error_report(store: Store, method: str | None = None) -> LogErrorReport:
         method: the method; the best that was applied when left out.
     """
     with open_database(store.database) as db:
-        applied = [row["method"] for row in rows(db, "SELECT method FROM methods ORDER BY method")]
-        chosen = method or default_method(applied)
+        applied = rows(db, "SELECT DISTINCT method FROM log_factors ORDER BY method")
+        chosen = method or default_method([row["method"] for row in applied])
         return LogErrorReport(
             simulated=is_simulated(db),
             method=chosen,
