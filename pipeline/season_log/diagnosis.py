@@ -24,6 +24,10 @@ FOUND: Final = 0.5
 POSSIBLE: Final = 0.1
 """One of this probability cannot be told."""
 ALARM_SD: Final = 4.0
+MIN_INFORMED_SHARE: Final = 0.05
+"""Least share of a prior's variance that counts as learned from the archive. Where the archive says
+nearly nothing of an effect, prior and posterior variance are equal but for rounding and for the
+approximation of the posterior, and a quotient by their difference is no distance (inferred)."""
 USUAL_SIZES: Final = 2.0
 """Faults beyond so many standard deviations of their prior are not usual."""
 FAULT: Final = "fault"
@@ -104,14 +108,15 @@ def _judged(posterior: Posterior, effects: pl.DataFrame) -> dict[str, object]:
 
 
 def _distance(posterior: Posterior, columns: IntArray) -> float | None:
-    """How far what the archive shows of an effect that there always is lies from its prior."""
+    """Return how far the archive moves an effect that is always there, in standard deviations."""
     fitted = posterior.fit
     always = columns[~fitted.is_fault[columns]]
     if not len(always):
         return None
     prior = fitted.problem.effects.column("variance", fitted.active[always[0]])
-    shown = prior - fitted.covariance[always[0], always[0]]
-    return float(fitted.value[always[0]] / np.sqrt(max(shown, 1e-6 * prior)))
+    learned = prior - fitted.covariance[always[0], always[0]]
+    variance = max(learned, MIN_INFORMED_SHARE * prior)
+    return float(fitted.value[always[0]] / np.sqrt(variance))
 
 
 def _verdict(chance: float | None, distance: float | None, shows: bool) -> str:

@@ -26,6 +26,7 @@ PERFECT = replace(
 WORLDS = 4
 PHANTOM = Path(__file__).parents[1] / "data" / "phantom_tows.parquet"
 IN_2010 = pl.col("season") == 2010
+FORCE_OF_2018 = (pl.col("season") == 2018) & (pl.col("instrument") == "force_scale")
 
 
 @cache
@@ -302,6 +303,37 @@ def test_where_logs_alone_tell_a_load_cell_a_little_off_would_not_show():
     assert judged[2010, "force_scale"] == ("would not show", "log_scale 2010")
     assert "force_scale 2010" in judged[2010, "log_scale"][1]
     assert judged[2016, "force_scale"][0] == "sound"
+
+
+def with_few_repeats(seed, season, repeats, setup=CLEAN, others=5):
+    """A world whose last season has so many boats towed before, these first, and new ones."""
+    tows = simulate(setup, seed).tows.filter(pl.col("season") <= season)
+    last = pl.col("season") == season
+    before = set(tows.filter(~last)["fsn_no"])
+    crews = tows.filter(last)["fsn_no"].to_list()
+    repeated = [boat for boat in crews if boat in before][:repeats]
+    new = [boat for boat in crews if boat not in repeated][:others]
+    known = pl.when(last & pl.col("fsn_no").is_in(new)).then("new " + pl.col("fsn_no"))
+    kept = tows.filter(~last | pl.col("fsn_no").is_in([*repeated, *new]))
+    return kept.with_columns(known.otherwise("fsn_no").alias("fsn_no")), repeated
+
+
+def with_force(tows, season, ratios):
+    """Tows of a season whose force is multiplied, per boat."""
+    factor = pl.col("fsn_no").replace_strict(ratios, default=1.0, return_dtype=pl.Float64)
+    moved = pl.when(season=season).then(factor.log()).otherwise(0.0)
+    return tows.with_columns(pl.col("ln_cw") + moved)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_change_far_below_what_is_assumed_is_no_alarm(seed):
+    """One repeat boat says nearly nothing of a load cell: 0.01 % of force stood 80 to 300 sd off."""
+    tows, (boat,) = with_few_repeats(seed, 2018, 1)
+    found = estimate_season_factors(with_force(tows, 2018, {boat: math.exp(0.06)})).diagnosis
+    cell = found.row(by_predicate=FORCE_OF_2018, named=True)
+    assert abs(cell["estimate"]) < 0.5 * USUAL.force_sd
+    assert abs(cell["distance_sd"]) < 4.0
+    assert cell["verdict"] != "alarm"
 
 
 def test_a_log_replaced_is_not_taken_for_many_tows_pulled_askew():
