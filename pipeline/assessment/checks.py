@@ -112,6 +112,14 @@ CHECKS: Final = (
     Check(
         "crew_weight", "crew_weight_kg / rowers", say("crew weight unusual"), *ROWER_KG, unit="kg"
     ),
+    Check(
+        "weight_not_recorded",
+        "weight_kg IS NULL OR crew_weight_kg IS NULL",
+        say("weight not recorded: that of like boats"),
+        None,
+        0.0,
+        severity="note",
+    ),
     Check("heavier_after", "weight_after_kg / weight_kg - 1", say("heavier after"), None, 0.02),
     Check("water_differs", "water_off_c", say("water unlike its day's"), None, 3.0, unit="C"),
     Check("boat_list_differs", "off_boat_list", say("differs from the boat list"), None, 0.05),
