@@ -80,6 +80,9 @@ CHECKS: Final = (
     _told_by_all("wind_unusual", say("wind stands out")),
     _told_by_all("speed_unusual", say("speed stands out")),
     Check("season_in_doubt", "season_doubted", say("season's instrument in doubt"), None, 0.0),
+    Check(
+        "instrument_or_boat", "alone_shows_fault", say("instrument off or boat altered"), None, 0.0
+    ),
     Check("coarse_readings", "by_half_a_step", say("coarse readings"), None, 0.01),
     # The runs
     Check(

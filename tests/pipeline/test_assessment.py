@@ -139,7 +139,13 @@ def sound() -> World:
         pl.DataFrame(points, schema_overrides=integers),
         pl.DataFrame(tows, schema_overrides=integers | dict.fromkeys(("doubts", "unusual"), names)),
         pl.DataFrame(
-            {"season": [2012, 2014], "instrument": "", "verdict": "sound", "alarm": False},
+            {
+                "season": [2012, 2014],
+                "instrument": "",
+                "verdict": "sound",
+                "alarm": False,
+                "shown_by": pl.Series([None, None], dtype=pl.String),
+            },
             schema_overrides=integers,
         ),
     )
@@ -170,6 +176,9 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
         for sensor in ("force", "wind", "speed")
         for column, verdict in (("doubts", "not_plausible"), ("unusual", "unusual"))
     },
+    "instrument_or_boat": (
+        "diagnosis", SUBJECT, {"alarm": True, "shown_by": "FSN1, FSN99"}, 1, 0, {"season_in_doubt"},
+    ),
     "season_in_doubt": ("diagnosis", SUBJECT, {"alarm": True}, 1, 0, set()),
     "coarse_readings": ("tows", SUBJECT, {"gps_step_m_s": 0.1}, 0.1 / V0, 0.01, set()),
     "lamps_burned": ("tows", SUBJECT, {"lamp_ratio": 0.3}, 0.3, 0.2, set()),
