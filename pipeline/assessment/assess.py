@@ -17,7 +17,7 @@ import polars as pl
 from pipeline.assessment.checks import CHECK, CHECKS, CODES, Check
 from pipeline.choice import SAME_SHARE
 from pipeline.season_log.diagnosis import FAULT
-from pipeline.season_log.effects import FLEET
+from pipeline.season_log.observation_model import FLEET
 from pipeline.tables.keys import LINE, SIZES
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")

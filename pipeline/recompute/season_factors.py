@@ -19,7 +19,7 @@ from pipeline.recompute.budget import FORCE_SD, files_log_sd, scatter_of
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
 from pipeline.season_log import SeasonFactors, estimate_season_factors, first_estimate
-from pipeline.season_log.archive_tows import LOG
+from pipeline.season_log.archive import LOG
 from pipeline.steps.calibration import gps_factor
 from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import LINE
@@ -53,7 +53,7 @@ def find_season_factors(c: Computed) -> SeasonFactors:
         return _with_calibrations(_with_kappa(_rows(c, ln_factor).drop_nulls("ln_cw")))
 
     first = first_estimate(rows({}))
-    known = zip(first.fit.problem.tows.frame["tow_id"], first.ln_factor.tolist(), strict=True)
+    known = zip(first.fit.model.archive.frame["tow_id"], first.ln_factor.tolist(), strict=True)
     return estimate_season_factors(rows({t: ln for t, ln in known if math.isfinite(ln)}), first)
 
 

@@ -50,7 +50,7 @@ def residual_scatter(
 
 UNRECORDED_WATER_C: Final = 4.0
 """Standard deviation of a season's water about the reference where nobody wrote it down: boats are
-towed early in the year. The season log assumes the same (`season_log.assumed`)."""
+towed early in the year. The season log assumes the same (`season_log.priors`)."""
 
 
 @dataclass(frozen=True)
