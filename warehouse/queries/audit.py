@@ -7,13 +7,14 @@ words is `cli.audit_text`.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot, log
+from math import log
 from typing import Final, TypeAlias
 
 import duckdb
 
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
+from pipeline.quantiles import differ_beyond_intervals
 from pipeline.tables.row import Row
 from warehouse.store.boats import boats_named, plain, the_boat
 from warehouse.store.database import is_simulated, open_database, rows
@@ -259,7 +260,8 @@ def differences(first: Statistics, *others: Statistics) -> list[str]:
     found = []
     for second in others:
         own, other = _intervals(first), _intervals(second)
-        found += [name for name in own if name in other and apart(own[name], other[name])]
+        both = own.keys() & other.keys()
+        found += [n for n in own if n in both and differ_beyond_intervals(own[n], other[n])]
         if {row["equal_possible"] for row in first["bends"] + second["bends"]} == {True, False}:
             found.append("bends")
     return found
@@ -280,11 +282,6 @@ def _intervals(under: Statistics) -> dict[str, tuple[float, float, float]]:
         for era in under["eras"]
         if not era["reason"]
     }
-
-
-def apart(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
-    """Whether two numbers, each with its interval, differ by more than both (root sum square)."""
-    return abs(one[0] - other[0]) > hypot(*(0.5 * (hi - lo) for _, lo, hi in (one, other)))
 
 
 _FACTS = f"""
