@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
 from dashboards import labels
-from dashboards.statements import Number, Statement, told
+from dashboards.statements import Number, Statement, Value, told
 from dashboards.statements.boat import interval
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.messages import Sentence, say
@@ -33,14 +33,19 @@ SIGNED: Final = (
 )
 IN_METRES: Final = ("length_changed", "beam_changed", "bow_height_changed")
 CURVES_COMPARED: Final = ("curve_change_unexplained", "differs_from_last", "change_explained")
-"""How the numbers of findings are written, and which compare the curve with that of the last tow."""
+"""How numbers of findings are written, and which findings compare the curve with the last tow's."""
 
 EXPLAINED: Final = say(
     "It weighed {before} kg then and weighs {now} kg now: weight and length explain {explained} % "
     "of Cw."
 )
+OF_INSTRUMENTS: Final = ("log2_differs", "unusual_calibration", "load_cell_off", "coarse_readings")
+OTHERS: Final = say("The median of the {others} other tows of this season is {others_median}.")
+"""What is said of an instrument that may read otherwise all season."""
+
 OUT_AND_BACK_BY_RUNS: Final = say(
-    "Out and back differ by {observed} % of Cw (at most {limit} %), and {runs} will be the cause."
+    "Out and back differ: Cw of the runs out is {observed} % from that of the runs back (limit "
+    "{limit} %). What is said of {runs} will be the cause."
 )
 WORDING: Final[dict[str, Sentence]] = {
     "no_curve": say("The runs give no curve: tow all of them again."),
@@ -48,17 +53,16 @@ WORDING: Final[dict[str, Sentence]] = {
     "runs_set_aside": say("Samples of {runs} cannot be used, for the reason below: tow again."),
     "parts_set_aside": say("Parts of the measurements or of the lists are set aside: see below."),
     "run_not_planned": say(
-        "The file also holds {runs}, and nothing of it is used: the plan does not know it. Its "
-        "speed is that of {instead_of}. How it can be used is said below."
+        "The file also holds {runs}, which the plan does not know: nothing of it is used. How it "
+        "can be used is said below."
     ),
     "other_runs_proposed": say(
         "Some runs were towed more than once. The most reliable are these: write {selection} in "
         "column 'gebruik runs'."
     ),
     "unusual_calibration": say(
-        "The GPS reads {observed} times the log (usual: not beyond {limit}): find out which of the "
-        "two is wrong. If it was wrong during this tow, tow all runs again. Of the {others} other "
-        "tows of this season {others_marked} show it too."
+        "The GPS reads {observed} times the log (limit {limit}): find out which of the two is "
+        "wrong. If it was wrong during this tow, tow all runs again."
     ),
     "log_not_linear": say(
         "GPS over log changes with speed in all tows of this season (slope {observed}, at most "
@@ -69,8 +73,7 @@ WORDING: Final[dict[str, Sentence]] = {
         "Readings are written so coarsely that Cw may be {observed} % off (at most {limit} %)."
     ),
     "log2_differs": say(
-        "Log 2 reads up to {observed} m/s other than log 1 (at most {limit}): look at both logs. "
-        "It does so in {others_marked} of the {others} other tows of this season."
+        "Log 2 reads up to {observed} m/s other than log 1 (at most {limit}): look at both logs."
     ),
     "load_cell_off": say(
         "The load cell was {observed} % off when it was last checked (at most {limit} %)."
@@ -102,16 +105,16 @@ WORDING: Final[dict[str, Sentence]] = {
         "current do not cancel. Tow the runs that are lacking again."
     ),
     "out_and_back_differ": say(
-        "Cw out is {observed} % off Cw back (at most {limit} %): the runs of one way are off, or "
-        "the wind is. Look at the anemometer and at the steering; tow the runs of the disturbed "
-        "way again, or all of them."
+        "Out and back differ: Cw of the runs out is {observed} % from that of the runs back (limit "
+        "{limit} %). The runs of one way are off, or the wind is: look at the anemometer and the "
+        "steering, and tow the runs of the disturbed way again, or all of them."
     ),
     "run_off_curve": say(
         "Cw of {runs} is {observed} % off the curve through the other runs: tow it again."
     ),
     "runs_disagree": say(
-        "{runs} do not lie on one curve with the others: one of them is some {observed} % off, and "
-        "nothing tells which. Tow them again."
+        "Of {runs} one is off the curve through the other runs, by some {observed} %; nothing "
+        "tells which of them. Tow them again."
     ),
     "power_outside_range": say(
         "The declared speed asks {observed} W per rower (limit {limit} W): is it realistic?"
@@ -127,16 +130,17 @@ WORDING: Final[dict[str, Sentence]] = {
         "The water is {observed} °C off that of the day (at most {limit}): measure it again."
     ),
     "curve_change_unexplained": say(
-        "Cw is {observed} % off its last tow after what size explains (limit {limit} %): look at "
-        "the line, the trim and the bottom."
+        "Cw is {observed} % from its last tow, length and weight allowed for (limit {limit} %): "
+        "look at the line, the trim and the bottom."
     ),
     "differs_from_last": say(
         "That is {observed} % from its last tow, more than the uncertainty of both: look at the "
         "line, the trim and the bottom before you let go."
     ),
     "unlike_its_type": say(
-        "Cw is {observed} % off like boats of its length and weight (limit {limit} %), and it has "
-        "no earlier tow: look at the line, the trim and the bottom, and at the samples file."
+        "Cw is {observed} % from that of like boats, length and weight allowed for (limit {limit} "
+        "%), and there is no earlier tow to compare with: look at the line, the trim and the "
+        "bottom, and whether the file is of this boat."
     ),
     "pulled_askew": say("Cw is {observed} % above like boats (at most {limit} %): pulled askew?"),
     "change_explained": say("Cw is {observed} % from its last tow, and its size explains that."),
@@ -175,9 +179,9 @@ WORDING: Final[dict[str, Sentence]] = {
     ),
     "above_target_speed": say("Far too fast: {runs}, which does not count. Tow again."),
     "runs_in_other_order": say(
-        "The speeds of {runs} are those of other runs: does the file number its runs in another "
-        "order than out 90, 100, 110 %, back 90, 100, 110 %? If so, give the plan in archief.toml; "
-        "else tow these runs again."
+        "The speeds of {runs} are those of other runs: does the file number its runs, or name its "
+        "groups, in another order than planned? Then give the plan in archief.toml; else tow these "
+        "runs again."
     ),
     "range_not_covered": say(
         "The runs end {observed} % short of the intended speeds (at most {limit} %): the curve is "
@@ -208,7 +212,7 @@ def statements(tow: "Assessment", log_known: bool) -> list[Statement]:
         log_known: whether intervals of the method hold the error of the log.
     """
     found = [row for row in tow.first_assessment if row["finding"]]
-    return [*_number(tow, log_known), *_expected(tow), _verdict(tow), *_word(found, tow)]
+    return [*_number(tow, log_known), *_expected(tow), _verdict(tow), *_word(found)]
 
 
 def _number(tow: "Assessment", log_known: bool) -> Iterator[Statement]:
@@ -251,27 +255,39 @@ def _verdict(tow: "Assessment") -> Statement:
     return told("tow_again", wording, verdict="tow_again", runs=name_runs(tow.redo))
 
 
-def _word(found: Sequence[Row], tow: "Assessment") -> Iterator[Statement]:
+def _word(found: Sequence[Row]) -> Iterator[Statement]:
     """Yield a sentence for every finding, with the number that was observed and its limit."""
-    for row in found:
+    for row in _gather_runs_not_planned(found):
         wording = WORDING[row["finding"]]
         if row["finding"] == "out_and_back_differ" and row["runs"]:
             wording = OUT_AND_BACK_BY_RUNS
-        values = {
+        values: dict[str, Value] = {
             "observed": _number_in_unit(row, row["observed"]),
             "limit": _number_in_unit(row, row["limit"]),
             "runs": name_runs(row["runs"]),
-            "instead_of": name_runs(row["instead_of"]),
+            "others": row["others"] or 0,
+            "others_median": _number_in_unit(row, row["others_median"]),
             "before": _size(row, "old_value"),
             "now": _size(row, "new_value"),
             "explained": _per_cent(row["explained_ratio"]),
             "selection": ",".join(map(name_run, row["runs"])),
-            "last_date": "" if tow.own_before is None else tow.own_before["tow_date"],
         }
-        yield told(row["finding"], wording, row, "assessments", verdict=row["verdict"], **values)
+        yield told(row["finding"], wording, values, "assessments", verdict=row["verdict"])
         sizes = row["old_value"], row["new_value"]
         if row["finding"] in CURVES_COMPARED and None not in (*sizes, row["explained_ratio"]):
-            yield told("explained_by_size", EXPLAINED, {}, "tows", **values)
+            yield told("explained_by_size", EXPLAINED, values, "tows")
+        if row["finding"] in OF_INSTRUMENTS and row["others"]:
+            yield told("others_of_season", OTHERS, values, "assessments")
+
+
+def _gather_runs_not_planned(found: Sequence[Row]) -> list[Row]:
+    """Return findings with one for all runs that the plan does not know."""
+    extra = [row for row in found if row["finding"] == "run_not_planned"]
+    if not extra:
+        return list(found)
+    runs = [run for row in extra for run in row["runs"]]
+    gathered = extra[0] | {"runs": runs}
+    return [gathered if row is extra[0] else row for row in found if row not in extra[1:]]
 
 
 def _number_in_unit(row: Row, value: float | None) -> Number | str:
@@ -299,12 +315,13 @@ def _per_cent(ratio: float | None) -> Number | str:
 
 
 def name_runs(runs: Sequence[int]) -> Sentence:
-    """Return `run 3`, or `runs 3, 4 and b5`, where b5 is run 5 of the second file."""
+    """Return runs as they are worded: `run 3`, or `runs 3, 4 and b5`."""
     names = [name_run(run) for run in runs]
-    if len(names) < 2:  # noqa: PLR2004 - one, or none
+    if len(names) < 2:
         return say("run {run}", run="".join(names))
     return say("runs {runs} and {last}", runs=", ".join(names[:-1]), last=names[-1])
 
 
 def name_run(run: int) -> str:
+    """Return the number of a run as lists have it: b1 is run 1 of the second file."""
     return str(run) if run <= SECOND_FILE_OFFSET else f"b{run - SECOND_FILE_OFFSET}"

@@ -10,7 +10,7 @@ from dashboards import labels
 from dashboards.statements import Statement
 from dashboards.statements.boat import Answer, answers_by_boat
 from dashboards.statements.boat_type import LINES, SPREAD, homogeneity, level, slopes
-from dashboards.statements.tow import name_run
+from dashboards.statements.tow import name_run, name_runs
 from dashboards.statements.tow import statements as tow_statements
 from herijk.cli.render import (
     Part,
@@ -87,14 +87,14 @@ def assessment(report: "Assessment", log_known: bool) -> Iterator[Part]:
     yield Section(tell("First assessment"), rows=rules, columns="rule verdict runs")
     yield Section(tell("Its runs"), rows=report.runs, columns=TOW, heads=RUN_HEADS)
     for way in report.ways_to_use:
-        runs = ", ".join(map(str, way["instead_of"]))
-        yield Section(
-            tell(
-                "In place of run {}: in column 'gebruik runs' of the list, and in archief.toml",
-                runs,
-            ),
-            lines=[f"  {line}" for line in (way["use_runs"], *way["plan"].splitlines())],
+        title = tell(
+            "To use {} in place of {}, write this",
+            name_runs(way["runs"]),
+            name_runs(way["instead_of"]),
         )
+        lines = [tell("in column 'gebruik runs' of the list: {}", way["use_runs"])]
+        lines += [tell("in archief.toml:"), *(f"  {line}" for line in way["plan"].splitlines())]
+        yield Section(title, lines=[f"  {line}" for line in lines])
     yield Section(tell("Set aside"), lines=list(map(set_aside, report.lost)))
     yield tell("Nothing was stored; the next rebuild makes the number anew.")
 

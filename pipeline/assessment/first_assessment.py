@@ -21,7 +21,7 @@ from pipeline.assessment.checks import CHECK
 from pipeline.assessment.run_choice import KEEP, KIND
 from pipeline.assessment.run_outliers import MAX_OFF_CURVE_RATIO, find_runs_off_curve
 from pipeline.quantiles import differ_beyond_intervals
-from pipeline.recompute.recompute import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_SELECTED
+from pipeline.run_reasons import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_SELECTED
 from pipeline.tables.declare import dy
 from pipeline.tables.first_assessment import RULES, VERDICTS, FirstAssessment, Rule, Verdict
 from pipeline.tables.frames import frame_of
@@ -103,7 +103,7 @@ class Finding(NamedTuple):
     new_value: float | None = None
     explained_ratio: float | None = None
     others: int | None = None
-    others_marked: int | None = None
+    others_median: float | None = None
 
 
 @dataclass(frozen=True)
@@ -227,9 +227,14 @@ def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
             unit=row["unit"],
             runs=runs,
             others=of_others.height,
-            others_marked=of_others["flagged"].sum(),
+            others_median=_median(of_others["observed"]),
         )
         yield _with_sizes(found, tow)
+
+
+def _median(values: pl.Series) -> float | None:
+    median = values.median()
+    return median if isinstance(median, float) else None
 
 
 def _with_sizes(found: Finding, tow: QuayTow) -> Finding:
@@ -286,7 +291,7 @@ def _judge_runs(tow: QuayTow) -> Iterator[Finding]:
 def _find_runs_in_other_order(tow: QuayTow) -> list[int]:
     """Return the runs that have each other's speeds: files can number runs in another order."""
     runs = tow.run_points.drop_nulls("speed_m_s").filter(pl.col("reason") != NOT_SELECTED)
-    if runs.height < 2:  # noqa: PLR2004 - one run has no order
+    if runs.height < 2:
         return []
     ratio = runs["speed_m_s"].to_numpy() / tow.tow["declared_speed_m_s"]
     target = runs["target_speed_ratio"].to_numpy()

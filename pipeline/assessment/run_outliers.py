@@ -8,12 +8,14 @@ import polars as pl
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.assessment.seen import RUN_SCATTER, USUAL_BEND
-from pipeline.method.constants import FEWEST_RUNS
 
 MAX_OFF_CURVE_RATIO: Final = 0.05
 """Distance from the curve through the other runs, relative to it, from which a run is to be towed
 again. Inferred: as much as out and back may differ; the worst run of 3 of 89 tows of the demo is
 further off, of 33 it is over 0.03."""
+
+MIN_OTHER_RUNS: Final = 4
+"""Fewest other runs whose curve a run is judged by: as many as a curve needs (method-details, 7)."""
 
 MAX_BEYOND_RATIO: Final = 0.05
 """How far a run may lie outside the speeds of the others and still be judged by their curve: half
@@ -60,13 +62,15 @@ def find_runs_off_curve(run_points: pl.DataFrame) -> list[OffCurve]:
     keep = np.ones(len(runs), dtype=bool)
     found: list[OffCurve] = []
     ways_are_equal = False
-    while keep.sum() > FEWEST_RUNS:
+    while keep.sum() > MIN_OTHER_RUNS:
         misfit, ratio = _judge_without_each(speed_m_s, cw_kg_m, keep)
         worst = int(misfit.argmin())
         levelled = _level_ways(speed_m_s, cw_kg_m, is_out, keep)
-        if not ways_are_equal and levelled is not None:
-            if _misfit(speed_m_s, levelled, keep[None])[0][0] < misfit[worst]:
-                cw_kg_m, ways_are_equal = levelled, True
+        if levelled is not None and not ways_are_equal:
+            level_misfit, _ = _misfit(speed_m_s, levelled, keep[None])
+            ways_are_equal = bool(level_misfit[0] < misfit[worst])
+            if ways_are_equal:
+                cw_kg_m = levelled
                 continue
         is_off = np.abs(ratio) > MAX_OFF_CURVE_RATIO  # of what cannot be judged it is NaN
         if not is_off[worst]:
@@ -102,10 +106,10 @@ def _judge_without_each(
 def _misfit(
     speed_m_s: FloatArray, cw_kg_m: FloatArray, used: BoolArray
 ) -> tuple[FloatArray, curve.Curves]:
-    """Return how badly selections of runs, shape (selections, runs), fit on a curve, and the curves.
+    """Return how badly runs fit on a curve, for several selections of them, and the curves.
 
-    The sum of squares of residuals and of the unusualness of the bend, in standard deviations;
-    infinite where there is no curve.
+    `used` has shape (selections, runs). The misfit is the sum of squares of the residuals and of
+    the unusualness of the bend, in standard deviations; infinite where there is no curve.
     """
     shape = used.shape
     curves = curve.fit(

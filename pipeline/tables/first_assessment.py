@@ -45,4 +45,4 @@ class FirstAssessment(dy.Schema):
     new_value = column.optional("as in the boat's sizes", "size or weight at this tow")
     explained_ratio = column.optional("1", "change of Cw that follows from the two")
     others = column.count("other tows of its season of which the check was made", nullable=True)
-    others_marked = column.count("of these how many it marks", nullable=True)
+    others_median = column.optional("as in unit", "median of what was observed of these")

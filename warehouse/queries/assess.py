@@ -54,8 +54,9 @@ class Assessment:
         verdict: the worst of the first assessment: `good`, `look` or `tow_again`.
         redo: runs to tow again; None where it is not said which.
         first_assessment: rows of `FirstAssessment`.
-        ways_to_use: of runs that no plan knows: `use_runs`, what would stand in the list, and
-            `plan`, what would stand in `archief.toml`; several where it must be told which.
+        ways_to_use: how `runs` that no plan knows can be used, `instead_of` others: `use_runs`,
+            what the list would say, and `plan`, what `archief.toml` would say. Several ways where
+            a person must tell which is meant.
         lost: what is set aside of it: rows of `quarantine`.
         own_before: the newest earlier curve of this boat and crew, with `tow_date`; its `cw_kg_m`
             and interval are at the declared speed of this tow. None where there is none.
@@ -247,7 +248,8 @@ def _use_runs(known: pl.DataFrame, replaced_by: Mapping[int, int]) -> Row:
     if seconds is not None and seconds != RUN_SECONDS:
         plan.append(f"seconds = {seconds:g}")
     return {
-        "instead_of": sorted(replaced_by),
+        "runs": list(replaced_by.values()),
+        "instead_of": list(replaced_by),
         "use_runs": ",".join(map(str, selected)),
         "plan": "\n".join(plan),
     }
