@@ -39,6 +39,7 @@ EXPLAINED: Final = say(
     "It weighed {before} kg then and weighs {now} kg now: weight and length explain {explained} % "
     "of Cw."
 )
+EXPLAINED_BY_THAT: Final = say("That alone explains {explained} % of Cw.")
 OF_INSTRUMENTS: Final = ("log2_differs", "unusual_calibration", "load_cell_off", "coarse_readings")
 OTHERS: Final = say("The median of the {others} other tows of this season is {others_median}.")
 """What is said of an instrument that may read otherwise all season."""
@@ -68,7 +69,7 @@ WORDING: Final[dict[str, Sentence]] = {
         "GPS over log changes with speed in all tows of this season (slope {observed}, at most "
         "{limit}): look at log 1."
     ),
-    "season_in_doubt": say("An instrument of this season is in doubt: see page Seasons."),
+    "season_in_doubt": say("An instrument of this season is in doubt: see herijk seasons."),
     "coarse_readings": say(
         "Readings are written so coarsely that Cw may be {observed} % off (at most {limit} %)."
     ),
@@ -148,12 +149,12 @@ WORDING: Final[dict[str, Sentence]] = {
         "The list says that the boat was altered: it is not compared with earlier tows."
     ),
     "weight_changed": say(
-        "It weighs {now} kg and weighed {before} kg ({observed} %): that explains {explained} % of "
-        "Cw. Weigh again, or report the alteration in the list."
+        "It weighs {now} kg and weighed {before} kg ({observed} %): weigh again, or report the "
+        "alteration in the list."
     ),
     "length_changed": say(
-        "Its waterline is {now} m and was {before} m ({observed} %): that explains {explained} % "
-        "of Cw. Measure again, or report the alteration in the list."
+        "Its waterline is {now} m and was {before} m ({observed} %): measure again, or report the "
+        "alteration in the list."
     ),
     "beam_changed": say(
         "Its beam is {now} m and was {before} m ({observed} %): measure again, or report the "
@@ -273,9 +274,10 @@ def _word(found: Sequence[Row]) -> Iterator[Statement]:
             "selection": ",".join(map(name_run, row["runs"])),
         }
         yield told(row["finding"], wording, values, "assessments", verdict=row["verdict"])
-        sizes = row["old_value"], row["new_value"]
-        if row["finding"] in CURVES_COMPARED and None not in (*sizes, row["explained_ratio"]):
+        if row["finding"] in CURVES_COMPARED and row["explained_ratio"] is not None:
             yield told("explained_by_size", EXPLAINED, values, "tows")
+        elif row["explained_ratio"] is not None:
+            yield told("explained_by_size", EXPLAINED_BY_THAT, values, "tows")
         if row["finding"] in OF_INSTRUMENTS and row["others"]:
             yield told("others_of_season", OTHERS, values, "assessments")
 

@@ -15,7 +15,7 @@ again. Inferred: as much as out and back may differ; the worst run of 3 of 89 to
 further off, of 33 it is over 0.03."""
 
 MIN_OTHER_RUNS: Final = 4
-"""Fewest other runs whose curve a run is judged by: as many as a curve needs (method-details, 7)."""
+"""Fewest other runs whose curve a run is judged by: as many as a curve needs."""
 
 MAX_BEYOND_RATIO: Final = 0.05
 """How far a run may lie outside the speeds of the others and still be judged by their curve: half
