@@ -43,6 +43,8 @@ COLUMNS: Final[dict[str, Sentence]] = {
     "cw_standard_lo_kg_m": say("Lowest [kg/m]"),
     "cw_standard_hi_kg_m": say("Highest [kg/m]"),
     "sd": say("Spread"),
+    "rule": say("Looked at"),
+    "runs": say("Runs"),
     "slow": say("Too little power"),
     "label": say("Tow"),
     "outside": say("Outlier"),

@@ -144,7 +144,10 @@ WORDING: Final[dict[str, Sentence]] = {
         "bottom, and whether the file is of this boat."
     ),
     "pulled_askew": say("Cw is {observed} % above like boats (at most {limit} %): pulled askew?"),
-    "change_explained": say("Cw is {observed} % from its last tow, and its size explains that."),
+    "change_explained": say(
+        "Cw is {observed} % from its last tow. What length and weight leave unexplained is within "
+        "{limit} %."
+    ),
     "altered_reported": say(
         "The list says that the boat was altered: it is not compared with earlier tows."
     ),
@@ -258,6 +261,7 @@ def _verdict(tow: "Assessment") -> Statement:
 
 def _word(found: Sequence[Row]) -> Iterator[Statement]:
     """Yield a sentence for every finding, with the number that was observed and its limit."""
+    compares_curves = any(row["finding"] in CURVES_COMPARED for row in found)
     for row in _gather_runs_not_planned(found):
         wording = WORDING[row["finding"]]
         if row["finding"] == "out_and_back_differ" and row["runs"]:
@@ -274,9 +278,10 @@ def _word(found: Sequence[Row]) -> Iterator[Statement]:
             "selection": ",".join(map(name_run, row["runs"])),
         }
         yield told(row["finding"], wording, values, "assessments", verdict=row["verdict"])
-        if row["finding"] in CURVES_COMPARED and row["explained_ratio"] is not None:
+        explains = row["explained_ratio"] is not None
+        if explains and row["finding"] in CURVES_COMPARED:
             yield told("explained_by_size", EXPLAINED, values, "tows")
-        elif row["explained_ratio"] is not None:
+        elif explains and not compares_curves:
             yield told("explained_by_size", EXPLAINED_BY_THAT, values, "tows")
         if row["finding"] in OF_INSTRUMENTS and row["others"]:
             yield told("others_of_season", OTHERS, values, "assessments")

@@ -102,8 +102,9 @@ def assessment(report: "Assessment", log_known: bool) -> Iterator[Part]:
 def _sum_up_rule(report: "Assessment", rule: str) -> Row:
     """Return a rule of the first assessment with its worst verdict and the runs that it names."""
     mine = [row for row in report.first_assessment if row["rule"] == rule]
-    again = {run for row in mine if row["verdict"] == "tow_again" for run in row["runs"]}
-    named = [name_run(run) for run in sorted(again)]
+    again = [row["runs"] for row in mine if row["verdict"] == "tow_again"]
+    runs = {run for of_finding in again for run in of_finding} if all(again) else set()
+    named = [name_run(run) for run in sorted(runs)]
     return {"rule": rule, "verdict": mine[0]["verdict"], "runs": ", ".join(named)}
 
 

@@ -79,6 +79,9 @@ ALWAYS_MADE: Final[frozenset[Rule]] = frozenset(
 """Rules that need no other tow and no option of the method; the others are made where one of their
 checks is."""
 
+ALONE: Final = ("heavier_after", "boat_list_differs")
+"""Checks of a rule that compares with an earlier tow, which need none themselves."""
+
 SIZES: Final = {
     "weight_changed": "weight_kg",
     "length_changed": "waterline_length_m",
@@ -153,7 +156,8 @@ def assess_first(tow: QuayTow) -> dy.DataFrame[FirstAssessment]:
         *_judge_choice(tow),
         *_judge_change(tow),
     ]
-    made = {JUDGED_BY[check][0] for check in tow.assessments["check"]} | ALWAYS_MADE
+    made = {JUDGED_BY[check][0] for check in tow.assessments["check"] if check not in ALONE}
+    made |= ALWAYS_MADE
     rows: list[Row] = []
     for rule in RULES:
         mine = [one for one in findings if one.rule == rule]
