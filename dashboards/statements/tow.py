@@ -200,8 +200,9 @@ WORDING: Final[dict[str, Sentence]] = {
         "{limit} %). Look at the line and the steering, and tow again."
     ),
     "samples_scatter": say(
-        "In {runs} the samples swing fast: their standard deviation is {observed} % of Cw (at most "
-        "{limit} %). Look at the line and the load cell, and tow again."
+        "In {runs} the samples swing fast: their standard deviation is {observed} times what is "
+        "usual in this season (at most {limit} times). Look at the line and the load cell, and tow "
+        "again."
     ),
     "no_steady_window": say("No steady part of 30 s remains of {runs}: tow again."),
 }
@@ -303,6 +304,8 @@ def _number_in_unit(row: Row, value: float | None) -> Number | str:
         return ""
     if row["finding"] in COUNTED:
         return Number(value, 0, "1")
+    if row["finding"] == "samples_scatter":
+        return Number(value, 1, "1")
     if row["finding"] in AS_RATIO:
         return Number(value, 3, "1")
     if row["unit"] == "1":

@@ -224,6 +224,10 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     )
 
 
+LEAST_USUAL_SCATTER: Final = 0.05
+"""Least standard deviation of samples over Cw that counts as usual: half of the 10 % under which
+nothing is too much (Sleepproef, R. Pot 2017, "Eerste beoordeling")."""
+
 PER_RUN: Final = {
     "off_target_speed": "off_target",
     "log2_differs": "log2_off_m_s",
@@ -238,29 +242,32 @@ def measure_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame
     """Return run points with what `PER_RUN` judges, null for runs that do not count.
 
     Args:
-        curves, run_points: the tables of one method.
+        curves, run_points: the tables of one method, with all tows of a season.
 
     Returns:
-        The rows with `declared_speed_m_s` and
+        The rows with `season` and `declared_speed_m_s` and
 
         - `off_target`: distance of speed / intended speed from the median of the tow, as a ratio,
         - `log2_off_m_s`: distance of log 2 from log 1, m/s,
         - `scatter`: standard deviation of the means of F / v^2 per second over their mean,
-        - `samples_scatter`: the same of the samples; both only where the method cuts runs.
+        - `samples_scatter`: the same of the samples, over the median of all runs of the season;
+          both only where the method cuts runs.
     """
     used, is_cut = pl.col("used"), pl.col("ends_ratio").is_not_null()
     on_target = pl.col("speed_m_s") / (pl.col("target_speed_ratio") * pl.col("declared_speed_m_s"))
     level = on_target.filter(used).median().over("tow_id")
     log1_m_s = pl.col("speed_m_s") / pl.col("speed_factor")
     gross = pl.col("gross_cw_kg_m")
+    of_samples = pl.when(used & is_cut & (gross > 0)).then(pl.col("cw_sd") / gross)
+    usual = of_samples.median().over("season").clip(lower_bound=LEAST_USUAL_SCATTER)
     of_runs = {
         "off_target": (on_target / level - 1).abs(),
         "log2_off_m_s": ((pl.col("log2_ratio") - 1) * log1_m_s).abs(),
-        "scatter": pl.when(is_cut & (gross > 0)).then(pl.col("cw_seconds_sd") / gross),
-        "samples_scatter": pl.when(is_cut & (gross > 0)).then(pl.col("cw_sd") / gross),
+        "scatter": pl.when(is_cut & (gross > 0)).then(pl.col("cw_seconds_sd_kg_m") / gross),
+        "samples_scatter": of_samples / usual,
     }
     return run_points.join(
-        curves.select("tow_id", "declared_speed_m_s"), on="tow_id", maintain_order="left"
+        curves.select("tow_id", "season", "declared_speed_m_s"), on="tow_id", maintain_order="left"
     ).with_columns(**{name: pl.when(used).then(value) for name, value in of_runs.items()})
 
 

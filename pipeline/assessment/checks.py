@@ -93,7 +93,7 @@ CHECKS: Final = (
     ),
     Check("off_target_speed", "off_target", say("off target speed"), None, 0.05),
     Check("large_scatter_in_run", "scatter", say("large scatter in a run"), None, 0.1),
-    Check("samples_scatter", "samples_scatter", say("samples scatter widely"), None, 0.15),
+    Check("samples_scatter", "samples_scatter", say("samples scatter widely"), None, 2.0),
     Check("range_not_covered", "shortfall", say("range not covered"), None, 0.05, severity="note"),
     Check(
         "declared_speed_not_covered", "beyond", say("declared speed outside the runs"), None, 0.05

@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import polars as pl
 
-from pipeline.assessment.assess import PER_RUN, measure_runs
+from pipeline.assessment.assess import PER_RUN
 from pipeline.assessment.checks import CHECK
 from pipeline.assessment.run_choice import KEEP, KIND
 from pipeline.assessment.run_outliers import MAX_OFF_CURVE_RATIO, find_runs_off_curve
@@ -116,7 +116,8 @@ class QuayTow:
     Attributes:
         tow: its row of `tows`.
         curve: its row of `curves`.
-        run_points: its rows of `run_points`, of all planned runs.
+        run_points: its rows of `run_points`, of all planned runs, with the columns of
+            `pipeline.assessment.assess.measure_runs`.
         assessments: its rows of `assessments`, marked or not.
         others_of_season: those of the other tows of its season.
         set_aside: its rows of `quarantine`.
@@ -205,7 +206,6 @@ def explain_by_size(new: Row, old: Row) -> float | None:
 
 def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
     """Yield a finding for every check that marks the tow, but for a better one of `_judge_runs`."""
-    of_runs = measure_runs(pl.DataFrame([tow.curve]), tow.run_points)
     in_other_order = bool(_find_runs_in_other_order(tow))
     off_curve = [run for one in find_runs_off_curve(tow.run_points) for run in one.runs]
     for row in tow.assessments.filter("flagged").iter_rows(named=True):
@@ -216,7 +216,7 @@ def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
         runs: Sequence[int] = ()
         if check in PER_RUN:
             beyond = pl.col(PER_RUN[check]) > row["limit"]
-            runs = of_runs.filter(beyond)["run"].to_list()
+            runs = tow.run_points.filter(beyond)["run"].to_list()
         elif check == "out_and_back_differ":
             runs = off_curve
         elif check == "runs_set_aside":

@@ -121,7 +121,7 @@ def _run_points(tow_id: str) -> list[dict[str, Any]]:
             "fitted_cw_kg_m": 40.2,
             "gross_cw_kg_m": 41.0,
             "cw_sd": 3.3,
-            "cw_seconds_sd": 1.4,
+            "cw_seconds_sd_kg_m": 1.4,
             "ends_ratio": 0.5,
             "log2_ratio": 0.997,
             "gps_ratio": 1.005,
@@ -200,12 +200,12 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
         2.40 / (1.01 * 2.25) - 1, 0.05, set(),
     ),
     "large_scatter_in_run": (
-        "run_points", SUBJECT, {"cw_seconds_sd": pl.when(run1).then(4.51).otherwise(1.4)},
+        "run_points", SUBJECT, {"cw_seconds_sd_kg_m": pl.when(run1).then(4.51).otherwise(1.4)},
         0.11, 0.1, set(),
     ),
     "samples_scatter": (
-        "run_points", SUBJECT, {"cw_sd": pl.when(run1).then(6.56).otherwise(3.3)},
-        0.16, 0.15, set(),
+        "run_points", SUBJECT, {"cw_sd": pl.when(run1).then(6.7).otherwise(3.3)},
+        6.7 / 3.3, 2.0, set(),
     ),
     "range_not_covered": (
         "run_points", SUBJECT, {"used": pl.col("target_speed_ratio") < 1.1},
@@ -290,9 +290,22 @@ def test_what_explains_that_a_curve_changed(sound: World) -> None:
 
 
 def test_scatter_is_judged_only_where_the_method_cuts_runs(sound: World) -> None:
-    whole = sound.changed("run_points", SUBJECT, cw_seconds_sd=9.0, cw_sd=9.0, ends_ratio=None)
+    whole = sound.changed("run_points", SUBJECT, cw_seconds_sd_kg_m=9.0, cw_sd=9.0, ends_ratio=None)
     assert whole.flagged(SUBJECT) == set()
     assert not {"large_scatter_in_run", "samples_scatter"} & checks_of(whole, SUBJECT)
+
+
+def test_samples_that_scatter_alike_all_season_are_the_instruments(sound: World) -> None:
+    """What is usual is the season's own; below the 10 % of the source nothing is too much."""
+    noisy = sound.run_points.with_columns(cw_sd=pl.lit(12.0))
+    assert "samples_scatter" not in replace(sound, run_points=noisy).flagged(SUBJECT)
+    quiet = sound.run_points.with_columns(cw_sd=pl.lit(1.0))
+    for of_gross, is_marked in ((0.099, False), (0.101, True)):
+        world = replace(sound, run_points=quiet)
+        world = world.changed(
+            "run_points", SUBJECT, cw_sd=pl.when(run1).then(41.0 * of_gross).otherwise(1.0)
+        )
+        assert ("samples_scatter" in world.flagged(SUBJECT)) == is_marked
 
 
 def test_a_boat_is_compared_with_its_type_where_no_earlier_tow_can_be(sound: World) -> None:

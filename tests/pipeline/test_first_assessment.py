@@ -8,6 +8,7 @@ import numpy as np
 import polars as pl
 import pytest
 
+from pipeline.assessment.assess import PER_RUN, measure_runs
 from pipeline.assessment.checks import CODES
 from pipeline.assessment.first_assessment import (
     JUDGED_BY,
@@ -28,6 +29,13 @@ SCATTER = [0.004, -0.006, 0.003, -0.005, 0.007, -0.002]
 """Scatter of the runs about their curve."""
 
 
+def measured(runs: pl.DataFrame) -> pl.DataFrame:
+    """Run points with what is judged of each run."""
+    curves = pl.DataFrame({"tow_id": ["t"], "season": [2017], "declared_speed_m_s": [V0]})
+    of_method = set(runs.columns) - {"season", "declared_speed_m_s", *PER_RUN.values()}
+    return measure_runs(curves, runs.select(sorted(of_method)))
+
+
 def run_points(**columns: Any) -> pl.DataFrame:
     """Six sound runs; `columns` replace theirs."""
     speed = V0 * np.array(TARGETS) * (1.0 + 0.01 * np.array([1, -1, 0, -1, 1, 0]))
@@ -42,7 +50,7 @@ def run_points(**columns: Any) -> pl.DataFrame:
         "cw_kg_m": cw,
         "gross_cw_kg_m": cw + 1.0,
         "cw_sd": 0.08 * cw,
-        "cw_seconds_sd": 0.03 * cw,
+        "cw_seconds_sd_kg_m": 0.03 * cw,
         "ends_ratio": [0.5] * 6,
         "log2_ratio": [1.0] * 6,
         "used": [True] * 6,
@@ -50,7 +58,7 @@ def run_points(**columns: Any) -> pl.DataFrame:
         "choice": [None] * 6,
     }
     kinds = {"run": pl.Int8, "direction": pl.Int8, "choice": pl.String}
-    return pl.DataFrame(rows | columns, schema_overrides=kinds)
+    return measured(pl.DataFrame(rows | columns, schema_overrides=kinds))
 
 
 def tow_row(**changes: Any) -> dict[str, Any]:
@@ -279,7 +287,9 @@ def test_4_a_reported_alteration_explains_any_change() -> None:
 def test_5_the_run_that_missed_its_speed_is_named() -> None:
     speed = pl.when(pl.col("run") == 2).then(0.91 * V0).otherwise("speed_m_s")
     marked = checks("off_target_speed").with_columns(limit=0.05)
-    tow = replace(SOUND, run_points=run_points().with_columns(speed_m_s=speed), assessments=marked)
+    tow = replace(
+        SOUND, run_points=measured(run_points().with_columns(speed_m_s=speed)), assessments=marked
+    )
     assert found_of(tow, "intended_speed") == [("off_target_speed", "tow_again", [2])]
 
 
@@ -296,14 +306,16 @@ def test_5_runs_with_the_speeds_of_others_are_in_another_order(order, misplaced)
 
 @pytest.mark.parametrize(
     ("check", "column", "ratio"),
-    [("large_scatter_in_run", "cw_seconds_sd", 0.12), ("samples_scatter", "cw_sd", 0.22)],
+    [("large_scatter_in_run", "cw_seconds_sd_kg_m", 0.12), ("samples_scatter", "cw_sd", 0.22)],
 )
 def test_6_the_run_that_swings_is_named(check: str, column: str, ratio: float) -> None:
+    limits = {"large_scatter_in_run": 0.1, "samples_scatter": 2.0}
+    marked = checks(check).with_columns(limit=limits[check])
     swings = pl.when(pl.col("run") == 4).then(ratio * pl.col("gross_cw_kg_m")).otherwise(column)
     tow = replace(
         SOUND,
-        run_points=run_points().with_columns(swings.alias(column)),
-        assessments=checks(check),
+        run_points=measured(run_points().with_columns(swings.alias(column))),
+        assessments=marked,
     )
     assert found_of(tow, "little_variation") == [(check, "tow_again", [4])]
 

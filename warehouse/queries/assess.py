@@ -17,6 +17,7 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
+from pipeline.assessment.assess import measure_runs
 from pipeline.assessment.first_assessment import (
     QuayTow,
     assess_first,
@@ -134,7 +135,9 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
     ).sort("tow_date", "tow_id")
     own_before = _newest(others.filter(is_earlier, **{name: tow[name] for name in LINE}))
     boat_before = _newest(dated.filter(is_earlier, fsn_no=tow["fsn_no"]).sort("tow_date", "tow_id"))
-    run_points = store.read("run_points", method).filter(tow_id=tow_id).sort("run")
+    every_run = store.read("run_points", method)
+    measured = measure_runs(curves, every_run)
+    run_points = every_run.filter(tow_id=tow_id).sort("run")
     every = store.read("assessments", method)
     assessments = every.filter(tow_id=tow_id)
     in_season = tows.filter(season=tow["season"])
@@ -144,7 +147,7 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
         QuayTow(
             tow=tow,
             curve=curve_row,
-            run_points=run_points,
+            run_points=measured.filter(tow_id=tow_id).sort("run"),
             assessments=assessments,
             others_of_season=of_season.filter(pl.col("tow_id") != tow_id),
             set_aside=set_aside,
@@ -191,7 +194,9 @@ def _runs_not_planned(store: Store, tow_id: str) -> pl.DataFrame:
     """Return the runs in the samples of a tow that its plan does not know, with their log speed."""
     planned = store.read("listed_runs").filter(tow_id=tow_id)["run"]
     blocks = intake.all_blocks(store, ["tow_id", "run", "n", "log1_v"]).filter(tow_id=tow_id)
-    runs = blocks.group_by("run").agg(log_m_s=pl.col("log1_v").sum() / pl.col("n").sum())
+    runs = blocks.group_by("run", maintain_order=True).agg(
+        log_m_s=pl.col("log1_v").sum() / pl.col("n").sum()
+    )
     is_measured = pl.col("log_m_s").is_finite()
     return runs.filter(~pl.col("run").is_in(planned.implode()), is_measured).sort("run")
 
