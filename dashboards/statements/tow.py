@@ -48,6 +48,10 @@ OUT_AND_BACK_BY_RUNS: Final = say(
     "Out and back differ: Cw of the runs out is {observed} % from that of the runs back (limit "
     "{limit} %). What is said of {runs} will be the cause."
 )
+LOG2_AS_USUAL: Final = say(
+    "Log 2 reads up to {observed} m/s other than log 1 (at most {limit}), no more than is usual "
+    "this season. No number rests on log 2; revise the set-up of the logs when you can."
+)
 WORDING: Final[dict[str, Sentence]] = {
     "no_curve": say("The runs give no curve: tow all of them again."),
     "few_runs": say("Only {observed} runs count; the curve should rest on {limit}."),
@@ -70,6 +74,14 @@ WORDING: Final[dict[str, Sentence]] = {
         "{limit}): look at log 1."
     ),
     "season_in_doubt": say("An instrument of this season is in doubt: see herijk seasons."),
+    "instrument_or_boat": say(
+        "This boat alone says that an instrument of the season is off; it may have been altered "
+        "instead. Nothing was taken off its number: look at the load cell and at the boat."
+    ),
+    "weight_not_recorded": say(
+        "The weight of the boat or its crew is not in the list, so that of like boats is used: "
+        "weigh it and write it down."
+    ),
     "coarse_readings": say(
         "Readings are written so coarsely that Cw may be {observed} % off (at most {limit} %)."
     ),
@@ -267,6 +279,8 @@ def _word(found: Sequence[Row]) -> Iterator[Statement]:
         wording = WORDING[row["finding"]]
         if row["finding"] == "out_and_back_differ" and row["runs"]:
             wording = OUT_AND_BACK_BY_RUNS
+        if row["finding"] == "log2_differs" and row["verdict"] == "good":
+            wording = LOG2_AS_USUAL
         values: dict[str, Value] = {
             "observed": _number_in_unit(row, row["observed"]),
             "limit": _number_in_unit(row, row["limit"]),

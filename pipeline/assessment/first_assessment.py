@@ -55,9 +55,11 @@ JUDGED_BY: Final[dict[str, tuple[Rule, Verdict]]] = {
     "crew_weight": ("plausible", "look"),
     "water_differs": ("plausible", "look"),
     "curve_change_unexplained": ("near_earlier_curve", "look"),
+    "instrument_or_boat": ("near_earlier_curve", "look"),
     "unlike_its_type": ("near_earlier_curve", "look"),
     "pulled_askew": ("near_earlier_curve", "look"),
     "weight_changed": ("explained_by_size", "look"),
+    "weight_not_recorded": ("explained_by_size", "look"),
     "heavier_after": ("explained_by_size", "look"),
     "length_changed": ("explained_by_size", "look"),
     "beam_changed": ("explained_by_size", "look"),
@@ -73,13 +75,22 @@ JUDGED_BY: Final[dict[str, tuple[Rule, Verdict]]] = {
 """Every check of `assessments`, with the rule that it belongs to and what is said where it marks a
 tow. An instrument that reads otherwise all season, or papers that do not fit, ask for a look."""
 
+NOT_IN_CW: Final = ("log2_differs",)
+"""Checks of an instrument on which no number rests. As long as it reads as usual in its season, the
+boat need not wait for it."""
+
+MIN_OTHERS: Final = 3
+MAX_TIMES_USUAL: Final = 2.0
+"""What is usual in a season: up to so many times the median of at least so many other tows
+(inferred)."""
+
 ALWAYS_MADE: Final[frozenset[Rule]] = frozenset(
     ("no_malfunction", "plausible", "intended_speed", "trimming_suffices")
 )
 """Rules that need no other tow and no option of the method; the others are made where one of their
 checks is."""
 
-ALONE: Final = ("heavier_after", "boat_list_differs")
+ALONE: Final = ("heavier_after", "boat_list_differs", "weight_not_recorded")
 """Checks of a rule that compares with an earlier tow, which need none themselves."""
 
 SIZES: Final = {
@@ -222,6 +233,14 @@ def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
         elif check == "runs_set_aside":
             runs = _runs_lost(tow)
         of_others = tow.others_of_season.filter(check=check)
+        others_median = _median(of_others["observed"])
+        if (
+            check in NOT_IN_CW
+            and of_others.height >= MIN_OTHERS
+            and others_median is not None
+            and row["observed"] <= MAX_TIMES_USUAL * others_median
+        ):
+            verdict = "good"
         found = Finding(
             rule,
             check,
@@ -231,7 +250,7 @@ def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
             unit=row["unit"],
             runs=runs,
             others=of_others.height,
-            others_median=_median(of_others["observed"]),
+            others_median=others_median,
         )
         yield _with_sizes(found, tow)
 

@@ -142,6 +142,19 @@ def test_what_is_wrong_all_season_asks_for_no_tow(check: str) -> None:
     assert verdict_of(replace(SOUND, assessments=checks(check))) == "look"
 
 
+@pytest.mark.parametrize(
+    ("observed", "others", "verdict"), [(0.05, 3, "good"), (0.09, 3, "look"), (0.05, 2, "look")]
+)
+def test_1_a_log_on_which_nothing_rests_may_read_as_usual(
+    observed: float, others: int, verdict: str
+) -> None:
+    usual = pl.concat([checks("log2_differs", log2_differs=0.04)] * others)
+    marked = checks("log2_differs", log2_differs=observed)
+    tow = replace(SOUND, assessments=marked, others_of_season=usual)
+    assert verdict_of(tow) == verdict
+    assert found_of(tow, "no_malfunction")[0][0] == "log2_differs"
+
+
 def test_rules_without_anything_to_compare_with_say_so() -> None:
     compared = ("near_earlier_curve", "explained_by_size", "little_variation")
     alone = checks().filter(
