@@ -19,7 +19,7 @@ from pipeline.assessment.run_choice import with_run_choice
 from pipeline.method.definition import Method, Steps
 from pipeline.quantiles import t_quantile
 from pipeline.races.race import power_per_rower_w
-from pipeline.recompute.anemometer import anemometer_diagnosis
+from pipeline.recompute.anemometer import diagnose_anemometers
 from pipeline.recompute.best import add_best_estimates
 from pipeline.recompute.budget import (
     CURVE_SPEED_RATIOS,
@@ -274,7 +274,7 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
 def _diagnosis(estimated: SeasonFactors | None, c: Computed) -> pl.DataFrame:
     """What is wrong with the instruments of each season; no rows without an estimate."""
     joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
-    both = pl.concat([joint, anemometer_diagnosis(c)])
+    both = pl.concat([joint, diagnose_anemometers(c)])
     return both.sort("season", "part", "instrument")
 
 
