@@ -221,12 +221,12 @@ def fit_model(
     for iteration in range(MAX_ITERATIONS):
         is_warming_up = start is None and iteration < ITERATIONS_WITHOUT_PATTERNS
         pattern_share = share if with_patterns and not is_warming_up else None
-        linear, boats = _expectation_step(model, active, value, ln_variance, pattern_share)
-        value_step, covariance = _effects_step(model, active, value, boats)
-        ln_variance_step, ln_variance_covariance = _variances_step(
+        linear, boats = _judge_all_patterns(model, active, value, ln_variance, pattern_share)
+        value_step, covariance = _step_effects_by_gls(model, active, value, boats)
+        ln_variance_step, ln_variance_covariance = _step_variances_by_reml(
             model, ln_variance, covariance, boats
         )
-        logit_step = _shares_step(model, share, boats)
+        logit_step = _step_shares_by_em(model, share, boats)
         fit = Fit(
             model=model,
             active=active,
@@ -247,7 +247,7 @@ def fit_model(
     return replace(fit, has_converged=False)
 
 
-def _expectation_step(
+def _judge_all_patterns(
     model: Model,
     active: IntArray,
     value: FloatArray,
@@ -269,7 +269,7 @@ def _expectation_step(
     return linear, boats
 
 
-def _effects_step(
+def _step_effects_by_gls(
     model: Model, active: IntArray, value: FloatArray, boats: list[GroupPosterior]
 ) -> tuple[FloatArray, FloatArray]:
     """Return the Newton step of the effects, (k,), and their posterior covariance, (k, k)."""
@@ -287,7 +287,7 @@ def _effects_step(
     return step, covariance
 
 
-def _variances_step(
+def _step_variances_by_reml(
     model: Model, ln_variance: FloatArray, covariance: FloatArray, boats: list[GroupPosterior]
 ) -> tuple[FloatArray, FloatArray]:
     """Return the REML scoring step of the ln variances, (v,), and their covariance, (v, v)."""
@@ -312,7 +312,7 @@ def _variances_step(
     return np.clip(step, -MAX_LN_VARIANCE_STEP, MAX_LN_VARIANCE_STEP), ln_variance_covariance
 
 
-def _shares_step(model: Model, share: FloatArray, boats: list[GroupPosterior]) -> FloatArray:
+def _step_shares_by_em(model: Model, share: FloatArray, boats: list[GroupPosterior]) -> FloatArray:
     """Return the step of the logits of the pattern shares, (2,).
 
     EM sets a share to the expected count over the possible count. It closes only that part of the
