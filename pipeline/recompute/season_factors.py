@@ -19,7 +19,7 @@ from pipeline.recompute.budget import FORCE_SD, files_log_sd, scatter_of
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
 from pipeline.season_log import SeasonFactors, estimate_season_factors, first_estimate
-from pipeline.season_log.archive import LOG
+from pipeline.season_log.archive import LOG, UNOBSERVED_SD, sort_tows
 from pipeline.steps.calibration import gps_factor
 from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import LINE
@@ -104,7 +104,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     curves = curve.fit(points)
     errors = curve.covariance(points, curves, scatter_of(c, pooled=True), log_speed)
     cw_as_read = curves.cw_at(log_speed)
-    is_sound = curves.converged & np.isfinite(cw_as_read) & (cw_as_read > 0) & tows.trusted
+    is_sound = curves.converged & np.isfinite(cw_as_read) & (cw_as_read > 0)
     cw = np.where(is_sound, cw_as_read, 1.0)
     r = np.where(is_sound, curves.s_s2_m2 * log_speed**2, 0.0)
     q = r / (1.0 - r)
@@ -122,17 +122,20 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     covariance = np.where(has_errors, errors.c0_q_covariance_kg_m / cw, 0.0)
     covariance = covariance + ln_cw_by_log * q_by_log * log_sd**2
 
+    # A doubted tow says nothing of boats and logs; the others say what its Cw should have been.
+    is_trusted = tows.trusted
+    is_calibrated = c.calibrated & is_trusted
     is_anchored = c.plan.option("calibration.rule") == "gps_per_tow"
     gps_ln_ratio, gps_sd, has_gps = _gps_ratio(c)
-    is_plain_gps = has_gps & ~is_anchored
+    is_plain_gps = has_gps & ~is_anchored & is_trusted
     y = np.where(c.calibrated, c.calibration_factor, 1.0)
     numbers = {
         "ln_cw": np.where(is_sound, np.log(cw), np.nan),
-        "ln_cw_sd": ln_cw_sd,
+        "ln_cw_sd": np.where(is_trusted, ln_cw_sd, UNOBSERVED_SD),
         "q": q,
-        "q_sd": q_sd,
-        "ln_cw_q_cov": covariance,
-        "own_calibration_ln": np.where(c.calibrated, np.log(c.known_factor * y), np.nan),
+        "q_sd": np.where(is_trusted, q_sd, UNOBSERVED_SD),
+        "ln_cw_q_cov": np.where(is_trusted, covariance, 0.0),
+        "own_calibration_ln": np.where(is_calibrated, np.log(c.known_factor * y), np.nan),
         "gps_ln_ratio": np.where(is_plain_gps, gps_ln_ratio, np.nan),
         "gps_sd": np.where(is_plain_gps, np.hypot(gps_sd, log_sd), np.nan),
         "reference_ratio": declared / true_speed,
@@ -150,7 +153,10 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
         FORCE_SD.alias("force_sd"),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
-    return _add_calibrations(_add_kappa(rows.drop_nulls("ln_cw")))
+    # A boat of which every tow is doubted stays as measured.
+    is_observed = pl.col("ln_cw_sd") < UNOBSERVED_SD
+    rows = sort_tows(rows.drop_nulls("ln_cw")).filter(is_observed.any().over(*LINE, "state"))
+    return _add_calibrations(_add_kappa(rows.drop("state")))
 
 
 def _water_points(c: Computed) -> curve.Points:
@@ -211,7 +217,7 @@ def _add_kappa(rows: pl.DataFrame) -> pl.DataFrame:
     error of 5 %, passes for scatter of the log between tows.
     """
     q, deviation = pl.col("q"), pl.col("q") - pl.col("type_q")
-    anchored = rows.filter("anchored")
+    anchored = rows.filter("anchored", pl.col("q_sd") < UNOBSERVED_SD)
     source = anchored if anchored.height else rows
     types = (
         source.group_by("boat_type", maintain_order=True)
@@ -224,7 +230,7 @@ def _add_kappa(rows: pl.DataFrame) -> pl.DataFrame:
         types, on="boat_type", how="left", nulls_equal=True, maintain_order="left"
     ).with_columns(pl.col("type_q").fill_null(fleet_q))
 
-    anchored = rows.filter("anchored")
+    anchored = rows.filter("anchored", pl.col("q_sd") < UNOBSERVED_SD)
     total = anchored.select((deviation**2).median() / MEDIAN_SQUARE).item()
     noise = anchored.select((pl.col("q_sd") ** 2).median()).item()
     between = MIN_BEND_VARIANCE if total is None else max(total - noise, MIN_BEND_VARIANCE)

@@ -27,7 +27,7 @@ ANCHORED: Final = -1
 MIN_SD: Final = 0.001
 """Standard deviation added to every number: keeps the search finite where all tows agree."""
 UNOBSERVED_SD: Final = 100.0
-"""Standard deviation of a number that a tow does not have."""
+"""Standard deviation of a number that a tow does not have, or that is not to be relied on."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,7 @@ class Archive:
         boat: (n,) number of the boat and crew, as it was between two reported alterations.
         hull: (n,) number of the boat, whatever its crew and alterations.
         log: (n,) row of `logs`, or `ANCHORED`.
+        is_observed: (n,) whether the tow's numbers are relied on; others are only estimated.
         log_variance: (n,) which variance between tows the log has: the era, or the last one for
             anchored tows.
     """
@@ -68,6 +69,7 @@ class Archive:
     boat: IntArray
     hull: IntArray
     log: IntArray
+    is_observed: BoolArray
     log_variance: IntArray
 
     @property
@@ -90,10 +92,17 @@ def to_numpy(frame: pl.DataFrame, name: str) -> FloatArray:
     return frame[name].cast(pl.Float64).fill_null(np.nan).to_numpy()
 
 
-def mean_over_boat(values: FloatArray, boat: IntArray) -> FloatArray:
-    """Return for each tow the mean of `values` over the tows of its boat, (n,)."""
-    count = np.maximum(np.bincount(boat), 1)
-    return np.asarray((np.bincount(boat, values) / count)[boat])
+def mean_over_boat(
+    values: FloatArray, boat: IntArray, is_counted: BoolArray | None = None
+) -> FloatArray:
+    """Return for each tow the mean of `values` over the tows of its boat, (n,).
+
+    Args:
+        is_counted: (n,) tows over which the mean is taken; all, when left out.
+    """
+    weight = np.ones(len(boat)) if is_counted is None else is_counted.astype(np.float64)
+    count = np.maximum(np.bincount(boat, weight), 1.0)
+    return np.asarray((np.bincount(boat, values * weight) / count)[boat])
 
 
 def sort_tows(tows: pl.DataFrame) -> pl.DataFrame:
@@ -114,7 +123,8 @@ def build_archive(tows: pl.DataFrame, priors: Priors) -> Archive:
     boat = frame.select(pl.struct(*LINE, "state").rank("dense") - 1).to_series().to_numpy()
     boat = boat.astype(np.int64)
     hull = (frame["fsn_no"].rank("dense") - 1).to_numpy().astype(np.int64)
-    logs, log = _list_logs(frame, boat)
+    is_observed = (to_numpy(frame, "ln_cw_sd") < UNOBSERVED_SD).astype(np.bool_)
+    logs, log = _list_logs(frame, boat, is_observed)
 
     ln_cw = to_numpy(frame, "ln_cw")
     speed = to_numpy(frame, "declared_speed_m_s")
@@ -123,7 +133,7 @@ def build_archive(tows: pl.DataFrame, priors: Priors) -> Archive:
     gps = to_numpy(frame, "gps_ln_ratio")
     has_gps = np.isfinite(gps) & (log != ANCHORED)
     gps_bias = 0.25 * (priors.gps_noise_m_s / speed) ** 2
-    mean_level = mean_over_boat(ln_cw, boat)
+    mean_level = mean_over_boat(ln_cw, boat, is_observed)
 
     y = np.stack(
         [ln_cw - mean_level, to_numpy(frame, "q"), np.where(has_gps, gps - gps_bias, 0.0)], axis=1
@@ -152,6 +162,7 @@ def build_archive(tows: pl.DataFrame, priors: Priors) -> Archive:
         boat=boat,
         hull=hull,
         log=log,
+        is_observed=is_observed,
         log_variance=np.where(log == ANCHORED, len(priors.era_starts), np.maximum(era, 0)),
     )
 
@@ -172,7 +183,9 @@ def _check_numbers(tows: pl.DataFrame) -> None:
             )
 
 
-def _list_logs(frame: pl.DataFrame, boat: IntArray) -> tuple[pl.DataFrame, IntArray]:
+def _list_logs(
+    frame: pl.DataFrame, boat: IntArray, is_observed: BoolArray
+) -> tuple[pl.DataFrame, IntArray]:
     """Return `Archive.logs`, and the log of each tow, (n,)."""
     logs = (
         frame.filter(~pl.col("anchored"))
@@ -192,7 +205,7 @@ def _list_logs(frame: pl.DataFrame, boat: IntArray) -> tuple[pl.DataFrame, IntAr
 
     # The network: nodes are the anchor, the logs and the boats; a tow is an edge from its boat to
     # its log. GPS connects a log with the anchor.
-    edges = np.unique(np.stack([log, boat], axis=1), axis=0)
+    edges = np.unique(np.stack([log, boat], axis=1)[is_observed], axis=0)
     boats_with_links = np.flatnonzero(np.bincount(edges[:, 1]) > 1)
     linking = edges[np.isin(edges[:, 1], boats_with_links), 0]
     n_links = np.bincount(linking + 1, minlength=logs.height + 1)[1:]

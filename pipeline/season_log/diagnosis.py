@@ -200,9 +200,10 @@ def _describe_evidence(archive: Archive) -> dict[int, tuple[int, str]]:
     """Return for each season how many boats link it to others, and what it rests on, in words."""
     frame = archive.frame.with_columns(boat=archive.boat)
     described = {}
-    linked = frame.filter(pl.col("season").n_unique().over("boat") > 1)
+    observed = frame.filter(archive.is_observed)
+    linked = observed.filter(pl.col("season").n_unique().over("boat") > 1)
     for season in frame["season"].unique().sort():
-        tows = frame.filter(season=season)
+        tows = observed.filter(season=season)
         boats = linked.filter(season=season)["boat"].n_unique()
         words = [f"{boats} boats towed in other seasons too"]
         if tows.filter(~pl.col("anchored") & pl.col("gps_ln_ratio").is_not_null()).height:

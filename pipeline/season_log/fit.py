@@ -163,11 +163,18 @@ class Fit:
         return self.covariate @ np.where(self.is_log, self.value, 0.0)
 
     @cached_property
+    def tow_weight(self) -> FloatArray:
+        """Weight of each tow in the mean over its log, (n, logs): observed tows count alike."""
+        archive = self.model.archive
+        own = archive.log[:, None] == np.arange(archive.logs.height)
+        observed = own & archive.is_observed[:, None]
+        counted = np.where(observed.any(axis=0), observed, own)
+        return np.asarray(counted / counted.sum(axis=0))
+
+    @cached_property
     def mean_log_design(self) -> FloatArray:
         """Mean ln factor over the tows of each log as a combination of effects, (logs, k)."""
-        log = self.model.archive.log
-        own = log[:, None] == np.arange(self.model.archive.logs.height)
-        return np.asarray((own.T / own.sum(axis=0)[:, None]) @ (self.covariate * self.is_log))
+        return np.asarray(self.tow_weight.T @ (self.covariate * self.is_log))
 
     @cached_property
     def mean_log_scatter(self) -> FloatArray:
@@ -177,8 +184,7 @@ class Fit:
         """
         archive = self.model.archive
         of_tow = np.exp(self.ln_variance[3 + archive.log_variance])
-        own = archive.log[:, None] == np.arange(archive.logs.height)
-        of_mean = (own * of_tow[:, None]).sum(axis=0) / own.sum(axis=0) ** 2
+        of_mean = (self.tow_weight**2).T @ of_tow
         return np.where(archive.logs["calibrated"].to_numpy(), 0.0, of_mean)
 
     def degrees_of_freedom(self, combination: FloatArray) -> FloatArray:
