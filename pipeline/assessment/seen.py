@@ -40,8 +40,8 @@ NO_WIND_M_S: Final = 0.1
 """Mean wind of a run that an anemometer standing still shows."""
 
 MIN_OWN_SPEED: Final = 1.0
-"""Least mean of the apparent wind out and back / boat speed by which a true wind is divided: less is
-shown by an anemometer that is wrong, and would pass for a gale."""
+"""Least mean of the apparent wind out and back / boat speed by which a true wind is divided. An
+anemometer that shows less is wrong, and its wind would pass for a gale."""
 
 LEAST_RESULTANT: Final = float(np.cos(np.radians(3.3)))
 """Length of the mean direction of angles of which half are 0 and half 6.28 degrees."""
