@@ -30,7 +30,7 @@ ARCHIVE_TABLES: Final = ("boats", "seasons", "tows", "tow_runs", "hand_windows",
 """Tables of what the archive holds, made together."""
 
 METHOD_TABLES: Final = (
-    *("run_points", "curves", "log_factors", "season_links", "retow_choice", "season_steps"),
+    *("run_points", "curves", "log_factors", "season_links", "season_steps"),
     *("season_diagnosis", "tow_instruments", "best_estimate_weights", "uncertainty_budget"),
     *("curve_points", "assessments", "ensemble"),
 )
