@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.assessment.assess import assess, with_status
+from pipeline.assessment.assess import add_status, assess
 from pipeline.assessment.run_choice import with_run_choice
 from pipeline.method.definition import Method, Steps
 from pipeline.quantiles import t_quantile
@@ -103,7 +103,7 @@ def as_tables(
     ]
     return Recomputed(
         run_points=run_points,
-        curves=with_status(curves, assessments, rejecting),
+        curves=add_status(curves, assessments, rejecting),
         log_factors=named(_log_factors(c, estimated)),
         assessments=assessments,
         uncertainty_budget=at_v0.select(
