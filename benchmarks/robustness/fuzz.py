@@ -22,7 +22,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-import nptdms
 import numpy as np
 import polars as pl
 import pyarrow as pa
@@ -36,13 +35,12 @@ from pipeline.errors import DefectiveInputError, HerijkError
 from pipeline.method.definition import parse_method, shipped_methods, shipped_text
 from tests.reason_codes import REASON_CODES
 from warehouse.archive import FileHashes, index_archive
-from warehouse.archive.files.finding import ArchiveFile
-from warehouse.archive.files.list_kinds import TOWS
-from warehouse.archive.lists.tows import readable, with_ids
-from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.profile.reading import read_profiles
-from warehouse.archive.samples.file import read_samples
-from warehouse.archive.sheets.reading import read_list
+from warehouse.archive.faults import Failure
+from warehouse.archive.files import ArchiveFile
+from warehouse.archive.kinds import TOWS
+from warehouse.archive.lists import read_lists
+from warehouse.archive.profile import Profiles, read_profiles
+from warehouse.archive.samples import read_samples
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.decisions import read_decisions
 from warehouse.store.editions import MANIFEST, read_manifest
@@ -216,6 +214,8 @@ def archive_reader(root: Path) -> Callable[[Path, bytes], None]:
 
     def read(*_: object) -> None:
         found = index_archive(root, FileHashes().hash_file)
+        if failures := [fault for fault in found.faults if isinstance(fault, Failure)]:
+            raise RuntimeError(failures[0].trace)
         for tow in found.tows.iter_rows(named=True):
             for name in ("samples_path", "second_path"):
                 inside = tow[name] is None or (root / tow[name]).resolve().is_relative_to(root)
@@ -249,8 +249,6 @@ def targets(folder: Path) -> list[Target]:
         Target("samples.csv.gz", gzip.compress(text, mtime=0), read),
         Target("samples.csv.zst", zstd, read),
         Target("samples.parquet", parquet.getvalue(), read),
-        Target("samples.lvm", _lvm(frame), read),
-        Target("samples.tdms", _tdms(frame), read),
         Target("list.xlsx", _xlsx(lists[1]), _read_list),
         Target("list.csv", lists[1].read_bytes(), _read_list),
         *(Target(str(path), path.read_bytes(), here) for path in lists),
@@ -259,29 +257,6 @@ def targets(folder: Path) -> list[Target]:
         Target(MANIFEST, b'{"edition": "1", "kind": "as_printed"}', _read_manifest),
         Target("method.toml", shipped_text(list(shipped_methods())[-1]).encode(), _read_method),
     ]
-
-
-def _lvm(frame: pl.DataFrame) -> bytes:
-    """A LabVIEW file with a segment per run."""
-    lines = ["LabVIEW Measurement\t", "Separator\tTab", "***End_of_Header***\t", ""]
-    for _, run in frame.group_by("run", maintain_order=True):
-        lines += ["Channels\t6", "***End_of_Header***\t"]
-        lines += run.drop("run").write_csv(separator="\t").splitlines()
-    return "\n".join([*lines, ""]).encode()
-
-
-def _tdms(frame: pl.DataFrame) -> bytes:
-    """A TDMS file with a group per run."""
-    content = io.BytesIO()
-    with nptdms.TdmsWriter(content) as writer:
-        for (number,), run in frame.group_by("run", maintain_order=True):
-            channels = run.drop("run").cast(pl.Float64, strict=False)
-            objects = [
-                nptdms.ChannelObject(f"run {number}", series.name, series.to_numpy())
-                for series in channels
-            ]
-            writer.write_segment(objects)
-    return content.getvalue()
 
 
 def _xlsx(tow_list: Path) -> bytes:
@@ -295,8 +270,10 @@ def _xlsx(tow_list: Path) -> bytes:
 
 
 def _read_list(path: Path, _: bytes) -> None:
-    rows, found = read_list(ArchiveFile(path.name, path, "", 2009, inside=True), TOWS, Profiles())
-    readable(with_ids(rows), found, Profiles(), [], [])
+    file = ArchiveFile(path.name, path, TOWS, 2009, inside=True)
+    faults = read_lists([file], TOWS, Profiles()).faults
+    if failures := [fault for fault in faults if isinstance(fault, Failure)]:
+        raise RuntimeError(failures[0].trace)
 
 
 _DECISION: Final = b"""[[besluit]]

@@ -3,7 +3,7 @@
 import pytest
 
 from benchmarks.robustness import mutate
-from warehouse.archive.plausibility.judge import Judged
+from warehouse.archive.plausibility import Judged
 
 
 def quiet(_):

@@ -10,8 +10,8 @@ from herijk.cli.check_text import archive_text
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGE, say
 from tests.warehouse.archive.conftest import BOATS, FIRST, TOWS, Archive
-from warehouse.archive.check.check import check_archive
-from warehouse.archive.files.empty_archive import write_templates
+from warehouse.archive.check import check_archive
+from warehouse.archive.empty_archive import write_templates
 
 THIRD = "meetdata_2014/derde boot 12h 2014.csv"
 SECOND = "meetdata_2014/tweede boot 6d 2014.csv"

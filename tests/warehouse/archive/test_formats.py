@@ -20,7 +20,7 @@ from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 from pipeline.errors import DefectiveInputError
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
 from warehouse.archive import SeasonProfile
-from warehouse.archive.samples.file import read_samples
+from warehouse.archive.samples import read_samples
 
 NAME = FIRST.removesuffix(".csv")
 
@@ -400,7 +400,7 @@ def test_a_recording_that_is_larger_or_claims_more_samples_is_not_read(
 ) -> None:
     tdms(archive)
     (path,) = (archive.root / "meetdata_2014").glob("*.tdms")
-    monkeypatch.setattr(f"warehouse.archive.samples.labview.{limit}", 10)
+    monkeypatch.setattr(f"warehouse.archive.samples.{limit}", 10)
     with pytest.raises(DefectiveInputError) as told:
         read_samples(path, SeasonProfile(2014))
     assert told.value.reason_code == "too_large"

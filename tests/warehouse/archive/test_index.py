@@ -16,8 +16,8 @@ from warehouse.archive import (
     read_published_registers,
     read_races,
 )
-from warehouse.archive.files.finding import files_of
-from warehouse.archive.sheets import reading
+from warehouse.archive.files import files_of
+from warehouse.archive import lists as reading
 
 SAMPLE_ARCHIVE = Path(__file__).parents[2] / "data" / "sample-archive"
 NEXT_TOW = "2014-009;2014-03-09;FSN1;tweede;{second};8;H;2,40;;;;;;;;;{runs};nee;20;\n"
@@ -330,22 +330,14 @@ def test_boats_on_which_two_lists_disagree_are_set_aside_with_both_places(
 def test_a_list_on_which_herijk_fails_costs_that_list(
     archive: Archive, monkeypatch: pytest.MonkeyPatch, path: str, lost: list[str]
 ) -> None:
-    real = reading.date_order
+    real = reading._typed
 
-    def fails(cells: list[str]) -> str:
-        if path == reading_now[-1]:
+    def fails(table, file, *rest):
+        if file.path == path:
             raise ZeroDivisionError("planted")
-        return real(cells)
+        return real(table, file, *rest)
 
-    reading_now: list[str] = []
-    read_bytes = reading.read_bytes
-
-    def noted(full: Path, *arguments: int) -> bytes:
-        reading_now.append(full.relative_to(archive.root).as_posix())
-        return read_bytes(full, *arguments)
-
-    monkeypatch.setattr(reading, "read_bytes", noted)
-    monkeypatch.setattr(reading, "date_order", fails)
+    monkeypatch.setattr(reading, "_typed", fails)
     faults = archive.scan().faults
     (of_list,) = [fault for fault in faults if isinstance(fault, Failure)]
     assert (of_list.path, of_list.reason_code) == (path, "unforeseen")

@@ -14,11 +14,11 @@ from pipeline.errors import MissingKnowledgeError
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
 from tests.warehouse.archive.conftest import line_of as first_line_of
 from tests.warehouse.archive.test_formats import cells_of, lvm, runs_in_a_folder
-from warehouse.archive.check.check import check_archive
-from warehouse.archive.profile.reading import parse_profiles, read_profiles
-from warehouse.archive.sheets.cells import BOAT_NUMBER
-from warehouse.archive.spelling.columns import find_columns
-from warehouse.archive.spelling.headers import split_header
+from warehouse.archive.check import check_archive
+from warehouse.archive.profile import parse_profiles, read_profiles
+from warehouse.archive.lists import _BOAT as BOAT_NUMBER
+from warehouse.archive.columns import find_columns
+from warehouse.archive.columns import split_header
 
 
 def lists_in_one_workbook(archive: Archive) -> None:
@@ -398,7 +398,7 @@ def test_a_boat_that_no_list_has_is_asked_with_the_nearest_names(archive: Archiv
     [("FSN nr 1", "1"), ("fsn-nummer 1", "1"), ("nr 1", "1"), ("FSN nr", None), ("101 nr", None)],
 )
 def test_a_boat_may_have_nr_before_its_number(cell: str, number: str | None) -> None:
-    found = BOAT_NUMBER.fullmatch(cell)
+    found = re.fullmatch(BOAT_NUMBER, cell)
     assert (found and found[1]) == number
 
 

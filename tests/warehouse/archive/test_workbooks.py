@@ -13,8 +13,8 @@ from tests.warehouse.archive.conftest import TOWS, Archive, Scan
 from tests.warehouse.archive.test_formats import assert_same
 from warehouse.archive import FileHashes
 from warehouse.archive.check import check_archive
-from warehouse.archive.sheets.extent import check_workbook, sheets_of
-from warehouse.archive.sheets.sheet import grids_of_workbook
+from warehouse.archive.lists import _check_last_cells as check_workbook
+from warehouse.archive.lists import _sheets
 
 LAST = 1_048_575, 16_383
 

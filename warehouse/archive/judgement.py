@@ -1,8 +1,8 @@
-"""A tow that is judged: its runs, what is left of their samples, and what was found."""
+"""A tow that is judged: its runs, what is left of their samples, and what was lost."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final, Literal, NamedTuple
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,7 @@ from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.messages import Sentence, say
 from pipeline.tables.row import Row
 from warehouse.archive.faults import DefectiveFileError, Fault, Lost
-from warehouse.archive.samples.frame import OUTPUT_NAMES
-from warehouse.archive.samples.tow import Place
+from warehouse.archive.samples import OUTPUT_NAMES, Place
 
 Array = NDArray[np.float32]
 CHANNELS: Final = {key: name for key, name in OUTPUT_NAMES.items() if key != "run"}
@@ -26,31 +25,18 @@ COLUMN_OF: Final = {
     "wind_angle": "wind [gra]",
 }
 """What a volunteer calls a channel: the header of its column."""
-
 SPARE: Final = ("log2", "gps")
 """Channels without which a run goes on."""
-SPEEDS: Final = ("log1", "log2", "gps")
 HEADER: Final = -1
 """Stands for the row of the header."""
 
 Cost = Literal["run", "column", "seconds"]
 """What a fault costs: the run, a spare channel in it, or some of its samples."""
-
-
 _THEN: Final = {
     "run": say("the run is left out"),
     "column": say("the run goes on without this column"),
     "seconds": say("the run goes on without them"),
 }
-
-
-class Measured(NamedTuple):
-    """What a channel holds in a run, or in a typical one; NaN where it holds no number."""
-
-    median: float
-    lowest: float
-    highest: float
-    changes_hz: float
 
 
 @dataclass(eq=False)
@@ -83,9 +69,22 @@ class Run:
         return say("Run {}", self.number)
 
     @cached_property
-    def measured(self) -> dict[str, Measured]:
-        """What each channel held before any sample was left out."""
-        return {key: _measured(values, self.rate_hz) for key, values in self.channels.items()}
+    def medians(self) -> dict[str, float]:
+        """The median of each channel before any sample was left out; NaN for no number.
+
+        Of every tenth sample: only gross faults are looked for, and all take long.
+        """
+        return {key: _median(values[::10]) for key, values in self.channels.items()}
+
+    def typical(self, channel: str) -> tuple[float, float, float]:
+        """The median, the lowest and the highest value of a channel."""
+        values = self.channels[channel]
+        return self.medians[channel], np.fmin.reduce(values), np.fmax.reduce(values)
+
+    def changes_hz(self, channel: str) -> float:
+        """How many times a second a channel changes."""
+        values = self.channels[channel]
+        return float(np.count_nonzero(values[1:] != values[:-1])) * self.rate_hz / len(values)
 
     def second_means(self, values: Array) -> NDArray[np.float64]:
         """The mean of every whole second of a channel, NaN where one of its samples is left out."""
@@ -93,15 +92,8 @@ class Run:
         return np.asarray(seconds.mean(axis=1, dtype=np.float64))
 
 
-def _measured(values: Array, rate_hz: int) -> Measured:
-    """The median is of every tenth sample: only gross faults are looked for, and all take long."""
-    some = values[::10]
-    return Measured(
-        float(np.nanmedian(some)) if np.isfinite(some).any() else np.nan,
-        float(np.fmin.reduce(values)),
-        float(np.fmax.reduce(values)),
-        float(np.count_nonzero(values[1:] != values[:-1])) * rate_hz / len(values),
-    )
+def _median(values: Array) -> float:
+    return float(np.nanmedian(values)) if np.isfinite(values).any() else np.nan
 
 
 @dataclass
@@ -133,20 +125,17 @@ class Judgement:
     ) -> None:
         """Something of a run, from one of its rows on; of a run that is lost no less is told."""
         message = say("{}: {what}; {then}.", run.name, what=what, then=_THEN[cost])
-        seconds = run.seconds if lost_s is None else lost_s
-        lost: Lost = "run" if cost == "run" else "seconds"
         if cost == "run":
             self.runs = [other for other in self.runs if other is not run]
             self.faults = [f for f in self.faults if f.run != run.number or f.lost == "run"]
+        lost: Lost = "run" if cost == "run" else "seconds"
+        seconds = run.seconds if lost_s is None else lost_s
         self._add(run.start + row, reason_code, message, lost, run.number, seconds)
 
-    def lose_of_all(
-        self, reason_code: str, message: Sentence, *channels: str, row: int | None = None
-    ) -> None:
+    def lose_of_all(self, reason_code: str, message: Sentence, *channels: str) -> None:
         """Channels of all runs; a fault without a channel costs nothing."""
         seconds = sum(run.seconds for run in self.runs) if channels else 0.0
-        where = self.runs[0].start if row is None else row
-        self._add(where, reason_code, message, "seconds", None, seconds)
+        self._add(self.runs[0].start, reason_code, message, "seconds", None, seconds)
         for run in self.runs:
             for channel in channels:
                 run.channels.pop(channel, None)

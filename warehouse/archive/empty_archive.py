@@ -5,9 +5,9 @@ from typing import Final
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.declare import dy
-from warehouse.archive.files.list_kinds import BOATS, TOWS, ListKind
-from warehouse.archive.files.names import PROFILE_FILE
-from warehouse.archive.spelling.columns import Column
+from warehouse.archive.columns import Column
+from warehouse.archive.kinds import BOATS, TOWS, ListKind
+from warehouse.archive.profile import PROFILE_FILE
 
 FOLDERS: Final = ("sloepregister", "sleeplijsten", "meetdata_2025", "wedstrijden")
 MOST_ROWS: Final = 500

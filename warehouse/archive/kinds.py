@@ -1,4 +1,4 @@
-"""The kinds of lists in an archive: where each lies, its columns, and the table with its limits."""
+"""The lists of an archive: where each lies, its columns, and the table that declares its limits."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -13,7 +13,7 @@ from pipeline.tables.lake import (
     ListedWindows,
     PrintedLines,
 )
-from warehouse.archive.spelling.columns import Column
+from warehouse.archive.columns import Column
 
 
 @dataclass(frozen=True)
@@ -22,37 +22,60 @@ class ListKind:
 
     Attributes:
         folder: its folder.
-        pattern: its name there without suffix; group 1 is the season, where the name tells it.
-        name: its name under `[files]` of `archief.toml`, without the year.
+        pattern: its name there without suffix; group 1 is the season.
         reason_code: what a bad value in it is called.
         table: declares the type and the limits of its values.
         columns: the columns to look for.
+        about: `tow_id` where a row is a tow, `fsn_no` where it is a boat: lost with the row.
+        spare: the optional columns of which a cell that cannot be read counts as empty; of others
+            an empty cell would say something else, as that a boat was not altered.
     """
 
     folder: str
     pattern: str
-    name: str
     reason_code: str
     table: type[dy.Schema]
     columns: tuple[Column, ...]
+    about: str = ""
+    spare: frozenset[str] = frozenset()
+
+    def header(self, key: str) -> str:
+        """What the header calls a column, with its unit."""
+        return next(column.named for column in self.columns if column.key == key)
+
+
+def _length(key: str, header: str) -> Column:
+    return Column(key, header, "length", "m", required=False)
+
+
+def _mass(key: str, header: str) -> Column:
+    return Column(key, header, "mass", "kg", required=False)
 
 
 _SIZES: Final = (
-    Column("waterline_length_m", "lengte", "length", "m", required=False),
-    Column("beam_m", "breedte", "length", "m", required=False),
-    Column("bow_height_m", "hoogte", "length", "m", required=False),
-    Column("weight_kg", "gewicht", "mass", "kg", required=False),
+    _length("waterline_length_m", "lengte"),
+    _length("beam_m", "breedte"),
+    _length("bow_height_m", "hoogte"),
+    _mass("weight_kg", "gewicht"),
 )
 """Sizes of a boat, as it is listed and as it was towed."""
+_BOAT: Final = Column("fsn_no", "fsn_nr")
+_CREW: Final = (Column("rowers", "roeiers"), Column("crew_class", "klasse"))
+_TOW_RUN: Final = (Column("tow_id", "sleep_id"), Column("run", "run"))
+_SECONDS: Final = (
+    Column("start_s", "van", "time", "s"),
+    Column("end_s", "tot", "time", "s"),
+)
+_SPEED: Final = Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s")
+_THWART: Final = Column("empty_thwart", "lege doft", required=False)
 
 BOATS: Final = ListKind(
     "sloepregister",
-    r"sloependata()",
-    "sloependata",
+    "sloependata()",
     "bad_boat_row",
     ListedBoats,
     (
-        Column("fsn_no", "fsn_nr"),
+        _BOAT,
         Column("ht_no", "ht_nr", required=False),
         Column("name", "sloep"),
         Column("boat_type", "type", required=False),
@@ -60,56 +83,54 @@ BOATS: Final = ListKind(
         Column("rowers", "roeiers", required=False),
         Column("crew_class", "klasse", required=False),
     ),
+    about="fsn_no",
 )
 TOWS: Final = ListKind(
     "sleeplijsten",
-    r"sleeplijst(?:[ _-]*([0-9]{4}))?",
-    "sleeplijst",
+    "sleeplijst_([0-9]{4})",
     "bad_list_row",
     ListedTows,
     (
-        Column("tow_id", "sleep_id", required=False),
+        Column("tow_id", "sleep_id"),
         Column("tow_date", "datum"),
-        Column("fsn_no", "fsn_nr", or_else="name"),
-        Column("name", "sloep", required=False),
+        _BOAT,
         Column("file", "meetfile"),
         Column("second_file", "meetfile2", required=False),
-        Column("rowers", "roeiers"),
-        Column("crew_class", "klasse"),
-        Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
+        *_CREW,
+        _SPEED,
         *_SIZES,
-        Column("weight_after_kg", "gewicht na", "mass", "kg", required=False),
-        Column("crew_weight_kg", "bemanning", "mass", "kg", required=False),
+        _mass("weight_after_kg", "gewicht na"),
+        _mass("crew_weight_kg", "bemanning"),
         Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
         Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
         Column("use_runs", "gebruik runs", required=False),
         Column("altered", "verbouwd", required=False),
         Column("sample_rate_hz", "meetfrequentie", "rate", "Hz", required=False),
-        Column("empty_thwart", "lege doft", required=False),
-        Column("freeboard_lowest_m", "vrijboord laagst", "length", "m", required=False),
-        Column("freeboard_bow_m", "vrijboord boeg", "length", "m", required=False),
-        Column("freeboard_stern_m", "vrijboord achter", "length", "m", required=False),
+        _THWART,
+        _length("freeboard_lowest_m", "vrijboord laagst"),
+        _length("freeboard_bow_m", "vrijboord boeg"),
+        _length("freeboard_stern_m", "vrijboord achter"),
         Column("remark", "opmerking", required=False),
+    ),
+    about="tow_id",
+    spare=frozenset(
+        {
+            *(size.key for size in _SIZES),
+            *("weight_after_kg", "crew_weight_kg", "water_temperature_c"),
+            *("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m"),
+        }
     ),
 )
 WINDOWS: Final = ListKind(
     "sleeplijsten",
-    r"vensters[ _-]*([0-9]{4})",
-    "vensters",
+    "vensters_([0-9]{4})",
     "bad_window_row",
     ListedWindows,
-    (
-        Column("tow_id", "sleep_id"),
-        Column("run", "run"),
-        Column("start_s", "van", "time", "s"),
-        Column("end_s", "tot", "time", "s"),
-        Column("reason", "reden"),
-    ),
+    (*_TOW_RUN, *_SECONDS, Column("reason", "reden")),
 )
 FORCE_CHECKS: Final = ListKind(
     "sleeplijsten",
-    r"krachtijkingen[ _-]*([0-9]{4})",
-    "krachtijkingen",
+    "krachtijkingen_([0-9]{4})",
     "bad_instrument_row",
     ListedForceChecks,
     (
@@ -122,54 +143,43 @@ FORCE_CHECKS: Final = ListKind(
 "Krachtopnemer")."""
 LAMPS: Final = ListKind(
     "sleeplijsten",
-    r"lampjes[ _-]*([0-9]{4})",
-    "lampjes",
+    "lampjes_([0-9]{4})",
     "bad_instrument_row",
     ListedLamps,
-    (
-        Column("tow_id", "sleep_id"),
-        Column("run", "run"),
-        Column("start_s", "van", "time", "s"),
-        Column("end_s", "tot", "time", "s"),
-    ),
+    (*_TOW_RUN, *_SECONDS),
 )
 """When a lamp beside the beacon burned because the tow line was not square ("Recht sturen")."""
 REGISTERS: Final = ListKind(
     "sloepregister",
-    r"sloepregister[ _-]*([0-9]{4})",
-    "sloepregister",
+    "sloepregister_([0-9]{4})",
     "bad_register_row",
     PrintedLines,
     (
-        Column("fsn_no", "fsn_nr"),
-        Column("rowers", "roeiers"),
-        Column("crew_class", "klasse"),
+        _BOAT,
+        *_CREW,
         Column("a_kg_m", "A"),
         Column("b_m_s", "B", "speed", "m/s"),
         Column("cw_kg_m", "Cw"),
-        Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
+        _SPEED,
         Column("tow_date", "sleepdatum"),
-        Column("empty_thwart", "lege doft", required=False),
+        _THWART,
     ),
 )
 RACES: Final = ListKind(
     "wedstrijden",
-    r".+?(?:[ _-]*([0-9]{4}))?",
-    "wedstrijden",
+    ".+_([0-9]{4})",
     "bad_race_row",
     ListedRaces,
     (
         Column("race", "wedstrijd"),
         Column("race_date", "datum"),
         Column("distance_m", "afstand", "length", "km"),
-        Column("fsn_no", "fsn_nr"),
-        Column("rowers", "roeiers"),
-        Column("crew_class", "klasse"),
+        _BOAT,
+        *_CREW,
         Column("rowing_time_s", "roeitijd"),
         Column("stream_m", "stroom", "length", "km", required=False),
         Column("penalty_w", "straf", "power", "W", required=False),
-        Column("empty_thwart", "lege doft", required=False),
+        _THWART,
     ),
 )
-LIST_KINDS: Final = (BOATS, TOWS, LAMPS, WINDOWS, FORCE_CHECKS, REGISTERS, RACES)
-"""Where a header fits several kinds equally, the first is meant: lamps before windows."""
+LIST_KINDS: Final = (BOATS, TOWS, WINDOWS, FORCE_CHECKS, LAMPS, REGISTERS, RACES)
