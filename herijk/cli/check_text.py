@@ -128,5 +128,4 @@ def _cause(cause: CauseReport) -> str:
     lines += [f"    {place(vars(one))}" for one in cause.places]
     if cause.number > len(cause.places):
         lines.append(f"    {tell('and {} more', cause.number - len(cause.places))}")
-    lines += [f"  > archief.toml: {line}" for line in cause.settings]
     return "\n".join(lines)

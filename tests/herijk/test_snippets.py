@@ -12,7 +12,7 @@ from assets.settings import Settings
 from herijk.cli.main import app
 from tests.architecture.repository import ROOT, read
 from tests.conftest import METHODS
-from warehouse.archive.profile.reading import parse_profiles
+from warehouse.archive.profile import parse_profiles
 
 PAGES = sorted(
     str(path.relative_to(ROOT))

@@ -30,7 +30,7 @@ from warehouse.archive import (
     judge_samples,
     read_tow_samples,
 )
-from warehouse.archive.samples.frame import steps_of
+from warehouse.archive.samples import steps_of
 from warehouse.store.code import ADDING, READING, code_hash
 from warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 from warehouse.store.unforeseen import (
@@ -178,7 +178,7 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
     for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
         now = None  # also where a file went away
         with suppress(FileNotFoundError):
-            now = tow[path] and hashes.hash_samples(root, tow[path])
+            now = tow[path] and hashes.hash_file(root / tow[path])
         if now != tow[sha256]:
             raise ArchiveChangedError(
                 "{} changed while it was read. Try again when nobody is copying files into {}",

@@ -1,0 +1,128 @@
+"""The rows of lists in a frame: those that can be used stay, each other leaves a fault."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import polars as pl
+
+from pipeline.messages import say
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import column_of, dtypes, limits
+from pipeline.tables.lake import ListedTows
+from warehouse.archive.columns import shorten
+from warehouse.archive.faults import Fault, Lost, at_line
+from warehouse.archive.kinds import ListKind
+
+
+@dataclass
+class Rows:
+    """The rows of all lists of one kind.
+
+    Attributes:
+        kind: the kind of list.
+        frame: a row each: its `path`, `line` and `season`, the tow or boat that it is `about`, the
+            declared columns, and what was written in them as the struct `cells`.
+        faults: what is set aside.
+        lost: the first fault of each tow or boat of which a row is set aside.
+        listed: every row that was read, also those that are set aside.
+        unread: the lists that cannot be read.
+    """
+
+    kind: ListKind
+    frame: pl.DataFrame
+    faults: list[Fault] = field(default_factory=list)
+    lost: dict[str, Fault] = field(default_factory=dict)
+    listed: pl.DataFrame = field(default_factory=pl.DataFrame)
+    unread: set[str] = field(default_factory=set)
+
+    def add(self, others: "Rows") -> None:
+        """Adds the rows of another list."""
+        self.frame = pl.concat([self.frame, others.frame])
+        self.listed = pl.concat([self.listed, others.listed])
+        self.faults += others.faults
+        self.lost = others.lost | self.lost
+
+    def drop(self, is_wrong: pl.Expr, text: str, code: str | None = None, **facts: Any) -> None:
+        """Sets rows aside; the arguments are those of `note`."""
+        self.note(is_wrong, text, code, **facts)
+        self.frame = self.frame.filter(~is_wrong.fill_null(value=False))
+
+    def empty(self, key: str, is_wrong: pl.Expr, text: str, **facts: Any) -> None:
+        """Empties cells that a row can do without."""
+        self.note(is_wrong, text, None, "cell", **facts)
+        sound = ~is_wrong.fill_null(value=False)
+        self.frame = self.frame.with_columns(pl.when(sound).then(key).alias(key))
+
+    def note(
+        self,
+        is_wrong: pl.Expr,
+        text: str,
+        code: str | None = None,
+        lost: Lost | None = None,
+        **facts: Any,
+    ) -> None:
+        """Adds a fault for rows.
+
+        Args:
+            is_wrong: which rows; what is not known is not wrong.
+            text: the sentence.
+            code: its reason code; None for that of the list.
+            lost: what it costs, if not the row.
+            facts: what is filled in: a value, or an expression of the rows.
+        """
+        of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
+        known = self.frame.select("path", "line", "about", _wrong=is_wrong, **of_rows)
+        for row in known.filter("_wrong").iter_rows(named=True):
+            filled = {name[1:]: row[name] for name in of_rows}
+            short = {k: shorten(v) if isinstance(v, str) else v for k, v in filled.items()}
+            message = at_line(row["line"], say(text, **facts | short))
+            if lost == "cell":
+                message = say("{what} The cell counts as empty.", what=message)
+            tow_id = row["about"] if self.kind.about == "tow_id" else None
+            place = row["path"], tow_id, row["line"]
+            fault = Fault(*place, code or self.kind.reason_code, message, lost)
+            self.faults.append(fault)
+            if row["about"]:
+                self.lost.setdefault(row["about"], fault)
+
+    def drop_repeated(self, about: Sequence[str], text: str, code: str | None = None) -> None:
+        """Keeps the rows of which there is one about a thing; equal rows count once."""
+        self.frame = self.frame.unique("cells", maintain_order=True)
+        of = pl.concat_str(*about, separator=" ")
+        self.drop(pl.struct(about).is_duplicated(), text, code, of=of)
+
+    def drop_other_years(self, day: str, code: str | None = None) -> None:
+        """Sets aside the rows whose day is not in the year of their list."""
+        text = say("the date {day} is not in {season}, the year of the list.")
+        is_other = pl.col(day).dt.year() != pl.col("season")
+        self.drop(is_other, text, code, day=pl.col(day), season=pl.col("season"))
+
+    def as_table(self, table: type[dy.Schema]) -> pl.DataFrame:
+        """The rows as a table; the year of a list was not held against its limits yet."""
+        low, high = limits(ListedTows, "season")
+        text, season = (
+            say("the year is {cell}; {low:g} to {high:g} can be right."),
+            pl.col("season"),
+        )
+        self.drop(~season.is_between(low, high), text, cell=season, low=low, high=high)
+        return table.validate(self.frame.select(table.column_names()), cast=True)
+
+
+def cell(key: str) -> pl.Expr:
+    """What is written in a column, null for nothing."""
+    return pl.col("cells").struct.field(key)
+
+
+def no_rows(kind: ListKind) -> pl.DataFrame:
+    """The frame of a list without any row."""
+    declared = dtypes(kind.table)
+    values = {c.key: declared.get(c.key, pl.String()) for c in kind.columns}
+    cells = pl.Struct({column.key: pl.String for column in kind.columns})
+    place = {"path": pl.String(), "line": pl.Int64(), "season": pl.Int32(), "about": pl.String()}
+    return pl.DataFrame(schema=place | values | {"cells": cells})
+
+
+def declared_column(kind: ListKind, key: str) -> dy.Column | None:
+    """The column as its table declares it; None for one that is only used here."""
+    return column_of(kind.table, key) if key in kind.table.column_names() else None
