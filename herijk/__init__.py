@@ -43,7 +43,9 @@ _HOMES: Final = {
 
 
 def _look_at_neighbours() -> None:
-    """Refuses to go on with a room that is not ours: their names are common (decision 18).
+    """Raise an error where a room is somebody else's module: names of rooms are common.
+
+    Why they have such names is in docs/decisions.md, "Rooms at the top".
 
     Raises:
         ImportError: Python would find somebody else's module under the name of a room.

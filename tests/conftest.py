@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 from unittest import mock
@@ -49,6 +50,11 @@ SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=20, rate_hz=20, seed
 LEFT_OUT: Final = ("studies", "lines", "consistency")
 """Groups of steps that take two thirds of the time of a small rebuild."""
 
+DEMO: Final = WorldSettings(seasons=tuple(range(2009, 2019)), tows_per_season=6, rate_hz=20, seed=1)
+"""The archive of `make demo` with fewer tows and samples."""
+DEMO_METHODS: Final = ("as-published", "rebased-2015", "rebased")
+"""Those that the documents name in what they tell a reader to type."""
+
 
 def _make_directly(
     archive: Path,
@@ -56,6 +62,7 @@ def _make_directly(
     methods: Sequence[str],
     seasons: Collection[int] | None,
     done: Done,
+    left_out: Collection[str] = LEFT_OUT,
 ) -> list[object]:
     """What a rebuild makes without Dagster, and with empty tables where they are left out."""
     store = Store(data)
@@ -65,7 +72,7 @@ def _make_directly(
         done.seasons = sorted({*done.seasons, season})
     for step in STEPS:
         for scope in step.stale(store, known):
-            if step.group in LEFT_OUT:
+            if step.group in left_out:
                 partition = scope.at_hand.name if step.per_method else None
                 for name in step.outputs:
                     empty = TABLES[name].create_empty()
@@ -80,14 +87,16 @@ def _make_directly(
 
 
 @contextmanager
-def directly(page: bool = False) -> Iterator[None]:
+def directly(page: bool = False, left_out: Collection[str] = LEFT_OUT) -> Iterator[None]:
     """Inside, rebuilds do their work without Dagster, and the site counts as made.
 
     Args:
         page: make the page about the rebuild too, a quarter of the work.
+        left_out: groups of steps whose tables stay empty.
     """
     no_site = mock.patch.object(assets.rebuild, "SITE", mock.Mock(stale=lambda *_: []))
-    no_dagster = mock.patch.object(assets.run, "run_assets", _make_directly)
+    make = partial(_make_directly, left_out=left_out)
+    no_dagster = mock.patch.object(assets.run, "run_assets", make)
     no_page = mock.patch.object(dashboards.report_page, "report_pages", return_value={})
     with no_site, no_dagster, nullcontext() if page else no_page:
         yield
@@ -194,6 +203,20 @@ def shared(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], ob
 def build_small(root: Path) -> None:
     write_simulated_archive(root / "archive", simulate_world(SMALL))
     Workbench(root / "archive", root / "data").rebuild(whole=True)
+
+
+def build_demo(root: Path) -> None:
+    """Make the small demo with all its tables; the samples of one tow are missing."""
+    write_simulated_archive(root / "archief", simulate_world(DEMO))
+    sorted((root / "archief").glob("meetdata_2014/*"))[-1].unlink()
+    with in_one_process(), directly(left_out=()):
+        assets.rebuild.rebuild(root / "archief", root / "data", DEMO_METHODS)
+
+
+@pytest.fixture(scope="session")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a small `make demo`, with `archief` and `data`; read only."""
+    return shared(tmp_path_factory, "demo", build_demo)
 
 
 @pytest.fixture(scope="session")

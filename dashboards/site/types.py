@@ -1,7 +1,7 @@
 """The pages of boat types: are equal boats equal, before and after.
 
-All of them are about the newest tow of each boat and crew; other choices of tows are on the page of
-the presentation and on the workbench.
+All of them are about the newest tow of each boat and crew, as `herijk audit` and the page of the
+presentation; the workbench can also judge types by all tows.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -111,10 +111,11 @@ def _judged(views: Views, method: str) -> Callable[[str], Headline]:
     """Gives whether the boats of a type are equal in level and in bend, under a method."""
     tows = views.table("compared_tows").filter("newest", method=method)
     lines = views.table("type_lines").filter(method=method, tows=NEWEST, **WEIGHT_LINE)
+    outliers = views.table("type_outliers").filter(method=method)
     tests = views.table("type_homogeneity").filter(method=method)
 
     def judge(name: str) -> Headline:
-        own = (frame.filter(boat_type=name) for frame in (tows, lines))
+        own = (frame.filter(boat_type=name) for frame in (tows, lines, outliers))
         return together([level(*own), homogeneity(tests.filter(boat_type=name))], " ")
 
     return judge
@@ -130,13 +131,13 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     judge = _judged(views, default_method(methods))
     book = Book(views)
     for boat_type in views.type_names():
-        drawn = [book.drawn(boat_type, NEWEST)]
+        drawn = [book.drawn(boat_type)]
         charts = [
             Chart(
                 f"slide_{name}",
                 drawn,
                 labels.FIGURES[caption],
-                says=together(book.in_words(name, boat_type, NEWEST), " "),
+                says=together(book.in_words(name, boat_type), " "),
             )
             for name, caption in TYPE_FIGURES.items()
         ]
@@ -159,8 +160,9 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                     say(
                         "All of this is about the newest tow of each boat and crew. Standard "
                         "speed: the median declared speed of the type, at which Cw can be "
-                        "compared; the declared speed differs by crew. The line is the best "
-                        "straight fit with its 95 % interval. A full bar through a point is its "
+                        "compared; the declared speed differs by crew. A line is the best "
+                        "straight fit with its 95 % interval; against tow speed men and women "
+                        "each have their own. A full bar through a point is its "
                         "95 % interval; a dashed one is the spread of the runs alone: the log's "
                         "error is not in it."
                     ),

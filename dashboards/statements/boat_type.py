@@ -11,6 +11,7 @@ import scipy
 from dashboards import labels
 from dashboards.statements import Number, Statement, Value, told
 from pipeline.consistency.homogeneity import LEVEL
+from pipeline.consistency.lines import LN_CW
 from pipeline.messages import say
 from pipeline.quantiles import NORMAL
 from pipeline.tables.row import Row
@@ -41,7 +42,7 @@ def homogeneity(test: pl.DataFrame) -> Statement:
     return told("bends", wording, {}, "homogeneity", verdict=verdict, n=test["n"][0], p=p)
 
 
-def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
+def level(tows: pl.DataFrame, line: pl.DataFrame, outliers: pl.DataFrame) -> Statement:
     """Whether their Cw at one speed differs by more than weight and the uncertainty explain.
 
     The squared scatter about the weight line over that of the tows' own uncertainty is compared
@@ -50,6 +51,7 @@ def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
     Args:
         tows: rows of `compared_tows` of a type under one method, the newest of each crew.
         line: their row of `type_lines` of Cw against weight, men and women together.
+        outliers: their rows of `type_outliers`; those of Cw that are outside are named.
     """
     spread = None if line.is_empty() else line["residual_sd_ratio"][0]
     if spread is None:
@@ -85,6 +87,7 @@ def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
         {},
         "compared_tows",
         "type_lines",
+        "type_outliers",
         verdict="not known" if noise is None else "differ" if differ else "equal",
         speed=Number(known["standard_speed_m_s"][0], unit="m/s"),
         lowest=Number(float(cw.min()), 1),
@@ -92,8 +95,13 @@ def level(tows: pl.DataFrame, line: pl.DataFrame) -> Statement:
         n=line["n"][0],
         spread=Number(100 * spread, 1, "%"),
         noise="" if noise is None else Number(100 * noise, 1, "%"),
-        outside=_outside([tow for tow in known.to_dicts() if tow["outside"]]),
+        outside=_outside([row for row in outliers.to_dicts() if is_outside_in_cw(row)]),
     )
+
+
+def is_outside_in_cw(row: Row) -> bool:
+    """Return whether a row of `type_outliers` says that a boat stands out by its Cw."""
+    return bool(row["outside"]) and row["quantity"] == LN_CW
 
 
 def _outside(tows: list[Row]) -> Value:

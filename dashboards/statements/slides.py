@@ -16,13 +16,14 @@ from dashboards import labels
 from dashboards.figures.slides import ENDS, PAIRS
 from dashboards.statements import Number, Statement, Value, told
 from dashboards.statements.method import voted_steps
+from pipeline.consistency.lines import ALL_CREWS, LN_CW
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import Sentence, ngettext, say
 from pipeline.register.register import STUDIED_METHOD
 from pipeline.studies.options import SPEEDS, TICKS
 from pipeline.tables.row import Row
-from warehouse.queries.views import ALL, Views
+from warehouse.queries.views import ALL, NEWEST, Views
 from warehouse.store.boats import choose_boat
 from warehouse.store.unforeseen import Border
 
@@ -56,11 +57,15 @@ TOW_COLUMNS: Final = (
 )
 
 CREWS_MARKED: Final = say("A circle is a men's crew, a triangle a women's crew.")
+CLASSES: Final = {"men": say("men"), "women": say("women")}
+"""Classes by the name that `type_lines` gives them."""
+
 UNKNOWN: Final = say("not known")
 LINE_MARKED: Final = say(
-    "The line is the best straight fit with its 95 % interval. A bar is the 95 % interval of a "
-    "tow; a dashed bar leaves out the error of the log. An open mark was towed too slowly or too "
-    "fast for the standard speed. A tow that is an outlier in Cw is named."
+    "Drawn is the newest tow of each boat and crew. A line is the best straight fit among men or "
+    "among women, with its 95 % interval. A bar is the 95 % interval of a tow; a dashed bar leaves "
+    "out the error of the log. An open mark was towed too slowly or too fast for the standard "
+    "speed. A tow that is an outlier in Cw is named."
 )
 
 
@@ -139,9 +144,18 @@ class Book:
         self.ends = (methods[0], [*methods, *wanted][-1]) if methods else ("", "")
         old_method, method = map(labels.method, self.ends)
         self.methods = {"old_method": old_method, "method": method}
-        self.tows = compared.filter(pl.col("method").is_in(self.ends))
-        self._lines = views.table("type_lines").filter(within="all")
-        self._line_points = views.table("type_line_points")
+        outside = (
+            views.table("type_outliers")
+            .filter("outside", quantity=LN_CW)
+            .select("method", "tow_id", outside=True)
+        )
+        self.tows = (
+            compared.filter(pl.col("method").is_in(self.ends))
+            .drop("outside")
+            .join(outside, on=["method", "tow_id"], how="left", maintain_order="left")
+        )
+        self._lines = views.table("type_lines").filter(tows=NEWEST)
+        self._line_points = views.table("type_line_points").filter(tows=NEWEST)
 
     def chosen_types(self, wanted: Sequence[str]) -> list[str]:
         """The types asked for, or those of the presentation, or the two with most tows."""
@@ -172,14 +186,10 @@ class Book:
 
     # -- Types ------------------------------------------------------------------------------------
 
-    def drawn(self, boat_type: str, tows: str = ALL, figure: str = "") -> pl.DataFrame:
-        """The tows of a type and the lines fitted to them, of one figure or of all."""
-        own = self.tows.filter(boat_type=boat_type)
-        if tows != ALL:
-            own = own.filter("newest")
-        lines = self._line_points.filter(
-            pl.col("method").is_in(self.ends), tows=tows, boat_type=boat_type
-        )
+    def drawn(self, boat_type: str, figure: str = "") -> pl.DataFrame:
+        """The newest tows of a type and the lines fitted to them, of one figure or of all."""
+        own = self.tows.filter("newest", boat_type=boat_type)
+        lines = self._line_points.filter(pl.col("method").is_in(self.ends), boat_type=boat_type)
         if figure:
             y, x = (COLUMNS[name] for name in PAIRS[figure])
             lines = lines.filter(quantity=y, explaining=x)
@@ -187,38 +197,49 @@ class Book:
 
     def against(self, figure: str, boat_type: str) -> Iterator[Slide]:
         """Whether a quantity follows what may explain it; of few boats nothing is said."""
-        line = self.line(figure, boat_type, ALL, self.ends[1])
-        if line and line["slope"] is not None and line["n_boats"] >= FEWEST:
-            said = relation(figure, line)
+        findings: list[Value] = []
+        fits: list[Statement] = []
+        for within in classes_of(figure):
+            line = self.line(figure, boat_type, self.ends[1], within)
+            if line and line["slope"] is not None and line["n_boats"] >= FEWEST:
+                findings.append(_name_class(relation(figure, line), within))
+                fits.append(self.fit(figure, boat_type, within))
+        if findings:
+            wording, of_type = say("{boat_type}: {relation}"), {"boat_type": boat_type}
             yield Slide(
                 f"{figure} {boat_type}",
                 f"slide_{figure}",
                 self.drawn(boat_type, figure=figure),
-                told(
-                    "slide_type", say("{boat_type}: {relation}"), line, "type_lines", relation=said
-                ),
-                [self.fit(figure, boat_type), CREWS_MARKED, LINE_MARKED],
+                told("slide_type", wording, of_type, "type_lines", relation=findings),
+                [*fits, CREWS_MARKED, LINE_MARKED],
             )
 
-    def line(self, figure: str, boat_type: str, tows: str, method: str) -> Row | None:
-        """The line fitted to a type under a method."""
+    def line(self, figure: str, boat_type: str, method: str, within: str = ALL_CREWS) -> Row | None:
+        """The line fitted to the newest tows of a type, or of one class, under a method."""
         y, x = (COLUMNS[name] for name in PAIRS[figure])
         found = self._lines.filter(
-            quantity=y, explaining=x, boat_type=boat_type, tows=tows, method=method
+            quantity=y, explaining=x, boat_type=boat_type, method=method, within=within
         )
         return found.row(0, named=True) if found.height else None
 
-    def in_words(self, figure: str, boat_type: str, tows: str) -> list[Statement]:
-        """What the line of a type says, and how well it fits."""
-        line = self.line(figure, boat_type, tows, self.ends[1])
-        if line is None or line["slope"] is None:
-            wording = say("Too few boats for a line ({boats}).")
-            return [told("no_line", wording, boats=_boats(line))]
-        return [_finished(relation(figure, line)), self.fit(figure, boat_type, tows)]
+    def in_words(self, figure: str, boat_type: str) -> list[Statement]:
+        """What the lines of a type say, and how well they fit."""
+        found: list[Statement] = []
+        for within in classes_of(figure):
+            line = self.line(figure, boat_type, self.ends[1], within)
+            if line is None or line["slope"] is None:
+                none = told(
+                    "no_line", say("Too few boats for a line ({boats})"), boats=_boats(line)
+                )
+                found.append(_finished(_name_class(none, within)))
+            else:
+                found.append(_finished(_name_class(relation(figure, line), within)))
+                found.append(self.fit(figure, boat_type, within))
+        return found
 
-    def fit(self, figure: str, boat_type: str, tows: str = ALL) -> Statement:
+    def fit(self, figure: str, boat_type: str, within: str = ALL_CREWS) -> Statement:
         """The share of the spread that a line explains, before and after."""
-        before, after = (self.line(figure, boat_type, tows, method) for method in self.ends)
+        before, after = (self.line(figure, boat_type, method, within) for method in self.ends)
         assert after, "a line that is described was fitted"  # noqa: S101
         return told(
             "share_explained",
@@ -379,6 +400,19 @@ class Book:
         others = (slide.finding for slide in made if slide.name.startswith(CONCLUDING))
         notes = [repeats, *map(_finished, others), *voted_steps(self.views, self.ends[-1])]
         yield Slide("conclusion", "reproducibility", rows, finding, notes)
+
+
+def classes_of(figure: str) -> Sequence[str]:
+    """Return the classes among which a figure has a line: each its own against tow speed."""
+    return tuple(CLASSES) if PAIRS[figure][1] == "speed" else (ALL_CREWS,)
+
+
+def _name_class(finding: Statement, within: str) -> Statement:
+    """Return a finding with the class that it is about, where it is about one."""
+    if within == ALL_CREWS:
+        return finding
+    wording, crews = say("{finding} among {crews}"), CLASSES[within]
+    return told("of_class", wording, {}, *finding.rests_on, crews=crews, finding=finding)
 
 
 def _boats(line: Row | None) -> Sentence:

@@ -241,8 +241,11 @@ def _equal(of_type: Row, method: str) -> list[Statement]:
     """Whether they are equal, as the site says it, and which tows stand out."""
     under = of_type["under"][method]
     line = [row for row in under["lines"] if row.items() >= WEIGHT_LINE.items()]
-    tested, newest, lines = (pl.DataFrame(rows) for rows in (under["bends"], under["newest"], line))
-    return [homogeneity(tested), level(newest, lines)]
+    outliers = pl.DataFrame(under["outside"])
+    return [
+        homogeneity(pl.DataFrame(under["bends"])),
+        level(pl.DataFrame(under["newest"]), pl.DataFrame(line), outliers),
+    ]
 
 
 def _slopes(report: TypesAudit, methods: Sequence[str]) -> Section:

@@ -1,10 +1,10 @@
 """Blocks: sums over each second of a run, from which every method can be computed.
 
-Every formula of every method is linear in a few sums over samples, so a tow's samples are read
-once and added up per second (decision 1). Means over any window that starts on a second are
-then exactly those over the samples. What belongs here: which sums there are and how they are
-stacked. What does not: making them (`pipeline.blocks.sums`), nor any choice of a method (which
-window, which coefficient).
+Every formula of every method is linear in a few sums over samples, so a tow's samples are read once
+and added up per second (docs/decisions.md, "Blocks of a second"). Means over any window that starts
+on a second are then exactly those over the samples. What belongs here: which sums there are and how
+they are stacked. What does not: making them (`pipeline.blocks.sums`), nor any choice of a method
+(which window, which coefficient).
 
 The sums of one block, over its `n` samples, with F the tow force, v the speed by log 1, and w and a
 the apparent wind:

@@ -4,8 +4,8 @@ The tows are the newest of each boat and crew, or all. Lines are weighted: each 
 measuring error, and boats differ truly by a standard deviation that is estimated (REML); tows of
 one boat, also of two crews, share that difference. Over all tows each has a deviation of its own as
 well, so that repeats count as repeats. Women's and men's crews differ in weight and speed, so lines
-against weight or length compare boats within a crew; displacement contains the crew. Lines against
-tow speed, which stands for crew mass, are drawn within men and within women too.
+against weight or length compare boats within a crew; displacement contains the crew. A line against
+tow speed is one of men or of women: over both, tow speed stands for the mass of the crew.
 """
 
 from collections.abc import Iterator
@@ -46,9 +46,10 @@ PAIRS: Final = (
 
 ALL_CREWS: Final = "all"
 WITHIN: Final = {"men": "H", "women": "D"}
-"""Classes within which lines against tow speed are drawn too, by their codes."""
+"""Classes within which lines against tow speed are drawn, with their codes."""
 
-FEWEST_BOATS: Final = 3
+FEWEST_BOATS: Final = 5
+"""Fewest boats through which a line is drawn."""
 PLACES: Final = 7
 """Points at which a line is given for drawing."""
 
@@ -117,8 +118,8 @@ def type_lines(observed: Observed) -> tuple[dy.DataFrame[TypeLines], dy.DataFram
 
     Returns:
         Rows of the tables `type_lines` and `type_line_points`. Where no line is drawn, `reason`
-        says why. Points are those of lines over all crews. Where such a line compares boats within
-        a crew, they are given per class; `crew_class` is `all` elsewhere.
+        says why. Points are given per class, with the line of that class; of lines on displacement,
+        which is the same for all crews, `crew_class` is `all`.
     """
     rows: list[Row] = []
     points: list[Row] = []
@@ -132,17 +133,15 @@ def type_lines(observed: Observed) -> tuple[dy.DataFrame[TypeLines], dy.DataFram
                 row["reason"] = "not_settled"
                 continue
             row.update(_numbers(line, fit))
-            if row["within"] == ALL_CREWS:
-                points += _points(line, fit)
+            points += _points(line, fit)
     return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 
 
 def _kinds() -> Iterator[tuple[str, str, str]]:
     """Each quantity with what may explain it, and within which crews."""
     for quantity, explaining in PAIRS:
-        yield quantity, explaining, ALL_CREWS
-        if explaining == TOW_SPEED:
-            yield from ((quantity, explaining, name) for name in WITHIN)
+        crews = WITHIN if explaining == TOW_SPEED else (ALL_CREWS,)
+        yield from ((quantity, explaining, within) for within in crews)
 
 
 def _described(choice: str, tows: Observed) -> Iterator[tuple[Row, _Line | None]]:
@@ -185,7 +184,8 @@ def _described(choice: str, tows: Observed) -> Iterator[tuple[Row, _Line | None]
                 continue
             width, variance = float(np.abs(centred).max()), unit[mine] * run_variance[mine]
             columns = np.column_stack([crews, centred / width])
-            whose = crew_class[mine] if is_of_boat else np.full(len(mine), ALL_CREWS)
+            is_of_all = explaining == LN_DISPLACEMENT
+            whose = np.full(len(mine), ALL_CREWS) if is_of_all else crew_class[mine]
             problem = Problem(y[mine], variance, columns, hull[mine])
             yield row, _Line(row, problem, centre, width, x[mine], whose)
 

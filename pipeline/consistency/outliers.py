@@ -11,7 +11,6 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.lines import (
     BEND,
-    FEWEST_BOATS,
     LN_CW,
     LN_DISPLACEMENT,
     explaining_variable,
@@ -21,6 +20,9 @@ from pipeline.consistency.observed import TOW, UNKNOWN_TYPE, Observed, newest
 from pipeline.consistency.tow_speed import is_slow
 from pipeline.history import STEERED_STRAIGHT_FROM
 from pipeline.tables.consistency import TypeOutliers
+
+FEWEST_BOATS: Final = 3
+"""Fewest boats beyond the unknowns of a type that one boat is compared with."""
 
 OUTSIDE_LEVEL: Final = 0.05
 """Chance that any boat of a type of like boats is called outside (Bonferroni)."""

@@ -40,7 +40,8 @@ MIDDLE_RATIO: Final = (0.67, 0.80)
 """Tow speed / hull speed: between these "the curve is relatively flat", below it the wave
 resistance rises (Cw-kromme, R. Pot 2015, "Totale weerstand")."""
 
-FEWEST_BOATS: Final = 4
+FEWEST_BOATS: Final = 5
+"""Fewest boats through which a trend is drawn."""
 FEWEST_OTHERS: Final = 2
 
 
@@ -54,8 +55,9 @@ def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> 
 def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
     """Trend of the bend q at a type's standard speed with the speed of the tow.
 
-    Per type and over all types, each about its own level. The trend is per unit of ln v0; 0.1 of
-    it is what 10 % of tow speed does to q.
+    Per type and over all types. Men and women of a type each have a level of their own, so that
+    the trend compares tows within a class. It is per unit of ln v0; 0.1 of it is what 10 % of tow
+    speed does to q.
 
     Returns:
         Rows of the table `speed_trend`.
@@ -76,18 +78,20 @@ def _trend(boats: Observed) -> Row:
     speed = boats.table.select(median).to_series().to_numpy()
     q, unit = q_at(boats, speed)
     known = np.isfinite(q)
-    hull, boat_type = (boats.table[name].to_numpy()[known] for name in ("hull", "boat_type"))
-    types = (boat_type[:, None] == np.unique(boat_type)).astype(np.float64)
+    hull = boats.table["hull"].to_numpy()[known]
+    group = boats.table.select(pl.struct("boat_type", "crew_class").rank("dense")).to_series()
+    of_tow = group.to_numpy()[known]
+    levels = (of_tow[:, None] == np.unique(of_tow)).astype(np.float64)
     n_boats = boats.table["fsn_no"].to_frame().filter(pl.Series(known)).n_unique()
     counts = {"n": len(hull), "n_boats": n_boats}
-    if n_boats < max(FEWEST_BOATS, types.shape[1] + 2):
+    if n_boats < max(FEWEST_BOATS, levels.shape[1] + 2):
         return counts | {"reason": "few_boats"}
     x = np.log(boats.column("declared_speed_m_s") / speed)[known]
-    centred = x - types @ np.linalg.lstsq(types, x)[0]
+    centred = x - levels @ np.linalg.lstsq(levels, x)[0]
     if np.abs(centred).max() < 1e-9:
         return counts | {"reason": "equal_values"}
     variance = unit * boats.column("run_sd_ratio") ** 2
-    columns = np.column_stack([types, centred])
+    columns = np.column_stack([levels, centred])
     fit = mixed.fit(mixed.Problem(q[known], variance[known], columns, hull), mixed.BOAT)
     if fit is None:
         return counts | {"reason": "not_settled"}

@@ -14,7 +14,7 @@ class TypeLines(PerMethod):
     explaining = column.text(
         "weight_kg, declared_speed_m_s, waterline_length_m or ln_displacement", primary_key=True
     )
-    within = column.text("all, or against tow speed also men, women", primary_key=True)
+    within = column.text("men or women against tow speed; else all", primary_key=True)
     standard_speed_m_s = column.speed("common speed: median declared speed of the type's tows")
     n = column.count("tows")
     n_boats = column.count("boats")
@@ -33,7 +33,9 @@ class TypeLinePoints(PerMethod):
     boat_type = column.text("type of boat", primary_key=True)
     quantity = column.text("as in `type_lines`", primary_key=True)
     explaining = column.text("as in `type_lines`", primary_key=True)
-    crew_class = column.text("H or D where compared within a crew, or all", primary_key=True)
+    crew_class = column.text(
+        "class that the line is of, H or D; of displacement all", primary_key=True
+    )
     x = column.number("as explaining", "place on the line", primary_key=True)
     y = column.number("as quantity", "the line there")
     lo = column.number("as quantity", "lower end of its 95 % interval")
@@ -141,7 +143,7 @@ class SpeedTrend(PerMethod):
     """Does the bend follow the speed of the tow? If the hyperbola is true, it does not."""
 
     boat_type = column.text(
-        "type of boat, or all: all types, each about its level", primary_key=True
+        "type of boat, or all types; each class of a type about its own level", primary_key=True
     )
     n = column.count("tows: the newest of each boat and crew")
     n_boats = column.count("boats")

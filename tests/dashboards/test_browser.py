@@ -7,6 +7,8 @@ where that is a failure, and pictures go to `ci-output/`.
 import csv
 import io
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -14,6 +16,7 @@ from dashboards.addresses import boat_path, edition_page, race_path, type_path
 from dashboards.guides import GUIDES
 from dashboards.site.pages import MENU
 from dashboards.site.start import ABOUT
+from tests.architecture.repository import ROOT, read
 from tests.dashboards.browser import (
     IN_CI,
     NEEDED,
@@ -252,3 +255,13 @@ def test_everything_is_reached_by_keyboard(visit):
     page.keyboard.press("Enter")
     assert page.locator("th[data-c=name]").get_attribute("aria-sort") == "ascending"
     assert page.locator("table:not(:has(caption))").count() == 0
+
+
+def test_the_pictures_of_the_readme_can_be_taken(site, tmp_path):
+    """In a process of its own: Playwright runs once in a process."""
+    draw = ROOT / "docs" / "pictures" / "draw.py"
+    subprocess.run([sys.executable, draw, site / "en", tmp_path], check=True, timeout=120)
+    shown = set(re.findall(r"docs/pictures/(\S+\.png)", read("README.md")))
+    assert {file.name for file in tmp_path.iterdir()} == shown
+    for folder in (tmp_path, draw.parent):
+        assert all(0 < (folder / name).stat().st_size < 1_000_000 for name in shown)

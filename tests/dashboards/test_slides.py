@@ -12,7 +12,7 @@ from dashboards.statements import slides as slide_book
 from dashboards.statements import together
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGES
-from warehouse.queries.views import NEWEST, Views
+from warehouse.queries.views import Views
 
 
 @pytest.fixture(scope="module")
@@ -96,12 +96,32 @@ def test_an_era_is_compared_from_old_to_new(shift, apart, said):
 
 def test_a_page_says_of_a_type_how_many_tows_its_line_rests_on(book):
     for boat_type in book.chosen_types(()):
-        found = book.line("cw_weight", boat_type, NEWEST, book.ends[1])
-        said = together(book.in_words("cw_weight", boat_type, NEWEST), " ")(Speech("en"))
+        found = book.line("cw_weight", boat_type, book.ends[1])
+        said = together(book.in_words("cw_weight", boat_type), " ")(Speech("en"))
         assert (f"{found['n']} tow" in said) == (found["slope"] is not None)
-        drawn = book.drawn(boat_type, NEWEST)
+        drawn = book.drawn(boat_type)
         assert set(drawn["boat_type"]) == {boat_type}
         assert drawn.filter(pl.col("quantity").is_null()).height
+
+
+def test_men_and_women_are_spoken_of_apart_where_tow_speed_explains(book):
+    for boat_type in book.chosen_types(()):
+        for figure in ("b_speed", "cw_speed"):
+            lines = {
+                crews: book.line(figure, boat_type, book.ends[1], crews)
+                for crews in ("men", "women")
+            }
+            said = [one(Speech("en")) for one in book.in_words(figure, boat_type)]
+            of_crews = [one for one in said if not one.startswith("R²")]
+            assert [one.rpartition(" ")[2] for one in of_crews] == ["men.", "women."]
+            for one, line in zip(of_crews, lines.values(), strict=True):
+                assert ("Too few boats" in one) == (line["slope"] is None)
+            for slide in book.against(figure, boat_type):
+                assert slide.finding(Speech("en")).count(" among ") == sum(
+                    line["n_boats"] >= slide_book.FEWEST for line in lines.values()
+                )
+            drawn = book.drawn(boat_type, figure=figure).filter(pl.col("quantity").is_not_null())
+            assert set(drawn["crew_class"]) <= {"H", "D"}
 
 
 def test_a_type_that_is_not_there_is_refused(views):

@@ -3,6 +3,7 @@
 import json
 import re
 
+import duckdb
 import polars as pl
 import pytest
 
@@ -79,6 +80,31 @@ def test_the_answer_about_types_has_every_line_with_its_interval_and_n(audit, bu
         said = slope(row)(Speech("en"))
         assert re.search(rf" {row['n']} +.*{re.escape(said)}", pages[row["boat_type"]])
     assert "Can all boats have the same bend?" in audit(types[0], "--steps")
+
+
+def test_a_type_is_judged_by_the_newest_tow_of_each_boat_and_crew(audit, built):
+    (of_type,) = json.loads(audit("Kuikensloep", "--json"))["types"]
+    for method, under in of_type["under"].items():
+        assert {line["tows"] for line in under["lines"]} == {"newest"}
+        tows = built.table("compared_tows").filter("newest", method=method, boat_type="Kuikensloep")
+        assert {row["tow_id"] for row in under["newest"]} == set(tows["tow_id"])
+        assert {row["tow_id"] for row in under["outside"]} <= set(tows["tow_id"])
+
+
+def test_boats_that_stand_out_are_those_of_the_table_of_outliers(herijk, bench):
+    with duckdb.connect(bench.store.database) as db:
+        db.execute("UPDATE type_outliers SET outside = false")
+        db.execute("UPDATE compared_tows SET outside = true")
+    call = ("audit", "Kuikensloep", "--data", bench.data)
+    assert "stand out" not in herijk(*call)[1]
+    with duckdb.connect(bench.store.database) as db:
+        db.execute(
+            "UPDATE type_outliers SET outside = true WHERE quantity = 'ln_cw_standard' "
+            "AND fsn_no = (SELECT min(fsn_no) FROM type_outliers WHERE boat_type = 'Kuikensloep')"
+        )
+        rows = db.execute("SELECT DISTINCT fsn_no FROM type_outliers WHERE outside").fetchall()
+        db.execute("UPDATE compared_tows SET outside = false")
+    assert f"These stand out: {rows[0][0]}" in herijk(*call)[1]
 
 
 def test_two_types_stand_side_by_side(audit, built):

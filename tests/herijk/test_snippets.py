@@ -3,23 +3,33 @@
 import re
 import runpy
 import shlex
+import shutil
 import tomllib
 
 import duckdb
 import pytest
 
 from assets.settings import Settings
+from herijk.cli.audit_text import STEPS
 from herijk.cli.main import app
+from pipeline.messages import LANGUAGES, speaker
 from tests.architecture.repository import ROOT, read
-from tests.conftest import METHODS
+from tests.conftest import in_one_process
 from warehouse.archive.profile import parse_profiles
 
 PAGES = sorted(
     str(path.relative_to(ROOT))
     for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md"))
 )
-BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^ *```(\S*)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
+HERIJK = ("herijk", ".venv/bin/herijk")
+IN_CI = {"README.md": "make", "docs/operations.md": "pip"}
+"""Pages with other lines, which `.ci/run` and `.ci/wheel` run, and the command of those."""
 CALL = re.compile(r"`(?:\.venv/bin/)?herijk ([a-z][^`]*)`")
+SECTIONS = re.compile(r"\| (?:section|onderdeel) \|.*?\n\n|\Z", re.DOTALL)
+"""A table of what a command prints, section by section, if there is one."""
+IF_ANY = ("if there are any: ", "als die er zijn: ")
+START = "README.md"
 NOTEBOOK = ROOT / "docs" / "notebooks" / "from_tow_to_register.py"
 
 
@@ -28,11 +38,14 @@ def blocks(page, *languages):
 
 
 def shell_lines(page):
-    """The calls of herijk in the blocks of a page, each split as a shell does."""
-    for block in blocks(page, "", "sh"):
-        for line in block.splitlines():
-            if re.match(r"(\.venv/bin/)?herijk ", line):
-                yield shlex.split(line, comments=True)[1:]
+    """The lines of the blocks of a page that are meant to run, each split as a shell does."""
+    lines = [line for block in blocks(page, "sh") for line in block.splitlines()]
+    return [shlex.split(line, comments=True) for line in lines]
+
+
+def herijk_lines(page):
+    """What these lines tell `herijk` to do."""
+    return [words for name, *words in shell_lines(page) if name in HERIJK]
 
 
 def command_of(words):
@@ -45,10 +58,7 @@ def command_of(words):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_every_call_has_its_command_and_options(page):
-    """A call in a block is parsed as the command would; one in a sentence may leave things out."""
-    for words in shell_lines(page):
-        command, left = command_of(words)
-        command.make_context(command.name, left)
+    """A call in a sentence may leave things out; one in a block is run below."""
     for call in CALL.findall(read(page)):
         command, left = command_of(re.split(r"[\s|\[\]]+", call))
         assert command.name in {*call.split(), "methods"}, (page, call)
@@ -57,44 +67,91 @@ def test_every_call_has_its_command_and_options(page):
 
 
 @pytest.fixture
-def reader(built, monkeypatch, tmp_path):
-    """The folder of a reader who did what the pages say until here."""
-    for folder in ("data", "demo/data"):
-        (tmp_path / folder).parent.mkdir(exist_ok=True)
-        (tmp_path / folder).symlink_to(built.data)
+def reader(demo, monkeypatch, tmp_path):
+    """The folder of a reader who made the demo, also as `data`, where this reader may publish."""
+    shutil.copytree(demo / "data", tmp_path / "data")
+    (tmp_path / "demo").mkdir()
+    (tmp_path / "demo" / "data").symlink_to(tmp_path / "data")
     (tmp_path / "tests").symlink_to(ROOT / "tests")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
-def with_what_is_there(code, built):
-    """Tows and the method of the fixture in place of those of the reader's demo."""
-    some = iter(built.table("tows")["tow_id"])
-    code = re.sub(r"(?<=[\"'])20\d\d-\d{3}(?=[\"'])", lambda _: next(some), code)
-    return re.sub(r"\brebased(?=[\"']|\.parquet)", METHODS[1], code)
+@pytest.fixture
+def type_in(herijk):
+    """Runs the lines of a page in their order, all of which must end well; gives what they print.
+
+    `check` also ends well with 1: it found what the reader has to correct, as in the example of a
+    new archive.
+    """
+
+    def run(page):
+        printed = []
+        with in_one_process():
+            for words in herijk_lines(page):
+                status, out, err = herijk(*words)
+                assert status == 0 or (words[0], status) == ("check", 1), (words, err)
+                printed.append(out)
+        return " ".join(" ".join(printed).split())
+
+    return run
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if herijk_lines(page) and page != START])
+def test_lines_run(page, reader, type_in):
+    """A section that a page describes is printed, or can be where the page says "if any"."""
+    printed = type_in(page)
+    table = SECTIONS.search(read(page) + "\n\n")[0]
+    titles = dict(re.findall(r"^\| ([^|]+?) \| (.+) \|$", table, re.MULTILINE)[2:])
+    known = {speaker(language)(title) for language in LANGUAGES for title, _ in STEPS.values()}
+    for title, described in titles.items():
+        assert title in printed or title in known
+        assert title in printed or described.startswith(IF_ANY)
+
+
+def test_lines_run_in_an_empty_folder(type_in, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert type_in(START)
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")])
-def test_code_runs(page, reader, built):
-    code = "\n".join(blocks(page, "python"))
-    code = with_what_is_there(code, built)
-    (reader / "snippets.py").write_text(code, "utf-8")
+def test_code_runs(page, reader):
+    (reader / "snippets.py").write_text("\n".join(blocks(page, "python")), "utf-8")
     assert runpy.run_path(str(reader / "snippets.py"))
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "sql")])
-def test_queries_run(page, reader, built):
+QUERIES = [
+    query
+    for page in PAGES
+    for block in blocks(page, "sql")
+    for query in block.split(";\n")
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_a_query_finds_what_the_comments_above_it_promise(query, reader):
+    """Each finds something in every column."""
     with duckdb.connect("data/warehouse.duckdb", read_only=True) as db:
-        for query in blocks(page, "sql"):
-            assert db.sql(with_what_is_there(query, built)).columns, query
+        found = db.sql(query).pl()
+    assert found.height > 0
+    assert [column.name for column in found if column.null_count() == found.height] == []
+    for name, promised in re.findall(r"^-- (\w+): (.+)$", query, re.MULTILINE):
+        if name == "rows":
+            assert found.height == int(promised)
+        else:
+            assert set(found[name].cast(str)) == set(promised.split(", "))
 
 
 def test_no_block_is_left_out_in_silence():
     """Diagrams, and settings of systemd and Kubernetes, are for programs that are not here."""
-    tried, left_out = {"", "sh", "python", "sql", "toml", "text"}, {"mermaid", "ini", "yaml"}
+    tried = {"sh", "python", "sql", "toml"}
+    left_out = {"text", "mermaid", "ini", "yaml", "{toctree}", "{eval-rst}"}
     assert {language for page in PAGES for language, _ in BLOCK.findall(read(page))} <= (
         tried | left_out
     )
+    for page in PAGES:
+        others = {name for name, *_ in shell_lines(page)} - {*HERIJK}
+        assert others <= {IN_CI.get(page)}, page
     targets = set(re.findall(r"^([\w-]+):", read("Makefile"), re.MULTILINE))
     calls = r"^make (?:[A-Z]+=\S+ )*([a-z-]+)|`make (?:[A-Z]+=\S+ )*([a-z-]+)"
     for page in PAGES:

@@ -125,8 +125,8 @@ def _fitted(speed, cw, v0):
 
 
 def newest_lines(observed):
-    """Rows of the table `type_lines` of the newest tows, without those within a class."""
-    return type_lines(observed)[0].filter(within="all", tows="newest")
+    """Rows of the table `type_lines` of the newest tows."""
+    return type_lines(observed)[0].filter(tows="newest")
 
 
 def consistency_tables(curves, tows, boats, run_points):

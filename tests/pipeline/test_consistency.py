@@ -121,6 +121,10 @@ def test_r2_and_spread_are_those_of_the_line_as_drawn():
     assert row["residual_sd_ratio"] == pytest.approx(spread, rel=1e-9)
 
 
+MEN = {"declared_speed_m_s": "men"}
+"""The crews of `fleet`, in which a line against tow speed is drawn."""
+
+
 def test_intervals_of_slopes_cover_the_truth():
     lines = newest_lines(observe(*fleet(13, TRIALS_OF_LINES, boats=8, b_cv=0.05, height_sd=0.02)))
     for quantity, explaining, truth in (
@@ -128,7 +132,9 @@ def test_intervals_of_slopes_cover_the_truth():
         ("b_m_s", "weight_kg", 0.0),
         ("b_m_s", "declared_speed_m_s", 0.0),
     ):
-        row = lines.filter((pl.col("quantity") == quantity) & (pl.col("explaining") == explaining))
+        row = lines.filter(
+            quantity=quantity, explaining=explaining, within=MEN.get(explaining, "all")
+        )
         inside = ((row["slope_lo"] <= truth) & (truth <= row["slope_hi"])).mean()
         assert within(inside, 0.95, TRIALS_OF_LINES)
 
@@ -166,6 +172,55 @@ def test_a_bend_that_follows_tow_speed_is_seen_and_none_is_not_claimed():
         ** (3 * (2.7 - pl.col("declared_speed_m_s")))
     )
     assert (speed_trend(observe(curves, tows, boats, points))["slope_hi"] < 0).all()
+
+
+def men_and_women(each, **differs):
+    """Equal hulls, rowed by so many crews of women at 2.1 to 2.3 m/s and of men at 2.5 to 2.7."""
+    speeds = np.concatenate([np.linspace(2.1, 2.3, each), np.linspace(2.5, 2.7, each)])
+    weights = np.concatenate([np.linspace(895, 905, each), np.linspace(1095, 1105, each)])
+    tables = fleet(19, boats=2 * each, speeds_m_s=speeds, weights_kg=weights, **differs)
+    return of_two_classes(tables)
+
+
+def test_no_line_against_tow_speed_holds_men_and_women():
+    lines, places = type_lines(observe(*men_and_women(8, noise=0.005)))
+    lines = lines.filter(explaining="declared_speed_m_s")
+    assert lines.height > 0
+    assert set(lines.select("within", "n").unique().rows()) == {("men", 8), ("women", 8)}
+    heights = lines.filter(quantity="cw_standard_kg_m")
+    assert (heights["slope_lo"] < 0).all()
+    assert (heights["slope_hi"] > 0).all()
+    places = places.filter(explaining="declared_speed_m_s")
+    spans = places.group_by("crew_class").agg(lo=pl.col("x").min(), hi=pl.col("x").max())
+    assert sorted(spans.rows()) == [("D", 2.1, 2.3), ("H", 2.5, 2.7)]
+
+
+def test_a_bend_that_women_have_is_no_trend_with_tow_speed():
+    curves, tows, boats, points = men_and_women(8, noise=0.002)
+    women = pl.col("tow_id").is_in(curves.filter(crew_class="D")["tow_id"].to_list())
+    v2 = pl.col("speed_m_s") ** 2
+    another_b = (1 - v2 / 4.6**2) / (1 - v2 / 3.9**2)
+    points = points.with_columns(pl.col("cw_kg_m") * pl.when(women).then(another_b).otherwise(1.0))
+    found = speed_trend(observe(curves, tows, boats, points))
+    assert found["slope"].count() == found.height > 0
+    assert (found["slope_lo"] < 0).all()
+    assert (found["slope_hi"] > 0).all()
+
+
+@pytest.mark.parametrize("boats", [4, 5])
+def test_no_slope_is_drawn_through_fewer_than_five_boats(boats):
+    """Also not through many tows of few boats."""
+    tables = fleet(
+        21, boats=boats, seasons=(2014, 2016, 2018), speeds_m_s=[2.3, *[2.5] * (boats - 1)]
+    )
+    observed = observe(*tables)
+    lines, places = type_lines(observed)
+    of_men = lines.filter(pl.col("within") != "women", pl.col("quantity") != "ln_cw_standard")
+    on_length = pl.col("explaining") == "waterline_length_m"  # equal in all
+    drawn = of_men.filter(~on_length)["slope"].is_not_null()
+    assert drawn.to_list() == [boats == 5] * len(drawn)
+    assert (places.height > 0) == (boats == 5)
+    assert speed_trend(observed)["slope"].is_not_null().to_list() == [boats == 5] * 2
 
 
 def raced(tables, tow_id, speed_m_s):

@@ -12,6 +12,7 @@ from typing import Final, TypeAlias
 
 import duckdb
 
+from pipeline.consistency.lines import ALL_CREWS
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.row import Row
@@ -284,8 +285,8 @@ def differences(first: Statistics, *others: Statistics) -> list[str]:
     One that follows weight and one in which no trend is seen do not differ by that alone.
 
     Returns:
-        `quantity explaining` of lines, `speed_trend`, the names of eras, `bends`; of one type,
-        nothing.
+        `quantity explaining` of lines, with the class that a line is of; `speed_trend`, the names
+        of eras, `bends`; of one type, nothing.
     """
     found = []
     for second in others:
@@ -299,18 +300,24 @@ def differences(first: Statistics, *others: Statistics) -> list[str]:
 def _intervals(under: Statistics) -> dict[str, tuple[float, float, float]]:
     """Every slope and shift with its interval; shifts as logarithms."""
     slopes = [
-        *((f"{line['quantity']} {line['explaining']}", line) for line in under["lines"]),
+        *((_name_line(line), line) for line in under["lines"]),
         *(("speed_trend", line) for line in under["speed_trend"]),
     ]
     return {
         name: (line["slope"], line["slope_lo"], line["slope_hi"])
         for name, line in slopes
-        if not line["reason"] and line.get("within", "all") == "all"
+        if not line["reason"]
     } | {
         era["era"]: (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
         for era in under["eras"]
         if not era["reason"]
     }
+
+
+def _name_line(line: Row) -> str:
+    """Name a line by its quantity, what explains it and, where it is of one, its class."""
+    name = f"{line['quantity']} {line['explaining']}"
+    return name if line["within"] == ALL_CREWS else f"{name} {line['within']}"
 
 
 def apart(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
@@ -331,7 +338,7 @@ _FOLLOWS = "CASE WHEN slope IS NOT NULL THEN slope_lo > 0 OR slope_hi < 0 END AS
 """Whether the interval of a slope leaves out zero."""
 
 _LINES = f"""
-SELECT * EXCLUDE tows, {_FOLLOWS} FROM type_lines
+SELECT *, {_FOLLOWS} FROM type_lines
 WHERE method = ? AND boat_type = ? AND tows = 'newest'
 ORDER BY quantity, explaining, within
 """  # noqa: S608
@@ -373,7 +380,6 @@ WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
 _STATISTICS: Final = {
     "lines": _LINES,
     "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ?",
-    "tows_outside": _NAMED.format("compared_tows", "outside", "abs(deviation_sd) DESC"),
     "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
     "bends": "SELECT * FROM type_homogeneity WHERE method = ? AND boat_type = ?",
     "speed_trend": _TREND,
