@@ -22,7 +22,7 @@ HEADER_WITHIN: Final = 30
 DELIMITERS: Final = (";", "\t", ",", "|")
 LONGEST_QUOTE: Final = 40
 """Letters of a cell that a sentence quotes."""
-_UNIT: Final = re.compile(r"(.*?)[ _]*[\[(]([^\[\]()]*)[\])](.*)")
+_UNIT: Final = re.compile(r"(.*?)[\[(]([^\[\]()]*)[\])](.*)", re.DOTALL)
 
 
 class Scale(NamedTuple):
@@ -100,11 +100,12 @@ class Column:
 
 @dataclass(frozen=True)
 class FoundColumn:
-    """Where a column is in a file, its header as written, and what brings it to SI."""
+    """Where a column is in a file, its header and unit as written, and what brings it to SI."""
 
     index: int
     header: str
     scale: Scale
+    unit: str = ""
 
     def to_si(self, number: pl.Expr) -> pl.Expr:
         """A number of this column in its SI unit."""
@@ -226,7 +227,8 @@ def find_columns(
         if len(free) != 1:
             raise _not_one(header[index], unit, namesakes, fitting, free, found, line)
         scale = free[0].scale(unit) or Scale()
-        found[free[0].key] = FoundColumn(index, header[index].strip(), scale)
+        told = free[0].unit if unit is None else unit
+        found[free[0].key] = FoundColumn(index, header[index].strip(), scale, told)
     wanted = dict.fromkeys(column for named in by_name.values() for column in named)
     missing = [column for column in wanted if column.required and column.key not in found]
     if missing:

@@ -24,7 +24,9 @@ from warehouse.store.files import file_sha256, written_beside
 
 SAMPLES: Final = "samples"
 TEXT_SUFFIXES: Final = (".csv", ".txt")
-LIST_SUFFIXES: Final = (*TEXT_SUFFIXES, ".xlsx", ".xlsm", ".xls", ".ods")
+REFUSED_SUFFIXES: Final = (".xls", ".ods")
+"""Of lists that are told how to be saved."""
+LIST_SUFFIXES: Final = (*TEXT_SUFFIXES, ".xlsx", ".xlsm", *REFUSED_SUFFIXES)
 COMPRESSION: Final = {".gz": "gzip", ".zst": "zstd"}
 SAMPLE_SUFFIXES: Final = (
     *(text + packed for packed in COMPRESSION for text in TEXT_SUFFIXES),

@@ -15,6 +15,9 @@ from pipeline.tables.lake import (
 )
 from warehouse.archive.columns import Column
 
+REMARK: Final = "remark"
+"""A column that is not read: whatever is in it."""
+
 
 @dataclass(frozen=True)
 class ListKind:
@@ -84,6 +87,7 @@ BOATS: Final = ListKind(
         Column("crew_class", "klasse", required=False),
     ),
     about="fsn_no",
+    spare=frozenset({"ht_no", "boat_type"}),
 )
 TOWS: Final = ListKind(
     "sleeplijsten",
@@ -110,7 +114,7 @@ TOWS: Final = ListKind(
         _length("freeboard_lowest_m", "vrijboord laagst"),
         _length("freeboard_bow_m", "vrijboord boeg"),
         _length("freeboard_stern_m", "vrijboord achter"),
-        Column("remark", "opmerking", required=False),
+        Column(REMARK, "opmerking", required=False),
     ),
     about="tow_id",
     spare=frozenset(

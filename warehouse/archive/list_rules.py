@@ -107,6 +107,7 @@ def read_windows(
         runs: `tow_id` and `run` of those that are not set aside.
     """
     rows = read_lists(files, WINDOWS, profiles)
+    rows.drop_copies(per_file=True)
     _drop_out_of_order(rows)
     text = say("sleep_id {tow} is not in the tow list of that year.")
     tow, run = pl.col("tow_id"), pl.col("run")
@@ -155,6 +156,7 @@ def read_force_checks(files: Iterable[ArchiveFile], profiles: Profiles) -> _Read
     The sd holds the scatter of that day's readings and the weight itself.
     """
     rows = read_lists(files, FORCE_CHECKS, profiles)
+    rows.drop_copies(per_file=True)
     rows.drop_other_years("day")
     ratio = pl.col("reading_n") / (pl.col("weight_kg") * GRAVITY_M_S2)
     own_sd = pl.when(pl.len() >= FEWEST_READINGS).then(ratio.std()).otherwise(ONE_READING_SD)
@@ -166,6 +168,7 @@ def read_force_checks(files: Iterable[ArchiveFile], profiles: Profiles) -> _Read
 def read_lamps(files: Iterable[ArchiveFile], profiles: Profiles, tow_ids: pl.Series) -> _Read:
     """How long a lamp burned in that run of each tow in which it burned longest: `burned_s`."""
     rows = read_lists(files, LAMPS, profiles)
+    rows.drop_copies()
     text, tow = say("sleep_id {tow} is not in the tow list of that year."), pl.col("tow_id")
     rows.drop(~tow.is_in(tow_ids.implode()), text, tow=tow)
     _drop_out_of_order(rows)
@@ -196,7 +199,8 @@ def read_races(root: Path, profiles: Profiles | None = None) -> _Read:
     }
     rows.drop(~speed.is_between(low, high), text, **facts, low=low, high=high)
     of_crew = ("race", "race_date", "fsn_no", "rowers", "crew_class")
-    rows.drop_repeated(of_crew, say("{of} is listed twice, and the rows differ."))
+    text = say("{of} is also on line {line} of {other}, and the rows differ: neither counts.")
+    rows.drop_repeated(of_crew, text)
     return rows.as_table(RACES.table), rows.faults
 
 
@@ -207,6 +211,7 @@ def read_published_registers(root: Path, profiles: Profiles | None = None) -> _R
     A / (1 - (v/B)^2), however the numbers were rounded; else one of them is mistyped.
     """
     rows = read_lists(files_of(root), REGISTERS, profiles or read_profiles(root))
+    rows.drop_copies()
     has_curve = ~pl.col("cw_kg_m").is_between(*NEVER_TOWED_CW).fill_null(value=False)
     rows.frame = rows.frame.with_columns(has_valid_curve=has_curve)
     for key in _CURVE:

@@ -3,11 +3,7 @@
 file -> tables of text cells -> columns by their header -> values by the declared types
 """
 
-import datetime as dt
-import io
 import re
-import zipfile
-import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
@@ -31,15 +27,24 @@ from warehouse.archive.columns import (
     split_line,
     unknown_headers,
 )
-from warehouse.archive.faults import fault_from
-from warehouse.archive.files import TEXT_SUFFIXES, ArchiveFile, outside_archive, read_bytes
-from warehouse.archive.kinds import ListKind
+from warehouse.archive.faults import Fault, at_line, fault_from
+from warehouse.archive.files import (
+    REFUSED_SUFFIXES,
+    TEXT_SUFFIXES,
+    ArchiveFile,
+    outside_archive,
+    read_bytes,
+)
+from warehouse.archive.kinds import REMARK, ListKind
 from warehouse.archive.profile import Profiles
 from warehouse.archive.rows import Rows, declared_column, no_rows
+from warehouse.archive.workbooks import Sheet, read_workbook
 
 LIST_MAX_BYTES: Final = 20_000_000
-MOST_ROWS: Final = 100_000
-"""Of a sheet: a reader makes room for all that it reaches to."""
+MAX_CELL_CHARACTERS: Final = 1_000
+"""A longer cell is a fault before any pattern is tried on it."""
+MAX_QUOTED_LINE: Final = 100_000
+"""Characters of a line of which quotation marks are understood."""
 NUMBER: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+)?$"
 """An ordinary number with a decimal comma or point; no marks between thousands."""
 _NOTHING: Final = ("", "-", "n.v.t.", "onbekend", "?")
@@ -50,9 +55,9 @@ _RUN: Final = r"^[bB]?([1-9][0-9]?)$"
 _TIME: Final = r"^([0-9]{1,2}):([0-5]?[0-9]):([0-5]?[0-9])$"
 _ISO_DATE: Final = r"^([0-9]{4}-[0-9]{1,2}-[0-9]{1,2})$"
 _DUTCH_DATE: Final = r"^([0-9]{1,2}-[0-9]{1,2}-[0-9]{4})$"
-_OLD_EXCEL: Final = bytes.fromhex("d0cf11e0a1b11ae1")
-"""How a compound file begins: a workbook of Excel 97 to 2003, or a later one with a password."""
-_LAST_CELL: Final = re.compile(rb'<dimension ref="[A-Z]+[0-9]+:([A-Z]+)([0-9]+)"')
+_SPREADSHEET_ERROR: Final = r"^#(N/[AB]|[A-Z]+(/0)?[!?])$"
+"""As #N/A or #REF!, and as Dutch spreadsheets say it: #N/B, #VERW!"""
+_FORMULA: Final = r"^="
 
 
 class Table(NamedTuple):
@@ -62,18 +67,20 @@ class Table(NamedTuple):
         header: the cells of its header.
         line: the header's line.
         rows: each with its line, its cells, and whether a quotation mark in it is open.
+        sheet: the sheet's name, where a workbook has several; else empty.
     """
 
     header: Sequence[str]
     line: int
     rows: Sequence[tuple[int, Sequence[str], bool]]
+    sheet: str = ""
 
 
 def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles) -> Rows:
-    """The rows of all lists of a kind that can be read, and a fault for every other row.
+    """Read all lists of a kind; every row that cannot be used leaves a fault.
 
     A list with a column that nobody knows is not read: it can be a misspelt one, and left out in
-    silence would change numbers.
+    silence would change numbers. A list that cannot be read costs no other.
     """
     found = Rows(kind, no_rows(kind), listed=no_rows(kind))
     columns = profiles.named(kind.columns)
@@ -81,33 +88,82 @@ def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles)
         if file.kind != kind:
             continue
         try:
-            for table in read_tables(file, columns):
+            tables, notes = read_tables(file, columns)
+        except BaseException as error:
+            tables, notes = [], [fault_from(error, file.path)]
+            found.unread.add(file.path)
+        found.faults += notes
+        for table in tables:
+            try:
                 places = find_columns(table.header, columns, table.line)
                 _check_known(table, columns, places, profiles)
                 found.add(_typed(table, file, kind, places, profiles.meaning))
-        except BaseException as error:
-            found.faults.append(fault_from(error, file.path))
-            found.unread.add(file.path)
+            except BaseException as error:
+                found.faults.append(fault_from(error, file.path))
+                found.unread.add(file.path)
     return found
 
 
 # From bytes to tables of text
 
 
-def read_tables(file: ArchiveFile, columns: Sequence[Column]) -> list[Table]:
-    """The tables in a file: of a workbook the sheets that name at least half of the columns.
+def read_tables(file: ArchiveFile, columns: Sequence[Column]) -> tuple[list[Table], list[Fault]]:
+    """Return the tables in a file, and what of it is not read.
+
+    Of a workbook these are the visible sheets that name at least half as many columns as the best.
 
     Raises:
         DefectiveInputError: the file cannot be read.
     """
     if not file.inside:
         raise outside_archive(file.path)
+    if file.full_path.suffix.lower() in REFUSED_SUFFIXES:
+        text = say("{suffix} files are not read: save the list as .xlsx or as CSV.")
+        raise DefectiveInputError("unreadable_file", say(text, suffix=file.full_path.suffix))
     data = read_bytes(file.full_path, LIST_MAX_BYTES)
     if _is_text(file):
-        return [_table_of_text(decode(data), columns)]
-    sheets = [_table_of_cells(rows, columns) for rows in _sheets(data) if rows]
-    scores = [score_of(sheet.header, columns) for sheet in sheets]
-    return [s for s, score in zip(sheets, scores, strict=True) if 2 * score >= max(*scores, 1)]
+        return [_table_of_text(decode(data), columns)], []
+    return _tables_of_workbook(file.path, data, columns)
+
+
+def _tables_of_workbook(
+    path: str, data: bytes, columns: Sequence[Column]
+) -> tuple[list[Table], list[Fault]]:
+    book = read_workbook(data)
+    filled = [sheet for sheet in book.sheets if sheet.rows]
+    if not filled:
+        said = say("No visible sheet of the workbook holds anything.")
+        raise DefectiveInputError("unreadable_file", said)
+    tables = [_table_of_sheet(sheet, columns) for sheet in filled]
+    scores = [score_of(table.header, columns) for table in tables]
+    enough = max(scores) / 2
+    kept = [table for table, score in zip(tables, scores, strict=True) if score >= enough]
+    kept = kept if max(scores) else kept[:1]
+    named = {table.sheet for table in kept}
+    notes = []
+    for table, score in zip(tables, scores, strict=True):
+        if 1 < score < enough:
+            text = say("sheet '{sheet}' is not read: its header is not that of this list.")
+            notes.append(_not_read(path, table.line, say(text, sheet=table.sheet)))
+    for sheet in book.hidden:
+        if sheet.rows and score_of(_table_of_sheet(sheet, columns).header, columns) >= enough:
+            text = say("sheet '{sheet}' is hidden, and is not read. Show it, or remove it.")
+            notes.append(_not_read(path, 1, say(text, sheet=sheet.name)))
+    for sheet in filled:
+        if sheet.name in named and sheet.hidden_lines:
+            text = say(
+                "{number} rows of sheet '{sheet}' are hidden, and are not read. Show them, or "
+                "remove them."
+            )
+            said = say(text, number=len(sheet.hidden_lines), sheet=sheet.name)
+            notes.append(_not_read(path, sheet.hidden_lines[0], said))
+    if len(kept) == 1:
+        kept = [kept[0]._replace(sheet="")]
+    return kept, notes
+
+
+def _not_read(path: str, line: int, said: Sentence) -> Fault:
+    return Fault(path, None, line, "hidden", at_line(line, said), "row")
 
 
 def _is_text(file: ArchiveFile) -> bool:
@@ -115,87 +171,38 @@ def _is_text(file: ArchiveFile) -> bool:
 
 
 def _table_of_text(text: str, columns: Sequence[Column]) -> Table:
-    """Reads line by line: a quotation mark left open would swallow the rows below."""
+    """Read line by line: a quotation mark left open would swallow the rows below."""
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     place, delimiter = find_header(lines, columns)
     header = split_line(lines[place], delimiter)
     rows: list[tuple[int, Sequence[str], bool]] = []
     for number, line in enumerate(lines[place + 1 :], start=place + 2):
         try:
-            rows.append((number, split_line(line, delimiter), False))
+            is_plain = len(line) > MAX_QUOTED_LINE
+            cells = line.split(delimiter) if is_plain else split_line(line, delimiter)
+            rows.append((number, cells, False))
         except DefectiveInputError:
             rows.append((number, line.split(delimiter), True))
     return Table(header, place + 1, _filled(rows))
 
 
-def _table_of_cells(rows: Sequence[Sequence[str]], columns: Sequence[Column]) -> Table:
-    lines = ["\t".join(" ".join(cell.split()) for cell in row) for row in rows]
+def _table_of_sheet(sheet: Sheet, columns: Sequence[Column]) -> Table:
+    lines = ["\t".join(" ".join(cell.split()) for cell in cells) for _, cells in sheet.rows]
     place, _ = find_header(lines, columns)
-    below = enumerate(rows[place + 1 :], start=place + 2)
-    return Table(rows[place], place + 1, _filled((number, row, False) for number, row in below))
+    line, header = sheet.rows[place]
+    rows = [(number, cells, False) for number, cells in sheet.rows[place + 1 :]]
+    return Table(header, line, _filled(rows), sheet.name)
 
 
 def _filled(
     rows: Iterable[tuple[int, Sequence[str], bool]],
 ) -> list[tuple[int, Sequence[str], bool]]:
-    """The rows that hold something, but for remarks behind a `#`."""
-    return [row for row in rows if "".join(row[1]).strip() and not row[1][0].startswith("#")]
+    """Return the rows that hold something, without remarks behind a `#`."""
+    return [row for row in rows if "".join(row[1]).strip() and not _is_remark(row[1][0].strip())]
 
 
-def _sheets(data: bytes) -> list[list[list[str]]]:
-    """The cells of the sheets of a workbook, as text."""
-    import python_calamine  # noqa: PLC0415 - only where there is a spreadsheet
-
-    try:
-        _check_last_cells(data)
-        book = python_calamine.load_workbook(io.BytesIO(data))
-        sheets = [book.get_sheet_by_name(name) for name in book.sheet_names]
-        for sheet in sheets:
-            _check_height(sheet.total_height)
-        grids = [sheet.to_python(skip_empty_area=False) for sheet in sheets]
-    except (python_calamine.CalamineError, zipfile.error, zlib.error, OSError, ValueError) as error:
-        said = say("The file is not a spreadsheet that can be read: {error}.", error=error)
-        raise DefectiveInputError("unreadable_file", said) from error
-    return [[[_as_text(cell) for cell in row] for row in grid] for grid in grids]
-
-
-def _check_last_cells(data: bytes) -> None:
-    """Refuse an old workbook, and one that says itself that a sheet reaches too far.
-
-    A reader makes room for every cell above the last one. An .xls file is refused unread: one whose
-    sector table points at itself makes a reader ask for gigabytes.
-    """
-    if data.startswith(_OLD_EXCEL):
-        said = say(
-            "This is an old Excel workbook (.xls), or one with a password: save it as .xlsx, "
-            "without a password."
-        )
-        raise DefectiveInputError("unreadable_file", said)
-    with zipfile.ZipFile(io.BytesIO(data)) as book:
-        for name in book.namelist():
-            if name.startswith("xl/worksheets/sheet"):
-                with book.open(name) as sheet:
-                    match = _LAST_CELL.search(sheet.read(2000))
-                if match:
-                    _check_height(int(match[2]) * (1 if len(match[1]) < 3 else MOST_ROWS))
-
-
-def _check_height(rows: int) -> None:
-    if rows > MOST_ROWS:
-        text = say(
-            "A sheet of the workbook reaches beyond row {most}. Delete what is far below or beside "
-            "the table, or copy it alone into a new workbook."
-        )
-        raise DefectiveInputError("too_large", say(text, most=MOST_ROWS))
-
-
-def _as_text(value: object) -> str:
-    """A cell of a spreadsheet as it would be in a table of text."""
-    if isinstance(value, bool):
-        return "ja" if value else "nee"
-    if isinstance(value, float):
-        return f"{value:.0f}" if value.is_integer() and abs(value) < 1e15 else repr(value)
-    return value.date().isoformat() if isinstance(value, dt.datetime) else str(value)
+def _is_remark(cell: str) -> bool:
+    return cell.startswith("#") and not re.match(_SPREADSHEET_ERROR, cell[:20])
 
 
 # From a table of text to typed rows
@@ -228,38 +235,49 @@ def _typed(
     places: Mapping[str, FoundColumn],
     words: Mapping[str, str],
 ) -> Rows:
-    """The values of a table, by the types that its kind of list declares.
+    """Return the values of a table, by the types that its kind of list declares.
 
     Every cell that is wrong leaves a fault; a row is set aside unless the kind can spare the cell.
     """
-    frame = _cells(table, places, words, [column.key for column in kind.columns])
-    about = [
-        _value(kind, column.key, places) for column in kind.columns if column.key == kind.about
-    ]
+    keys = [column.key for column in kind.columns]
+    frame = _cells(table, places, words, keys)
+    needed = [column.key for column in kind.columns if _is_needed(kind, column)]
+    is_fragment = pl.sum_horizontal(pl.col(needed).is_null()) * 2 > len(needed)
+    about = _value(kind, kind.about, places) if kind.about else pl.lit(None, pl.String)
     rows = Rows(
         kind,
         frame.with_columns(
             path=pl.lit(file.path),
+            sheet=pl.lit(table.sheet),
             season=pl.lit(file.season, pl.Int32),
-            about=about[0] if about else pl.lit(None, pl.String),
-            cells=pl.struct(column.key for column in kind.columns),
+            about=pl.when(~is_fragment).then(about),
+            cells=pl.struct(keys),
         ),
     )
-    every, fields, width = rows.frame, pl.col("fields"), len(table.header)
+    every, width = rows.frame.filter(~is_fragment), len(table.header)
     rows.drop(pl.col("is_open"), say("a quotation mark is not closed, or in mid-field."))
+    text = say("column '{column}' has more than {most} characters in this row.")
+    rows.drop(pl.col("too_long") != "", text, column=pl.col("too_long"), most=MAX_CELL_CHARACTERS)
     text = say("the row has {fields} fields where the header has {width}.")
-    rows.drop(fields != width, text, fields=fields, width=width)
+    rows.drop(pl.col("fields") != width, text, fields=pl.col("fields"), width=width)
+    text = say(
+        "there is only {cells} in this row. Remove it if it is a total or a heading; '#' before it "
+        "will do."
+    )
+    filled = pl.concat_str(keys, separator="', '", ignore_nulls=True)
+    rows.drop(is_fragment, text, lost="row", cells=pl.format("'{}'", filled))
     mark = _decimal_mark(rows.frame, places) if _is_text(file) else ""
-    is_lost, values = _note_empty(rows, kind, places), {}
+    is_lost, values = _note_empty(rows, needed, places), {}
     for column in kind.columns:
         value = _value(kind, column.key, places)
+        is_told = pl.lit(value=False)
         for is_wrong, said, code, facts in _checks(kind, column, places, value, mark):
-            wrong = is_wrong.fill_null(value=False)
+            wrong = is_wrong.fill_null(value=False) & ~is_told
+            is_told |= wrong
             is_spare = column.key in kind.spare
             rows.note(wrong, said, code, "cell" if is_spare else None, **facts)
             is_lost = is_lost if is_spare else is_lost | wrong
-            value = pl.when(~wrong).then(value)
-        values[column.key] = value
+        values[column.key] = pl.when(~is_told).then(value)
     schema = no_rows(kind).schema
     rows.frame, rows.listed = (
         frame.with_columns(**values).select(schema.names()).cast(schema)
@@ -268,34 +286,41 @@ def _typed(
     return rows
 
 
+def _is_needed(kind: ListKind, column: Column) -> bool:
+    """Return whether every row must have a cell of this column."""
+    declared = declared_column(kind, column.key)
+    return column.required and (declared is None or not declared.nullable)
+
+
 def _cells(
     table: Table, places: Mapping[str, FoundColumn], words: Mapping[str, str], keys: Sequence[str]
 ) -> pl.DataFrame:
-    """What is written in each column, trimmed and in words that are known; null for nothing.
+    """Return what is written in each column, trimmed and in words that are known.
 
-    With the `line` of each row, whether a quotation mark in it `is_open`, and how many `fields` it
-    has, blank ones behind the last column aside.
+    An empty cell is null. With the `line` of each row, whether a quotation mark in it `is_open`,
+    the header of a cell that is `too_long`, and how many `fields` it has, blank ones behind the
+    last column aside.
     """
-
-    def meant(cell: str) -> str | None:
-        meaning = words.get(fold_word(cell), cell.strip())
-        return None if meaning.casefold() in _NOTHING else meaning
-
     width = len(table.header)
     found: dict[str, list[object]] = {
-        "line": [line for line, _, _ in table.rows],
-        "is_open": [is_open for _, _, is_open in table.rows],
-        "fields": [
-            len(row) if any(map(str.strip, row[width:])) else min(len(row), width)
-            for _, row, _ in table.rows
-        ],
+        name: [] for name in ("line", "is_open", "fields", "too_long", *keys)
     }
-    for key in keys:
-        index = places[key].index if key in places else width
-        found[key] = [
-            meant(row[index]) if index < min(len(row), width) else None for _, row, _ in table.rows
-        ]
-    schema = {"line": pl.Int64, "is_open": pl.Boolean, "fields": pl.Int64}
+    for line, row, is_open in table.rows:
+        has_more = any(map(str.strip, row[width:]))
+        too_long = ""
+        for key in keys:
+            index = places[key].index if key in places else width
+            cell = row[index].strip() if index < min(len(row), width) else ""
+            if len(cell) > MAX_CELL_CHARACTERS:
+                too_long = places[key].header
+                cell = ""
+            meaning = words.get(fold_word(cell), cell)
+            found[key].append(None if meaning.casefold() in _NOTHING else meaning)
+        found["line"].append(line)
+        found["is_open"].append(is_open)
+        found["fields"].append(len(row) if has_more else min(len(row), width))
+        found["too_long"].append(too_long)
+    schema = {"line": pl.Int64, "is_open": pl.Boolean, "fields": pl.Int64, "too_long": pl.String}
     return pl.DataFrame(found, schema | dict.fromkeys(keys, pl.String))
 
 
@@ -305,14 +330,8 @@ def _decimal_mark(cells: pl.DataFrame, places: Mapping[str, FoundColumn]) -> str
     return "," if any(has_comma.row(0)) else "."
 
 
-def _note_empty(rows: Rows, kind: ListKind, places: Mapping[str, FoundColumn]) -> pl.Expr:
-    """Says of rows which cells are empty that may not be; returns which rows these are."""
-    needed = [
-        column.key
-        for column in kind.columns
-        if column.required
-        and ((declared := declared_column(kind, column.key)) is None or not declared.nullable)
-    ]
+def _note_empty(rows: Rows, needed: list[str], places: Mapping[str, FoundColumn]) -> pl.Expr:
+    """Note which needed cells of each row are empty; return which rows these are."""
     names = [pl.when(pl.col(key).is_null()).then(pl.lit(places[key].header)) for key in needed]
     empty = pl.concat_str(names, separator="', '", ignore_nulls=True)
     is_empty = pl.any_horizontal(pl.col(needed).is_null())
@@ -331,10 +350,21 @@ def _checks(
     text, declared = pl.col(column.key), declared_column(kind, column.key)
     place = places.get(column.key, FoundColumn(-1, column.header, Scale()))
     named: dict[str, Any] = {"column": place.header, "cell": text}
-    if declared is None:
+    if column.key == REMARK:
         return []
+    error = say("column '{column}' is {cell}, an error of the spreadsheet: correct its formula.")
+    formula = say(
+        "column '{column}' is the formula {cell}, which was never calculated: open the list in a "
+        "spreadsheet program and save it there, or type the value."
+    )
+    checks: list[Check] = [
+        (text.str.contains(_SPREADSHEET_ERROR), error, None, named),
+        (text.str.contains(_FORMULA), formula, None, named),
+    ]
+    if declared is None:
+        return checks
     is_unread = text.is_not_null() & value.is_null()
-    checks: list[Check] = [(is_unread, _not_one(column.key, declared.dtype), None, named)]
+    checks.append((is_unread, _not_one(column.key, declared.dtype), None, named))
     if declared.dtype.is_float() and mark:
         said = say(
             "column '{column}' is {cell}, which can be a thousand or little more than one: other "
@@ -431,6 +461,8 @@ def _date(text: pl.Expr) -> pl.Expr:
 
 def _number(text: pl.Expr, place: FoundColumn | None, is_whole: bool) -> pl.Expr:
     """A number in the SI unit of its column."""
+    if place and place.unit:  # 3% under [%]: the unit may be repeated behind the number
+        text = text.str.replace(rf"(?i)\s*{re.escape(place.unit)}$", "")
     digits = pl.when(text.str.contains(NUMBER)).then(text.str.replace(",", ".", literal=True))
     number = digits.cast(pl.Float64, strict=False)
     number = place.to_si(number) if place else number

@@ -12,7 +12,7 @@ from pipeline.tables.frames import column_of, dtypes, limits
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.columns import shorten
 from warehouse.archive.faults import Fault, Lost, at_line
-from warehouse.archive.kinds import ListKind
+from warehouse.archive.kinds import REMARK, ListKind
 
 
 @dataclass
@@ -43,9 +43,16 @@ class Rows:
         self.faults += others.faults
         self.lost = others.lost | self.lost
 
-    def drop(self, is_wrong: pl.Expr, text: str, code: str | None = None, **facts: Any) -> None:
-        """Sets rows aside; the arguments are those of `note`."""
-        self.note(is_wrong, text, code, **facts)
+    def drop(
+        self,
+        is_wrong: pl.Expr,
+        text: str,
+        code: str | None = None,
+        lost: Lost | None = None,
+        **facts: Any,
+    ) -> None:
+        """Set rows aside; the arguments are those of `note`."""
+        self.note(is_wrong, text, code, lost, **facts)
         self.frame = self.frame.filter(~is_wrong.fill_null(value=False))
 
     def empty(self, key: str, is_wrong: pl.Expr, text: str, **facts: Any) -> None:
@@ -72,11 +79,14 @@ class Rows:
             facts: what is filled in: a value, or an expression of the rows.
         """
         of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
-        known = self.frame.select("path", "line", "about", _wrong=is_wrong, **of_rows)
+        known = self.frame.select("path", "sheet", "line", "about", _wrong=is_wrong, **of_rows)
         for row in known.filter("_wrong").iter_rows(named=True):
             filled = {name[1:]: row[name] for name in of_rows}
             short = {k: shorten(v) if isinstance(v, str) else v for k, v in filled.items()}
-            message = at_line(row["line"], say(text, **facts | short))
+            what = say(text, **facts | short)
+            if row["sheet"]:
+                what = say("sheet '{sheet}': {what}", sheet=row["sheet"], what=what)
+            message = at_line(row["line"], what)
             if lost == "cell":
                 message = say("{what} The cell counts as empty.", what=message)
             tow_id = row["about"] if self.kind.about == "tow_id" else None
@@ -86,11 +96,42 @@ class Rows:
             if row["about"]:
                 self.lost.setdefault(row["about"], fault)
 
+    def drop_copies(self, per_file: bool = False) -> None:
+        """Keep the first of rows with equal values: a list can be there twice, as .csv and .xlsx.
+
+        Args:
+            per_file: rows of one file may repeat each other; only those of another are copies.
+        """
+        declared = dtypes(self.kind.table)
+        keys = [column.key for column in self.kind.columns if column.key != REMARK]
+        floats = [key for key in keys if key in declared and declared[key].is_float()]
+        others = [key for key in keys if key not in floats]
+        # 8.28 km/h and 2.3 m/s are one speed, though their last bits differ.
+        value = pl.struct(*others, *(pl.col(key).round_sig_figs(9) for key in floats), "season")
+        nth = pl.int_range(pl.len()).over(value, "path", "sheet") if per_file else pl.lit(0)
+        self.frame = self.frame.with_columns(_value=value, _nth=nth)
+        self.frame = self.frame.unique(["_value", "_nth"], keep="first", maintain_order=True)
+        self.frame = self.frame.drop("_value", "_nth")
+
     def drop_repeated(self, about: Sequence[str], text: str, code: str | None = None) -> None:
-        """Keeps the rows of which there is one about a thing; equal rows count once."""
-        self.frame = self.frame.unique("cells", maintain_order=True)
+        """Keep the rows of which there is one about a thing; equal rows count once.
+
+        Args:
+            about: the columns that name the thing.
+            text: the sentence; `of` is the thing, `other` and `line` where another row stands.
+            code: its reason code; None for that of the list.
+        """
+        self.drop_copies()
         of = pl.concat_str(*about, separator=" ")
-        self.drop(pl.struct(about).is_duplicated(), text, code, of=of)
+        key = pl.struct(about)
+        is_first = pl.int_range(pl.len()).over(key) == 0
+        places = {
+            name: pl.when(is_first)
+            .then(pl.col(name).shift(-1).first().over(key))
+            .otherwise(pl.col(name).first().over(key))
+            for name in ("line", "path")
+        }
+        self.drop(key.is_duplicated(), text, code, of=of, line=places["line"], other=places["path"])
 
     def drop_other_years(self, day: str, code: str | None = None) -> None:
         """Sets aside the rows whose day is not in the year of their list."""
@@ -119,7 +160,13 @@ def no_rows(kind: ListKind) -> pl.DataFrame:
     declared = dtypes(kind.table)
     values = {c.key: declared.get(c.key, pl.String()) for c in kind.columns}
     cells = pl.Struct({column.key: pl.String for column in kind.columns})
-    place = {"path": pl.String(), "line": pl.Int64(), "season": pl.Int32(), "about": pl.String()}
+    place: dict[str, pl.DataType] = {
+        "path": pl.String(),
+        "sheet": pl.String(),
+        "line": pl.Int64(),
+        "season": pl.Int32(),
+        "about": pl.String(),
+    }
     return pl.DataFrame(schema=place | values | {"cells": cells})
 
 

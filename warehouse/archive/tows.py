@@ -52,7 +52,10 @@ def check_tows(
     """
     text = say("'{tow}' cannot be a sleep_id: it is too long, or has a slash.")
     rows.drop(~pl.col("tow_id").str.contains(_TOW_ID), text, tow=pl.col("tow_id"))
-    rows.drop_repeated(["tow_id"], say("sleep_id {of} is listed twice."), "duplicate_tow_id")
+    text = say(
+        "sleep_id {of} is also on line {line} of {other}, and the rows differ: neither counts."
+    )
+    rows.drop_repeated(["tow_id"], text, "duplicate_tow_id")
     rows.drop_other_years("tow_date", "date_outside_season")
     selections = _selections(rows, profiles)
     for key in ("file", "second_file"):
