@@ -7,15 +7,15 @@ guessed: other names are given in `archief.toml`.
 import csv
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, reduce
 from typing import Final, NamedTuple
 
 import polars as pl
 
 from pipeline.errors import DefectiveInputError
-from pipeline.messages import say
+from pipeline.messages import Sentence, say
 
 HEADER_WITHIN: Final = 30
 """Lines among which the header is looked for: there may be titles above it."""
@@ -35,32 +35,54 @@ class Scale(NamedTuple):
     divided_by: float = 1.0
 
 
+SI: Final = Scale()
+CLOCK: Final = Scale(0.0)
+"""Stands for a time of day, which is read as text."""
 UNITS: Final[Mapping[str, Mapping[str, Scale]]] = {
     "speed": {
-        "m/s": Scale(), "cm/s": Scale(1, 100), "km/h": Scale(1, 3.6), "km/u": Scale(1, 3.6),
-        "kn": Scale(1852, 3600), "mph": Scale(0.44704), "ft/s": Scale(0.3048),
+        "m/s": Scale(), "dm/s": Scale(1, 10), "cm/s": Scale(1, 100), "mm/s": Scale(1, 1000),
+        "km/h": Scale(1, 3.6), "km/u": Scale(1, 3.6), "kn": Scale(1852, 3600),
+        "kt": Scale(1852, 3600), "mph": Scale(0.44704), "ft/s": Scale(0.3048),
     },
     "force": {
-        "n": Scale(), "kn": Scale(1000), "kgf": Scale(9.80665), "kg": Scale(9.80665),
+        "n": Scale(), "dan": Scale(10), "hn": Scale(100), "kn": Scale(1000),
+        "kgf": Scale(9.80665), "kg": Scale(9.80665), "kp": Scale(9.80665),
         "lbf": Scale(4.4482216152605),
     },
     "angle": {
-        "gra": Scale(), "deg": Scale(), "graden": Scale(), "°": Scale(),
-        "rad": Scale(180, 3.141592653589793),
+        "gra": Scale(), "deg": Scale(), "graden": Scale(), "degrees": Scale(), "°": Scale(),
+        "rad": Scale(180, 3.141592653589793), "gon": Scale(9, 10),
     },
     "length": {
-        "m": Scale(), "cm": Scale(1, 100), "mm": Scale(1, 1000), "km": Scale(1000),
-        "nmi": Scale(1852), "ft": Scale(0.3048),
+        "m": Scale(), "dm": Scale(1, 10), "cm": Scale(1, 100), "mm": Scale(1, 1000),
+        "km": Scale(1000), "nmi": Scale(1852), "ft": Scale(0.3048),
     },
-    "mass": {"kg": Scale(), "g": Scale(1, 1000), "lb": Scale(0.45359237)},
+    "mass": {"kg": Scale(), "g": Scale(1, 1000), "t": Scale(1000), "lb": Scale(0.45359237)},
     "temperature": {"c": Scale(), "°c": Scale()},
     "ratio": {"%": Scale(1, 100)},
     "rate": {"hz": Scale()},
-    "power": {"w": Scale()},
-    "time": {"s": Scale(), "ms": Scale(1, 1000)},
+    "power": {"w": Scale(), "kw": Scale(1000)},
+    "time": {
+        "s": Scale(), "ms": Scale(1, 1000), "clock": CLOCK, "days": Scale(86400),
+        "epoch_ms": Scale(1, 1000),
+    },
     "none": {},
 }  # fmt: skip
 """Per dimension the units that people write, in lower case; the SI unit comes first."""
+
+
+class DefectiveHeaderError(DefectiveInputError):
+    """A `DefectiveInputError` that a line of `archief.toml` can settle.
+
+    Attributes:
+        ask: the lines, with `?` for the answer.
+    """
+
+    def __init__(
+        self, reason_code: str, message: str, line: int | None, ask: Sequence[str] = ()
+    ) -> None:
+        super().__init__(reason_code, message, line)
+        self.ask = tuple(ask)
 
 
 @dataclass(frozen=True)
@@ -75,6 +97,7 @@ class Column:
         required: a file without it is defective.
         also: other names for it.
         reversed: what is in it has the other sign.
+        is_unit_declared: `archief.toml` gives the unit, also where that of the header is unknown.
     """
 
     key: str
@@ -84,6 +107,7 @@ class Column:
     required: bool = True
     also: tuple[str, ...] = ()
     reversed: bool = False
+    is_unit_declared: bool = False
 
     @property
     def named(self) -> str:
@@ -91,10 +115,13 @@ class Column:
         return f"{self.header} [{self.unit}]" if self.unit else self.header
 
     def scale(self, unit: str | None) -> Scale | None:
-        """The scale of a unit as written; None where this column cannot have it."""
-        scale = UNITS[self.dimension].get((self.unit if unit is None else unit).casefold())
-        if scale is None and not self.unit and unit is None:
+        """Return the scale of a unit as written; None where this column cannot have it."""
+        known = UNITS[self.dimension]
+        if unit is None and not self.unit:
             return Scale()
+        scale = known.get(_fold_unit(self.unit if unit is None else unit))
+        if scale is None and self.is_unit_declared:
+            scale = known.get(_fold_unit(self.unit))
         return Scale(-scale.times, scale.divided_by) if scale and self.reversed else scale
 
 
@@ -104,7 +131,7 @@ class FoundColumn:
 
     index: int
     header: str
-    scale: Scale
+    scale: Scale = SI
     unit: str = ""
 
     def to_si(self, number: pl.Expr) -> pl.Expr:
@@ -112,6 +139,10 @@ class FoundColumn:
         return (
             number if self.scale == Scale() else number * self.scale.times / self.scale.divided_by
         )
+
+
+def _fold_unit(unit: str) -> str:
+    return "".join(unit.casefold().split())
 
 
 @lru_cache(100_000)
@@ -201,22 +232,40 @@ def score_of(header: Iterable[str], columns: Iterable[Column]) -> int:
     return len({split_header(cell.strip('"'))[0] for cell in header} & names)
 
 
+Ask = Callable[..., str]
+"""Makes the line of `archief.toml` that answers a question, with a blank for the answer."""
+
+
 def find_columns(
-    header: Sequence[str], columns: Iterable[Column], line: int = 1
+    header: Sequence[str],
+    columns: Iterable[Column],
+    line: int = 1,
+    ask: Ask | None = None,
+    also_ask: Sequence[str] = (),
 ) -> dict[str, FoundColumn]:
-    """Finds columns by name and unit, in any order.
+    """Find columns by name and unit, in any order.
 
     Two columns may share a name when their dimensions differ (`wind [m/s]`, `wind [gra]`); one of
     them may leave out its unit.
 
+    Args:
+        header: the cells of the header.
+        columns: the columns to look for.
+        line: the header's line.
+        ask: makes the line of `archief.toml` that would answer what a column or unit is.
+        also_ask: lines to show beside these.
+
     Raises:
-        DefectiveInputError: `missing_column`, `duplicate_column` or `unknown_unit`.
+        DefectiveHeaderError: `missing_column`, `duplicate_column` or `unknown_unit`; all that is
+            wrong is told at once.
     """
     by_name: dict[str, list[Column]] = {}
     for column in columns:
         for name in {fold(name) for name in (column.header, *column.also)}:
             by_name.setdefault(name, []).append(column)
     found: dict[str, FoundColumn] = {}
+    problems: list[_Problem] = []
+    unsettled: set[str] = set()
     cells = [(*split_header(cell), index) for index, cell in enumerate(header)]
     for name, unit, index in sorted(cells, key=lambda cell: cell[1] is None):
         namesakes = by_name.get(name, []) if name else []
@@ -224,45 +273,65 @@ def find_columns(
             continue
         fitting = [c for c in namesakes if c.scale(unit) is not None]
         free = [column for column in fitting if column.key not in found]
-        if len(free) != 1:
-            raise _not_one(header[index], unit, namesakes, fitting, free, found, line)
-        scale = free[0].scale(unit) or Scale()
-        told = free[0].unit if unit is None else unit
-        found[free[0].key] = FoundColumn(index, header[index].strip(), scale, told)
+        if len(free) == 1:
+            scale = free[0].scale(unit) or Scale()
+            told = free[0].unit if unit is None else unit
+            found[free[0].key] = FoundColumn(index, header[index].strip(), scale, told)
+        else:
+            problem = _explain_column(header[index], unit, namesakes, fitting, free, found)
+            problems.append(problem)
+            unsettled |= {column.key for column in namesakes}
     wanted = dict.fromkeys(column for named in by_name.values() for column in named)
-    missing = [column for column in wanted if column.required and column.key not in found]
+    missing = [
+        column
+        for column in wanted
+        if column.required and column.key not in found and column.key not in unsettled
+    ]
     if missing:
         said = say(
             "Not found in the header: {names}. Found: {found}.",
             names=", ".join(f"'{column.named}'" for column in missing),
             found=", ".join(f"'{shorten(cell.strip())}'" for cell in header[:30]),
         )
-        raise DefectiveInputError("missing_column", said, line)
+        problems.append(_Problem("missing_column", said, [f"columns.{c.key}" for c in missing]))
+    if problems:
+        said = reduce(lambda one, other: say("{} {}", one, other), [p.said for p in problems])
+        keys = dict.fromkeys(key for problem in problems for key in problem.keys)
+        lines = [ask(key) for key in keys] if ask else []
+        raise DefectiveHeaderError(problems[0].reason_code, said, line, (*lines, *also_ask))
     return found
 
 
-def _not_one(
+class _Problem(NamedTuple):
+    """What is wrong with a header: its sentence, and the keys of a profile that would settle it."""
+
+    reason_code: str
+    said: Sentence
+    keys: Sequence[str]
+
+
+def _explain_column(
     cell: str,
     unit: str | None,
     namesakes: Sequence[Column],
     fitting: Sequence[Column],
     free: Sequence[Column],
     found: Mapping[str, FoundColumn],
-    line: int,
-) -> DefectiveInputError:
-    """The error for a header cell that stands for no column, for a taken one, or for several."""
+) -> _Problem:
+    """Return what is wrong with a cell that stands for no column, a taken one, or several."""
     known = ", ".join(f"[{unit}]" for c in free or namesakes for unit in UNITS[c.dimension])
+    keys = [f"units.{column.key}" for column in free or namesakes]
     if not fitting:
         text = say("Column '{header}' has unit [{unit}]; known here: {known}.")
-        said = say(text, header=cell.strip(), unit=unit or "", known=known or "-")
-        return DefectiveInputError("unknown_unit", said, line)
+        said = say(text, header=shorten(cell.strip()), unit=shorten(unit or ""), known=known or "-")
+        return _Problem("unknown_unit", said, keys)
     if not free:
         text = say("Columns '{first}' and '{second}' are the same; one of them has to go.")
-        said = say(text, first=found[fitting[0].key].header, second=cell.strip())
-        return DefectiveInputError("duplicate_column", said, line)
+        said = say(text, first=found[fitting[0].key].header, second=shorten(cell.strip()))
+        return _Problem("duplicate_column", said, [])
     text = say("Column '{header}' can be more than one thing; write its unit behind it: {known}.")
-    said = say(text, header=cell.strip(), known=known)
-    return DefectiveInputError("unknown_unit", said, line)
+    said = say(text, header=shorten(cell.strip()), known=known)
+    return _Problem("unknown_unit", said, [f"columns.{column.key}" for column in free])
 
 
 def unknown_headers(header: Sequence[str], found: Mapping[str, FoundColumn]) -> list[str]:

@@ -4,7 +4,7 @@ A reason code is stable: it is in the quarantine table, and `docs/archive.md` sa
 Detecting a fault belongs to the module that reads the thing.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from typing import Final, Literal
 
@@ -14,6 +14,7 @@ from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
 from pipeline.tables.row import Row
+from warehouse.archive.columns import DefectiveHeaderError
 from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, traced
 
 Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
@@ -37,6 +38,7 @@ class Fault:
         lost: what it costs; None for a tow, a row or a file, as it has a tow, a line or neither.
         run: the run that it costs, or seconds of which.
         lost_s: how many seconds.
+        ask: lines of `archief.toml` that would settle it, with `?` for the answer.
     """
 
     path: str
@@ -47,6 +49,7 @@ class Fault:
     lost: Lost | None = None
     run: int | None = None
     lost_s: float | None = None
+    ask: tuple[str, ...] = ()
 
     @property
     def cause(self) -> str:
@@ -56,7 +59,8 @@ class Fault:
     def as_row(self) -> Row:
         """The fault as a row of `Faults`: only here it is worded in Dutch too."""
         words = {"cause": self.cause, "message_nl": spoken(self.message, "nl")}
-        return {fact.name: getattr(self, fact.name) for fact in fields(Fault)} | words
+        facts = [fact.name for fact in fields(Fault) if fact.name != "ask"]
+        return {name: getattr(self, name) for name in facts} | words
 
 
 @dataclass(frozen=True)
@@ -66,11 +70,18 @@ class Failure(Fault):
     trace: str = ""
 
 
-class DefectiveFileError(DefectiveInputError):
+class DefectiveFileError(DefectiveHeaderError):
     """A `DefectiveInputError` that knows which of a tow's files it is about."""
 
-    def __init__(self, reason_code: str, message: str, line: int | None, path: str) -> None:
-        super().__init__(reason_code, message, line)
+    def __init__(
+        self,
+        reason_code: str,
+        message: str,
+        line: int | None,
+        path: str,
+        ask: Sequence[str] = (),
+    ) -> None:
+        super().__init__(reason_code, message, line, ask)
         self.path = path
 
 
@@ -92,7 +103,8 @@ def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fa
     """
     if isinstance(error, DefectiveInputError):
         where = error.path if isinstance(error, DefectiveFileError) else path
-        return Fault(where, tow_id, error.line, error.reason_code, error.message)
+        ask = error.ask if isinstance(error, DefectiveHeaderError) else ()
+        return Fault(where, tow_id, error.line, error.reason_code, error.message, ask=ask)
     if not is_unforeseen(error):
         raise error
     message = say(

@@ -9,6 +9,7 @@ import re
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
@@ -28,10 +29,13 @@ REFUSED_SUFFIXES: Final = (".xls", ".ods")
 """Of lists that are told how to be saved."""
 LIST_SUFFIXES: Final = (*TEXT_SUFFIXES, ".xlsx", ".xlsm", *REFUSED_SUFFIXES)
 COMPRESSION: Final = {".gz": "gzip", ".zst": "zstd"}
+SAMPLE_TEXT_SUFFIXES: Final = (*TEXT_SUFFIXES, ".dat", ".tsv", ".asc")
 SAMPLE_SUFFIXES: Final = (
-    *(text + packed for packed in COMPRESSION for text in TEXT_SUFFIXES),
-    *(*TEXT_SUFFIXES, ".parquet"),
+    *(text + packed for packed in COMPRESSION for text in SAMPLE_TEXT_SUFFIXES),
+    *(*SAMPLE_TEXT_SUFFIXES, ".parquet", ".tdms", ".lvm"),
 )
+PARTS: Final = " | "
+"""Between the files of a tow that has a file for each run."""
 MAX_BYTES: Final = 250_000_000
 """Size of a file, unpacked; one tow of six runs at 1000 Hz is 12 MB."""
 RACY_SECONDS: Final = 2.0
@@ -177,6 +181,11 @@ def _unpacked(raw: object, compression: str, most: int) -> bytes:
     return b"".join(pieces)
 
 
+def combine_hashes(hashes: list[str]) -> str:
+    """Return one hash of several, in their order; that of a single one is it."""
+    return hashes[0] if len(hashes) == 1 else sha256("\n".join(hashes).encode()).hexdigest()
+
+
 Hashes = dict[str, tuple[str, int]]
 """SHA-256 and size in bytes of a file, by its path in the archive."""
 
@@ -224,8 +233,16 @@ class FileHashes:
         with written_beside(path) as beside:
             beside.write_text(json.dumps(self.entries, indent=0, sort_keys=True), encoding="utf-8")
 
+    def hash_samples(self, root: Path, paths: str) -> str:
+        """Return the SHA-256 of a samples file, or of the hashes of a tow's files of one run each.
+
+        Raises:
+            OSError: a file cannot be read.
+        """
+        return combine_hashes([self.hash_file(root / path) for path in paths.split(PARTS)])
+
     def hash_file(self, path: Path) -> str:
-        """The SHA-256 of a file's content, as hexadecimal text.
+        """Return the SHA-256 of a file's content, as hexadecimal text.
 
         Raises:
             OSError: the file cannot be read.
@@ -234,12 +251,12 @@ class FileHashes:
         known = self.entries.get(key)
         if known is not None and known[:2] == (before.st_size, before.st_mtime_ns):
             return known[2]
-        sha256 = file_sha256(path)
+        content = file_sha256(path)
         after = path.stat()
         unchanged = (before.st_size, before.st_mtime_ns) == (after.st_size, after.st_mtime_ns)
         settled = time.time_ns() - after.st_mtime_ns >= RACY_SECONDS * 1e9
         if unchanged and settled:
-            self.entries[key] = (after.st_size, after.st_mtime_ns, sha256)
+            self.entries[key] = (after.st_size, after.st_mtime_ns, content)
         else:
             self.entries.pop(key, None)
-        return sha256
+        return content

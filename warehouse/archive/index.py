@@ -24,14 +24,16 @@ from warehouse.archive.files import (
 )
 from warehouse.archive.kinds import BOATS, TOWS
 from warehouse.archive.list_rules import (
+    check_hand_windows,
+    find_recordings,
     read_boats,
     read_force_checks,
     read_lamps,
-    read_windows,
+    read_window_lists,
 )
 from warehouse.archive.lists import read_lists
 from warehouse.archive.profile import PROFILE_FILE, Profiles, read_profiles
-from warehouse.archive.tows import check_tows, runs_of, samples_by_name
+from warehouse.archive.tows import check_tows, run_file_names, runs_of, samples_by_name
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
 TOWS_FILE: Final = "sleeplijsten/sleeplijst_<jaar>.csv"
@@ -90,14 +92,16 @@ def index_archive(
     checks, of_checks = read_force_checks(files, profiles)
     burned, of_lamps = read_lamps(files, profiles, listed["tow_id"])
     samples = samples_by_name(files, hashes)
-    selections = check_tows(rows, samples, boats, profiles, checks, burned)
+    window_rows = read_window_lists(files, profiles, listed.select("season", "tow_id"))
+    recordings = find_recordings(window_rows, profiles)
+    selections = check_tows(rows, samples, boats, profiles, checks, burned, recordings)
     tows = rows.as_table(ListedTows)
     runs = runs_of(tows, selections, profiles)
-    windows, of_windows = read_windows(files, profiles, listed.select("season", "tow_id"), runs)
+    windows = check_hand_windows(window_rows, runs)
 
-    faults = [*boats.faults, *rows.faults, *of_checks, *of_lamps, *of_windows]
+    faults = [*boats.faults, *rows.faults, *of_checks, *of_lamps, *window_rows.faults]
     faults += _not_read(files, profiles)
-    faults += _not_listed(files, listed, rows.unread)
+    faults += _not_listed(files, listed, rows.unread, profiles)
     faults += [] if rows.unread else _without_effect(profiles, listed)
     told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
     faults += [fault_from(error, error.path) for error in unread if error.path not in told]
@@ -138,12 +142,20 @@ def _not_read(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:
 
 
 def _not_listed(
-    files: Iterable[ArchiveFile], listed: pl.DataFrame, unread_lists: set[str]
+    files: Iterable[ArchiveFile],
+    listed: pl.DataFrame,
+    unread_lists: set[str],
+    profiles: Profiles,
 ) -> list[Fault]:
     """The samples that no row names, in seasons whose list could be read."""
     unread_seasons = {file.season for file in files if file.path in unread_lists}
-    names = pl.concat([listed["file"], listed["second_file"]]).drop_nulls()
-    named = {*map(match_key, names)}
+    named = set()
+    for tow_id, season, *cells in listed.select(
+        "tow_id", "season", "file", "second_file"
+    ).iter_rows():
+        plan, profile = profiles.plan_of(tow_id or "", season), profiles.for_season(season)
+        for cell in filter(None, cells):
+            named |= {match_key(cell), *run_file_names(cell, profile, plan).values()}
     message = say("No row of a tow list names this file.")
     return [
         Fault(file.path, None, None, "samples_not_listed", message)

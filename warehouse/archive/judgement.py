@@ -51,7 +51,7 @@ class Run:
 
     number: int
     start: int
-    rate_hz: int
+    rate_hz: float
     intended_m_s: float
     planned_s: float
     channels: dict[str, Array]
@@ -88,7 +88,8 @@ class Run:
 
     def second_means(self, values: Array) -> NDArray[np.float64]:
         """The mean of every whole second of a channel, NaN where one of its samples is left out."""
-        seconds = values[: len(values) // self.rate_hz * self.rate_hz].reshape(-1, self.rate_hz)
+        rate = round(self.rate_hz)
+        seconds = values[: len(values) // rate * rate].reshape(-1, rate)
         return np.asarray(seconds.mean(axis=1, dtype=np.float64))
 
 

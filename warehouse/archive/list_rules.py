@@ -10,17 +10,20 @@ from typing import Any, Final
 
 import polars as pl
 
+from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.messages import say
 from pipeline.register.register import NO_EMPTY_THWART
 from pipeline.tables.bases import TowFacts
 from pipeline.tables.frames import limits
 from pipeline.tables.lake import ListedBoats
+from warehouse.archive.columns import fold_word
 from warehouse.archive.faults import Fault, at_line
 from warehouse.archive.files import ArchiveFile, files_of
 from warehouse.archive.kinds import BOATS, FORCE_CHECKS, LAMPS, RACES, REGISTERS, WINDOWS
 from warehouse.archive.lists import read_lists
 from warehouse.archive.profile import Profiles, read_profiles
 from warehouse.archive.rows import Rows, cell
+from warehouse.archive.samples import write_windows_text
 
 OF_THE_BOAT: Final = (
     *("ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
@@ -92,27 +95,86 @@ def read_boats(files: Iterable[ArchiveFile], profiles: Profiles) -> Boats:
     return Boats(ListedBoats.cast(listed.unique(maintain_order=True)), rows.lost, rows.faults)
 
 
-def read_windows(
-    files: Iterable[ArchiveFile], profiles: Profiles, listed: pl.DataFrame, runs: pl.DataFrame
-) -> _Read:
-    """The windows given by hand (`ListedWindows`) for runs of tows that are not set aside.
+def name_boats(rows: Rows, boats: Boats) -> None:
+    """Give rows that name a boat by its exact name in the boat list its number."""
+    known = boats.listed.with_columns(
+        folded=pl.col("name").map_elements(fold_word, pl.String)
+    ).select("folded", number="fsn_no")
+    by_name = known.unique().group_by("folded").agg("number").filter(pl.col("folded") != "")
+    numbers: dict[str, list[str]] = dict(by_name.iter_rows())
+    listed = {*boats.listed["fsn_no"], *boats.lost}
+    named = {
+        text: numbers[fold_word(text)]
+        for text in rows.frame["fsn_no"].drop_nulls().unique()
+        if text not in listed and fold_word(text) in numbers
+    }
+    several = [text for text, found in named.items() if len(found) > 1]
+    text = say("'{boat}' is the name of several boats: give the number.")
+    rows.drop(pl.col("fsn_no").is_in(several), text, "unknown_boat", boat=pl.col("fsn_no"))
+    only = {text: found[0] for text, found in named.items() if len(found) == 1}
+    rows.frame = rows.frame.with_columns(pl.col("fsn_no").replace(only))
 
-    Two windows for one run cost both, as nobody can know which is right. How long a run is, is only
-    known when its samples are read: `outside_run`.
+
+def read_window_lists(
+    files: Iterable[ArchiveFile], profiles: Profiles, listed: pl.DataFrame
+) -> Rows:
+    """Read the lists of windows: within runs, or of the runs within a recording.
 
     Args:
         files: those of the archive.
         profiles: how the lists are worded.
         listed: `season` and `tow_id` of every listed tow.
-        runs: `tow_id` and `run` of those that are not set aside.
     """
     rows = read_lists(files, WINDOWS, profiles)
     rows.drop_copies(per_file=True)
     _drop_out_of_order(rows)
     text = say("sleep_id {tow} is not in the tow list of that year.")
-    tow, run = pl.col("tow_id"), pl.col("run")
     known = pl.struct("season", "tow_id").is_in(listed.to_struct().implode())
-    rows.drop(~known, text, "window_unknown_tow", tow=tow)
+    rows.drop(~known, text, "window_unknown_tow", tow=pl.col("tow_id"))
+    return rows
+
+
+def find_recordings(rows: Rows, profiles: Profiles) -> dict[str, str]:
+    """Return begin and end of the runs of tows whose file is one recording, and drop their rows.
+
+    Two rows for one run, and runs that overlap, cost these runs.
+    """
+    seasons = [
+        season
+        for season in rows.frame["season"].unique()
+        if profiles.for_season(season).runs == "windows"
+    ]
+    tow, run = pl.col("tow_id"), pl.col("run")
+    is_recording = pl.col("season").is_in(seasons)
+    is_twice = pl.struct("tow_id", "run").is_duplicated()
+    text = say("run {run} of tow {tow} has more than one window; none of them counts.")
+    rows.drop(is_recording & is_twice, text, "window_given_twice", run=run, tow=tow)
+    rows.frame = rows.frame.sort("tow_id", "start_s", maintain_order=True)
+    is_second = run > SECOND_FILE_OFFSET
+    before = pl.col("end_s").shift(1).over("tow_id", is_second)
+    after = pl.col("start_s").shift(-1).over("tow_id", is_second)
+    overlaps = (pl.col("start_s") < before) | (pl.col("end_s") > after)
+    text = say("run {run} of tow {tow} overlaps another run of the recording.")
+    rows.drop(is_recording & overlaps, text, run=run, tow=tow)
+    found: dict[str, dict[int, tuple[float, float]]] = {}
+    own = rows.frame.filter(is_recording).select("tow_id", "run", "start_s", "end_s")
+    for tow_id, number, start, end in own.iter_rows():
+        found.setdefault(tow_id, {})[number] = float(start), float(end)
+    rows.frame = rows.frame.filter(~is_recording)
+    return {tow_id: write_windows_text(windows) for tow_id, windows in found.items()}
+
+
+def check_hand_windows(rows: Rows, runs: pl.DataFrame) -> pl.DataFrame:
+    """Return the windows given by hand (`ListedWindows`) for runs of tows that are not set aside.
+
+    Two windows for one run cost both, as nobody can know which is right. How long a run is, is only
+    known when its samples are read: `outside_run`.
+
+    Args:
+        rows: as `read_window_lists` gives them, without those of recordings.
+        runs: `tow_id` and `run` of those that are not set aside.
+    """
+    tow, run = pl.col("tow_id"), pl.col("run")
     rows.frame = rows.frame.filter(tow.is_in(runs["tow_id"].implode()))
     planned = runs.select(pl.struct("tow_id", "run")).to_series().implode()
     is_unplanned = ~pl.struct("tow_id", "run").is_in(planned)
@@ -121,7 +183,7 @@ def read_windows(
     text = say("run {run} of tow {tow} has more than one window; none of them counts.")
     is_twice = pl.struct("tow_id", "run").is_duplicated()
     rows.drop(is_twice, text, "window_given_twice", run=run, tow=tow)
-    return rows.as_table(WINDOWS.table), rows.faults
+    return rows.as_table(WINDOWS.table)
 
 
 def _drop_out_of_order(rows: Rows) -> None:
@@ -183,7 +245,9 @@ def read_races(root: Path, profiles: Profiles | None = None) -> _Read:
 
     A crew has one result in a race; of equal rows the first counts.
     """
-    rows = read_lists(files_of(root), RACES, profiles or read_profiles(root))
+    files, profiles = files_of(root), profiles or read_profiles(root)
+    rows = read_lists(files, RACES, profiles)
+    name_boats(rows, read_boats(files, profiles))
     rows.drop_other_years("race_date")
     through_water_m = pl.col("distance_m") - pl.col("stream_m").fill_null(0.0)
     speed = through_water_m / pl.col("rowing_time_s")
@@ -210,7 +274,9 @@ def read_published_registers(root: Path, profiles: Profiles | None = None) -> _R
     A boat without a valid curve (published as Cw = 1) has no A, B and Cw. Of any other line Cw is
     A / (1 - (v/B)^2), however the numbers were rounded; else one of them is mistyped.
     """
-    rows = read_lists(files_of(root), REGISTERS, profiles or read_profiles(root))
+    files, profiles = files_of(root), profiles or read_profiles(root)
+    rows = read_lists(files, REGISTERS, profiles)
+    name_boats(rows, read_boats(files, profiles))
     rows.drop_copies()
     has_curve = ~pl.col("cw_kg_m").is_between(*NEVER_TOWED_CW).fill_null(value=False)
     rows.frame = rows.frame.with_columns(has_valid_curve=has_curve)

@@ -15,6 +15,7 @@ from pipeline.messages import Sentence, say
 from pipeline.tables.frames import limits
 from warehouse.archive.columns import (
     Column,
+    DefectiveHeaderError,
     FoundColumn,
     Scale,
     decode,
@@ -24,10 +25,11 @@ from warehouse.archive.columns import (
     fold_word,
     score_of,
     shorten,
+    split_header,
     split_line,
     unknown_headers,
 )
-from warehouse.archive.faults import Fault, at_line, fault_from
+from warehouse.archive.faults import Fault, Lost, at_line, fault_from
 from warehouse.archive.files import (
     REFUSED_SUFFIXES,
     TEXT_SUFFIXES,
@@ -48,6 +50,8 @@ MAX_QUOTED_LINE: Final = 100_000
 NUMBER: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+)?$"
 """An ordinary number with a decimal comma or point; no marks between thousands."""
 _NOTHING: Final = ("", "-", "n.v.t.", "onbekend", "?")
+DID_NOT_FINISH: Final = "uitgevallen"
+"""Instead of a rowing time: no result, and no fault."""
 _YES: Final = ("ja", "x", "1")
 _NO: Final = ("nee", "0")
 _BOAT: Final = r"^(?i:fsn)?[\s._-]*([0-9]{1,6}[a-zA-Z]?)$"
@@ -95,9 +99,11 @@ def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles)
         found.faults += notes
         for table in tables:
             try:
-                places = find_columns(table.header, columns, table.line)
-                _check_known(table, columns, places, profiles)
-                found.add(_typed(table, file, kind, places, profiles.meaning))
+                header = [profiles.whole_headers.get(fold(cell), cell) for cell in table.header]
+                renamed = table._replace(header=header)
+                places = _find_places(renamed, columns, profiles)
+                _check_known(renamed, columns, places, profiles)
+                found.add(_typed(renamed, file, kind, places, profiles.meaning))
             except BaseException as error:
                 found.faults.append(fault_from(error, file.path))
                 found.unread.add(file.path)
@@ -208,6 +214,33 @@ def _is_remark(cell: str) -> bool:
 # From a table of text to typed rows
 
 
+def _find_places(
+    table: Table, columns: Sequence[Column], profiles: Profiles
+) -> dict[str, FoundColumn]:
+    """Return the columns in the header of a list; raise with a question for every other header."""
+    try:
+        return find_columns(table.header, columns, table.line)
+    except DefectiveHeaderError as error:
+        ask = [
+            _ask_header(cell.strip())
+            for cell in table.header
+            if fold(cell) and fold(cell) not in profiles.ignore and not _can_be(cell, columns)
+        ]
+        raise DefectiveHeaderError(error.reason_code, error.message, error.line, ask) from error
+
+
+def _can_be(cell: str, columns: Iterable[Column]) -> bool:
+    """Return whether a header names a column, with a unit that this can have."""
+    name, unit = split_header(cell)
+    namesakes = [c for c in columns if name in map(fold, (c.header, *c.also))]
+    return any(column.scale(unit) is not None for column in namesakes)
+
+
+def _ask_header(header: str) -> str:
+    quoted = header.replace("\\", "\\\\").replace('"', '\\"')
+    return f'[headers]\n"{quoted}" = "?"'
+
+
 def _check_known(
     table: Table, columns: Iterable[Column], places: Mapping[str, FoundColumn], profiles: Profiles
 ) -> None:
@@ -225,7 +258,8 @@ def _check_known(
         names = ", ".join(f"'{shorten(header)}'" for header in unknown)
         free = ", ".join(column.header for column in columns if column.key not in places) or "-"
         said = say(text, names=names, free=free)
-        raise DefectiveInputError("unknown_column", said, table.line)
+        ask = [_ask_header(header) for header in unknown if header[:1] != "("]
+        raise DefectiveHeaderError("unknown_column", said, table.line, ask)
 
 
 def _typed(
@@ -254,6 +288,9 @@ def _typed(
             cells=pl.struct(keys),
         ),
     )
+    if "rowing_time_s" in keys:
+        did_finish = pl.col("rowing_time_s").str.to_lowercase() != DID_NOT_FINISH
+        rows.frame = rows.frame.filter(did_finish.fill_null(value=True))
     every, width = rows.frame.filter(~is_fragment), len(table.header)
     rows.drop(pl.col("is_open"), say("a quotation mark is not closed, or in mid-field."))
     text = say("column '{column}' has more than {most} characters in this row.")
@@ -275,7 +312,8 @@ def _typed(
             wrong = is_wrong.fill_null(value=False) & ~is_told
             is_told |= wrong
             is_spare = column.key in kind.spare
-            rows.note(wrong, said, code, "cell" if is_spare else None, **facts)
+            lost: Lost | None = "cell" if is_spare else None
+            rows.note(wrong, said, code, lost, asks_word=said in ASKED_WORDS, **facts)
             is_lost = is_lost if is_spare else is_lost | wrong
         values[column.key] = pl.when(~is_told).then(value)
     schema = no_rows(kind).schema
@@ -385,18 +423,28 @@ def _checks(
     return checks
 
 
+_NO_CLASS: Final = say("column '{column}' is '{cell}'; H or D is expected.")
+_NO_YES: Final = say("column '{column}' is '{cell}', not ja, nee or empty.")
+_NO_TIME: Final = say(
+    "column '{column}' is '{cell}', not a time such as 2:10:25. A word for a crew that did not "
+    "finish means 'uitgevallen'."
+)
+ASKED_WORDS: Final = (_NO_CLASS, _NO_YES, _NO_TIME)
+"""What is said of a cell whose word can be given a meaning."""
+
+
 def _not_one(key: str, dtype: pl.DataType) -> Sentence:
     """What is said of a cell that is not of its column's type."""
     number = say("column '{column}' is '{cell}', which is not an ordinary number.")
     whole = say("column '{column}' is {cell}; it must be a whole number.")
     by_key = {
-        "crew_class": say("column '{column}' is '{cell}'; H or D is expected."),
+        "crew_class": _NO_CLASS,
         "run": say("column '{column}' is '{cell}'; runs are 1 to 20, of meetfile2 b1 to b20."),
-        "rowing_time_s": say("column '{column}' is '{cell}', not a time such as 2:10:25."),
+        "rowing_time_s": _NO_TIME,
     }
     by_type = {
         pl.Date: say("column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014."),
-        pl.Boolean: say("column '{column}' is '{cell}', not ja, nee or empty."),
+        pl.Boolean: _NO_YES,
         pl.Int32: whole,
         pl.Int16: whole,
     }

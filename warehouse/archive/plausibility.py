@@ -151,14 +151,14 @@ def _check_length(judgement: Judgement) -> None:
     for run in judgement.runs:
         missing_s = run.planned_s - run.seconds
         if run.seconds < SHORTEST_RUN_RATIO * run.planned_s:
-            text = say("it lasts {:.2f} s at {} samples per second, {:.2f} s too short")
+            text = say("it lasts {:.2f} s at {:g} samples per second, {:.2f} s too short")
             cost: Cost = "run" if missing_s > LEFT_OUT_S else "seconds"
             what = say(text, run.seconds, run.rate_hz, missing_s)
             judgement.lose(run, "short_run", what, cost, 0, missing_s)
     runs = judgement.runs
     if runs and all(run.seconds >= LONGEST_RUN_RATIO * run.planned_s for run in runs):
         text = say(
-            "All runs last {:.0f} s or longer at {} samples per second, and {:.0f} s is planned: "
+            "All runs last {:.0f} s or longer at {:g} samples per second, and {:.0f} s is planned: "
             "is the rate {:.0f}? Nothing is left out."
         )
         shortest, first = min(run.seconds for run in runs), runs[0]
@@ -308,7 +308,7 @@ def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
     no_row = np.logical_and.reduce([np.isnan(values) for values in run.channels.values()])
     if no_row.any():
         seconds = float(no_row.sum()) / run.rate_hz
-        what = say("rows lack fields, or their times jump back, for {:.3g} s in all", seconds)
+        what = say("rows lack fields, or their time cannot be read, for {:.3g} s in all", seconds)
         judgement.lose(run, "broken_row", what, cost, int(no_row.argmax()), seconds)
     for key, mask in wrong.items():
         own = mask & ~no_row
@@ -353,12 +353,12 @@ def _outside(values: Array, lowest: float, highest: float) -> BoolArray:
     return np.asarray(~((values >= lowest) & (values <= highest)))
 
 
-def _wrong_speed(values: Array, median: float, rate_hz: int, spike_ratio: float) -> BoolArray:
+def _wrong_speed(values: Array, median: float, rate_hz: float, spike_ratio: float) -> BoolArray:
     far = spike_ratio * abs(median)
     near = (values > DROPOUT_M_S) & (np.abs(values - median) <= far)
     if near.all():
         return np.zeros(len(values), dtype=bool)
-    around = _around(values, rate_hz)
+    around = _around(values, round(rate_hz))
     steady = np.abs(values - around) <= spike_ratio * around
     return np.asarray(~((values > DROPOUT_M_S) & steady))
 
@@ -388,7 +388,7 @@ def _wrong_force(run: Run, values: Array, usual_n: float) -> BoolArray:
         wrong |= np.repeat((lengths >= least) & (np.abs(values[starts]) <= near_zero), lengths)
     means = run.second_means(np.where(wrong, np.float32(np.nan), values))
     if (means < 0).any():  # single negative samples are the surge of the tow line
-        second = np.minimum(np.arange(len(values)) // run.rate_hz, len(means) - 1)
+        second = np.minimum(np.arange(len(values)) // round(run.rate_hz), len(means) - 1)
         wrong |= (means < 0)[second]
     return wrong
 

@@ -4,7 +4,6 @@ import datetime as dt
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Final, Literal, Self
 
@@ -29,7 +28,7 @@ from pipeline.channels import (
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.toml_text import decoded, parse_toml, problem_in_words
-from warehouse.archive.columns import UNITS, Column, fold, fold_word
+from warehouse.archive.columns import UNITS, Column, fold, fold_word, split_header
 
 PROFILE_FILE: Final = "archief.toml"
 SAMPLE_COLUMNS: Final = (
@@ -52,6 +51,9 @@ MAY_BE_ABSENT: Final = {
 _DIMENSIONS: Final = {column.key: column.dimension for column in SAMPLE_COLUMNS}
 Channel = Literal["run", "log1", "log2", "gps", "force", "wind_speed", "wind_angle", "time"]
 _WAYS: Final = {"out": OUT, "back": BACK}
+RUN_FILES: Final = "{meetfile} run {run}"
+BLANK: Final = "?"
+"""Stands for an answer that nobody gave yet."""
 
 
 @dataclass(frozen=True)
@@ -65,14 +67,37 @@ class SeasonProfile:
         absent: what was not on board, or is not to be used: `wind`, `log2`, `gps`.
         wind_zero_deg: what the vane reads when the wind comes from straight ahead.
         ignore: folded names of columns that are known and not used.
+        hold: channels that are sampled at a slower rate, of which each value is held.
+        runs: how the runs are told: by a `column`, a `file` for each, or `windows` in a recording.
+        run_files: the name of the file of a run, from `{meetfile}` and `{run}`.
+        groups: the groups of a TDMS file that are runs 1, 2 and on; empty for all, in their order.
+        skip_below_header: lines below the header that are no samples.
     """
 
     season: int
     columns: tuple[Column, ...] = SAMPLE_COLUMNS
-    sample_rate_hz: int = 1000
+    sample_rate_hz: float = 1000.0
     absent: tuple[str, ...] = ()
     wind_zero_deg: float = 0.0
     ignore: tuple[str, ...] = ()
+    hold: tuple[str, ...] = ()
+    runs: Literal["column", "file", "windows"] = "column"
+    run_files: str = RUN_FILES
+    groups: tuple[str, ...] = ()
+    skip_below_header: int = 0
+
+    def with_optional_run(self) -> "SeasonProfile":
+        """Return the profile of files that need no column `run`."""
+        columns = (replace(c, required=c.required and c.key != "run") for c in self.columns)
+        return replace(self, columns=tuple(columns))
+
+    def without_run(self) -> "SeasonProfile":
+        """Return the profile of files whose runs are told in another way than by a column."""
+        return replace(self, columns=tuple(c for c in self.columns if c.key != "run"))
+
+    def ask(self, key: str, blank: str = '"?"') -> str:
+        """Return the lines of `archief.toml` that answer a question, with a blank."""
+        return f'[[profile]]\nseasons = "{self.season}"\n{key} = {blank}'
 
 
 def _season_range(value: object) -> object:
@@ -127,7 +152,12 @@ class _ProfileTable(_Strict):
     seasons: _Seasons
     columns: dict[Channel, _Text] = {}
     units: dict[Channel, str] = {}
-    sample_rate_hz: Annotated[int, Field(gt=0, le=100_000)] = 1000
+    sample_rate_hz: Annotated[float, Field(ge=1, le=100_000, strict=False)] = 1000.0
+    hold: list[Literal["log2", "gps", "wind_speed", "wind_angle"]] = []
+    runs: Literal["column", "file", "windows"] = "column"
+    run_files: Annotated[str, Field(pattern=r"\{run\}")] = RUN_FILES
+    groups: Annotated[list[_Text], Field(max_length=MOST_RUNS)] = []
+    skip_below_header: Annotated[int, Field(ge=0, le=100)] = 0
     absent: list[Literal["log2", "gps", "wind"]] = []
     reversed: list[Literal["force"]] = []
     wind_zero_deg: Annotated[float, Field(ge=-360, le=360, strict=False)] = 0.0
@@ -137,9 +167,31 @@ class _ProfileTable(_Strict):
     def _units_are_known(self) -> Self:
         for channel, unit in self.units.items():
             known = UNITS[_DIMENSIONS[channel]]
-            if unit.casefold() not in known:
+            if "".join(unit.casefold().split()) not in known:
                 raise ValueError(f"units.{channel}: [{unit}] is not one of {sorted(known)}")
         return self
+
+    def merge(self, other: "_ProfileTable", season: int) -> "_ProfileTable":
+        """Return the settings of two tables for one season.
+
+        Raises:
+            ValueError: they differ in a setting.
+        """
+        values = {name: getattr(self, name) for name in self.model_fields_set}
+        for name in other.model_fields_set - {"seasons"}:
+            theirs, mine = getattr(other, name), values.get(name)
+            if mine is None:
+                values[name] = theirs
+            elif isinstance(mine, dict):
+                twice = [key for key in mine.keys() & theirs.keys() if mine[key] != theirs[key]]
+                if twice:
+                    raise ValueError(f"season {season} has two values for {name}.{twice[0]}")
+                values[name] = mine | theirs
+            elif isinstance(mine, list) and name != "groups":
+                values[name] = [*dict.fromkeys([*mine, *theirs])]
+            elif mine != theirs:
+                raise ValueError(f"season {season} has two values for {name}")
+        return _ProfileTable.model_construct(**values)
 
     def made_of(self, column: Column) -> Column:
         """A column with the name and the unit that it has in these seasons."""
@@ -150,6 +202,7 @@ class _ProfileTable(_Strict):
             also=(*column.also, column.header),
             unit=self.units.get(key, column.unit),
             reversed=key in self.reversed,
+            is_unit_declared=key in self.units,
         )
 
 
@@ -227,11 +280,12 @@ class Profiles(_Strict):
     log_replaced: list[LogReplaced] = []
 
     @model_validator(mode="after")
-    def _one_profile_per_season(self) -> Self:
-        ranges = sorted(table.seasons for table in self.profile)
-        for (_, last), (first, _) in pairwise(ranges):
-            if first <= last:
-                raise ValueError(f"season {first} has two profiles")
+    def _settings_agree(self) -> Self:
+        for place, one in enumerate(self.profile):
+            for other in self.profile[:place]:
+                season = max(one.seasons[0], other.seasons[0])
+                if season <= min(one.seasons[1], other.seasons[1]):
+                    one.merge(other, season)
         return self
 
     @cached_property
@@ -239,11 +293,17 @@ class Profiles(_Strict):
         """What a folded word in a cell stands for."""
         return {fold_word(word): meant for word, meant in self.words.items()}
 
+    @cached_property
+    def whole_headers(self) -> dict[str, str]:
+        """The name with its unit that stands for a folded header, where a unit is given."""
+        return {fold(name): meant for name, meant in self.headers.items() if "[" in meant}
+
     def named(self, columns: Iterable[Column]) -> tuple[Column, ...]:
         """The columns of a list with the other names that they have in this archive."""
         own: dict[str, tuple[str, ...]] = {}
         for name, meant in self.headers.items():
-            own[fold(meant)] = (*own.get(fold(meant), ()), name)
+            key = split_header(meant)[0]
+            own[key] = (*own.get(key, ()), name)
         return tuple(replace(c, also=(*c.also, *own.get(fold(c.header), ()))) for c in columns)
 
     @cached_property
@@ -253,8 +313,10 @@ class Profiles(_Strict):
     def for_season(self, season: int) -> SeasonProfile:
         """The profile of a season; the project's default where none is given."""
         if season not in self._made:
-            given = (t for t in self.profile if t.seasons[0] <= season <= t.seasons[1])
-            table = next(given, _ProfileTable(seasons=f"{season}"))  # type: ignore[arg-type]
+            table = _ProfileTable(seasons=f"{season}")  # type: ignore[arg-type]
+            for given in self.profile:
+                if given.seasons[0] <= season <= given.seasons[1]:
+                    table = table.merge(given, season)
             absent = {key for name in table.absent for key in MAY_BE_ABSENT[name]}
             self._made[season] = SeasonProfile(
                 season=season,
@@ -263,6 +325,11 @@ class Profiles(_Strict):
                 absent=tuple(sorted(table.absent)),
                 wind_zero_deg=table.wind_zero_deg,
                 ignore=(*self.ignore, *table.ignore),
+                hold=tuple(table.hold),
+                runs=table.runs,
+                run_files=table.run_files,
+                groups=tuple(table.groups),
+                skip_below_header=table.skip_below_header,
             )
         return self._made[season]
 
@@ -310,7 +377,12 @@ def parse_profiles(text: str) -> Profiles:
         MissingKnowledgeError: it cannot be understood; the message names the key.
     """
     try:
-        return Profiles.model_validate(parse_toml(text))
+        table = parse_toml(text)
+        blank = _find_blank(table)
+        if blank is not None:
+            raise MissingKnowledgeError("{}: '{}' has no answer yet: replace the ?.",
+                                        PROFILE_FILE, blank)  # fmt: skip
+        return Profiles.model_validate(table)
     except ValidationError as error:
         clauses = [
             say(
@@ -324,3 +396,19 @@ def parse_profiles(text: str) -> Profiles:
         raise MissingKnowledgeError("{}: {}", PROFILE_FILE, said) from error
     except ValueError as error:
         raise MissingKnowledgeError("{} is not valid TOML: {}", PROFILE_FILE, error) from error
+
+
+def _find_blank(value: object, name: str = "") -> str | None:
+    """Return the name of the first value that is still the blank of a question."""
+    if value == BLANK:
+        return name
+    inner: Iterable[tuple[object, object]] = ()
+    if isinstance(value, dict):
+        inner = value.items()
+    elif isinstance(value, list):
+        inner = ((None, one) for one in value)
+    for key, one in inner:
+        found = _find_blank(one, name if key is None else f"{name}.{key}".lstrip("."))
+        if found is not None:
+            return found
+    return None

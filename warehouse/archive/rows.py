@@ -67,6 +67,7 @@ class Rows:
         text: str,
         code: str | None = None,
         lost: Lost | None = None,
+        asks_word: bool = False,
         **facts: Any,
     ) -> None:
         """Adds a fault for rows.
@@ -76,6 +77,7 @@ class Rows:
             text: the sentence.
             code: its reason code; None for that of the list.
             lost: what it costs, if not the row.
+            asks_word: whether a meaning can be given to the word that `cell` is.
             facts: what is filled in: a value, or an expression of the rows.
         """
         of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
@@ -91,7 +93,8 @@ class Rows:
                 message = say("{what} The cell counts as empty.", what=message)
             tow_id = row["about"] if self.kind.about == "tow_id" else None
             place = row["path"], tow_id, row["line"]
-            fault = Fault(*place, code or self.kind.reason_code, message, lost)
+            ask = (_ask_word(filled["cell"]),) if asks_word else ()
+            fault = Fault(*place, code or self.kind.reason_code, message, lost, ask=ask)
             self.faults.append(fault)
             if row["about"]:
                 self.lost.setdefault(row["about"], fault)
@@ -148,6 +151,12 @@ class Rows:
         )
         self.drop(~season.is_between(low, high), text, cell=season, low=low, high=high)
         return table.validate(self.frame.select(table.column_names()), cast=True)
+
+
+def _ask_word(word: str) -> str:
+    """Return the line of `archief.toml` that says what a word means."""
+    quoted = word.replace("\\", "\\\\").replace('"', '\\"')
+    return f'[words]\n"{quoted}" = "?"'
 
 
 def cell(key: str) -> pl.Expr:

@@ -1,39 +1,32 @@
 """Reading the samples of a tow: from its files to one frame of `SAMPLE_SCHEMA`.
 
-    file -> columns by their header, as numbers in SI units -> runs, angles, absent channels
+    files -> tables of numbers -> runs -> SI units, angles, absent channels
 
+The runs are told by a column `run`, by a file for each, or by their begin and end in one recording.
 Form only: whether they can be true is the business of `plausibility`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 import polars as pl
-import pyarrow as pa  # type: ignore[import-untyped]
-import pyarrow.parquet as pq  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
+from pipeline.arrays import IntArray
 from pipeline.channels import MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
 from pipeline.tables.row import Row
-from warehouse.archive.columns import (
-    UNITS,
-    FoundColumn,
-    decode,
-    find_columns,
-    find_header,
-    fold,
-    shorten,
-    split_header,
-    split_line,
-    unknown_headers,
-)
+from warehouse.archive.columns import DefectiveHeaderError
 from warehouse.archive.faults import DefectiveFileError, at_line
-from warehouse.archive.files import MAX_BYTES, path_inside, read_bytes
+from warehouse.archive.files import PARTS, path_inside
 from warehouse.archive.profile import SeasonProfile
+from warehouse.archive.sample_files import SampleTable, check_header, read_table
+
+__all__ = ["check_header", "read_samples", "read_tow_samples", "run_starts", "steps_of"]
 
 OUTPUT_NAMES: Final = {
     "run": "run",
@@ -44,36 +37,26 @@ OUTPUT_NAMES: Final = {
     "wind_speed": "wind_speed_m_s",
     "wind_angle": "wind_angle_deg",
 }
-HEAD_BYTES: Final = 65_536
-"""The header is looked for in so much of a file."""
-TIME_TOLERANCE: Final = 0.01
+RATE_TOLERANCE: Final = 0.01
+"""Relative difference between the rate by the times and the one that is declared."""
+MAX_GAP_S: Final = 1.5
+"""A longer step between two times is a gap, which says nothing of the rate."""
+DAY_S: Final = 86_400
 ENOUGH_FOR_STEPS: Final = 10_000
 """Samples that are enough to see in which steps a channel is written."""
 FEWEST_FOR_STEPS: Final = 3
 """Values that differ."""
-_NUMBER: Final = r"^[+-]?([0-9]+([M][0-9]*)?|[M][0-9]+)([eE][+-]?[0-9]+)?$"
-"""A number with the decimal mark M."""
 
 Place = Callable[[int], tuple[str, int]]
 """The file of a row of a tow's samples and the line in it; of the header where it is negative."""
-
-
-class Header(NamedTuple):
-    """What the header of a samples file says.
-
-    Attributes:
-        line: its line in the file; the rows are below it.
-        columns: the columns that are wanted.
-    """
-
-    line: int
-    delimiter: str
-    names: Sequence[str]
-    columns: dict[str, FoundColumn]
+LineOf = Callable[[int], int]
+"""The line of a row of one file; of the header where it is negative."""
+Windows = dict[int, tuple[float, float]]
+"""Begin and end of each run in a recording [s]."""
 
 
 def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> tuple[pl.DataFrame, Place]:
-    """Reads the samples of a tow, those of a second file behind those of the first.
+    """Read the samples of a tow, those of a second file behind those of the first.
 
     Args:
         root: the archive.
@@ -87,214 +70,158 @@ def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> tuple[pl.D
     Raises:
         DefectiveFileError: the first fault, with the file it is in.
     """
-    paths = [tow["samples_path"], *filter(None, [tow["second_path"]])]
-    frames, headers = [], []
-    for number, path in enumerate(paths):
-        try:
-            full = path_inside(root, path)
-            samples, header_line = read_samples(full, profile, tow["sample_rate_hz"])
-        except DefectiveInputError as error:
-            told = error.reason_code, error.message, error.line, path
-            raise DefectiveFileError(*told) from error
-        offset = pl.lit(SECOND_FILE_OFFSET * number, pl.Int8)
-        frames.append(samples.with_columns(pl.col("run") + offset))
-        headers.append(header_line)
+    files: list[str] = []
+    frames: list[pl.DataFrame] = []
+    lines: list[LineOf] = []
+    windows = read_windows_text(tow.get("run_windows"))
+    for name, numbers, offset in (
+        ("samples_path", "samples_runs", 0),
+        ("second_path", "second_runs", SECOND_FILE_OFFSET),
+    ):
+        paths = tow[name].split(PARTS) if tow[name] else []
+        runs = tow.get(numbers)
+        run_of = [int(run) for run in runs.split(",")] if runs else [None] * len(paths)
+        own = {run - offset: window for run, window in windows.items() if run > offset}
+        own = {run: window for run, window in own.items() if run <= MOST_RUNS}
+        for path, run in zip(paths, run_of, strict=True):
+            with _about_file(path):
+                samples, line_of = read_samples(
+                    path_inside(root, path), profile, tow["sample_rate_hz"], run, own
+                )
+            files.append(path)
+            frames.append(samples.with_columns(pl.col("run") + pl.lit(offset, pl.Int8)))
+            lines.append(line_of)
+    ends = np.cumsum([frame.height for frame in frames])
 
-    def place(row: int) -> tuple[str, int]:
-        first = frames[0].height
-        if row < 0:
-            return paths[0], headers[0]
-        part, row = (1, row - first) if row >= first else (0, row)
-        return paths[part], headers[part] + 1 + row
+    def find_place(row: int) -> tuple[str, int]:
+        part = int(np.searchsorted(ends, row, "right")) if row >= 0 else 0
+        before = int(ends[part - 1]) if part else 0
+        return files[part], lines[part](row - before if row >= 0 else row)
 
-    return pl.concat(frames), place
+    return pl.concat(frames), find_place
+
+
+@contextmanager
+def _about_file(path: str) -> Iterator[None]:
+    """Give a fault the path of the file that it is found in."""
+    try:
+        yield
+    except DefectiveInputError as error:
+        ask = error.ask if isinstance(error, DefectiveHeaderError) else ()
+        told = error.reason_code, error.message, error.line, path
+        raise DefectiveFileError(*told, ask) from error
+
+
+def read_windows_text(text: str | None) -> Windows:
+    """Read the begin and end of runs as `write_windows_text` writes them."""
+    windows = {}
+    for part in text.split(";") if text else ():
+        run, _, seconds = part.partition(":")
+        start, _, end = seconds.partition("-")
+        windows[int(run)] = float(start), float(end)
+    return windows
+
+
+def write_windows_text(windows: Windows) -> str:
+    """Write the begin and end of runs as one text: `1:12.0-62.0;2:70.0-120.0`."""
+    return ";".join(f"{run}:{start!r}-{end!r}" for run, (start, end) in sorted(windows.items()))
 
 
 def read_samples(
-    path: Path, profile: SeasonProfile, sample_rate_hz: int | None = None
-) -> tuple[pl.DataFrame, int]:
-    """Reads one samples file.
+    path: Path,
+    profile: SeasonProfile,
+    sample_rate_hz: float | None = None,
+    run: int | None = None,
+    windows: Windows | None = None,
+) -> tuple[pl.DataFrame, LineOf]:
+    """Read one samples file.
 
     Args:
-        path: text, packed or not, or Parquet.
-        profile: names and units of the columns in that season.
-        sample_rate_hz: rate the time column must agree with; not checked when None.
+        path: text, packed or not, Parquet or TDMS.
+        profile: how the files of that season are written.
+        sample_rate_hz: rate that a time column must agree with; not checked when None.
+        run: the run that the file is, where there is a file for each.
+        windows: begin and end of each run, where the file is one recording.
 
     Returns:
         A frame with the columns of `SAMPLE_SCHEMA`, one row per sample in the order of the file,
-        and the line of the header. What was not measured is null throughout: a GPS that is absent
-        or empty, and what the profile declares absent. Wind angles are brought to [0, 360); one
-        outside -180..360 cannot be an angle and is left as it is, for `judge_samples` to find.
+        and the line of each of its rows. What was not measured is null throughout: a GPS that is
+        absent or empty, and what the profile declares absent. Wind angles are brought to [0, 360);
+        one outside -180..360 cannot be an angle and is left as it is, for `judge_samples` to find.
 
     Raises:
         DefectiveInputError: the first fault that costs the whole file, with its line.
     """
-    read = _read_parquet if path.suffix.lower() == ".parquet" else _read_text
-    header, raw = read(path, profile)
-    if raw.is_empty():
-        said = say("There are no samples below the header.")
-        raise DefectiveInputError("unreadable_file", said)
-    raw = raw.with_columns(header.columns[key].to_si(pl.col(key)) for key in raw.columns)
-    raw = _with_every_run(raw)
-    _check_runs(raw["run"], header.line)
-    if "time" in raw.columns and sample_rate_hz:
-        _check_times(raw, sample_rate_hz, header.line)
-    return _to_schema(raw, profile.wind_zero_deg), header.line
-
-
-def check_header(path: Path, profile: SeasonProfile) -> None:
-    """Reads the columns of a samples file, not its samples.
-
-    Raises:
-        DefectiveInputError: as `read_samples`, for a fault of the header.
-    """
-    if path.suffix.lower() == ".parquet":
-        _parquet_header(path, profile)
+    has_run_column = run is None and profile.runs != "windows"
+    table = read_table(path, profile if has_run_column else profile.with_optional_run())
+    row_of: IntArray | None = None
+    if has_run_column:
+        raw = _with_every_run(table.frame)
+    elif run is not None:
+        raw = _as_one_run(table, run)
     else:
-        start = read_bytes(path, HEAD_BYTES, start_only=True)
-        _header(decode(start[: start.rfind(b"\n")] or start), profile)
+        raw, row_of = _cut_recording(table, profile.season, windows or {}, sample_rate_hz)
+
+    def find_line(row: int) -> int:
+        if row < 0:
+            return table.header_line
+        return table.first_line + (row if row_of is None else int(row_of[row]))
+
+    scaled = [key for key in raw.columns if key not in ("run", "time")]
+    raw = raw.with_columns(table.columns[key].to_si(pl.col(key)) for key in scaled)
+    _check_runs(raw["run"], find_line)
+    if "time" in raw.columns and sample_rate_hz:
+        _check_times(raw, sample_rate_hz, find_line)
+    return _to_schema(raw, profile.wind_zero_deg), find_line
 
 
-def _known(names: Sequence[str], profile: SeasonProfile, line: int = 1) -> dict[str, FoundColumn]:
-    """The columns in a header.
+# Runs and times
 
-    Raises where there is no GPS, but a column that may be one: left out, it changes numbers.
+
+def _as_one_run(table: SampleTable, run: int) -> pl.DataFrame:
+    """Return the samples of a file that is one run; a column `run` in it must say the same."""
+    told = table.frame["run"].drop_nans().unique() if "run" in table.frame.columns else pl.Series()
+    others = [number for number in told if number != run]
+    if others:
+        text = say("This is the file of run {run}, and its column 'run' says {other:g}.")
+        raise DefectiveInputError("unknown_run", say(text, run=run, other=others[0]))
+    return table.frame.with_columns(run=pl.lit(float(run)))
+
+
+def _cut_recording(
+    table: SampleTable, season: int, windows: Windows, rate_hz: float | None
+) -> tuple[pl.DataFrame, IntArray]:
+    """Return the runs of one recording, and the row of the file that each of their rows is.
+
+    A window counts from the first sample, by the time column where there is one.
     """
-    found = find_columns(names, profile.columns, line)
-    can_be_gps = "gps" not in found and any(column.key == "gps" for column in profile.columns)
-    for header in unknown_headers(names, found) if can_be_gps else []:
-        name, unit = split_header(header)
-        if (unit or "").casefold() in UNITS["speed"] and name not in map(fold, profile.ignore):
-            text = say(
-                "Column '{name}' is not known, and there is no 'gps'. Name it under columns of the "
-                "season's profile in archief.toml, or put it there under ignore."
-            )
-            raise DefectiveInputError("unknown_column", say(text, name=shorten(header)), line)
-    return found
-
-
-# Text
-
-
-def _header(text: str, profile: SeasonProfile) -> Header:
-    """The header in the first lines of a text, below titles if there are any."""
-    lines = text.replace("\r", "").split("\n")
-    place, delimiter = find_header(lines, profile.columns)
-    names = split_line(lines[place], delimiter)
-    return Header(place + 1, delimiter, names, _known(names, profile, place + 1))
-
-
-def _read_text(path: Path, profile: SeasonProfile) -> tuple[Header, pl.DataFrame]:
-    """Reads a table of text: the quick way where every cell is a number, else cell by cell."""
-    data = read_bytes(path)
-    if not data.isascii() or b"\x00" in data or not data[:100].strip():
-        data = decode(data).encode()
-    header = _header(data[:HEAD_BYTES].decode(errors="ignore"), profile)
-    body = b"".join(data.split(b"\n", header.line)[header.line :]).rstrip(b"\r\n")
-    frame = _read_fast(body, header) if body else None
-    return header, _read_cells(body, header) if frame is None else frame
-
-
-def _read_fast(body: bytes, header: Header) -> pl.DataFrame | None:
-    """The columns; None where a cell is not a number, or a row has not all its fields."""
-    is_comma = header.delimiter != "," and b"," in body
-    is_odd = b'"' in body or (b"\r" in body and body.count(b"\r") != body.count(b"\r\n"))
-    if is_odd or (is_comma and b"." in body):
-        return None
-    wanted = {column.index: key for key, column in header.columns.items()}
-    schema = {
-        wanted.get(index, f"ignored {index}"): pl.Float64() if index in wanted else pl.String()
-        for index in range(len(header.names))
-    }
-    try:
-        frame = pl.read_csv(
-            body,
-            has_header=False,
-            separator=header.delimiter,
-            quote_char=None,
-            decimal_comma=is_comma,
-            schema=schema,
-        ).select(wanted.values())
-    except pl.exceptions.PolarsError:
-        return None
-    is_whole = all(
-        column.null_count() == 0 and np.isfinite(column.to_numpy()).all()
-        for column in frame.iter_columns()
-    )
-    return frame if is_whole else None
-
-
-def _read_cells(body: bytes, header: Header) -> pl.DataFrame:
-    """The same columns, NaN where a cell is not a number or its row has not all its fields.
-
-    A column has one decimal mark: among commas 1.012 can be a thousand and twelve.
-    """
-    lines = pl.Series(body.decode().split("\n") if body else [], dtype=pl.String)
-    fields = lines.str.strip_suffix("\r").str.split(header.delimiter)
-    is_whole = fields.list.len() == len(header.names)
-    found: dict[str, pl.Series] = {}
-    for key, column in header.columns.items():
-        cells = fields.list.get(column.index, null_on_oob=True).str.strip_chars(" \t")
-        cells = cells.str.replace(r'^"([^"]*)"$', "$1").str.strip_chars(" \t")
-        if key == "gps" and (cells == "").all():
-            continue
-        commas, points = (cells.str.contains(mark, literal=True).sum() for mark in ",.")
-        pattern = _NUMBER.replace("M", "," if commas >= points else ".")
-        numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
-        is_good = cells.str.contains(pattern) & is_whole & numbers.is_finite()
-        found[key] = pl.select(pl.when(is_good).then(numbers).otherwise(float("nan"))).to_series()
-    return pl.DataFrame(found)
-
-
-# Parquet
-
-
-def _read_parquet(path: Path, profile: SeasonProfile) -> tuple[Header, pl.DataFrame]:
-    header, rows = _parquet_header(path, profile)
-    if max(rows * len(header.columns) * 8, path.stat().st_size) > MAX_BYTES:
+    if not windows:
         text = say(
-            "'{name}' holds more than {limit:.0f} MB, unpacked; a samples file is about 12 MB."
+            "Nobody says where the runs are in this recording: give begin and end of each in "
+            "sleeplijsten/vensters_{season}.csv."
         )
-        said = say(text, name=path.name, limit=MAX_BYTES / 1e6)
-        raise DefectiveInputError("too_large", said)
-    names = {header.names[column.index]: key for key, column in header.columns.items()}
-    try:
-        frame = pl.DataFrame(pl.from_arrow(pq.read_table(path, columns=[*names])))
-    except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
-        raise _not_whole(path, error) from error
-    numbers = {}
-    for name, key in names.items():
-        cells = frame[name]
-        if cells.null_count() == len(cells) and key == "gps":
-            continue
-        if not cells.dtype.is_numeric():
-            text = say("Column '{column}' holds {kind}, not numbers.")
-            raise DefectiveInputError("bad_number", say(text, column=name, kind=cells.dtype))
-        numbers[key] = cells.cast(pl.Float64()).fill_null(float("nan"))
-    return header, pl.DataFrame(numbers)
-
-
-def _parquet_header(path: Path, profile: SeasonProfile) -> tuple[Header, int]:
-    """The header of a Parquet file, and how many rows it has."""
-    try:
-        with pq.ParquetFile(path) as file:
-            names, rows = list(file.schema_arrow.names), file.metadata.num_rows
-    except (OSError, ValueError, pa.ArrowException) as error:
-        raise _not_whole(path, error) from error
-    return Header(1, "", names, _known(names, profile)), rows
-
-
-def _not_whole(path: Path, error: Exception) -> DefectiveInputError:
-    text = say("'{name}' is not a whole {kind} file: {error}.")
-    said = say(text, name=path.name, kind="Parquet", error=error)
-    return DefectiveInputError("unreadable_file", said)
-
-
-# Runs, times and the schema
+        raise DefectiveInputError("missing_run", say(text, season=season))
+    rows = np.arange(table.frame.height)
+    if "time" in table.frame.columns:
+        times = table.frame["time"].to_numpy()
+        seconds = np.nan_to_num(times - np.nanmin(times), nan=-1.0)
+    else:
+        seconds = rows / (rate_hz or 1.0)
+    number = np.zeros(len(rows))
+    for run, (start, end) in windows.items():
+        number[(seconds >= start - 1e-9) & (seconds < end - 1e-9)] = run
+    is_in_run = number > 0
+    kept = rows[is_in_run]
+    if not len(kept):
+        said = say("The recording lasts {seconds:.1f} s, and no run begins in it.",
+                   seconds=float(seconds.max()))  # fmt: skip
+        raise DefectiveInputError("missing_run", said)
+    frame = table.frame.with_columns(run=pl.Series(number)).filter(pl.Series(is_in_run))
+    return frame, kept
 
 
 def _with_every_run(raw: pl.DataFrame) -> pl.DataFrame:
-    """The samples with every row in a run: one whose run cannot be read holds no numbers."""
+    """Return the samples with every row in a run; one whose run cannot be read holds no numbers."""
     unread = raw["run"].is_nan()
     if not unread.any():
         return raw
@@ -305,52 +232,63 @@ def _with_every_run(raw: pl.DataFrame) -> pl.DataFrame:
     return raw.with_columns(run, pl.when(unread).then(float("nan")).otherwise(others).name.keep())
 
 
-def _check_runs(run: pl.Series, header_line: int) -> None:
-    """Every run must have a number that exists, and be one piece."""
+def _check_runs(run: pl.Series, line_of: LineOf) -> None:
+    """Raise where a run has a number that does not exist, or is not one piece."""
     is_known = run.is_in([float(number) for number in range(1, MOST_RUNS + 1)])
     if not is_known.all():
         row = int((~is_known).arg_max() or 0)
         text = say("run {run:g} does not exist; runs are numbered 1 to {last}.")
-        raise _at(header_line, row, "unknown_run", say(text, run=run[row], last=MOST_RUNS))
+        raise _at(line_of(row), "unknown_run", say(text, run=run[row], last=MOST_RUNS))
     starts = run_starts(run.to_numpy())
     again = starts[(~run.gather(starts).is_first_distinct()).to_numpy()]
     if len(again):
         row = int(again[0])
         text = say("run {run:g} begins again; its rows must be together.")
-        raise _at(header_line, row, "split_run", say(text, run=run[row]))
+        raise _at(line_of(row), "split_run", say(text, run=run[row]))
 
 
-def _at(header_line: int, row: int, code: str, what: str) -> DefectiveInputError:
-    line = header_line + 1 + row
+def _at(line: int, code: str, what: str) -> DefectiveInputError:
     return DefectiveInputError(code, at_line(line, what), line)
 
 
 def run_starts(run: NDArray[np.generic]) -> NDArray[np.intp]:
-    """The row at which each run begins."""
+    """Return the row at which each run begins."""
     return np.flatnonzero(np.concatenate(([True], run[1:] != run[:-1])))
 
 
-def _check_times(raw: pl.DataFrame, rate_hz: int, header_line: int) -> None:
-    """In every run the time must rise, at the rate that the list or the profile says.
-
-    Raises:
-        DefectiveInputError: `bad_time`.
-    """
-    step_s = pl.col("time").diff().fill_nan(None)
-    runs = raw.with_row_index("row").group_by("run", maintain_order=True)
-    found = runs.agg(pl.col("row").first(), turns=(step_s <= 0).any(), hz=1 / step_s.median())
-    for run, row, turns, hz in found.rows():
-        if turns or (hz and abs(hz / rate_hz - 1) > TIME_TOLERANCE):
+def _check_times(raw: pl.DataFrame, rate_hz: float, line_of: LineOf) -> None:
+    """Raise where the times of a run jump back, or rise at another rate than is declared."""
+    step_s = pl.col("time").diff()
+    # A clock begins again at midnight.
+    step_s = pl.when(step_s < -DAY_S / 2).then(step_s + DAY_S).otherwise(step_s).fill_nan(None)
+    frame = raw.with_row_index("row").with_columns(step=step_s.over("run"))
+    runs = frame.group_by("run", maintain_order=True)
+    step = pl.col("step")
+    found = runs.agg(
+        pl.col("row").first(),
+        turn=pl.col("row").filter(step < 0).first(),
+        # Times may be rounded, so that some are equal; and seconds may be missing between two.
+        usual=1 / step.median(),
+        average=1 / step.filter(step < MAX_GAP_S).mean(),
+    )
+    for run, row, turn, *rates in found.rows():
+        if turn is not None:
+            what = say("the times of run {run:g} jump back.", run=run)
+            raise _at(line_of(turn), "bad_time", what)
+        known = [rate for rate in rates if rate]
+        hz = known[-1] if known else 0.0
+        if not any(abs(rate / rate_hz - 1) <= RATE_TOLERANCE for rate in known):
             text = say(
-                "run {run:g} has {observed:g} samples per second by its times, or its times jump "
-                "back; by the list or the profile it is {rate}."
+                "run {run:g} has {observed:.6g} samples per second by its times; by the list or "
+                "the profile it is {rate:.6g}. Correct 'meetfrequentie' in the tow list, or "
+                "sample_rate_hz under [[profile]]."
             )
             what = say(text, run=run, observed=hz, rate=rate_hz)
-            raise _at(header_line, row, "bad_time", what)
+            raise _at(line_of(row), "bad_time", what)
 
 
 def _to_schema(raw: pl.DataFrame, wind_zero_deg: float) -> pl.DataFrame:
-    """The frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
+    """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
     absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
     raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
     angle = pl.col("wind_angle")
@@ -366,7 +304,7 @@ def _to_schema(raw: pl.DataFrame, wind_zero_deg: float) -> pl.DataFrame:
 
 
 def steps_of(samples: pl.DataFrame) -> dict[str, float | None]:
-    """In which steps readings are written: the least difference between two of GPS and of force.
+    """Return in which steps GPS and force are written: the least difference between two readings.
 
     Coarse steps do no harm where readings are rounded, as the unrest of a run is larger. Nothing in
     the samples tells whether they were rounded or cut off, which makes all half a step too small.

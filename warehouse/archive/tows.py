@@ -15,9 +15,16 @@ from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import ListedRuns
-from warehouse.archive.files import SAMPLES, ArchiveFile, Hashes, match_key
+from warehouse.archive.files import (
+    PARTS,
+    SAMPLES,
+    ArchiveFile,
+    Hashes,
+    combine_hashes,
+    match_key,
+)
 from warehouse.archive.kinds import TOWS
-from warehouse.archive.list_rules import Boats
+from warehouse.archive.list_rules import Boats, name_boats
 from warehouse.archive.profile import Plan, Profiles, SeasonProfile
 from warehouse.archive.rows import Rows, cell
 
@@ -36,6 +43,7 @@ def check_tows(
     profiles: Profiles,
     checks: pl.DataFrame,
     burned: pl.DataFrame,
+    recordings: Mapping[str, str],
 ) -> dict[str, frozenset[int]]:
     """Keeps the rows of tows that can be used, with all that is known of them.
 
@@ -46,6 +54,7 @@ def check_tows(
         profiles: `archief.toml`.
         checks: the load cell by season and day, as `read_force_checks` gives it.
         burned: how long a lamp burned, as `read_lamps` gives it.
+        recordings: begin and end of the runs of tows whose file is one recording, as text.
 
     Returns:
         The runs to use of every tow; runs of the second file are 21 and on.
@@ -57,14 +66,22 @@ def check_tows(
     )
     rows.drop_repeated(["tow_id"], text, "duplicate_tow_id")
     rows.drop_other_years("tow_date", "date_outside_season")
+    name_boats(rows, boats)
     selections = _selections(rows, profiles)
+    samples = _with_run_files(rows, samples, profiles)
     for key in ("file", "second_file"):
         _with_samples(rows, key, samples)
     _check_own_samples(rows)
     _with_boat(rows, boats)
     _with_season(rows, profiles)
     _with_instruments(rows, profiles, checks, burned)
-    rows.frame = rows.frame.with_columns(list_path="path", list_line="line")
+    rows.frame = rows.frame.with_columns(
+        run_windows=pl.col("tow_id").replace_strict(
+            recordings, default=None, return_dtype=pl.String
+        ),
+        list_path="path",
+        list_line="line",
+    )
     return selections
 
 
@@ -122,7 +139,51 @@ def samples_by_name(files: Iterable[ArchiveFile], hashes: Hashes) -> pl.DataFram
     schema = {"season": pl.Int32, "name": pl.String, "inside": pl.Boolean}
     frame = pl.DataFrame(found, schema | {"path": pl.String, "sha256": pl.String}, orient="row")
     first = pl.col("inside", "path", "sha256").first()
-    return frame.group_by("season", "name", maintain_order=True).agg(first, number=pl.len())
+    return frame.group_by("season", "name", maintain_order=True).agg(
+        first, number=pl.len(), runs=pl.lit(None, pl.String)
+    )
+
+
+def run_file_names(cell: str, profile: SeasonProfile, plan: Plan) -> dict[int, str]:
+    """Return the names of the files of each run of a tow; none where all runs are in one file.
+
+    The cell of the tow list has `{run}` for the number of the run, or else the profile says that
+    there is a file for each run, and how these are named.
+    """
+    if "{run}" in cell:
+        pattern = cell
+    elif profile.runs == "file":
+        pattern = profile.run_files.replace("{meetfile}", match_key(cell))
+    else:
+        return {}
+    return {run: match_key(pattern.replace("{run}", str(run))) for run in plan.runs}
+
+
+def _with_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl.DataFrame:
+    """Return the samples with an entry for each tow that has a file for each run."""
+    known = {(row["season"], row["name"]): row for row in samples.iter_rows(named=True)}
+    together: dict[tuple[int, str], dict[str, Any]] = {}
+    facts = rows.frame.select("tow_id", "season", "file", "second_file")
+    for tow_id, season, *cells in facts.iter_rows():
+        plan, profile = profiles.plan_of(tow_id, season), profiles.for_season(season)
+        for cell_text in filter(None, cells):
+            names = run_file_names(cell_text, profile, plan)
+            parts = {run: known[season, name] for run, name in names.items()
+                     if (season, name) in known}  # fmt: skip
+            if not parts:
+                continue
+            hashes = [part["sha256"] for part in parts.values()]
+            together[season, match_key(cell_text)] = {
+                "season": season,
+                "name": match_key(cell_text),
+                "inside": all(part["inside"] for part in parts.values()),
+                "path": PARTS.join(part["path"] for part in parts.values()),
+                "sha256": None if None in hashes else combine_hashes(hashes),
+                "number": max(part["number"] for part in parts.values()),
+                "runs": ",".join(map(str, parts)),
+            }
+    entries = known | together
+    return pl.DataFrame([*entries.values()], samples.schema, orient="row")
 
 
 def _with_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
@@ -132,7 +193,7 @@ def _with_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
     cell_of = pl.col(key)
     facts: dict[str, Any] = {"name": pl.col(key), "season": pl.col("season")}
     rows.drop(cell_of.str.contains(r"[/\\]|^\.\."), text, "path_outside_archive", **facts)
-    named = samples.rename({"path": f"{prefix}_path", "sha256": f"{prefix}_sha256"})
+    named = samples.rename({name: f"{prefix}_{name}" for name in ("path", "sha256", "runs")})
     name = cell_of.map_elements(match_key, pl.String)
     rows.frame = rows.frame.with_columns(name=name).join(
         named, on=["season", "name"], how="left", maintain_order="left"
@@ -213,7 +274,7 @@ def _with_season(rows: Rows, profiles: Profiles) -> None:
     def of_season(read: Callable[[SeasonProfile], object], dtype: pl.DataType) -> pl.Expr:
         return _by(rows, "season", lambda season: read(profiles.for_season(season)), dtype)
 
-    rate = of_season(lambda profile: profile.sample_rate_hz, pl.Int32())
+    rate = of_season(lambda profile: profile.sample_rate_hz, pl.Float64())
     rows.frame = rows.frame.with_columns(
         wind_measured=of_season(lambda profile: "wind" not in profile.absent, pl.Boolean()),
         log2_measured=of_season(lambda profile: "log2" not in profile.absent, pl.Boolean()),

@@ -241,7 +241,7 @@ def _swapped(path: Path, archive: Path | None, hashes: FileHashes) -> Iterator[F
         if not (archive / file).is_file():
             message = say("{} is gone from the archive; put it back", file)
             yield Finding(path.name, "missing", file, message)
-        elif hashes.hash_file(archive / file) != sha256:
+        elif hashes.hash_samples(archive, file) != sha256:
             message = say("{} is not the file that the edition was made from", file)
             listed = kind == LIST  # a list grows, and each of its rows is compared below
             yield Finding(

@@ -178,7 +178,7 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
     for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
         now = None  # also where a file went away
         with suppress(FileNotFoundError):
-            now = tow[path] and hashes.hash_file(root / tow[path])
+            now = tow[path] and hashes.hash_samples(root, tow[path])
         if now != tow[sha256]:
             raise ArchiveChangedError(
                 "{} changed while it was read. Try again when nobody is copying files into {}",
@@ -198,7 +198,10 @@ def _known_tows(store: Store, season: int) -> dict[str, Row]:
 
 
 def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
-    names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
+    names = (
+        *("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s"),
+        *("samples_runs", "second_runs", "run_windows"),
+    )
     facts = [tow[n] for n in names], runs.sort("run").rows()
     return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READING))
 

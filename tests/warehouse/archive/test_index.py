@@ -18,6 +18,10 @@ from warehouse.archive import (
 )
 from warehouse.archive import lists as reading
 
+TWO_RATES = (
+    '[[profile]]\nseasons = "2012:2014"\nsample_rate_hz = 5\n'
+    '[[profile]]\nseasons = "2014"\nsample_rate_hz = 6\n'
+)
 SAMPLE_ARCHIVE = Path(__file__).parents[2] / "data" / "sample-archive"
 NEXT_TOW = "2014-009;2014-03-09;FSN1;tweede;{second};8;H;2,40;;;;;;;;;{runs};nee;20;\n"
 
@@ -121,7 +125,10 @@ def test_a_replaced_log_begins_a_new_part_of_its_season(archive: Archive) -> Non
         ('[[profile]]\nseasons = "2014"\ncolumns = { log3 = "x" }', "log3"),
         ('[[profile]]\nseasons = "2014"\nunits = { force = "stoon" }', "stoon"),
         ('[[profile]]\nseasons = "2014:2012"', "2014:2012"),
-        ('[[profile]]\nseasons = "2012:2014"\n[[profile]]\nseasons = "2014"', "2014"),
+        (
+            TWO_RATES,
+            "2014",
+        ),
         ("[[set_aside]]\ndate = 2014-03-01", "reason"),
         ("simulated = ", "TOML"),
     ],
