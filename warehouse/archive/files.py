@@ -11,9 +11,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
 import pyarrow as pa  # type: ignore[import-untyped]
+from zlib_ng import zlib_ng
 
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import say
@@ -38,6 +39,9 @@ PARTS: Final = " | "
 """Between the files of a tow that has a file for each run."""
 MAX_BYTES: Final = 250_000_000
 """Size of a file, unpacked; one tow of six runs at 1000 Hz is 12 MB."""
+UNPACKING_ERROR: Final[type[Exception]] = zlib_ng.error  # type: ignore[assignment]
+"""The stubs of zlib-ng declare an instance."""
+PIECE_BYTES: Final = 1 << 24
 RACY_SECONDS: Final = 2.0
 """A file this fresh can change again without a change of its time stamp (coarse clocks), so its
 hash is not remembered; git calls such an index entry racy."""
@@ -158,9 +162,11 @@ def read_bytes(path: Path, most: int = MAX_BYTES, start_only: bool = False) -> b
             size = os.fstat(raw.fileno()).st_size
             if compression is None:
                 content = raw.read(min(size, most + 1))
+            elif compression == "gzip":
+                content = _unpack_gzip(raw, most + 1)
             else:
-                content = _unpacked(raw, compression, most + 1)
-    except (OSError, pa.ArrowException) as error:
+                content = _unpack(raw, compression, most + 1)
+    except (OSError, EOFError, UNPACKING_ERROR, pa.ArrowException) as error:
         said = say("'{name}' cannot be read or unpacked: {error}.", name=path.name, error=error)
         raise DefectiveInputError("unreadable_file", said) from error
     if len(content) > most and not start_only:
@@ -171,11 +177,28 @@ def read_bytes(path: Path, most: int = MAX_BYTES, start_only: bool = False) -> b
     return content
 
 
-def _unpacked(raw: object, compression: str, most: int) -> bytes:
-    """The first bytes of a packed file: a small one can unpack to gigabytes."""
+def _unpack_gzip(raw: BinaryIO, most: int) -> bytes:
+    """Return the first bytes of a gzip file; zlib-ng takes half the time of Arrow's gzip."""
+    pieces: list[bytes] = []
+    packed = b""
+    while most > 0 and (packed := packed or raw.read(PIECE_BYTES)):
+        member = zlib_ng.decompressobj(wbits=31)  # with the header and the checksum of gzip
+        while most > 0 and not member.eof:
+            packed = packed or raw.read(PIECE_BYTES)
+            if not packed:
+                raise EOFError("the file ends in the middle of a packed part")
+            piece = member.decompress(packed, most)
+            packed = member.unused_data or member.unconsumed_tail
+            pieces.append(piece)
+            most -= len(piece)
+    return b"".join(pieces)
+
+
+def _unpack(raw: object, compression: str, most: int) -> bytes:
+    """Return the first bytes of a packed file: a small one can unpack to gigabytes."""
     pieces: list[bytes] = []
     with pa.CompressedInputStream(pa.PythonFile(raw, mode="r"), compression) as stream:
-        while most > 0 and (piece := stream.read(min(1 << 20, most))):
+        while most > 0 and (piece := stream.read(min(PIECE_BYTES, most))):
             pieces.append(piece)
             most -= len(piece)
     return b"".join(pieces)

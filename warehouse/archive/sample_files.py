@@ -220,7 +220,7 @@ def _read_text(path: Path, profile: SeasonProfile) -> SampleTable:
         data = decode(data).encode()
     header = _header(data[:HEAD_BYTES].decode(errors="ignore"), profile)
     above = header.line + profile.skip_below_header
-    body = b"".join(data.split(b"\n", above)[above:]).rstrip(b"\r\n")
+    body = _cut_body(data, above)
     hold = frozenset(profile.hold)
     frame = _read_fast(body, header, hold) if body else None
     if frame is None:
@@ -230,6 +230,19 @@ def _read_text(path: Path, profile: SeasonProfile) -> SampleTable:
     frame = _hold_slow_channels(frame, profile.hold)
     frame = _with_seconds(frame, header, profile, above + 1)
     return SampleTable(frame, header.columns, header.line, above + 1)
+
+
+def _cut_body(data: bytes, above: int) -> bytes:
+    """Return what is below so many lines, without blank lines at the end."""
+    start = 0
+    for _ in range(above):
+        start = data.find(b"\n", start) + 1
+        if not start:
+            return b""
+    end = len(data)
+    while end > start and data[end - 1] in b"\r\n":
+        end -= 1
+    return data[start:end]
 
 
 def _read_fast(body: bytes, header: Header, hold: frozenset[str]) -> pl.DataFrame | None:
@@ -256,15 +269,13 @@ def _read_fast(body: bytes, header: Header, hold: frozenset[str]) -> pl.DataFram
         ).select(wanted.values())
     except pl.exceptions.PolarsError:
         return None
-    is_whole = all(
-        key in as_text
-        or (
-            (column.null_count() == 0 or key in hold)
-            and np.isfinite(column.drop_nulls().to_numpy()).all()
-        )
-        for key, column in zip(frame.columns, frame.iter_columns(), strict=True)
-    )
-    return frame if is_whole else None
+    for key, column in zip(frame.columns, frame.iter_columns(), strict=True):
+        if key in as_text:
+            continue
+        has_gap = column.null_count() > 0 and key not in hold
+        if has_gap or not np.isfinite(float(column.sum())):  # not a number, or infinite, in any row
+            return None
+    return frame
 
 
 def _read_cells(body: bytes, header: Header) -> pl.DataFrame:

@@ -42,6 +42,8 @@ RATE_TOLERANCE: Final = 0.01
 MAX_GAP_S: Final = 1.5
 """A longer step between two times is a gap, which says nothing of the rate."""
 DAY_S: Final = 86_400
+HIGHEST_ANGLE_DEG: Final = 359.999
+"""Above it an angle can become 360 in 32 bits."""
 ENOUGH_FOR_STEPS: Final = 10_000
 """Samples that are enough to see in which steps a channel is written."""
 FEWEST_FOR_STEPS: Final = 3
@@ -234,12 +236,11 @@ def _with_every_run(raw: pl.DataFrame) -> pl.DataFrame:
 
 def _check_runs(run: pl.Series, line_of: LineOf) -> None:
     """Raise where a run has a number that does not exist, or is not one piece."""
-    is_known = run.is_in([float(number) for number in range(1, MOST_RUNS + 1)])
-    if not is_known.all():
-        row = int((~is_known).arg_max() or 0)
-        text = say("run {run:g} does not exist; runs are numbered 1 to {last}.")
-        raise _at(line_of(row), "unknown_run", say(text, run=run[row], last=MOST_RUNS))
     starts = run_starts(run.to_numpy())
+    for row in starts.tolist():
+        if run[row] not in range(1, MOST_RUNS + 1):
+            text = say("run {run:g} does not exist; runs are numbered 1 to {last}.")
+            raise _at(line_of(row), "unknown_run", say(text, run=run[row], last=MOST_RUNS))
     again = starts[(~run.gather(starts).is_first_distinct()).to_numpy()]
     if len(again):
         row = int(again[0])
@@ -292,15 +293,21 @@ def _to_schema(raw: pl.DataFrame, wind_zero_deg: float) -> pl.DataFrame:
     absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
     raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
     angle = pl.col("wind_angle")
-    turned = ((angle - wind_zero_deg) % 360).cast(pl.Float32)
-    turned = pl.when(turned == 360).then(0.0).otherwise(turned)  # 359.99999999 in 32 bits
-    wrapped = pl.when(angle.is_between(-180, 360)).then(turned).otherwise(angle)
-    samples = raw.with_columns(wrapped.alias("wind_angle")).select(
+    lowest, highest = raw["wind_angle"].min(), raw["wind_angle"].max()
+    is_within = isinstance(lowest, float) and isinstance(highest, float)
+    if wind_zero_deg or not (is_within and lowest >= 0 and highest < HIGHEST_ANGLE_DEG):  # type: ignore[operator]
+        turned = ((angle - wind_zero_deg) % 360).cast(pl.Float32)
+        turned = pl.when(turned == 360).then(0.0).otherwise(turned)
+        wrapped = pl.when(angle.is_between(-180, 360)).then(turned).otherwise(angle)
+        raw = raw.with_columns(wrapped.alias("wind_angle"))
+    samples = raw.select(
         pl.col(key).cast(SAMPLE_SCHEMA[name]).alias(name) for key, name in OUTPUT_NAMES.items()
     )
-    floats = pl.selectors.float()  # a number such as 1e39 is finite in 64 bits and not in 32
-    finite = pl.when(floats.is_infinite()).then(float("nan")).otherwise(floats)
-    return samples.with_columns(finite.name.keep())
+    # A number such as 1e39 is finite in 64 bits and not in 32.
+    infinite = [column.name for column in samples.iter_columns()
+                if column.dtype.is_float() and column.is_infinite().any()]  # fmt: skip
+    floats = pl.col(infinite)
+    return samples.with_columns(pl.when(floats.is_infinite()).then(float("nan")).otherwise(floats))
 
 
 def steps_of(samples: pl.DataFrame) -> dict[str, float | None]:
