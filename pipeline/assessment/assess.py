@@ -17,7 +17,7 @@ import polars as pl
 from pipeline.assessment.checks import CHECK, CHECKS, CODES, Check
 from pipeline.choice import SAME_SHARE
 from pipeline.season_log.diagnosis import FAULT
-from pipeline.season_log.effects import FLEET
+from pipeline.season_log.observation_model import FLEET
 from pipeline.tables.keys import LINE, SIZES
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
@@ -58,15 +58,17 @@ def assess(
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
         weight not known, season after its last) has no row.
     """
-    boats = _with_boats(curves, tows)
+    boats = _add_boats(curves, tows)
     facts = [
         _beside_papers(tows),
         curves.drop(set(curves.columns) & set(tows.columns) - {"tow_id"}),
         _of_runs(curves, run_points),
         _of_season(curves, tows, diagnosis),
         _of_log(curves, run_points),
-        _beside_previous(boats, curves, diagnosis),
-        _beside_like_boats(boats),
+        _compare_with_previous(boats, curves, diagnosis),
+        _compare_with_best_estimate(curves),
+        _compare_with_season_and_type(boats),
+        _compare_with_type(boats, curves, diagnosis),
     ]
     return checked(reduce(_joined, facts, tows).with_columns(by_half_a_step=BY_HALF_A_STEP))
 
@@ -204,20 +206,17 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     declared, target = pl.col("declared_speed_m_s"), pl.col("target_speed_ratio")
     on_curve = pl.col("cw_kg_m") / pl.col("fitted_cw_kg_m")
     least, most = ((speed / declared).min(), (speed / declared).max())
-    on_target = speed / (target * declared)
-    log1 = speed / pl.col("speed_factor")
     return (
-        run_points.with_columns(
+        measure_runs(curves, run_points)
+        .with_columns(
             lowest_target=target.min().over("tow_id"), highest_target=target.max().over("tow_id")
         )
         .filter("used")
-        .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id", maintain_order="left")
         .group_by("tow_id", maintain_order=True)
         .agg(
+            pl.col(PER_RUN.values()).max(),
             unbalanced=way.cast(pl.Int32).sum().abs(),
             out_over_back=on_curve.filter(way > 0).mean() / on_curve.filter(way < 0).mean(),
-            log2_off_m_s=((pl.col("log2_ratio") - 1) * log1).abs().max(),
-            off_target=(on_target / on_target.median() - 1).abs().max(),
             shortfall=pl.max_horizontal(
                 least - pl.col("lowest_target").first(), pl.col("highest_target").first() - most
             ),
@@ -226,19 +225,71 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Tows with a curve, with the boat of the day, sorted by date.
+LEAST_USUAL_SCATTER: Final = 0.05
+"""Least standard deviation of samples over Cw that counts as usual: half of the 10 % under which
+nothing is too much (Sleepproef, R. Pot 2017, "Eerste beoordeling")."""
 
-    `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
-    `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is
-    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed.
+PER_RUN: Final = {
+    "off_target_speed": "off_target",
+    "log2_differs": "log2_off_m_s",
+    "large_scatter_in_run": "scatter",
+    "samples_scatter": "samples_scatter",
+}
+"""Checks of single runs, with the column of `measure_runs` that each looks at: a tow is marked for
+the largest value among the runs that count."""
+
+
+def measure_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    """Return run points with what `PER_RUN` judges, null for runs that do not count.
+
+    Args:
+        curves, run_points: the tables of one method, with all tows of a season.
+
+    Returns:
+        The rows with `season` and `declared_speed_m_s` and
+
+        - `off_target`: distance of speed / intended speed from the median of the tow, as a ratio,
+        - `log2_off_m_s`: distance of log 2 from log 1, m/s,
+        - `scatter`: standard deviation of the means of F / v^2 per second over their mean,
+        - `samples_scatter`: the same of the samples, over the median of all runs of the season;
+          both only where the method cuts runs.
+    """
+    used, is_cut = pl.col("used"), pl.col("ends_ratio").is_not_null()
+    on_target = pl.col("speed_m_s") / (pl.col("target_speed_ratio") * pl.col("declared_speed_m_s"))
+    level = on_target.filter(used).median().over("tow_id")
+    log1_m_s = pl.col("speed_m_s") / pl.col("speed_factor")
+    gross = pl.col("gross_cw_kg_m")
+    of_samples = pl.when(used & is_cut & (gross > 0)).then(pl.col("cw_sd") / gross)
+    usual = of_samples.median().over("season").clip(lower_bound=LEAST_USUAL_SCATTER)
+    of_runs = {
+        "off_target": (on_target / level - 1).abs(),
+        "log2_off_m_s": ((pl.col("log2_ratio") - 1) * log1_m_s).abs(),
+        "scatter": pl.when(is_cut & (gross > 0)).then(pl.col("cw_seconds_sd_kg_m") / gross),
+        "samples_scatter": of_samples / usual,
+    }
+    return run_points.join(
+        curves.select("tow_id", "season", "declared_speed_m_s"), on="tow_id", maintain_order="left"
+    ).with_columns(**{name: pl.when(used).then(value) for name, value in of_runs.items()})
+
+
+def _add_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Return tows with a curve, with the boat of the day, sorted by date.
+
+    Where the method knows the boat by all of its tows, A and Cw are moved to its best estimate: a
+    tow that is off does not make the boat another. `size` is sqrt(displacement x waterline length):
+    wetted surface follows it (docs of `pipeline.steps.resistance`), and friction, most of Cw,
+    follows wetted surface. `s_s2_m2` is 1/B^2, also of a flat or falling curve, from A and Cw at
+    the declared speed.
     """
     of_tow = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
     displacement = pl.col("weight_kg") + pl.col("crew_weight_kg")
+    best_ratio = (pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).fill_null(1.0)
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
         .join(tows.select("tow_id", "boat_type", *of_tow), on="tow_id", maintain_order="left")
         .with_columns(
+            pl.col("a_kg_m", "cw_kg_m") * best_ratio,
+            is_best=pl.col("cw_best_kg_m").is_not_null(),
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
         )
@@ -311,13 +362,24 @@ def _of_log(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     return seasons.join(found, on="season", maintain_order="left").select("tow_id", "log_slope")
 
 
-def _beside_previous(
+def _compare_with_best_estimate(curves: pl.DataFrame) -> pl.DataFrame:
+    """Return Cw as measured over the best estimate, less 1, of boats with more than one tow.
+
+    The best estimate takes the boat's other tows into account, and that it may have been altered:
+    what is left is the tow's own (pulled askew, a zero, a file of another boat).
+    """
+    of_line = curves.filter(pl.col("cw_kg_m").is_not_null() & (pl.len().over(LINE) > 1))
+    return of_line.select("tow_id", over_best=pl.col("cw_kg_m") / pl.col("cw_best_kg_m") - 1)
+
+
+def _compare_with_previous(
     boats: pl.DataFrame, curves: pl.DataFrame, diagnosis: pl.DataFrame
 ) -> pl.DataFrame:
-    """Cw over that of the previous tow of boat and crew, at its declared speed, less 1.
+    """Return Cw over that of the previous tow of boat and crew, at its declared speed, less 1.
 
-    Less what weight and length explain; null where there is none before, or an alteration was
-    reported. Between seasons whose logs are not on one scale, what all boats changed together is no
+    As `boat_change` by best estimates, where the method has them, else as `curve_change`. Less what
+    weight and length explain; null where there is none before, or an alteration was reported.
+    Between seasons whose logs are not on one scale, what all boats changed together is no
     change of this one.
     """
 
@@ -329,16 +391,21 @@ def _beside_previous(
     changed = boats.select(
         "tow_id",
         "season",
+        "is_best",
         before=before("season"),
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
     )
-    to_scale = {*_by_gps(curves), *diagnosis.filter(verdict="estimated")["season"]}
-    level = _season_levels(changed.drop_nulls("ln"), to_scale)
+    level = _season_levels(changed.drop_nulls("ln"), _seasons_to_scale(curves, diagnosis))
     now, then = (
         pl.col(column).replace_strict(level, default=0.0, return_dtype=pl.Float64)
         for column in ("season", "before")
     )
-    return changed.select("tow_id", curve_change=(pl.col("ln") - now + then).exp() - 1)
+    ratio = (pl.col("ln") - now + then).exp() - 1
+    return changed.select(
+        "tow_id",
+        curve_change=pl.when(~pl.col("is_best")).then(ratio),
+        boat_change=pl.when("is_best").then(ratio),
+    )
 
 
 def _season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int, float]:
@@ -374,19 +441,56 @@ def _by_gps(curves: pl.DataFrame) -> pl.Series:
     return curves.drop_nulls("calibration_factor")["season"]
 
 
-def _beside_like_boats(boats: pl.DataFrame) -> pl.DataFrame:
-    """Excess of each tow over boats of its type with the same crew.
+def _seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:
+    """Return the seasons whose logs are on the scale of GPS: calibrated, or estimated."""
+    return {*_by_gps(curves), *diagnosis.filter(verdict="estimated")["season"]}
 
-    Cw at the type's common speed, over its size, against the type's median; less the season's
-    median, which holds the error of its log. Medians, so that a tow pulled askew does not move
-    what it is compared with. An excess that the boat also shows in all of its later tows, when it
-    was steered straight, is its own and does not count.
+
+def _compare_with_type(
+    boats: pl.DataFrame, curves: pl.DataFrame, diagnosis: pl.DataFrame
+) -> pl.DataFrame:
+    """Return Cw over that of like boats, less 1, of tows without an earlier tow to compare with.
+
+    These are tows of a boat and crew that was not towed before, or was altered since. Each of the
+    other boats of the type with that crew counts with its last tow, at the declared speed of the
+    tow that is compared, with Cw over size; the median of these is what is expected. Only seasons
+    whose logs are to scale take part: other logs can make a type seem 20 % off.
+    """
+    to_scale = boats.filter(
+        pl.col("season").is_in(_seasons_to_scale(curves, diagnosis))
+    ).drop_nulls(["boat_type", "size"])
+    is_first = pl.int_range(pl.len()).over(LINE) == 0
+    firsts = boats.filter(is_first | pl.col("altered"))["tow_id"]
+    others = to_scale.unique(["fsn_no", *LIKE], keep="last", maintain_order=True).select(
+        *LIKE, "a_kg_m", "s_s2_m2", other_fsn_no="fsn_no", other_size="size"
+    )
+    return (
+        to_scale.filter(pl.col("tow_id").is_in(firsts.implode()))
+        .select("tow_id", *LIKE, "fsn_no", "size", "cw_kg_m", speed="declared_speed_m_s")
+        .join(others, on=LIKE, maintain_order="left")
+        .filter(pl.col("fsn_no") != pl.col("other_fsn_no"))
+        .with_columns(other_cw=_cw_at(pl.col("speed")) * pl.col("size") / pl.col("other_size"))
+        .drop_nulls("other_cw")
+        .group_by("tow_id", maintain_order=True)
+        .agg(over_type=pl.col("cw_kg_m").first() / pl.col("other_cw").median() - 1)
+    )
+
+
+def _compare_with_season_and_type(boats: pl.DataFrame) -> pl.DataFrame:
+    """Return the excess of each tow over boats of its type with the same crew.
+
+    Only for a method that knows no boat by all of its tows. Cw at the type's common speed, over its
+    size, against the type's median; less the season's median, which holds the error of its log.
+    Medians, so that a tow pulled askew does not move what it is compared with. An excess that the
+    boat also shows in all of its later tows, when it was steered straight, is its own and does not
+    count.
     """
     common_speed = pl.col("declared_speed_m_s").median().over(LIKE)
     ln, straight = pl.col("ln_excess"), pl.col("season") > CHECK["pulled_askew"].last_season
     later = ln.filter(straight).min().over("fsn_no")
     return (
-        boats.drop_nulls(["boat_type", "size"])
+        boats.filter(~pl.col("is_best"))
+        .drop_nulls(["boat_type", "size"])
         .filter(pl.col("fsn_no").n_unique().over(LIKE) >= FEWEST_LIKE_BOATS)
         .with_columns(ln_excess=(_cw_at(common_speed) / pl.col("size")).log())
         .with_columns(ln - ln.median().over(LIKE))
