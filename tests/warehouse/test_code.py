@@ -40,7 +40,7 @@ def test_what_computes_no_table_makes_none_stale(file):
     ("file", "not_stale"),
     [
         ("pipeline/blocks/sums.py", {"samples"}),
-        ("warehouse/archive/samples/text_files.py", {"blocks"}),
+        ("warehouse/archive/samples.py", {"blocks"}),
         ("pipeline/curve.py", {"samples", "blocks"}),
     ],
 )

@@ -8,7 +8,7 @@ import pytest
 
 from pipeline.method.definition import shipped_method
 from tests.warehouse.edition_bench import DAY
-from warehouse.archive.files import hashes
+from warehouse.archive import files as hashes
 from warehouse.derive.graph import ARCHIVE, METHOD
 from warehouse.derive.inputs import Scope
 from warehouse.intake import seasons as intake

@@ -30,7 +30,7 @@ from warehouse.archive import (
     judge_samples,
     read_tow_samples,
 )
-from warehouse.archive.samples.frame import steps_of
+from warehouse.archive.samples import steps_of
 from warehouse.store.code import ADDING, READING, code_hash
 from warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 from warehouse.store.unforeseen import (
@@ -198,7 +198,10 @@ def _known_tows(store: Store, season: int) -> dict[str, Row]:
 
 
 def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
-    names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
+    names = (
+        *("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s"),
+        *("samples_runs", "second_runs", "run_windows"),
+    )
     facts = [tow[n] for n in names], runs.sort("run").rows()
     return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READING))
 

@@ -28,8 +28,8 @@ from warehouse.archive import (
     read_races,
 )
 from warehouse.archive.faults import fault_frame
-from warehouse.archive.files.hashes import RACY_SECONDS
-from warehouse.archive.profile.reading import read_profiles
+from warehouse.archive.files import RACY_SECONDS
+from warehouse.archive.profile import read_profiles
 from warehouse.intake import lake
 from warehouse.store.code import READING, code_hash
 from warehouse.store.store import Store, fingerprint
@@ -88,7 +88,7 @@ def _seen(root: Path) -> str:
     """Fingerprint of the archive as it lies there, and of the code that reads its lists.
 
     Empty, so that the lists are read, where a file can have changed unseen: one behind a link, or
-    one changed just now (`hashes.RACY_SECONDS`).
+    one changed just now (`files.RACY_SECONDS`).
     """
     stats = dict(_stats(root))
     newest_ns = max((max(s.st_mtime_ns, s.st_ctime_ns) for s in stats.values()), default=0)
