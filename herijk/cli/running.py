@@ -41,7 +41,7 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
 
     known = KnownMethods.of(store)
     chosen = applied(store.root, [known.kept(name) for name in methods])
-    with log_shown():
+    with machine_faults_explained(store.root), log_shown():
         news = run(archive, store.root, chosen, seasons)
     show(Rebuilt(rebuild_report(store), news), text)
     if failed := failed_checks(news.checks):
