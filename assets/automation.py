@@ -4,6 +4,7 @@ The job runs the same rebuild as the command. It makes drafts; publishing is not
 it went is mailed, as `beheer.toml` asks.
 """
 
+import datetime as dt
 import os
 import smtplib
 import ssl
@@ -15,16 +16,14 @@ from typing import Final
 
 import dagster as dg
 
-from assets.rebuild import rebuild
-from assets.report import failed_checks
-from assets.resources import Setup
+from assets.report import check_of, read_report
 from assets.settings import Settings
 from dashboards.guard import LOOPBACK
 from dashboards.statements.rebuild import mail
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say, speaker
 from warehouse.intake.seasons import listing
-from warehouse.store.store import fingerprint
+from warehouse.store.store import Store, fingerprint
 
 ONE_AT_A_TIME = {"herijk/rebuild": "data folder"}
 """The tag of which one run at a time is started (see `dagster.yaml`)."""
@@ -36,31 +35,12 @@ TIMEOUT_S: Final = 10.0
 PASSWORD_VARIABLE: Final = "HERIJK_SMTP_PASSWORD"  # noqa: S105 - its name
 
 
-@dg.op
-def rebuild_archive(context: dg.OpExecutionContext, setup: Setup) -> None:
-    """The whole rebuild, as `herijk rebuild` does it; its news is mailed."""
-    data, names = Path(setup.data), [method.name for method in setup.chosen_methods]
-    report = rebuild(setup.archive_root, data, names, setup.seasons or None)
-    context.add_output_metadata(
-        {
-            "nothing_changed": report.nothing_changed,
-            "headlines": dg.MetadataValue.json(report.headlines),
-            "report": dg.MetadataValue.path(str(data / "report" / "latest.html")),
-        }
-    )
-    if failed := failed_checks(report.checks):
-        raise dg.Failure("; ".join(failed))
-    if not report.nothing_changed:
-        try:
-            send_mail(setup.settings, *mail(report, report.checks, report.simulated))
-        except (OSError, ValueError) as error:  # SMTP's errors are OSErrors
-            context.log.error(f"the report could not be mailed: {error}")
-
-
-@dg.job(name="rebuild", tags=ONE_AT_A_TIME | {"dagster/max_runtime": str(LONGEST_S)})
-def rebuild_job() -> None:
-    """Everything from the archive to the drafts, the site and a report; publishes nothing."""
-    rebuild_archive()
+rebuild_job = dg.define_asset_job(
+    "rebuild",
+    selection=dg.AssetSelection.all(),
+    tags=ONE_AT_A_TIME | {"dagster/max_runtime": str(LONGEST_S)},
+    description="Everything from the archive to drafts, site and report; publishes nothing.",
+)
 
 
 def nightly(settings: Settings, is_served: bool) -> dg.ScheduleDefinition:
@@ -103,6 +83,33 @@ def archive_changed(archive: Path, is_served: bool) -> dg.SensorDefinition:
         minimum_interval_seconds=60,
         default_status=_status(is_served),
     )
+
+
+def rebuild_succeeded(settings: Settings, data: Path, is_served: bool) -> dg.SensorDefinition:
+    """The sensor that mails what a rebuild that nobody watched changed."""
+
+    @dg.run_status_sensor(
+        run_status=dg.DagsterRunStatus.SUCCESS,
+        name="rebuild_succeeded",
+        monitored_jobs=[rebuild_job],
+        default_status=_status(is_served),
+    )
+    def tell(context: dg.RunStatusSensorContext) -> None:
+        logs = context.instance.all_logs(
+            context.dagster_run.run_id, of_type=dg.DagsterEventType.ASSET_CHECK_EVALUATION
+        )
+        events = [log.get_dagster_event() for log in logs]
+        checks = [check_of(event.asset_check_evaluation_data) for event in events]
+        report = read_report(Store(data), checks)
+        if report.made_at >= _began(context):
+            send_mail(settings, *mail(report, checks, report.simulated))
+
+    return tell
+
+
+def _began(context: dg.RunStatusSensorContext) -> str:
+    stats = context.instance.get_run_stats(context.dagster_run.run_id)
+    return dt.datetime.fromtimestamp(stats.start_time).astimezone().isoformat(timespec="seconds")
 
 
 def rebuild_failed(settings: Settings, is_served: bool) -> dg.SensorDefinition:

@@ -2,17 +2,13 @@
 
 import os
 import shutil
-import sqlite3
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
-from unittest import mock
 
 import dagster as dg
 import yaml  # type: ignore[import-untyped]
-from sqlalchemy import event
-from sqlalchemy.engine import Engine
 
 from pipeline.errors import MissingKnowledgeError
 from warehouse.store.files import written_beside
@@ -23,13 +19,6 @@ INSTANCE_SETTINGS: Final = Path(__file__).with_name("dagster.yaml")
 
 OF_A_COMMAND: Final = {"herijk/by": "rebuild"}
 """Marks runs that live and die with the process of a rebuild."""
-
-
-@event.listens_for(Engine, "connect")
-def _without_waiting_for_the_disk(connection: object, _: object) -> None:
-    """Dagster commits 500 times in a run. Its records survive a kill, and can be made again."""
-    if isinstance(connection, sqlite3.Connection):
-        connection.execute("PRAGMA synchronous = OFF")
 
 
 def end_lost_runs(instance: dg.DagsterInstance, tags: Mapping[str, str]) -> None:
@@ -51,8 +40,8 @@ def instance_of(store: Store) -> Iterator[dg.DagsterInstance]:
     """Dagster's own records: where `DAGSTER_HOME` says, or under the data folder."""
     home = prepare_home(store)
     try:
-        with mock.patch.dict(os.environ, DAGSTER_HOME=str(home)):
-            opened = dg.DagsterInstance.from_config(str(home))
+        os.environ["DAGSTER_HOME"] = str(home)
+        opened = dg.DagsterInstance.get()
     except (yaml.YAMLError, dg.DagsterError) as error:
         what = " ".join(str(error).split())[:200]
         raise MissingKnowledgeError(

@@ -6,7 +6,7 @@ about the last that changed something, and a dated JSON for each that did.
 
 import datetime as dt
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -14,17 +14,14 @@ from typing import TYPE_CHECKING, Final
 from dashboards.speech import Speech
 from dashboards.statements.rebuild import Check, found, headlines
 from pipeline.messages import LANGUAGE
-from warehouse.derive.step import QUARANTINE
 from warehouse.queries.change_report import ChangeReport, change_report, remember
 from warehouse.store.code import code_version
 from warehouse.store.files import written_beside
 from warehouse.store.store import Store
-from warehouse.store.unforeseen import UNFORESEEN, failures
 
 if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
     import dagster as dg
 
-FIRST_FAILURES: Final = 5
 ERROR: Final = "ERROR"
 """Dagster's word for a check whose failing means that a table is not what it promises."""
 
@@ -61,13 +58,11 @@ class Report(ChangeReport):
     headlines: list[str]
 
 
-def write_report(
-    store: Store, done: Done, evaluated: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
-) -> Report:
+def write_report(store: Store, now: dt.datetime) -> Report:
     """Finds out what changed, and writes page and JSON; the page about the last change stays."""
     changes = change_report(store)
     about = store.read("about_archive")
-    checks = [*(_check(one) for one in evaluated), *_unforeseen(store)]
+    checks: list[Check] = []
     report = Report(
         **vars(changes),
         nothing_changed=changes.nothing,
@@ -75,7 +70,7 @@ def write_report(
         archive=about["root"][0],
         simulated=about["simulated"][0],
         code_version=code_version(),
-        done=done,
+        done=Done(),
         checks=checks,
         headlines=[line(Speech("en")) for line in headlines(changes, checks)],
     )
@@ -92,20 +87,26 @@ def write_report(
     return report
 
 
-def _unforeseen(store: Store) -> Iterator[Check]:
-    """On what Herijk itself failed: tows are set aside, anything else is an error."""
-    failed_on = store.read(QUARANTINE).filter(reason_code=UNFORESEEN)
-    tows = [tow or path for tow, path in failed_on.select("tow_id", "path").rows()]
-    for asset, severity, failed in (
-        (QUARANTINE, "WARN", tows),
-        ("site", ERROR, failures(store.root)),
-    ):
-        if failed:
-            found = {"number": len(failed), "first": failed[:FIRST_FAILURES]}
-            yield Check(asset, "nothing_unforeseen", False, severity, found)
+def read_report(
+    store: Store,
+    checks: Sequence[Check] = (),
+    nothing_changed: bool = False,
+    made: Collection[str] = (),
+) -> Report:
+    """The last report, with what a run made and checked; or that nothing changed since."""
+    kept = json.loads((store.root / "report" / "latest.json").read_text(encoding="utf-8"))
+    seasons = {tow["season"] for tow in kept["tows"]} if "samples" in made else ()
+    methods = store.read("methods")["method"].to_list() if "curves" in made else []
+    kept["done"] = Done(sorted(seasons), methods, "warehouse_database" in made)
+    kept["checks"] = list(checks)
+    if nothing_changed:
+        empty = ("tows", "seasons_gone", "methods", "set_aside", "factors", "lines", "headlines")
+        kept |= {"nothing_changed": True, "first": False} | {name: [] for name in empty}
+    return Report(**kept)
 
 
-def _check(evaluated: "dg.AssetCheckEvaluation") -> Check:
+def check_of(evaluated: "dg.AssetCheckEvaluation") -> Check:
+    """What a check said."""
     return Check(
         asset=evaluated.asset_key.to_user_string(),
         check=evaluated.check_name,

@@ -1,81 +1,44 @@
-"""All assets and checks, and the one run in which a rebuild makes them."""
+"""One run of the job `rebuild` in this process, recorded in Dagster."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
 
 import dagster as dg
 
-from assets import archive, checks, instance
-from assets.report import Done
-from assets.resources import Setup
-from assets.tables import STEP_ASSETS
-from warehouse.derive import database
-
-ASSETS: Final = [archive.archive_index, archive.samples_and_blocks, *STEP_ASSETS]
-
-QUIET_LOG: Final = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
-"""Nothing on the terminal: what Dagster says is in its records."""
+from assets.definitions import build_defs
+from assets.instance import OF_A_COMMAND, end_lost_runs, instance_of
+from assets.report import Check, check_of
+from pipeline.errors import HerijkError
+from warehouse.store.lock import only_writer
+from warehouse.store.store import Store
 
 
-def assets_of(setup: Setup) -> dg.Definitions:
-    """Assets and checks, made one after the other in one process: it holds the lock."""
-    return dg.Definitions(
-        assets=ASSETS,
-        asset_checks=[checks.of_the_whole],
-        resources={"setup": setup},
-        executor=dg.in_process_executor,
-    )
-
-
-def run_assets(
-    archive_root: Path,
-    data: Path,
-    methods: Sequence[str],
-    wanted: Collection[int] | None,
-    done: Done,
-) -> Sequence[dg.AssetCheckEvaluation]:
-    """Makes, or confirms, all assets in one run, of the seasons that are wanted; raises as they do.
-
-    Seasons can be asked for as a range only: those between confirm that they are fresh. What was
-    made anew is noted as `done`.
+def run_job(
+    archive: Path, data: Path, methods: Sequence[str], seasons: Sequence[int]
+) -> tuple[set[str], list[Check]]:
+    """Makes all that is stale, as Dagster's page and the schedule do; raises as the first step.
 
     Returns:
-        What the checks said.
+        The tables that were made anew, and what the checks said.
     """
-    setup = Setup(
-        archive=str(archive_root),
-        data=str(data),
-        methods=list(methods),
-        seasons=sorted(wanted or ()),
-    )
-    job = assets_of(setup).resolve_implicit_global_asset_job_def()
-    with instance.instance_of(setup.store) as records:
-        instance.end_lost_runs(records, instance.OF_A_COMMAND)
-        seasons = [s for s in archive.know_seasons(records, setup.store) if setup.wanted([s])]
-        ends = {"start": seasons[0], "end": seasons[-1]} if seasons else {}
-        ranges = {f"dagster/asset_partition_range_{end}": season for end, season in ends.items()}
-        # A partitioned asset cannot run without a partition: with no season there are no samples.
-        made = [asset for asset in ASSETS if seasons or asset is not archive.samples_and_blocks]
-        result = job.execute_in_process(
-            instance=records,
-            run_config=QUIET_LOG,
-            tags=instance.OF_A_COMMAND | ranges,
-            asset_selection=[key for asset in made for key in asset.keys],
-        )
-    for event in result.get_asset_materialization_events():
-        _note(done, event.materialization, setup.methods)
-    return result.get_asset_check_evaluations()
-
-
-def _note(done: Done, made: dg.AssetMaterialization, methods: Sequence[str]) -> None:
-    """Notes what was made anew."""
-    if "new" not in made.metadata or not (new := made.metadata["new"].value):
-        return
-    match made.asset_key.to_user_string():
-        case "samples":
-            done.seasons = sorted({*done.seasons, int(str(made.partition))})
-        case "curves" if isinstance(new, list):
-            done.methods = [name for name in methods if name in (*done.methods, *new)]
-        case database.DATABASE_TABLE:
-            done.database = True
+    job = build_defs(str(archive), str(data), list(methods)).resolve_job_def("rebuild")
+    config = {
+        "ops": {"samples": {"config": {"seasons": list(seasons)}}},
+        "loggers": {"console": {"config": {"log_level": "CRITICAL"}}},
+    }
+    with only_writer(data), instance_of(Store(data)) as instance:
+        end_lost_runs(instance, OF_A_COMMAND)
+        try:
+            done = job.execute_in_process(instance=instance, run_config=config, tags=OF_A_COMMAND)
+        except HerijkError:
+            raise
+        except dg.DagsterError as error:
+            if isinstance(error.__cause__, HerijkError):
+                raise error.__cause__ from error
+            raise
+    made = {
+        event.asset_key.to_user_string()
+        for event in done.get_asset_materialization_events()
+        if event.asset_key and event.materialization.metadata["new"].value
+    }
+    return made, [check_of(one) for one in done.get_asset_check_evaluations()]

@@ -42,7 +42,7 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     known = KnownMethods.of(store)
     chosen = applied(store.root, [known.kept(name) for name in methods])
     try:
-        with log_shown():
+        with machine_faults_explained(store.root), log_shown():
             news = run(archive, store.root, chosen, seasons)
     except NoTowsYetError as error:  # a new archive is no failure
         reason = spoken(error, LANGUAGE.get())

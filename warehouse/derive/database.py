@@ -12,7 +12,7 @@ import duckdb
 import polars as pl
 
 from pipeline.tables.declare import dy
-from pipeline.tables.schemas import ABOUT, STUDY, TABLES, ordered
+from pipeline.tables.schemas import ABOUT, STUDY, TABLES
 from pipeline.tables.views import VIEWS
 from warehouse.store.code import code_version
 from warehouse.store.files import file_sha256, written_beside
@@ -48,15 +48,15 @@ MEANINGS: Final = {
 
 
 def warehouse_database(
-    all_tables: dict[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
+    tables: dict[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
 ) -> pl.DataFrame:
     """All tables in one DuckDB file, swapped in whole; then those of the lake are described."""
-    tables = {name: ordered(name, all_tables.pop(name)) for name in tuple(all_tables)}
     tables["about"] = _about(about_archive)
     tables["contents"] = _contents(tables)
     build_database(store.database, tables)
     about = dict(tables["about"].rows())
-    write_package(store.table_folder, _files(store, tables), about, _sources(tables))
+    files = {store.table_path(name): TABLES[name] for name in TABLES.keys() & tables.keys()}
+    write_package(store.table_folder, files, about, _sources(tables))
     sha256 = pl.lit(file_sha256(store.database)).alias("sha256")
     return tables["contents"].select("table", "rows", sha256)
 
@@ -120,14 +120,6 @@ def _add_views(connection: duckdb.DuckDBPyConnection) -> None:
 
 def _quoted(text: str) -> str:
     return "'" + text.replace("'", "''") + "'"
-
-
-def _files(store: Store, tables: Mapping[str, pl.DataFrame]) -> dict[Path, type[dy.Schema]]:
-    """The files of the lake with the tables; of those with a file per method, the applied ones."""
-    known = TABLES.keys() & tables.keys()
-    methods = [None, *tables["methods"]["method"]]
-    paths = {store.table_path(name, method): TABLES[name] for name in known for method in methods}
-    return {path: schema for path, schema in paths.items() if path.exists()}
 
 
 def _about(about_archive: pl.DataFrame) -> pl.DataFrame:

@@ -8,6 +8,7 @@ files look like is known to `warehouse.archive`, and which sums there are to
 """
 
 import dataclasses
+import json
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
@@ -16,10 +17,11 @@ from typing import Final
 import numpy as np
 import polars as pl
 
+from pipeline.blocks.run_blocks import BLOCK_SCHEMA
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import DefectiveInputError, UnavailableError
-from pipeline.tables.frames import dtypes, frame_of
+from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import SeasonIndex
 from pipeline.tables.row import Row
 from warehouse.archive import (
@@ -32,7 +34,15 @@ from warehouse.archive import (
 )
 from warehouse.archive.samples.frame import steps_of
 from warehouse.store.code import ADDING, READING, code_hash
-from warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
+from warehouse.store.store import (
+    DamagedFileError,
+    Store,
+    count_rows,
+    fingerprint,
+    metadata_of,
+    read_parquet,
+    write_parquet,
+)
 from warehouse.store.unforeseen import (
     UNFORESEEN,
     in_short,
@@ -50,17 +60,10 @@ LAKE_FORM: Final = {
 }
 """How samples and blocks are packed: measured in docs/decisions.md."""
 
-SAMPLE_FACTS: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
-"""What the index says of the samples of a tow that can be used."""
+FACTS_KEY: Final = "herijk.facts"
+"""In the footer of samples: what the index says of a tow that can be used."""
 
 Tow = Row
-
-
-def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonProfile) -> str:
-    """What the samples and blocks of a season are made from."""
-    season_runs = runs.filter(pl.col("tow_id").is_in(tows["tow_id"].implode()))
-    rows = [tows.write_json(), season_runs.sort("tow_id", "run").write_json()]
-    return fingerprint(rows, dataclasses.asdict(profile), code_hash(*READING, *ADDING))
 
 
 def read_season(
@@ -82,34 +85,38 @@ def read_season(
     Returns:
         The season's index, `SeasonIndex`, sorted by tow.
     """
-    before = _known_tows(store, profile.season)
     hashes = FileHashes.load(store.file_hashes)
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
     def read(tow: Tow) -> Row:
         listed_runs = runs_of[tow["tow_id"],]
         key = _samples_key(tow, listed_runs, profile)
-        known = before.get(key)
-        if known is not None and known["reason_code"] is not None:
-            row = known
-        else:
-            row = _bring_in(store, root, tow, listed_runs, profile, key, hashes, known)
-        return row | {"tow_id": tow["tow_id"]}
+        found = _bring_in(store, root, tow, listed_runs, profile, key, hashes)
+        return found | {"tow_id": tow["tow_id"]}
 
     workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
     with ThreadPoolExecutor(workers) as pool:
         rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
-    index = frame_of(SeasonIndex, rows)
-    keep_only(store, profile.season, index)
-    return index
+    return frame_of(SeasonIndex, rows)
 
 
-def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFrame:
-    """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
-    sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
-    frames = [read_parquet(store.blocks_path(season, key)) for key in sound["blocks_key"]]
+def all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
+    """Blocks of all sound tows, with `tow_id`, sorted by season, tow, run and second.
+
+    Args:
+        store: the data folder.
+        index: rows of `SeasonIndex` with `season`.
+
+    Raises:
+        DamagedFileError: samples and blocks of a tow were removed; they are read again.
+    """
+    sound = index.filter(pl.col("blocks_key").is_not_null()).sort("season", "tow_id")
+    paths = [store.blocks_path(*tow) for tow in sound.select("season", "blocks_key").rows()]
+    if not all(path.exists() for path in paths):
+        raise DamagedFileError(store.table_path("samples"))
+    frames = [read_parquet(path) for path in paths]
     if not frames:
-        return pl.DataFrame(schema={"tow_id": pl.String()})
+        return pl.DataFrame(schema=BLOCK_SCHEMA)
     tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
     return pl.concat(frames).insert_column(0, sound["tow_id"].gather(tow))
 
@@ -122,20 +129,19 @@ def _bring_in(
     profile: SeasonProfile,
     key: str,
     hashes: FileHashes,
-    known: Row | None,
 ) -> Row:
     """Index row of a tow after its samples and blocks are in the lake, or with its fault.
 
-    Its samples are read again also where only the facts about them (in `known`) are lost.
+    The footer of its samples says what it lost: a tow whose file is there is not read again.
     """
-    facts = None if known is None else {name: known[name] for name in SAMPLE_FACTS}
     row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
     path = store.samples_path(profile.season, key)
     blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDING))
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
-        samples = None
-        if facts is None or not path.exists():
+        samples, kept = None, metadata_of(path, FACTS_KEY)
+        facts = None if kept is None else json.loads(kept)
+        if facts is None:
             whole, place = read_tow_samples(root, tow, profile)
             samples, faults = judge_samples(whole, place, tow, runs)
             facts = {
@@ -145,7 +151,7 @@ def _bring_in(
             }
             _check_unchanged(root, tow, hashes)
             named = samples.select(pl.lit(tow["tow_id"]).alias("tow_id"), pl.all())
-            write_parquet(named, path, form=LAKE_FORM)
+            write_parquet(named, path, {FACTS_KEY: json.dumps(facts)}, LAKE_FORM)
         if not blocks_path.exists():
             if samples is None:
                 samples = read_parquet(path, list(SAMPLE_SCHEMA), use_threads=False)
@@ -187,14 +193,11 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
             )
 
 
-def _known_tows(store: Store, season: int) -> dict[str, Row]:
-    """What was found of the season's tows at its last reading, by samples key."""
-    if str(season) not in store.partitions("season_index"):
-        return {}
-    index = store.read("season_index", str(season))
-    if index.schema != dtypes(SeasonIndex):
-        return {}
-    return {row["samples_key"]: row for row in index.iter_rows(named=True)}
+def samples_keys(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonProfile) -> set[str]:
+    """What the samples of a season's tows are called."""
+    runs_of = dict(runs.join(tows, on="tow_id", how="semi").partition_by("tow_id", as_dict=True))
+    rows = tows.iter_rows(named=True)
+    return {_samples_key(tow, runs_of[tow["tow_id"],], profile) for tow in rows}
 
 
 def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
@@ -203,13 +206,14 @@ def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
     return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READING))
 
 
-def keep_only(store: Store, season: int, index: pl.DataFrame) -> None:
-    """Removes samples and blocks of a season that its index does not name (any more)."""
+def keep_only(store: Store, index: pl.DataFrame) -> None:
+    """Removes samples and blocks that the index does not name (any more)."""
     kept = {
-        *(store.samples_path(season, k) for k in index["samples_key"].drop_nulls()),
-        *(store.blocks_path(season, k) for k in index["blocks_key"].drop_nulls()),
+        path(season, key)
+        for column, path in (("samples_key", store.samples_path), ("blocks_key", store.blocks_path))
+        for season, key in index.select("season", column).drop_nulls().rows()
     }
-    for folder in (store.samples_path(season, "").parent, store.blocks_path(season, "").parent):
-        for file in folder.glob("[!.]*.parquet"):
+    for kind in ("samples", "blocks"):
+        for file in (store.lake / kind).glob("season=*/[!.]*.parquet"):
             if file not in kept:
                 file.unlink()

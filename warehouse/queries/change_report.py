@@ -123,7 +123,7 @@ def _today(store: Store) -> Tables:
         "tows": with_boat_types(tables["tows"], tables["boats"]),
         "tow_runs": with_hand_windows(tables["tow_runs"], tables["hand_windows"]),
         "quarantine": store.read("quarantine", columns=FAULT),
-        "log_factors": store.read_all("log_factors", tables["methods"]["method"]),
+        "log_factors": store.read("log_factors"),
         "methods": tables["methods"],
         "register": store.read("register").filter(is_draft),
     }

@@ -1,0 +1,91 @@
+"""Curves of all tows under each method, and what the steps of a method change."""
+
+import datetime as dt
+from typing import Final
+
+import dagster as dg
+import polars as pl
+
+from assets.archive import read_earlier
+from assets.lake import Folders, detector, kept, outs
+from assets.rules import methods_in
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.recompute.facts import with_hand_windows
+from pipeline.recompute.run_cache import RunCache
+from pipeline.studies import summaries
+from pipeline.tables.schemas import conform
+from warehouse.derive.archive_tables import add_first_seen
+from warehouse.derive.recomputing import METHOD_TABLES, ArchiveRuns, recompute_archive
+from warehouse.derive.studies import study_tables
+
+STUDIES: Final = ("correction_steps", "option_effects", "option_curves")
+
+
+@dg.multi_asset(
+    outs=outs(*METHOD_TABLES, "tows", "tow_runs", "quarantine", "unforeseen"), can_subset=True
+)
+@kept
+def recomputed(
+    folders: Folders,
+    applied_methods: pl.DataFrame,
+    boats: pl.DataFrame,
+    read_tows: pl.DataFrame,
+    read_runs: pl.DataFrame,
+    hand_windows: pl.DataFrame,
+    set_aside: pl.DataFrame,
+    blocks: pl.DataFrame,
+) -> dict[str, pl.DataFrame]:
+    """Run points, curves, log factors, assessments and members of all tows, per method.
+
+    A tow on which our own code fails is set aside, so tows and quarantine are complete only here.
+    """
+    archive = ArchiveRuns(
+        boats=boats, tows=read_tows, tow_runs=read_runs, hand_windows=hand_windows, blocks=blocks
+    )
+    made = recompute_archive(methods_in(folders, applied_methods), archive)
+    before = read_earlier(folders.store, "quarantine")
+    failed = add_first_seen(made.set_aside, before, dt.date.today())
+    return {
+        **made.tables,
+        "tows": made.tows,
+        "tow_runs": made.tow_runs,
+        "quarantine": pl.concat([set_aside, conform("quarantine", failed)]),
+        "unforeseen": made.failures,
+    }
+
+
+@dg.multi_asset(outs=outs(*STUDIES), can_subset=True)
+@kept
+def studies(
+    folders: Folders,
+    methods: pl.DataFrame,
+    tows: pl.DataFrame,
+    tow_runs: pl.DataFrame,
+    hand_windows: pl.DataFrame,
+    blocks: pl.DataFrame,
+    tow_instruments: pl.DataFrame,
+) -> dict[str, pl.DataFrame]:
+    """The ladder from the first method to each other, and the studies of its options."""
+    runs = stack_blocks(blocks, with_hand_windows(tow_runs, hand_windows))
+    cache = RunCache()
+    applied = methods_in(folders, methods)
+    made = [
+        study_tables(method, applied[0], tows, runs, tow_instruments, cache) for method in applied
+    ]
+    return {name: pl.concat([of[name] for of in made], how="diagonal") for name in STUDIES}
+
+
+@dg.asset
+@detector
+def season_changes(folders: Folders, methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
+    """Cw of each method / Cw of the first method, of the same tow, per season."""
+    return summaries.season_changes(curves, methods_in(folders, methods)[0])
+
+
+@dg.asset
+@detector
+def print_reproduction(
+    printed_registers: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
+) -> pl.DataFrame:
+    """Printed A, B and Cw of each tow next to those of each method."""
+    return summaries.print_reproduction(printed_registers, curves, tows)
