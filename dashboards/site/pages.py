@@ -294,7 +294,7 @@ def _season_diagnosis(views: Views) -> Section:
                 "season_diagnosis",
                 rows,
                 "season part instrument verdict p_fault size size_lo size_hi unit first_tow "
-                "confused_with",
+                "shown_by confused_with",
                 follows=["method"],
             )
         ],

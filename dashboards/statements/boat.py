@@ -365,13 +365,24 @@ FAULTS: Final = {
 }
 """What is said of a season, by the verdict on an instrument."""
 
+INSTRUMENT_OR_BOAT: Final = say(
+    "In {season} {shown_by} came out unlike its other tows, and too few boats tell why: either an "
+    "instrument was off ({instrument}, up to {size}), or the boat was altered. Nothing is "
+    "corrected; the interval allows for both."
+)
+"""What is said of a fault that one boat alone shows."""
+
 
 def _fault(fault: Row) -> Statement:
     """What may be wrong with one instrument."""
-    chance, size = fault["p_fault"], Number(fault["size"], 1, fault["unit"], sign="+")
+    chance = fault["p_fault"]
+    wording, largest = FAULTS[fault["verdict"]], fault["size"]
+    if fault["shown_by"] is not None:
+        wording, largest = INSTRUMENT_OR_BOAT, max(fault["size_lo"], fault["size_hi"], key=abs)
+    size = Number(largest, 1, fault["unit"], sign="+")
     return told(
         "fault",
-        FAULTS[fault["verdict"]],
+        wording,
         fault,
         "season_diagnosis",
         verdict=fault["verdict"],

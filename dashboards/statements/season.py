@@ -10,10 +10,11 @@ from pipeline.messages import say
 
 DIAGNOSIS: Final = say(
     "What may be wrong in a season with log, GPS, load cell, anemometer or temperature. Fault: "
-    "likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 standard deviations from what is "
-    "usual. Would not show: a fault of the usual size would be taken for something else. Size: in "
-    "per cent, or in N; the interval counts how seldom such a fault is, so it can be 0 to 0. What "
-    "is not in the table: no fault was seen, and a usual one would show."
+    "likelier than not. Cannot be told: 10 to 50 %, or one boat alone shows it, which may have "
+    "been altered instead. Alarm: 4 standard deviations from what is usual. Would not show: a "
+    "fault of the usual size would be taken for something else. Size: in per cent, or in N; the "
+    "interval counts how seldom such a fault is, so it can be 0 to 0. What is not in the table: no "
+    "fault was seen, and a usual one would show."
 )
 """How the table of faults of instruments is read."""
 

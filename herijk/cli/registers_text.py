@@ -113,7 +113,7 @@ def seasons(report: "LogErrorReport") -> Iterator[Part]:
         tell("What may be wrong with the instruments of a season:"),
         rows=[row | {"confused_with": _or_else(row["confused_with"])} for row in report.diagnosis],
         columns="season instrument verdict first_tow size size_lo size_hi unit p_fault "
-        "confused_with",
+        "shown_by confused_with",
         empty=tell("nothing was found, and nothing is in doubt"),
         note=tell(season.DIAGNOSIS),
     )

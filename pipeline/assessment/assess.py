@@ -253,7 +253,9 @@ def _cw_at(speed: pl.Expr) -> pl.Expr:
 
 
 def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:
-    """Whether an instrument of the tow's season is in doubt, where the season was diagnosed.
+    """Return whether an instrument of the tow's season is in doubt, where it was diagnosed.
+
+    And whether this boat alone shows that, so that the boat may have been altered instead.
 
     An estimated log factor rests on the seasons with dGPS: where all of these are in doubt, so is
     its season. All boats do not change at once: where they seem to, another load cell may have come
@@ -271,8 +273,14 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
         seasons = seasons.with_columns(pl.col("season_in_doubt") | rests)
     steps = diagnosis.filter(instrument=FLEET, verdict=FAULT)
     seasons = seasons.with_columns(pl.col("season_in_doubt") | pl.lit(not steps.is_empty()))
+    shown_by = diagnosis.drop_nulls("shown_by").select(
+        "season", fsn_no=pl.col("shown_by").str.split(", ")
+    )
+    alone = tows.join(shown_by.explode("fsn_no"), on=["season", "fsn_no"], how="semi")["tow_id"]
     return tows.join(seasons, on="season", maintain_order="left").select(
-        "tow_id", season_doubted="season_in_doubt"
+        "tow_id",
+        season_doubted="season_in_doubt",
+        alone_shows_fault=pl.col("tow_id").is_in(alone.implode()),
     )
 
 

@@ -80,6 +80,9 @@ CHECKS: Final = (
     _told_by_all("wind_unusual", say("wind stands out")),
     _told_by_all("speed_unusual", say("speed stands out")),
     Check("season_in_doubt", "season_doubted", say("season's instrument in doubt"), None, 0.0),
+    Check(
+        "instrument_or_boat", "alone_shows_fault", say("instrument off or boat altered"), None, 0.0
+    ),
     Check("coarse_readings", "by_half_a_step", say("coarse readings"), None, 0.01),
     # The runs
     Check(
@@ -111,6 +114,14 @@ CHECKS: Final = (
     # The boat of the day
     Check(
         "crew_weight", "crew_weight_kg / rowers", say("crew weight unusual"), *ROWER_KG, unit="kg"
+    ),
+    Check(
+        "weight_not_recorded",
+        "weight_kg IS NULL OR crew_weight_kg IS NULL",
+        say("weight not recorded: that of like boats"),
+        None,
+        0.0,
+        severity="note",
     ),
     Check("heavier_after", "weight_after_kg / weight_kg - 1", say("heavier after"), None, 0.02),
     Check("water_differs", "water_off_c", say("water unlike its day's"), None, 3.0, unit="C"),

@@ -100,6 +100,10 @@ BEND: Final = Spread(tow=0.10, day=0.03, season=0.05, archive=0.30, boat=0.20, b
 """Spread of dlnCw/dlnv: B lies at 1.06 to 1.5 times the hull speed."""
 WIND_AHEAD: Final = Spread(tow=0.06, day=0.03, season=0.05, archive=0.05)
 WIND_ABEAM: Final = Spread(tow=0.06, day=0.03, season=0.05, archive=0.05)
+GUST_SD: Final = 0.065
+"""Standard deviation of the wind's mean over out and back / true wind (inferred). A steady wind
+cancels between out and back; gusts do not, and grow with the wind. One and a half times what a
+turbulence of a quarter leaves in six simulated runs."""
 SPEED: Final = Spread(tow=0.008, day=0.004, season=0.01, archive=0.01)
 
 LEAST: Final = {"force": 0.05, "zero": 0.0, "wind": 0.2, "vane": 0.2, "speed": 0.025}
@@ -309,7 +313,10 @@ def _of_one(
         ratio = np.maximum(1.0 + values[there], 0.01)
         groups += _grossly_off(tows, np.log(ratio))
     may = [(quantity, group, group[2], np.ones(len(group[2]))) for group in groups]
-    return _shifts(seen, there, _observed(tows, values[there], spread), may)
+    gusts = np.zeros(tows.height)
+    if quantity in ("wind", "vane"):
+        gusts = (GUST_SD * seen.true_wind[there]) ** 2
+    return _shifts(seen, there, _observed(tows, values[there], spread, gusts), may)
 
 
 def _of_force(seen: Seen) -> list[Shift]:

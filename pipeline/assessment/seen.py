@@ -39,6 +39,9 @@ TOO_MUCH_AHEAD: Final = 0.1
 NO_WIND_M_S: Final = 0.1
 """Mean wind of a run that an anemometer standing still shows."""
 
+LEAST_OWN_SPEED: Final = 0.1
+"""Apparent wind out and back together / boat speed, below which an anemometer shows nothing."""
+
 LEAST_RESULTANT: Final = float(np.cos(np.radians(3.3)))
 """Length of the mean direction of angles of which half are 0 and half 6.28 degrees."""
 
@@ -56,6 +59,9 @@ class Seen:
         air_share: part of it that is the air's, were the force right; more than 1 in a wrong unit.
         wind_ahead, wind_abeam: apparent wind / boat speed, mean of out and back: the true wind
             cancels, and 1 and 0 are left.
+        true_wind: true wind / boat speed: the difference of the apparent wind out and back, in
+            which the boat's own speed cancels, over their sum, in which the true wind cancels. So
+            it does not depend on the unit or scale of the anemometer.
         speed: ln(speed / intended speed), median of the runs.
         in_radians: all wind angles lie where radians do.
         wind_stands_still: the anemometer shows no wind through a whole run, and some in another.
@@ -83,8 +89,13 @@ class Seen:
         self.bend, self.bend_sd = bend - USUAL_BEND, bend_sd
         self.force_n = tows.mean(mean["force"], good)
         self.air_share = tows.mean(mean["air"] / np.where(good, mean["log1_cw"], 1.0), good)
-        self.wind_ahead = tows.mean_of_ways(mean["wind_x"] / speed_m_s, windy) - 1.0
-        self.wind_abeam = tows.mean_of_ways(mean["wind_y"] / speed_m_s, windy)
+        ahead, abeam = mean["wind_x"] / speed_m_s, mean["wind_y"] / speed_m_s
+        self.wind_ahead = tows.mean_of_ways(ahead, windy) - 1.0
+        self.wind_abeam = tows.mean_of_ways(abeam, windy)
+        true_ahead = tows.mean_of_ways(tows.direction * ahead, windy)
+        true_abeam = tows.mean_of_ways(tows.direction * abeam, windy)
+        own_speed = np.hypot(1.0 + self.wind_ahead, self.wind_abeam)
+        self.true_wind = np.hypot(true_ahead, true_abeam) / np.maximum(own_speed, LEAST_OWN_SPEED)
         self.speed = _median(tows, speed - np.log(tows.target_speed_ratio), good)
         too_far_ahead = self.wind_ahead > TOO_MUCH_AHEAD
         self.in_radians = _angles_in_radians(tows, windy) & too_far_ahead

@@ -19,7 +19,13 @@ from pipeline.arrays import FloatArray
 from pipeline.history import UNKNOWN_LOG_SD
 from pipeline.quantiles import NORMAL
 from pipeline.recompute.computed import Computed
-from pipeline.season_log.diagnosis import ALARM, ALARM_SD, DIAGNOSIS_SCHEMA, SOUND
+from pipeline.season_log.diagnosis import (
+    ALARM,
+    ALARM_SD,
+    DIAGNOSIS_SCHEMA,
+    MIN_INFORMED_SHARE,
+    SOUND,
+)
 
 ANEMOMETER: Final = "anemometer_scale"
 """Its name among the instruments of `season_diagnosis`."""
@@ -151,7 +157,7 @@ def anemometer_diagnosis(c: Computed) -> pl.DataFrame:
         .agg(pl.col("estimate", "sd").first(), pl.len().alias("tows"))
     )
     half = NORMAL * pl.col("sd")
-    shown = (USUAL_SD**2 - pl.col("sd") ** 2).clip(1e-6 * USUAL_SD**2).sqrt()
+    shown = (USUAL_SD**2 - pl.col("sd") ** 2).clip(MIN_INFORMED_SHARE * USUAL_SD**2).sqrt()
     distance = pl.col("estimate") / shown
     alarm = distance.abs() >= ALARM_SD
     return (
@@ -170,6 +176,7 @@ def anemometer_diagnosis(c: Computed) -> pl.DataFrame:
             alarm.alias("alarm"),
             pl.lit(None).alias("first_tow"),
             pl.format("wind out and back of {} tows", "tows").alias("rests_on"),
+            pl.lit(None).alias("shown_by"),
             pl.lit(None).alias("confused_with"),
         )
         .cast(pl.Schema(DIAGNOSIS_SCHEMA))

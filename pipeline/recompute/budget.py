@@ -129,6 +129,7 @@ def facts_of(
         air_ratio=pl.col("net_air_kg_m") / cw,
         air_per_coefficient=pl.col("air_per_coefficient_kg_m") / cw,
         still_air_ratio=pl.col("still_air_kg_m") / cw,
+        water_change_ratio=pl.col("water_change_kg_m") / cw,
     )
 
 
@@ -196,6 +197,8 @@ def _terms_of_tows(
         still_air_kg_m=pl.Series(tows.mean(c.still_air_kg_m, c.used)),
         temperature_known=pl.Series(c.temperature_known),
         water_off_c=pl.Series(c.water_off_c),
+        mass_ln_sd=pl.col("mass_ln_sd").fill_null(0.0),
+        water_change_kg_m=pl.Series(tows.mean(c.temperature_kg_m, c.used)),
         force_sd=FORCE_SD,
         **{name: pl.lit(size) for name, size in asdict(assumed).items() if name not in own},
         **{name: pl.Series(size) for name, size in own.items()},

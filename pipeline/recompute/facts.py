@@ -1,8 +1,14 @@
 """The facts of tows and runs as `recompute` takes them, joined from the tables of the archive."""
 
+from collections.abc import Iterable
+from typing import Final
+
 import polars as pl
 
 from pipeline.steps.window import HAND_COLUMNS
+
+UNKNOWN_WEIGHT_LN_SD: Final = 0.2
+"""Standard deviation of ln weight where too few tows have one to show it (inferred)."""
 
 
 def with_boat_types(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
@@ -36,6 +42,42 @@ def with_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
         expected_water_c=pl.coalesce(*means, water.mean()),
         water_off_c=(water - water.median().over(day)).abs().fill_null(0.0),
     )
+
+
+def with_expected_mass(tows: pl.DataFrame) -> pl.DataFrame:
+    """Return `tows` with the mass of boat and crew, as expected where a weight is not recorded.
+
+    A boat weighs what it weighs in its other tows (median), else what boats of its type with as
+    many rowers weigh, else all boats with as many rowers. A crew weighs what the boat's other crews
+    of that size weigh, else crews of that size and class. Last comes the mean weight per rower of
+    the archive.
+
+    Args:
+        tows: rows of the table `tows` with `boat_type`.
+
+    Returns:
+        The rows with `mass_kg`, null where no tow has a weight, and `mass_ln_sd`, the standard
+        deviation of its logarithm among the tows that it is expected from, 0 where both weights
+        are recorded.
+    """
+    boat_groups = ["fsn_no"], ["boat_type", "rowers"], ["rowers"]
+    crew_groups = ["fsn_no", "rowers"], ["rowers", "crew_class"], ["rowers"]
+    boat_kg, boat_ln_sd = _expected_from_like_tows("weight_kg", boat_groups)
+    crew_kg, crew_ln_sd = _expected_from_like_tows("crew_weight_kg", crew_groups)
+    mass_kg = boat_kg + crew_kg
+    mass_sd_kg = ((boat_kg * boat_ln_sd) ** 2 + (crew_kg * crew_ln_sd) ** 2).sqrt()
+    return tows.with_columns(mass_kg=mass_kg, mass_ln_sd=mass_sd_kg / mass_kg)
+
+
+def _expected_from_like_tows(column: str, groups: Iterable[list[str]]) -> tuple[pl.Expr, pl.Expr]:
+    """Return a weight, by the first group of tows that has one, and its ln standard deviation."""
+    recorded = pl.col(column)
+    per_rower = recorded / pl.col("rowers")
+    medians = [recorded.median().over(group) for group in groups]
+    spreads = [recorded.log().std().over(group) for group in groups]
+    expected = pl.coalesce(recorded, *medians, per_rower.median() * pl.col("rowers"))
+    ln_sd = pl.coalesce(*spreads, per_rower.log().std(), UNKNOWN_WEIGHT_LN_SD)
+    return expected, pl.when(recorded.is_null()).then(ln_sd).otherwise(0.0)
 
 
 def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:

@@ -11,7 +11,7 @@ from pipeline.arrays import IntArray
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.blocks.tows import Tows
 from pipeline.method.definition import Calibration, Method, Steps
-from pipeline.recompute.facts import with_expected_water
+from pipeline.recompute.facts import with_expected_mass, with_expected_water
 from pipeline.recompute.run_cache import RunCache
 
 
@@ -44,6 +44,7 @@ class Plan:
             MissingKnowledgeError: the method says nothing about a season of `tows`.
         """
         known = Tows.of(with_expected_water(tows), blocks)
+        known = replace(known, frame=with_expected_mass(known.frame))
         season, has_gps = known.frame["season"].to_list(), known.has_gps.tolist()
         groups: dict[tuple[Steps, Steps], int] = {}
         place = {}

@@ -9,7 +9,8 @@ Belongs here:
 
 - what is assumed (`assumed`), and the unknowns with their effects (`effects`);
 - the tows and what ties them together (`archive_tows`), and the density of a boat's (`boats`);
-- the posterior of everything (`fit`), and which faults there are (`faults`);
+- the posterior of everything (`fit`), what each boat alone says of a fault (`boat_evidence`), and
+  which faults there are (`faults`);
 - what it says of logs, and which factors are refused (`factors`), of tows (`tow_estimates`) and of
   seasons (`diagnosis`);
 - which boats to tow again (`retow_design`).

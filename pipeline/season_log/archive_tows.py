@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 import scipy
 
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
 from pipeline.errors import BrokenPromiseError
 from pipeline.tables.keys import LINE
 
@@ -90,6 +90,11 @@ class ArchiveTows:
     def boat(self) -> IntArray:
         """Place of each tow's boat as it was between alterations, (n,)."""
         return self.frame["boat"].to_numpy()
+
+    @property
+    def hull_names(self) -> StrArray:
+        """Number of each boat, by its place `hull`, (hulls,)."""
+        return self.frame["fsn_no"].unique().sort().to_numpy()
 
     def numbers(self, column: str) -> FloatArray:
         """A column as float64, NaN where null, (n,)."""

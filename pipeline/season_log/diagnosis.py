@@ -13,9 +13,10 @@ from pipeline.arrays import FloatArray, IntArray
 from pipeline.quantiles import NORMAL
 from pipeline.season_log.archive_tows import LOG, ArchiveTows
 from pipeline.season_log.boats import LEVEL
-from pipeline.season_log.effects import FORCE, LOG_SCALE, ZERO, ZERO_DRIFT
+from pipeline.season_log.effects import FORCE, LOG_SCALE, OF_BOATS, ZERO, ZERO_DRIFT
 from pipeline.season_log.factors import ESTIMATED, NOT_DETERMINED, NOT_SETTLED
 from pipeline.season_log.faults import Posterior
+from pipeline.season_log.fit import Fit
 from pipeline.tables.frames import dtypes
 from pipeline.tables.season_log import SeasonDiagnosis, SeasonSteps
 
@@ -24,6 +25,10 @@ FOUND: Final = 0.5
 POSSIBLE: Final = 0.1
 """One of this probability cannot be told."""
 ALARM_SD: Final = 4.0
+MIN_INFORMED_SHARE: Final = 0.05
+"""Least share of a prior's variance that counts as learned from the archive. Where the archive says
+nearly nothing of an effect, prior and posterior variance are equal but for rounding and for the
+approximation of the posterior, and a quotient by their difference is no distance (inferred)."""
 USUAL_SIZES: Final = 2.0
 """Faults beyond so many standard deviations of their prior are not usual."""
 FAULT: Final = "fault"
@@ -32,6 +37,8 @@ SOUND: Final = "sound"
 CANNOT_BE_TOLD: Final = "cannot be told"
 WOULD_NOT_SHOW: Final = "would not show"
 FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
+ALTERED_BOAT: Final = "altered_boat"
+"""What a fault that one boat alone shows may be instead."""
 
 STEP_SCHEMA: Final = dtypes(SeasonSteps, without=["method"])
 DIAGNOSIS_SCHEMA: Final = dtypes(SeasonDiagnosis, without=["method"])
@@ -45,7 +52,9 @@ def season_diagnosis(posterior: Posterior) -> pl.DataFrame:
         or newtons. `p_fault` is the probability that there is such a fault, null for what there
         always is. `distance_sd` is how far what is seen lies from what is assumed, in standard
         deviations. `verdict` is `sound`, `cannot be told`, `fault`, or `would not show`: a fault of
-        the usual size would most likely be taken for something else. For the factor of a log it
+        the usual size would most likely be taken for something else. A fault that one boat alone
+        shows cannot be told either: `shown_by` names the boat, which may have been altered, and
+        the interval ends where all of it is the instrument's. For the factor of a log it
         is `estimated` or `not determined`; a distance of 4 is an `alarm`. Where the search did not
         come to rest, all are `not settled`. `alarm`: a person should look.
     """
@@ -75,13 +84,20 @@ def _judged(posterior: Posterior, effects: pl.DataFrame) -> dict[str, object]:
     estimate = float(fitted.value[columns].sum())
     variance = float(fitted.covariance[np.ix_(columns, columns)].sum())
     half = NORMAL * np.sqrt(max(variance, 0.0))
+    ends = [estimate - half, estimate + half]
     chance = min(float(posterior.chance[faults].sum()), 1.0) if len(faults) else None
+    unresolved = next((one for one in posterior.unresolved if one.place in places), None)
+    if unresolved is not None:
+        ends.append(estimate + unresolved.size)
+        chance = max(chance or 0.0, _chance_beside_alteration(fitted))
     distance = None if name == LOG_SCALE else _distance(posterior, columns)
     shows = bool(posterior.shows[faults].any())
     if not fitted.settled:
         verdict = NOT_SETTLED
     elif name == LOG_SCALE:
         verdict = _of_log(posterior, columns)
+    elif unresolved is not None:
+        verdict = CANNOT_BE_TOLD
     else:
         verdict = _verdict(chance, distance, shows)
     begins = None
@@ -92,26 +108,42 @@ def _judged(posterior: Posterior, effects: pl.DataFrame) -> dict[str, object]:
     return {
         "unit": "N" if name in (ZERO, ZERO_DRIFT) else "1",
         "estimate": estimate,
-        "lo": estimate - half,
-        "hi": estimate + half,
+        "lo": min(ends),
+        "hi": max(ends),
         "p_fault": chance,
         "distance_sd": distance,
         "verdict": verdict,
         "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD, NOT_SETTLED),
         "first_tow": begins,
-        "confused_with": _confused_with(posterior, columns, faults),
+        "shown_by": None if unresolved is None else ", ".join(unresolved.boats),
+        "confused_with": _confused_with(
+            posterior,
+            columns,
+            faults,
+            of_one_boat=unresolved is not None or not posterior.has_boats[faults].all(),
+        ),
     }
 
 
+def _chance_beside_alteration(fitted: Fit) -> float:
+    """Return the probability that an instrument failed and not that the one boat was altered.
+
+    Both explain the boat's tows equally well, so their chances beforehand decide.
+    """
+    fault = fitted.problem.settings.fault_chance
+    return float(fault / (fault + fitted.shares[0]))
+
+
 def _distance(posterior: Posterior, columns: IntArray) -> float | None:
-    """How far what the archive shows of an effect that there always is lies from its prior."""
+    """Return how far the archive moves an effect that is always there, in standard deviations."""
     fitted = posterior.fit
     always = columns[~fitted.is_fault[columns]]
     if not len(always):
         return None
     prior = fitted.problem.effects.column("variance", fitted.active[always[0]])
-    shown = prior - fitted.covariance[always[0], always[0]]
-    return float(fitted.value[always[0]] / np.sqrt(max(shown, 1e-6 * prior)))
+    learned = prior - fitted.covariance[always[0], always[0]]
+    variance = max(learned, MIN_INFORMED_SHARE * prior)
+    return float(fitted.value[always[0]] / np.sqrt(variance))
 
 
 def _verdict(chance: float | None, distance: float | None, shows: bool) -> str:
@@ -135,15 +167,25 @@ def _of_log(posterior: Posterior, columns: IntArray) -> str:
     return ESTIMATED if posterior.determined[log] else NOT_DETERMINED
 
 
-def _confused_with(posterior: Posterior, columns: IntArray, faults: IntArray) -> str | None:
-    """What one of these faults would pass for if it does not show, and what would pass for it."""
+def _confused_with(
+    posterior: Posterior, columns: IntArray, faults: IntArray, of_one_boat: bool
+) -> str | None:
+    """Return what one of these faults would pass for if it does not show, and what for it.
+
+    Args:
+        of_one_boat: too few boats tell, so that an alteration of one would pass for the fault.
+    """
     effects, active = posterior.fit.problem.effects, posterior.fit.active
     label, hidden = effects.frame["label"].to_numpy(), ~posterior.shows
     passes = active[posterior.hidden_by[faults[hidden[faults]]]]
     pass_for_it = effects.faults[hidden & np.isin(posterior.hidden_by, columns)]
     own = {*label[effects.faults[faults]], *label[active[columns]]}
-    names = dict.fromkeys(label[np.concatenate([passes, pass_for_it])])
-    return ", ".join(name for name in names if name not in own) or None
+    others = np.concatenate([passes, pass_for_it])
+    names = [ALTERED_BOAT] if of_one_boat else []
+    if of_one_boat:
+        others = others[~np.isin(effects.column("name", others), OF_BOATS)]
+    names += [name for name in dict.fromkeys(label[others]) if name not in own]
+    return ", ".join(names) or None
 
 
 def _rests_on(tows: ArchiveTows) -> pl.DataFrame:

@@ -1,6 +1,9 @@
 """Which faults there are: each joins or leaves the model by its odds, one at a time.
 
-A fault enters by what one step from a fit promises, and stays by its own fit or not at all.
+A fault enters by what one step from a fit promises, and stays by its own fit or not at all. It also
+needs boats: one boat that differs from its other tows may have been altered, and nothing tells that
+from an instrument that was off (`boat_evidence`). A fault that one boat alone shows is unresolved.
+It is not corrected; both explanations are named, and the interval holds both.
 """
 
 from dataclasses import dataclass, replace
@@ -12,12 +15,30 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.choice import first_largest
 from pipeline.model import Scores
+from pipeline.season_log.boat_evidence import BoatEvidence, boats_needed
+from pipeline.season_log.boats import LEVEL
+from pipeline.season_log.effects import OF_BOATS
 from pipeline.season_log.factors import refused
 from pipeline.season_log.fit import Fit, Problem, fit
 
 MOST_FAULTS: Final = 12
 ROUGH: Final = 1e-4
 """Movement at which a fit is good enough to ask which faults there are."""
+
+
+@dataclass(frozen=True)
+class UnresolvedFault:
+    """An instrument fault that one boat alone shows, or two that disagree.
+
+    Attributes:
+        place: its place among the effects.
+        size: what the boat's own tows make of it, if the boat was not altered.
+        boats: numbers of the boats that show it.
+    """
+
+    place: int
+    size: float
+    boats: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -31,6 +52,9 @@ class Posterior:
         shows: (faults,) whether a fault of the usual size would be likelier than not.
         hidden_by: (faults,) effect of the fit that would move most, in standard deviations: what
             one that does not show passes for.
+        has_boats: (faults,) whether enough boats inform a fault for it to be told from an
+            alteration of one of them.
+        unresolved: at most one fault per season, that too few boats show.
         refused: (logs,) whether the factor of a log contradicts what needs no model
             (`factors.refused`).
     """
@@ -39,6 +63,8 @@ class Posterior:
     chance: FloatArray
     shows: BoolArray
     hidden_by: IntArray
+    has_boats: BoolArray
+    unresolved: tuple[UnresolvedFault, ...]
     refused: BoolArray
 
     @property
@@ -46,6 +72,20 @@ class Posterior:
         """Logs that are tied to the anchor and not refused, (logs,)."""
         tied = self.fit.problem.tows.logs["component"].to_numpy() == 0
         return np.asarray(tied & ~self.refused)
+
+    @property
+    def unresolved_variance(self) -> FloatArray:
+        """Variance of ln Cw of each tow by faults that are unresolved, (tows,).
+
+        Anything between nothing and the whole fault is equally likely, and nothing is corrected: a
+        rectangular distribution about one of its ends (GUM, 4.3.7 and F.2.4.5).
+        """
+        effects = self.fit.problem.effects
+        variance = np.zeros(len(self.fit.problem.q))
+        for fault in self.unresolved:
+            design = effects.design(self.fit.slopes, np.array([fault.place]))
+            variance += (design[:, LEVEL, 0] * fault.size) ** 2 / 3.0
+        return variance
 
     @property
     def log_known(self) -> BoolArray:
@@ -114,14 +154,62 @@ def _better(fitted: Fit, fitted_before: set[tuple[int, ...]]) -> IntArray | None
         fitted_before: kinds of faults of the models that no fault is to lead to.
     """
     places, ln_odds = _in_fit(fitted)
+    ln_odds[~_agrees_with_boats(fitted, places)] = -np.inf
     if len(places) and ln_odds.min() < 0.0:
         return np.delete(fitted.active, places[int(ln_odds.argmin())])
     faults = fitted.problem.effects.faults
     more, _ = _odds(fitted, _scores(fitted))
     there = [_kinds(fitted, also) in fitted_before for also in faults.tolist()]
     more[np.isin(faults, fitted.active) | there] = -np.inf
+    promising = np.flatnonzero(more > 0.0)
+    more[promising[~_has_boats(fitted, faults[promising])]] = -np.inf
     best = int(first_largest(more))
     return np.append(fitted.active, faults[best]) if more[best] > 0.0 else None
+
+
+def _has_boats(fitted: Fit, faults: IntArray) -> BoolArray:
+    """Return of which faults, by their places among the effects, enough boats tell."""
+    n_boats = BoatEvidence.from_fit(fitted, faults).n_informing
+    return np.asarray(n_boats >= boats_needed(fitted.problem, faults))
+
+
+def _agrees_with_boats(fitted: Fit, places: IntArray) -> BoolArray:
+    """Return which faults of the fit, by their places in it, enough boats bear out."""
+    faults = fitted.active[places]
+    n_agreeing = BoatEvidence.from_fit(fitted, faults).count_agreeing(fitted.value[places])
+    return np.asarray(n_agreeing >= boats_needed(fitted.problem, faults))
+
+
+def _find_unresolved(fitted: Fit) -> tuple[UnresolvedFault, ...]:
+    """Return the faults that a boat alone would show, were it not altered, and no other can tell.
+
+    Of a season the likeliest only: what one boat shows, other kinds of faults would explain as
+    well. That all boats changed is not told from one that did.
+    """
+    effects = fitted.problem.effects
+    is_candidate = ~np.isin(effects.frame["name"].to_numpy()[effects.faults], OF_BOATS)
+    faults = effects.faults[is_candidate & ~np.isin(effects.faults, fitted.active)]
+    prior = effects.column("variance", faults)
+    chance = effects.column("chance", faults)
+    evidence = BoatEvidence.from_fit(fitted, faults)
+    ln_odds = np.where(evidence.informs, evidence.ln_odds(prior, chance), -np.inf)
+    # One boat more than a fault needs settles which of them was altered.
+    ln_odds[:, evidence.n_informing > boats_needed(fitted.problem, faults)] = -np.inf
+    season = effects.column("season", faults)
+    hulls = fitted.problem.tows.hull_names
+    found = []
+    for year in np.unique(season[(ln_odds > 0.0).any(axis=0)]):
+        likeliest = first_largest(np.where(season == year, ln_odds.max(axis=0), -np.inf))
+        shown_by = np.flatnonzero(ln_odds[:, likeliest] > 0.0)
+        sizes = evidence.size[shown_by, likeliest]
+        found.append(
+            UnresolvedFault(
+                place=int(faults[likeliest]),
+                size=float(sizes[np.abs(sizes).argmax()]),
+                boats=tuple(hulls[shown_by].tolist()),
+            )
+        )
+    return tuple(found)
 
 
 def _scores(fitted: Fit) -> Scores:
@@ -159,4 +247,13 @@ def _posterior(fitted: Fit) -> Posterior:
     chance[own] = scipy.special.expit(ln_odds)
     moved = np.abs(fitted.covariance @ scores.across)
     hidden_by = first_largest(moved / np.sqrt(np.diag(fitted.covariance))[:, None])
-    return Posterior(fitted, chance, shows, hidden_by, refused(fitted))
+    has_boats = _has_boats(fitted, faults)
+    return Posterior(
+        fit=fitted,
+        chance=chance,
+        shows=shows & has_boats,
+        hidden_by=hidden_by,
+        has_boats=has_boats,
+        unresolved=_find_unresolved(fitted),
+        refused=refused(fitted),
+    )

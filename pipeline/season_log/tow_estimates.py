@@ -37,7 +37,8 @@ def with_estimates(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
         `force_factor` and `force_zero_n` of the load cell: read = true x factor + zero; `bend`, q
         of the boat; `askew_ratio`, what being pulled askew may have added to ln Cw (root mean
         square; not corrected, and 0 where it is unlikely); `ln_sd` and `dof` of what the
-        instruments do to ln Cw, per unit of the elasticity 2 + 2 q; `others_ln_ratio`, change of ln
+        instruments do to ln Cw, per unit of the elasticity 2 + 2 q, faults that are unresolved
+        among it; `others_ln_ratio`, change of ln
         Cw with the instruments as the other boats alone show them; `measured_ln_cw`, by the tow
         alone with these corrections; and `best_ln_cw, best_lo, best_hi` (95 %), by all.
         And the shares `tow_id, rests_on, weight` of the boat's tows in that, which sum to 1.
@@ -50,6 +51,7 @@ def with_estimates(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
     own = np.append(fitted.scatter_of_means, 0.0)[problem.tows.log]  # -1, anchored, reads the last
     by_log = fitted.slopes.ways["speed"][:, LEVEL] ** 2
     variance += own * (2.0 * variance / problem.settings.log_sd**2 - by_log)
+    variance += posterior.unresolved_variance
     known = np.sqrt(np.maximum(variance, 0.0)) / (2.0 + 2.0 * problem.q)
     applied = np.where(speed | force | zero, level, 0.0)
     change = _without_each_boat(fitted)[problem.tows.frame["hull"].to_numpy()]
@@ -111,7 +113,7 @@ def _best(posterior: Posterior) -> tuple[FloatArray, pl.DataFrame]:
     numbers = np.zeros((len(problem.q), 3))
     shares = []
     for group, boats in zip(problem.groups, fitted.boats, strict=True):
-        numbers[group.tow], weight = _of_boats(group, boats, fitted)
+        numbers[group.tow], weight = _of_boats(group, boats, posterior)
         tow, other = np.broadcast_arrays(group.tow[:, :, None], group.tow[:, None])
         shares.append(pl.DataFrame({"tow": tow.ravel(), "other": other.ravel(), "weight": weight}))
     numbers += (problem.boat_level + level_of_boats(fitted))[:, None]
@@ -133,8 +135,9 @@ def _best(posterior: Posterior) -> tuple[FloatArray, pl.DataFrame]:
     )
 
 
-def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, FloatArray]:
+def _of_boats(group: Patterns, boats: Boats, posterior: Posterior) -> tuple[FloatArray, FloatArray]:
     """Boats with the same number of tows: (boats, tows, 3) numbers, and the shares, flat."""
+    fitted = posterior.fit
     count, tows = group.tow.shape
     state = fitted.slopes.state[group.tow][..., 0]
     # Covariance of the level at each tow with every number of the boat, per pattern.
@@ -146,7 +149,8 @@ def _of_boats(group: Patterns, boats: Boats, fitted: Fit) -> tuple[FloatArray, F
     by = of_all[group.tow][:, None] - gain @ boats.design[:, None]
     mean = np.einsum("bpkn,bpn->bpk", with_level, boats.pull)
     shared = np.einsum("bpkf,fg,bpkg->bpk", by, fitted.covariance, by, optimize=True)
-    variance = np.maximum(variance + shared, 1e-12)
+    unresolved = posterior.unresolved_variance[group.tow][:, None]
+    variance = np.maximum(variance + shared + unresolved, 1e-12)
     weight = np.repeat(boats.weight[:, :, None], tows, axis=2)
     average = (weight * mean).sum(axis=1)
     bounds = _quantiles(weight, mean, np.sqrt(variance))

@@ -123,22 +123,17 @@ def run_means(
 
 
 def accelerated_mass_kg(tows: Tows) -> FloatArray:
-    """Boat, crew and the water that moves with them, shape (runs,); 0 where no weight is known.
+    """Return the mass of boat, crew and the water that moves with them, shape (runs,), kg.
 
-    Source: docs/method-details.md, 6.
+    0 where no tow of the archive has a weight. Source: docs/method-details.md, 6.
     """
-    return (1.0 + ADDED_MASS_RATIO) * np.nan_to_num(displaced_mass_kg(tows))[tows.tow]
-
-
-def displaced_mass_kg(tows: Tows) -> FloatArray:
-    """Boat and crew, shape (tows,), kg; NaN where a weight is not known."""
-    return tows.of_tow("weight_kg") + tows.of_tow("crew_weight_kg")
+    return (1.0 + ADDED_MASS_RATIO) * np.nan_to_num(tows.of_run("mass_kg"))
 
 
 def temperature_change_kg_m(
     tows: Tows, corrected: BoolArray, expected: BoolArray, speed_m_s: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """What brings Cw to the reference temperature: friction there minus friction as towed.
+    """Return what brings Cw to the reference temperature: friction there minus friction as towed.
 
     Friction by the ITTC-57 line, without form factor, on the wetted surface of
     `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
@@ -149,23 +144,23 @@ def temperature_change_kg_m(
         speed_m_s: true speed of each run, shape (runs,).
 
     Returns:
-        Change of Cw, shape (runs,), kg/m, 0 where temperature or weight is missing; and for which
-        tows both were recorded, shape (tows,).
+        Change of Cw, shape (runs,), kg/m, 0 without a temperature, or where no tow of the archive
+        has a weight; and for which tows the temperature was recorded and used, shape (tows,).
     """
-    recorded = tows.of_tow("water_temperature_c")
-    mass = displaced_mass_kg(tows)
-    known = np.isfinite(recorded) & np.isfinite(mass)
-    day = np.where(expected, tows.of_tow("expected_water_c"), np.nan)
-    temperature = np.where(known, recorded, day)
-    told = corrected & np.isfinite(temperature) & np.isfinite(mass)
-    celsius = np.where(told, temperature, REFERENCE_WATER_C)
+    recorded_c = tows.of_tow("water_temperature_c")
+    mass_kg = tows.of_tow("mass_kg")
+    is_recorded = np.isfinite(recorded_c) & np.isfinite(mass_kg)
+    day_c = np.where(expected, tows.of_tow("expected_water_c"), np.nan)
+    temperature_c = np.where(is_recorded, recorded_c, day_c)
+    has_change = corrected & np.isfinite(temperature_c) & np.isfinite(mass_kg)
+    celsius = np.where(has_change, temperature_c, REFERENCE_WATER_C)
     length = tows.of_run("waterline_length_m")
-    surface = wetted_surface_m2(np.where(told, mass, 0.0)[tows.tow], length)
+    surface = wetted_surface_m2(np.where(has_change, mass_kg, 0.0)[tows.tow], length)
     speed = _or_one(speed_m_s)
     at_reference, as_towed = (
         friction_cw_kg_m(speed, length, surface, t) for t in (REFERENCE_WATER_C, celsius[tows.tow])
     )
-    return at_reference - as_towed, known
+    return at_reference - as_towed, is_recorded
 
 
 def wetted_surface_m2(mass_kg: FloatArray, waterline_length_m: FloatArray) -> FloatArray:

@@ -75,15 +75,20 @@ class SeasonDiagnosis(PerPart):
     )
     verdict = column.text(
         "sound, would not show (one of the usual size would not be found), fault (likelier than "
-        "not), cannot be told (10 to 50 %), alarm (4 standard deviations apart); of a log's factor "
-        "estimated or not determined; not settled (the search did not come to rest: no estimate of "
-        "the method can be relied on)",
+        "not), cannot be told (10 to 50 %, or one boat alone shows it), alarm (4 standard "
+        "deviations apart); of a log's factor estimated or not determined; not settled (the search "
+        "did not come to rest: no estimate of the method can be relied on)",
         regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined"
         "|not settled)$",
     )
     alarm = column.flag("a person should look: fault, cannot be told, alarm, or not settled")
     first_tow = column.text("likeliest first tow after a log changed", nullable=True)
     rests_on = column.text("what tells")
+    shown_by = column.text(
+        "the one boat that shows it, or two that disagree: it may have been altered instead, and "
+        "nothing is corrected; empty where more boats tell, or nothing is shown",
+        nullable=True,
+    )
     confused_with = column.text("what it would pass for, and what for it", nullable=True)
 
 

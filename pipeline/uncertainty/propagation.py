@@ -131,7 +131,7 @@ RULES: Final = {
     "temperature": Component(
         "SQRT(POW(temperature_formula_ratio, 2) + POW(temperature_ratio_per_c * CASE "
         "WHEN temperature_known THEN GREATEST(temperature_known_c, water_off_c) "
-        "ELSE temperature_unknown_c END, 2))",
+        "ELSE temperature_unknown_c END, 2) + POW(0.5 * mass_ln_sd * water_change_ratio, 2))",
         "CASE WHEN temperature_known THEN 'single' ELSE 'season' END",
     ),
     "straightness": Component("COALESCE(askew_ratio, straightness_ratio)"),
@@ -158,10 +158,12 @@ def budget(tows: pl.DataFrame) -> pl.DataFrame:
             coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is
             taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air
             part / Cw;
-            `temperature_known`; `water_off_c`, of the water from its day's; `askew_ratio`, by being
-            pulled askew, null where repeat tows do not tell; `force_sd`, of the load cell by its
-            record, null without one; and every number of `Assumed`, with for `wind_coefficient`
-            what the archive-wide search came to where that was used.
+            `temperature_known`; `water_off_c`, of the water from its day's; `mass_ln_sd`, of ln
+            mass, 0 where it was weighed, and `water_change_ratio`, the correction for temperature /
+            Cw, which goes with the root of the mass; `askew_ratio`, by being pulled askew, null
+            where repeat tows do not tell; `force_sd`, of the load cell by its record, null without
+            one; and every number of `Assumed`, with for `wind_coefficient` what the archive-wide
+            search came to where that was used.
 
     Returns:
         One row per tow, speed and component: `tow_id, speed_ratio, component, shared`, `key` (rows

@@ -62,6 +62,7 @@ NOT_PLACED = {
 }  # fmt: skip
 FAULT = {
     "instrument": "force_zero", "season": 2017, "p_fault": 0.3, "size": 4.2, "unit": "N",
+    "size_lo": -1.0, "size_hi": 9.4, "shown_by": None,
 }  # fmt: skip
 
 
@@ -137,6 +138,8 @@ def cases():
     others["a race without two places"] = Answer(LINE, [RACE | NOT_PLACED])
     for verdict in ("fault", "cannot be told"):
         others[f"an instrument: {verdict}"] = Answer(LINE, [RACE], [FAULT | {"verdict": verdict}])
+    alone = FAULT | {"verdict": "cannot be told", "shown_by": "FSN101"}
+    others["an instrument, or the boat"] = Answer(LINE, [RACE], [alone])
     for name, other in others.items():
         found = told(other)
         lacks = [f"- {one}" for one in usual if one not in found]

@@ -139,7 +139,13 @@ def sound() -> World:
         pl.DataFrame(points, schema_overrides=integers),
         pl.DataFrame(tows, schema_overrides=integers | dict.fromkeys(("doubts", "unusual"), names)),
         pl.DataFrame(
-            {"season": [2012, 2014], "instrument": "", "verdict": "sound", "alarm": False},
+            {
+                "season": [2012, 2014],
+                "instrument": "",
+                "verdict": "sound",
+                "alarm": False,
+                "shown_by": pl.Series([None, None], dtype=pl.String),
+            },
             schema_overrides=integers,
         ),
     )
@@ -170,6 +176,9 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
         for sensor in ("force", "wind", "speed")
         for column, verdict in (("doubts", "not_plausible"), ("unusual", "unusual"))
     },
+    "instrument_or_boat": (
+        "diagnosis", SUBJECT, {"alarm": True, "shown_by": "FSN1, FSN99"}, 1, 0, {"season_in_doubt"},
+    ),
     "season_in_doubt": ("diagnosis", SUBJECT, {"alarm": True}, 1, 0, set()),
     "coarse_readings": ("tows", SUBJECT, {"gps_step_m_s": 0.1}, 0.1 / V0, 0.01, set()),
     "lamps_burned": ("tows", SUBJECT, {"lamp_ratio": 0.3}, 0.3, 0.2, set()),
@@ -206,6 +215,7 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "slow_tow": ("curves", SUBJECT, {"power_w": 59.0}, 59, 60, {"power_outside_range"}),
     "crew_weight": ("tows", SUBJECT, {"crew_weight_kg": 500.0}, 62.5, 81, {"pulled_askew"}),
     "water_differs": ("tows", SUBJECT, {"water_off_c": 20.4}, 20.4, 3.0, set()),
+    "weight_not_recorded": ("tows", SUBJECT, {"crew_weight_kg": None}, 1, 0, set()),
     "heavier_after": ("tows", SUBJECT, {"weight_after_kg": 1030.0}, 1030 / 1005 - 1, 0.02, set()),
     "boat_list_differs": ("tows", LATER, {"listed_length_m": 9.0}, 1 / 9, 0.05, set()),
     "weight_changed": (

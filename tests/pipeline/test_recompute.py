@@ -14,7 +14,7 @@ from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.blocks.tows import Tows
 from pipeline.method.definition import shipped_method
-from pipeline.recompute.facts import with_expected_water
+from pipeline.recompute.facts import with_expected_mass, with_expected_water
 from pipeline.recompute.recompute import recompute
 from pipeline.steps.target import above_target
 from tests.pipeline.methods import method
@@ -283,3 +283,26 @@ def test_water_is_expected_of_the_nearest_days_that_have_a_record():
     tows = pl.DataFrame({"tow_date": [date(*d) for d in days], "water_temperature_c": water})
     expected = with_expected_water(tows)["expected_water_c"].to_list()
     assert expected == [4.0, 4.0, 4.0, 4.0, 12.0, 8.0]
+
+
+def test_a_mass_is_expected_of_the_boats_own_tows_then_of_its_type_then_of_its_crew():
+    tows = pl.DataFrame(
+        {
+            "fsn_no": ["a", "a", "a", "b", "c", "d", "e"],
+            "boat_type": ["kuiken", "kuiken", "kuiken", "kuiken", "kuiken", "whaler", None],
+            "rowers": [8, 8, 8, 8, 8, 8, 6],
+            "crew_class": ["H"] * 7,
+            "weight_kg": [1000.0, 1100.0, None, 1300.0, None, None, None],
+            "crew_weight_kg": [700.0, None, None, 720.0, 740.0, 740.0, 480.0],
+        }
+    )
+    found = with_expected_mass(tows)
+    of_type = float(np.median([1000.0, 1100.0, 1300.0]))
+    of_six = float(np.median([1000.0, 1100.0, 1300.0])) / 8 * 6
+    expected = [1700.0, 1800.0, 1750.0, 2020.0, of_type + 740.0, of_type + 740.0, of_six + 480.0]
+    assert found["mass_kg"].to_list() == pytest.approx(expected)
+    weighed = [True, False, False, True, False, False, False]
+    assert (found["mass_ln_sd"] == 0.0).to_list() == weighed
+    among_kuikens = np.std(np.log([1000.0, 1100.0, 1300.0]), ddof=1)
+    sd = among_kuikens * of_type / (of_type + 740.0)
+    assert found["mass_ln_sd"][4] == pytest.approx(sd)

@@ -26,6 +26,7 @@ PERFECT = replace(
 WORLDS = 4
 PHANTOM = Path(__file__).parents[1] / "data" / "phantom_tows.parquet"
 IN_2010 = pl.col("season") == 2010
+FORCE_OF_2018 = (pl.col("season") == 2018) & (pl.col("instrument") == "force_scale")
 
 
 @cache
@@ -302,6 +303,113 @@ def test_where_logs_alone_tell_a_load_cell_a_little_off_would_not_show():
     assert judged[2010, "force_scale"] == ("would not show", "log_scale 2010")
     assert "force_scale 2010" in judged[2010, "log_scale"][1]
     assert judged[2016, "force_scale"][0] == "sound"
+
+
+def with_few_repeats(seed, season, repeats, setup=CLEAN, others=5):
+    """A world whose last season has so many boats towed before, these first, and new ones."""
+    tows = simulate(setup, seed).tows.filter(pl.col("season") <= season)
+    last = pl.col("season") == season
+    before = set(tows.filter(~last)["fsn_no"])
+    crews = tows.filter(last)["fsn_no"].to_list()
+    repeated = [boat for boat in crews if boat in before][:repeats]
+    new = [boat for boat in crews if boat not in repeated][:others]
+    known = pl.when(last & pl.col("fsn_no").is_in(new)).then("new " + pl.col("fsn_no"))
+    kept = tows.filter(~last | pl.col("fsn_no").is_in([*repeated, *new]))
+    return kept.with_columns(known.otherwise("fsn_no").alias("fsn_no")), repeated
+
+
+def with_force(tows, season, ratios):
+    """Tows of a season whose force is multiplied, per boat."""
+    factor = pl.col("fsn_no").replace_strict(ratios, default=1.0, return_dtype=pl.Float64)
+    moved = pl.when(season=season).then(factor.log()).otherwise(0.0)
+    return tows.with_columns(pl.col("ln_cw") + moved)
+
+
+def unexplained_in(found, season):
+    """Faults of a season that a person should look at, by instrument."""
+    rows = found.diagnosis.filter("alarm", season=season).to_dicts()
+    return {row["instrument"]: row for row in rows}
+
+
+@pytest.mark.parametrize("others", [0, 5])
+@pytest.mark.parametrize("ratio", [0.85, 1.12, 1.25])
+def test_one_repeat_boat_does_not_tell_a_load_cell_from_an_altered_boat(ratio, others):
+    """A force 12 to 25 % off in the only repeat tow printed the old Cw again, without a word."""
+    tows, (boat,) = with_few_repeats(1, 2018, 1, others=others)
+    moved = with_force(tows, 2018, {boat: ratio})
+    before, after = (estimate_season_factors(rows) for rows in (tows, moved))
+    mine = (pl.col("fsn_no") == boat) & (pl.col("season") == 2018)
+    assert (after.tows["force_factor"] == 1.0).all()
+    assert (after.tows["force_zero_n"] == 0.0).all()
+    was, now = (found.tows.row(by_predicate=mine, named=True) for found in (before, after))
+    assert now["measured_ln_cw"] - was["measured_ln_cw"] == pytest.approx(math.log(ratio))
+    old, new = was["best_ln_cw"], now["measured_ln_cw"]
+    assert now["best_lo"] < min(old, new) < max(old, new) < now["best_hi"]
+    assert now["ln_sd"] * (2.0 + 2.0 * now["bend"]) * 1.96 > abs(math.log(ratio)) - 0.02
+    # Other tows of the day have the same load cell; those of other seasons do not.
+    sd = after.tows.group_by("season").agg(pl.col("ln_sd").min()).sort("season")["ln_sd"]
+    assert sd[-1] > 2.0 * sd[-2]
+    (cell,) = unexplained_in(after, 2018).values()
+    assert (cell["instrument"], cell["verdict"]) == ("force_scale", "cannot be told")
+    assert (cell["shown_by"], cell["confused_with"]) == (boat, "altered_boat")
+    assert cell["lo"] < math.log(ratio) + 0.03
+    assert cell["hi"] > math.log(ratio) - 0.03
+    assert after.steps.filter(season=2018)["cause"].to_list() == ["not told"]
+    assert not unexplained_in(before, 2018)
+
+
+@pytest.mark.parametrize(
+    ("ratios", "verdict"),
+    [
+        ([1.15, 1.15], "fault"),
+        ([1.15, 1.0], "cannot be told"),
+        ([1.0, 0.85], "cannot be told"),
+        ([1.1, 0.9], "cannot be told"),
+        ([1.15, 1.15, 1.0], "fault"),
+        ([1.15, 1.0, 1.0], None),
+        ([1.0, 0.85, 1.0], None),
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("seed", [1, 4])
+def test_a_load_cell_takes_two_boats_and_three_where_they_disagree(ratios, verdict, seed):
+    tows, boats = with_few_repeats(seed, 2018, len(ratios))
+    moved = with_force(tows, 2018, dict(zip(boats, ratios, strict=True)))
+    found = estimate_season_factors(moved)
+    unexplained = unexplained_in(found, 2018)
+    assert [row["verdict"] for row in unexplained.values()] == [verdict] * (verdict is not None)
+    factors = found.tows.filter(season=2018)["force_factor"]
+    if verdict == "fault":
+        assert factors.to_numpy() == pytest.approx(1.15, abs=0.04)
+    else:
+        assert set(factors) == {1.0}
+    odd = [boat for boat, ratio in zip(boats, ratios, strict=True) if ratio != 1.0]
+    shown_by = {row["shown_by"] for row in unexplained.values()} - {None}
+    assert shown_by == ({", ".join(odd)} if verdict == "cannot be told" else set())
+
+
+def test_a_log_that_two_boats_alone_tell_neither_drifted_nor_was_replaced():
+    """One of the two boats may have been altered: the scale of the log takes the other."""
+    setup = replace(CLEAN, day_sd=1e-6)
+    tows = simulate(setup, 2).tows.with_columns(gps_ln_ratio=pl.lit(None, pl.Float64))
+    known = tows.filter(~IN_2010).get_column("fsn_no")
+    mine = tows.filter(IN_2010, pl.col("fsn_no").is_in(known.implode()))["fsn_no"]
+    first, last = mine[0], mine[-1]
+    few = renamed(tows, IN_2010 & ~pl.col("fsn_no").is_in([first, last]))
+    moved = pl.when(IN_2010 & (pl.col("fsn_no") == last)).then(math.log(1.25)).otherwise(0.0)
+    found = estimate_season_factors(few.with_columns(pl.col("ln_cw") + moved))
+    assert "fault" not in set(found.diagnosis.filter(season=2010)["verdict"])
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_change_far_below_what_is_assumed_is_no_alarm(seed):
+    """One repeat boat says nearly nothing of a load cell: 0.01 % of force stood 300 sd off."""
+    tows, (boat,) = with_few_repeats(seed, 2018, 1)
+    found = estimate_season_factors(with_force(tows, 2018, {boat: math.exp(0.06)})).diagnosis
+    cell = found.row(by_predicate=FORCE_OF_2018, named=True)
+    assert abs(cell["estimate"]) < 0.5 * USUAL.force_sd
+    assert abs(cell["distance_sd"]) < 4.0
+    assert cell["verdict"] != "alarm"
 
 
 def test_a_log_replaced_is_not_taken_for_many_tows_pulled_askew():

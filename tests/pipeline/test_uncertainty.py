@@ -25,7 +25,7 @@ def tows(assumed=None, **changed):
         "log_dof": np.inf, "tow_log_sd": 0.0,
         "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
-        "water_off_c": 0.0,
+        "water_off_c": 0.0, "mass_ln_sd": 0.0, "water_change_ratio": 0.0,
         "askew_ratio": None,
         "force_sd": None,
     }  # fmt: skip

@@ -13,9 +13,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.simulate import WorldSettings, simulate_world, world_settings
+from herijk.simulate import Defects, WorldSettings, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.assessment.plausibility import Shift, plausibility
+from pipeline.assessment.seen import Seen
 from pipeline.blocks.tows import Tows
 from pipeline.method.definition import shipped_method
 from tests.warehouse.edition_bench import EditionBench
@@ -115,6 +116,26 @@ def wind_changed(world, tows: list[str], **factors: float) -> list[Shift]:
     blocks = replace(world.blocks, sums=sums)
     shifts = plausibility(Tows.of(world.tows, blocks))
     return [s for s in shifts if s.quantity in ("wind", "vane") and s.clear]
+
+
+@pytest.mark.parametrize("seed", range(1, 7))
+def test_gusts_of_a_windy_season_are_no_fault_and_another_unit_is(seed):
+    """Wind of 6 m/s, with gusts that do not cancel between out and back, as at sea."""
+    settings = WorldSettings(
+        seasons=(2015, 2016, 2017),
+        tows_per_season=10,
+        rate_hz=5,
+        seed=seed,
+        defects=lambda season: replace(Defects.clean(season), wind_m_s=6.0),
+    )
+    world = measure(settings)
+    assert wind_changed(world, []) == []
+    true_wind = Seen(Tows.of(world.tows, world.blocks)).true_wind
+    middle = int(true_wind.argsort()[len(true_wind) // 2])
+    tow = world.tows["tow_id"].sort()[middle]
+    in_knots = dict.fromkeys(("wind_x", "wind_y", "wind_v"), 1.9438445)
+    shifts = wind_changed(world, [tow], **in_knots)
+    assert [(shift.quantity, shift.tows) for shift in shifts] == [("wind", (tow,))]
 
 
 def test_a_turned_vane_is_gross_in_a_tow_and_in_a_season_and_a_dead_anemometer_in_no_other_unit():

@@ -141,7 +141,7 @@ FROM season_diagnosis
 
 _DIAGNOSIS = f"""
 SELECT season, part, instrument, unit, size, size_lo, size_hi, p_fault, distance_sd, verdict,
-       first_tow, rests_on, confused_with
+       first_tow, rests_on, shown_by, confused_with
 FROM ({SIZED_FAULTS})
 WHERE method = ? AND verdict NOT IN ('sound', 'estimated')
 ORDER BY season, part, instrument
