@@ -8,7 +8,7 @@ import dagster as dg
 import polars as pl
 from pydantic import Field
 
-from assets.lake import Folders, detector, kept, outs
+from assets.lake import Folders, incremental, outs
 from assets.workers import side_by_side
 from pipeline.blocks.run_blocks import PLACE
 from pipeline.errors import MissingKnowledgeError
@@ -21,7 +21,7 @@ from warehouse.store.store import Store
 
 
 @dg.multi_asset(outs=outs(*seasons.INDEXED), can_subset=True)
-@kept
+@incremental()
 def archive_lists(folders: Folders) -> dict[str, pl.DataFrame]:
     """Boats, tows, races and files of the archive, and what is wrong in the lists."""
     return seasons.index(folders.store, folders.archive_root)
@@ -40,7 +40,7 @@ class Seasons(dg.Config):
 
 
 @dg.asset
-@kept
+@incremental()
 def samples(
     config: Seasons,
     folders: Folders,
@@ -72,7 +72,7 @@ def samples(
 
 
 @dg.asset
-@kept
+@incremental()
 def blocks(folders: Folders, samples: pl.DataFrame) -> pl.DataFrame:
     """Sums over each second of each run of every tow that can be used."""
     return lake.all_blocks(folders.store, samples)
@@ -82,7 +82,7 @@ def blocks(folders: Folders, samples: pl.DataFrame) -> pl.DataFrame:
     outs=outs("boats", "seasons", "read_tows", "read_runs", "hand_windows", "set_aside"),
     can_subset=True,
 )
-@kept
+@incremental()
 def archive(
     folders: Folders,
     list_faults: pl.DataFrame,
@@ -125,7 +125,7 @@ def read_earlier(store: Store, table: str) -> pl.DataFrame:
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def trace_seconds(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     """The traces of all runs of sound tows."""
     of_all = blocks.select(*dict.fromkeys(("tow_id", *PLACE, *SUMS)))

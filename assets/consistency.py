@@ -3,7 +3,7 @@
 import dagster as dg
 import polars as pl
 
-from assets.lake import detector, outs
+from assets.lake import incremental, outs
 from pipeline.consistency import (
     compared,
     components,
@@ -19,7 +19,7 @@ from pipeline.consistency.observed import observe_trusted, of_trusted
 
 
 @dg.multi_asset(outs=outs("type_lines", "type_line_points"), can_subset=True)
-@detector
+@incremental(may_fail=True)
 def lines_of_types(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> dict[str, pl.DataFrame]:
@@ -29,7 +29,7 @@ def lines_of_types(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def compared_tows(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> pl.DataFrame:
@@ -38,14 +38,14 @@ def compared_tows(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def hull_speed(compared_tows: pl.DataFrame) -> pl.DataFrame:
     """How Cw grows with hull speed within a type."""
     return compared.hull_speed_statistics(compared_tows)
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def type_outliers(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> pl.DataFrame:
@@ -54,7 +54,7 @@ def type_outliers(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def type_homogeneity(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> pl.DataFrame:
@@ -63,7 +63,7 @@ def type_homogeneity(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def pooled_curves(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> pl.DataFrame:
@@ -72,7 +72,7 @@ def pooled_curves(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def speed_trend(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> pl.DataFrame:
@@ -81,7 +81,7 @@ def speed_trend(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def predicted_cw(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> pl.DataFrame:
@@ -90,14 +90,14 @@ def predicted_cw(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def prediction_error(predicted_cw: pl.DataFrame) -> pl.DataFrame:
     """How well boats predict each other."""
     return prediction.prediction_error(predicted_cw)
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def variance_components(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> pl.DataFrame:
@@ -106,7 +106,7 @@ def variance_components(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def slow_tows(
     curves: pl.DataFrame,
     tows: pl.DataFrame,
@@ -119,21 +119,21 @@ def slow_tows(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Boats and crews that were towed again."""
     return repeats.repeat_pairs(of_trusted(curves, tows), tows)
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     """Shift of Cw from the tows of an era to the next tow of the same boat and crew."""
     return eras.era_shifts(repeat_pairs, boats)
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def reproducibility(
     repeat_pairs: pl.DataFrame,
     curves: pl.DataFrame,

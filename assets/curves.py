@@ -7,7 +7,7 @@ import dagster as dg
 import polars as pl
 
 from assets.archive import read_earlier
-from assets.lake import Folders, detector, kept, outs
+from assets.lake import Folders, incremental, outs
 from assets.rules import methods_in
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.recompute.facts import with_hand_windows
@@ -24,7 +24,7 @@ STUDIES: Final = ("correction_steps", "option_effects", "option_curves")
 @dg.multi_asset(
     outs=outs(*METHOD_TABLES, "tows", "tow_runs", "quarantine", "unforeseen"), can_subset=True
 )
-@kept
+@incremental()
 def recomputed(
     folders: Folders,
     applied_methods: pl.DataFrame,
@@ -55,7 +55,7 @@ def recomputed(
 
 
 @dg.multi_asset(outs=outs(*STUDIES), can_subset=True)
-@kept
+@incremental()
 def studies(
     folders: Folders,
     methods: pl.DataFrame,
@@ -76,14 +76,14 @@ def studies(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def season_changes(folders: Folders, methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
     """Cw of each method / Cw of the first method, of the same tow, per season."""
     return summaries.season_changes(curves, methods_in(folders, methods)[0])
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def print_reproduction(
     printed_registers: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
 ) -> pl.DataFrame:

@@ -7,7 +7,7 @@ from typing import Final
 import dagster as dg
 import polars as pl
 
-from assets.lake import Folders, kept
+from assets.lake import Folders, incremental
 from assets.report import write_report
 from assets.workers import side_by_side
 from pipeline.tables.schemas import TABLES
@@ -27,7 +27,7 @@ IN_DATABASE: Final = [name for name in TABLES if name not in LAKE_ONLY]
 
 
 @dg.asset(deps=IN_DATABASE)
-@kept(is_whole=duck.is_whole)
+@incremental(is_whole=duck.is_whole)
 def warehouse_database(folders: Folders, about_archive: pl.DataFrame) -> pl.DataFrame:
     """All tables in one DuckDB file, swapped in whole, with the meaning of each column."""
     tables = {name: folders.store.read(name) for name in IN_DATABASE}
@@ -35,7 +35,7 @@ def warehouse_database(folders: Folders, about_archive: pl.DataFrame) -> pl.Data
 
 
 @dg.asset(deps=[warehouse_database])
-@kept(code=SHOWING, is_whole=lambda store: (store.root / "site" / "index.html").exists())
+@incremental(code=SHOWING, is_whole=lambda store: (store.root / "site" / "index.html").exists())
 def site(folders: Folders) -> pl.DataFrame:
     """Pages people can look at, swapped in whole."""
     from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
@@ -45,7 +45,7 @@ def site(folders: Folders) -> pl.DataFrame:
 
 
 @dg.asset(deps=[warehouse_database])
-@kept
+@incremental()
 def report(folders: Folders) -> pl.DataFrame:
     """What changed since the last report: a page, JSON, and its headlines."""
     news = write_report(folders.store, dt.datetime.now().astimezone())

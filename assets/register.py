@@ -3,7 +3,7 @@
 import dagster as dg
 import polars as pl
 
-from assets.lake import Folders, detector, kept, outs
+from assets.lake import Folders, incremental, outs
 from assets.rules import methods_in
 from warehouse.derive import registers as derive
 
@@ -12,7 +12,7 @@ from warehouse.derive import registers as derive
     outs=outs("register", "register_history", "register_changes", "lineage", "due_list"),
     can_subset=True,
 )
-@kept
+@incremental()
 def registers(
     folders: Folders,
     methods: pl.DataFrame,
@@ -49,7 +49,7 @@ def registers(
 
 
 @dg.asset
-@detector
+@incremental(may_fail=True)
 def race_changes(
     register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
 ) -> pl.DataFrame:

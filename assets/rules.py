@@ -3,7 +3,7 @@
 import dagster as dg
 import polars as pl
 
-from assets.lake import Folders, kept, outs
+from assets.lake import Folders, incremental, outs
 from pipeline.method.definition import Method
 from warehouse.derive.registers import published_tables
 from warehouse.store.decisions import FILE_NAME, decision_table, read_decisions
@@ -13,7 +13,7 @@ FACTS = ("title", "title_en", "interval", "content_hash", "definition")
 
 
 @dg.asset
-@kept
+@incremental()
 def applied_methods(folders: Folders) -> pl.DataFrame:
     """The methods to apply, in order: the others are compared with the first."""
     chosen = folders.chosen_methods()
@@ -32,7 +32,7 @@ def methods_in(folders: Folders, applied_methods: pl.DataFrame) -> list[Method]:
 
 
 @dg.asset
-@kept
+@incremental()
 def methods(applied_methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
     """The methods that made the tables, in order: those of which no code of ours failed."""
     made = applied_methods.join(curves, on="method", how="semi", maintain_order="left")
@@ -40,7 +40,7 @@ def methods(applied_methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame
 
 
 @dg.asset
-@kept
+@incremental()
 def decisions(folders: Folders) -> pl.DataFrame:
     """What people decided about tows, in `besluiten.toml`."""
     return decision_table(read_decisions(folders.store.root / FILE_NAME))
@@ -52,7 +52,7 @@ PUBLISHED = ("editions", "register", "register_history", "register_changes", "li
 @dg.multi_asset(
     outs=outs("editions", *(f"published_{name}" for name in PUBLISHED[1:])), can_subset=True
 )
-@kept
+@incremental()
 def published(folders: Folders) -> dict[str, pl.DataFrame]:
     """The published editions: their tables as they lie in their folders."""
     tables = published_tables(folders.store)

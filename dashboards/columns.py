@@ -28,7 +28,7 @@ CODES: Final = {
     *("quantity", "explaining", "within", "severity", "check", "shared", "kind", "scope"),
     *("old_remark", "new_remark", "choice", "pooling"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
-    *("instrument", "verdict", "confused_with"),
+    *("instrument", "verdict", "confused_with", "rule"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 

@@ -1,5 +1,6 @@
 """The level of the intervals, the quantiles that go with it, and a robust spread."""
 
+from math import hypot
 from typing import Final
 
 import numpy as np
@@ -28,3 +29,16 @@ def t_quantile(dof: ArrayLike) -> FloatArray:
     """
     freedom = np.asarray(dof, dtype=np.float64)
     return np.asarray(scipy.special.stdtrit(freedom, 0.5 * (1.0 + LEVEL)), dtype=np.float64)
+
+
+def differ_beyond_intervals(
+    one: tuple[float, float, float], other: tuple[float, float, float]
+) -> bool:
+    """Return whether two numbers differ by more than the half widths of their intervals together.
+
+    Args:
+        one, other: a number, and the lower and upper end of its interval. Half widths are added as
+            independent errors are: the root of the sum of squares.
+    """
+    half_widths = [0.5 * (upper - lower) for _, lower, upper in (one, other)]
+    return abs(one[0] - other[0]) > hypot(*half_widths)

@@ -10,6 +10,7 @@ from dashboards import labels
 from dashboards.statements import Statement
 from dashboards.statements.boat import Answer, answers_by_boat
 from dashboards.statements.boat_type import LINES, SPREAD, homogeneity, level, slopes
+from dashboards.statements.tow import name_run, name_runs
 from dashboards.statements.tow import statements as tow_statements
 from herijk.cli.render import (
     Part,
@@ -23,6 +24,7 @@ from herijk.cli.render import (
 )
 from pipeline.messages import say, tell
 from pipeline.method.definition import COMPLETE
+from pipeline.tables.first_assessment import RULES
 from pipeline.tables.row import Row
 from warehouse.queries.answers import current_edition
 from warehouse.queries.audit import WEIGHT_LINE, BoatAudit, TypesAudit
@@ -81,10 +83,29 @@ def assessment(report: "Assessment", log_known: bool) -> Iterator[Part]:
         tow_statements(report, log_known),
         tow["tow_id"],
     )
+    rules = [_sum_up_rule(report, rule) for rule in RULES]
+    yield Section(tell("First assessment"), rows=rules, columns="rule verdict runs")
     yield Section(tell("Its runs"), rows=report.runs, columns=TOW, heads=RUN_HEADS)
-    yield Section(tell("To look at"), rows=report.checks, columns="check observed limit unit")
+    for way in report.ways_to_use:
+        title = tell(
+            "To use {} in place of {}, write this",
+            name_runs(way["runs"]),
+            name_runs(way["instead_of"]),
+        )
+        lines = [tell("in column 'gebruik runs' of the list: {}", way["use_runs"])]
+        lines += [tell("in archief.toml:"), *(f"  {line}" for line in way["plan"].splitlines())]
+        yield Section(title, lines=[f"  {line}" for line in lines])
     yield Section(tell("Set aside"), lines=list(map(set_aside, report.lost)))
     yield tell("Nothing was stored; the next rebuild makes the number anew.")
+
+
+def _sum_up_rule(report: "Assessment", rule: str) -> Row:
+    """Return a rule of the first assessment with its worst verdict and the runs that it names."""
+    mine = [row for row in report.first_assessment if row["rule"] == rule]
+    again = [row["runs"] for row in mine if row["verdict"] == "tow_again"]
+    runs = {run for of_finding in again for run in of_finding} if all(again) else set()
+    named = [name_run(run) for run in sorted(runs)]
+    return {"rule": rule, "verdict": mine[0]["verdict"], "runs": ", ".join(named)}
 
 
 RUN_HEADS: Final = {"cw_kg_m": labels.column("run_cw_kg_m")}

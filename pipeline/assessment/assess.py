@@ -67,6 +67,7 @@ def assess(
         _of_log(curves, run_points),
         _beside_previous(boats, curves, diagnosis),
         _beside_like_boats(boats),
+        _compare_with_type(boats, curves, diagnosis),
     ]
     return checked(reduce(_joined, facts, tows).with_columns(by_half_a_step=BY_HALF_A_STEP))
 
@@ -204,26 +205,70 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     declared, target = pl.col("declared_speed_m_s"), pl.col("target_speed_ratio")
     on_curve = pl.col("cw_kg_m") / pl.col("fitted_cw_kg_m")
     least, most = ((speed / declared).min(), (speed / declared).max())
-    on_target = speed / (target * declared)
-    log1 = speed / pl.col("speed_factor")
     return (
-        run_points.with_columns(
+        measure_runs(curves, run_points)
+        .with_columns(
             lowest_target=target.min().over("tow_id"), highest_target=target.max().over("tow_id")
         )
         .filter("used")
-        .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id", maintain_order="left")
         .group_by("tow_id", maintain_order=True)
         .agg(
+            pl.col(PER_RUN.values()).max(),
             unbalanced=way.cast(pl.Int32).sum().abs(),
             out_over_back=on_curve.filter(way > 0).mean() / on_curve.filter(way < 0).mean(),
-            log2_off_m_s=((pl.col("log2_ratio") - 1) * log1).abs().max(),
-            off_target=(on_target / on_target.median() - 1).abs().max(),
             shortfall=pl.max_horizontal(
                 least - pl.col("lowest_target").first(), pl.col("highest_target").first() - most
             ),
             beyond=pl.max_horizontal(least - 1, 1 - most),
         )
     )
+
+
+LEAST_USUAL_SCATTER: Final = 0.05
+"""Least standard deviation of samples over Cw that counts as usual: half of the 10 % under which
+nothing is too much (Sleepproef, R. Pot 2017, "Eerste beoordeling")."""
+
+PER_RUN: Final = {
+    "off_target_speed": "off_target",
+    "log2_differs": "log2_off_m_s",
+    "large_scatter_in_run": "scatter",
+    "samples_scatter": "samples_scatter",
+}
+"""Checks of single runs, with the column of `measure_runs` that each looks at: a tow is marked for
+the largest value among the runs that count."""
+
+
+def measure_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    """Return run points with what `PER_RUN` judges, null for runs that do not count.
+
+    Args:
+        curves, run_points: the tables of one method, with all tows of a season.
+
+    Returns:
+        The rows with `season` and `declared_speed_m_s` and
+
+        - `off_target`: distance of speed / intended speed from the median of the tow, as a ratio,
+        - `log2_off_m_s`: distance of log 2 from log 1, m/s,
+        - `scatter`: standard deviation of the means of F / v^2 per second over their mean,
+        - `samples_scatter`: the same of the samples, over the median of all runs of the season;
+          both only where the method cuts runs.
+    """
+    used, is_cut = pl.col("used"), pl.col("ends_ratio").is_not_null()
+    on_target = pl.col("speed_m_s") / (pl.col("target_speed_ratio") * pl.col("declared_speed_m_s"))
+    level = on_target.filter(used).median().over("tow_id")
+    log1_m_s = pl.col("speed_m_s") / pl.col("speed_factor")
+    gross = pl.col("gross_cw_kg_m")
+    of_samples = pl.when(used & is_cut & (gross > 0)).then(pl.col("cw_sd") / gross)
+    usual = of_samples.median().over("season").clip(lower_bound=LEAST_USUAL_SCATTER)
+    of_runs = {
+        "off_target": (on_target / level - 1).abs(),
+        "log2_off_m_s": ((pl.col("log2_ratio") - 1) * log1_m_s).abs(),
+        "scatter": pl.when(is_cut & (gross > 0)).then(pl.col("cw_seconds_sd_kg_m") / gross),
+        "samples_scatter": of_samples / usual,
+    }
+    return run_points.join(
+        curves.select("tow_id", "season", "declared_speed_m_s"), on="tow_id", maintain_order="left"
+    ).with_columns(**{name: pl.when(used).then(value) for name, value in of_runs.items()})
 
 
 def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
@@ -332,8 +377,7 @@ def _beside_previous(
         before=before("season"),
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
     )
-    to_scale = {*_by_gps(curves), *diagnosis.filter(verdict="estimated")["season"]}
-    level = _season_levels(changed.drop_nulls("ln"), to_scale)
+    level = _season_levels(changed.drop_nulls("ln"), _seasons_to_scale(curves, diagnosis))
     now, then = (
         pl.col(column).replace_strict(level, default=0.0, return_dtype=pl.Float64)
         for column in ("season", "before")
@@ -372,6 +416,41 @@ def _season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int
 
 def _by_gps(curves: pl.DataFrame) -> pl.Series:
     return curves.drop_nulls("calibration_factor")["season"]
+
+
+def _seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:
+    """Return the seasons whose logs are on the scale of GPS: calibrated, or estimated."""
+    return {*_by_gps(curves), *diagnosis.filter(verdict="estimated")["season"]}
+
+
+def _compare_with_type(
+    boats: pl.DataFrame, curves: pl.DataFrame, diagnosis: pl.DataFrame
+) -> pl.DataFrame:
+    """Return Cw over that of like boats, less 1, of tows without an earlier tow to compare with.
+
+    These are tows of a boat and crew that was not towed before, or was altered since. Each of the
+    other boats of the type with that crew counts with its last tow, at the declared speed of the
+    tow that is compared, with Cw over size; the median of these is what is expected. Only seasons
+    whose logs are to scale take part: other logs can make a type seem 20 % off.
+    """
+    to_scale = boats.filter(
+        pl.col("season").is_in(_seasons_to_scale(curves, diagnosis))
+    ).drop_nulls(["boat_type", "size"])
+    is_first = pl.int_range(pl.len()).over(LINE) == 0
+    firsts = boats.filter(is_first | pl.col("altered"))["tow_id"]
+    others = to_scale.unique(["fsn_no", *LIKE], keep="last", maintain_order=True).select(
+        *LIKE, "a_kg_m", "s_s2_m2", other_fsn_no="fsn_no", other_size="size"
+    )
+    return (
+        to_scale.filter(pl.col("tow_id").is_in(firsts.implode()))
+        .select("tow_id", *LIKE, "fsn_no", "size", "cw_kg_m", speed="declared_speed_m_s")
+        .join(others, on=LIKE, maintain_order="left")
+        .filter(pl.col("fsn_no") != pl.col("other_fsn_no"))
+        .with_columns(other_cw=_cw_at(pl.col("speed")) * pl.col("size") / pl.col("other_size"))
+        .drop_nulls("other_cw")
+        .group_by("tow_id", maintain_order=True)
+        .agg(over_type=pl.col("cw_kg_m").first() / pl.col("other_cw").median() - 1)
+    )
 
 
 def _beside_like_boats(boats: pl.DataFrame) -> pl.DataFrame:

@@ -95,6 +95,8 @@ CHECKS: Final = (
         severity="note",
     ),
     Check("off_target_speed", "off_target", say("off target speed"), None, 0.05),
+    Check("large_scatter_in_run", "scatter", say("large scatter in a run"), None, 0.1),
+    Check("samples_scatter", "samples_scatter", say("samples scatter widely"), None, 2.0),
     Check("range_not_covered", "shortfall", say("range not covered"), None, 0.05, severity="note"),
     Check(
         "declared_speed_not_covered", "beyond", say("declared speed outside the runs"), None, 0.05
@@ -135,6 +137,7 @@ CHECKS: Final = (
     ),
     # The curve against others
     Check("curve_change_unexplained", "curve_change", say("unexplained curve change"), -0.05, 0.05),
+    Check("unlike_its_type", "over_type", say("unlike its type"), -0.1, 0.1, severity="note"),
     Check(
         "pulled_askew",
         "over_like_boats",

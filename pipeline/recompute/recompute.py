@@ -22,6 +22,7 @@ from pipeline.recompute.plan import Plan, without_factor
 from pipeline.recompute.results import Recomputed, as_tables
 from pipeline.recompute.run_cache import RunCache
 from pipeline.recompute.season_factors import find_season_factors, instruments_of
+from pipeline.run_reasons import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_CALIBRATED, NOT_SELECTED
 from pipeline.season_log import SeasonFactors
 from pipeline.steps.calibration import gps_factor_of_files
 from pipeline.steps.resistance import accelerated_mass_kg, run_means, temperature_change_kg_m
@@ -29,11 +30,6 @@ from pipeline.steps.speed import log_factor
 from pipeline.steps.target import above_target
 from pipeline.steps.wind import nearest_coefficients
 from pipeline.uncertainty.propagation import Assumed
-
-NOT_SELECTED = "not_selected"
-NO_STEADY_WINDOW = "no_steady_window"
-ABOVE_TARGET = "above_target_speed"
-NOT_CALIBRATED = "not_calibrated"
 
 PER_RUN_ITERATIONS = 4
 """The old tool printed "4 iteraties" (presentation 2015, screens of Razende Snol)."""

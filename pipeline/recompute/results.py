@@ -143,6 +143,7 @@ def _run_points(c: Computed) -> pl.DataFrame:
         "wind_coefficient_behind": c.air.behind,
         "cw_kg_m": c.cw_kg_m,
         "cw_sd": c.by_true_speed(means.sd_kg_m),
+        "cw_seconds_sd_kg_m": c.by_true_speed(means.seconds_sd_kg_m),
         "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
         "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
         "log2_ratio": np.where(log2, log2_ratio, np.nan),

@@ -42,6 +42,7 @@ class RunMeans:
         speed_m_s: mean speed by log 1.
         gross_kg_m: F / v^2.
         sd_kg_m: standard deviation of the samples' F / v^2.
+        seconds_sd_kg_m: standard deviation of its means per second.
         inertia_kg_m: part of it that accelerated the boat.
         air: air resistance / v^2 for drag coefficients of 1.
         gps_m_s: mean ground speed, NaN without a fix.
@@ -52,6 +53,7 @@ class RunMeans:
     speed_m_s: FloatArray
     gross_kg_m: FloatArray
     sd_kg_m: FloatArray
+    seconds_sd_kg_m: FloatArray
     inertia_kg_m: FloatArray
     air: AirParts
     gps_m_s: FloatArray
@@ -70,14 +72,29 @@ class RunMeans:
 
 
 def window_means(blocks: RunBlocks, windows: Windows, averaging_s: int) -> dict[str, FloatArray]:
-    """Means over the window of every run of what is summed in blocks, by `SUM_NAMES`, (runs,).
+    """Return means over the window of every run of what is summed in blocks, shape (runs,) each.
 
     Args:
         averaging_s: seconds over which the wind of air terms is averaged; 0 takes it as it is.
+
+    Returns:
+        The means by `SUM_NAMES`, and as `seconds_sd` the standard deviation of the means of
+        F / v^2 per second.
     """
     averaged = with_averaged_wind(blocks, averaging_s) if averaging_s else blocks
     sums = WindowSums(averaged, windows.mask)
-    return {name: sums.mean(name) for name in SUM_NAMES}
+    means = {name: sums.mean(name) for name in SUM_NAMES}
+    return means | {"seconds_sd": _sd_of_seconds(blocks, windows.mask)}
+
+
+def _sd_of_seconds(blocks: RunBlocks, window: BoolArray) -> FloatArray:
+    """Return the standard deviation of the means of F / v^2 per second of each window."""
+    measured = window & (blocks.n > 0)
+    count = np.maximum(measured.sum(axis=1), 1)
+    per_second = np.where(measured, blocks["log1_cw"] / np.maximum(blocks.n, 1.0), 0.0)
+    mean = per_second.sum(axis=1) / count
+    deviation = np.where(measured, per_second - mean[:, None], 0.0)
+    return np.asarray(np.sqrt((deviation**2).sum(axis=1) / count))
 
 
 def run_means(
@@ -108,6 +125,7 @@ def run_means(
         speed_m_s=speed,
         gross_kg_m=np.where(of_ratios, ratio, over["force"] / square),
         sd_kg_m=np.sqrt(np.maximum(over["log1_cw2"] - ratio**2, 0.0)),
+        seconds_sd_kg_m=over["seconds_sd"],
         inertia_kg_m=accelerated_kg * (over["rise_m_s"] / seconds_apart) / square,
         air=air_parts(
             oblique,

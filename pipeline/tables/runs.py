@@ -33,6 +33,9 @@ class RunPoints(PerTow):
     wind_coefficient_behind = column.optional("1", "the same from behind")
     cw_kg_m = column.optional("kg/m", "resistance coefficient in still air")
     cw_sd = column.optional("kg/m", "standard deviation of the samples", min=0)
+    cw_seconds_sd_kg_m = column.optional(
+        "kg/m", "standard deviation of the means per second", min=0
+    )
     fitted_cw_kg_m = column.optional("kg/m", "coefficient of the curve at this speed")
     wind_m_s = column.optional("m/s", "mean apparent wind speed")
     wind_angle_deg = column.optional("deg", "circular mean of the apparent wind")

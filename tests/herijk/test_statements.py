@@ -24,7 +24,7 @@ DRAFT = f"concept-{METHODS[-1]}"
 SENTENCE = 40
 """What is shorter may be said by chance."""
 SHOWN_ON = {
-    "assess assess--json": "like_boats provisional",
+    "assess assess--json": "like_boats log2_differs others_of_season provisional",
     "assess assess--json audit-boat audit-boat--json boats certificate": "interval",
     "audit-boat audit-boat--json boats": (
         "cause cw next_tow place_in_type power race_place two_hours"

@@ -119,6 +119,10 @@ def _run_points(tow_id: str) -> list[dict[str, Any]]:
             "speed_factor": 1.005,
             "cw_kg_m": 40.0 + 0.1 * run,
             "fitted_cw_kg_m": 40.2,
+            "gross_cw_kg_m": 41.0,
+            "cw_sd": 3.3,
+            "cw_seconds_sd_kg_m": 1.4,
+            "ends_ratio": 0.5,
             "log2_ratio": 0.997,
             "gps_ratio": 1.005,
             "used": True,
@@ -162,6 +166,7 @@ no_curve = {"a_kg_m": None, "b_m_s": None, "cw_kg_m": None, "power_w": None}
 run1 = pl.col("run") == 1
 back = pl.col("direction") == -1
 lower_cw = pl.col("cw_kg_m") * 0.93
+far_heavier = {"a_kg_m": 1.12 * A, "cw_kg_m": 1.12 * CW}
 heavier = {
     "a_kg_m": 1.08 * A,
     "cw_kg_m": 1.08 * CW,
@@ -203,6 +208,14 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
         "run_points", SUBJECT, {"speed_m_s": pl.when(run1).then(2.40).otherwise("speed_m_s")},
         2.40 / (1.01 * 2.25) - 1, 0.05, set(),
     ),
+    "large_scatter_in_run": (
+        "run_points", SUBJECT, {"cw_seconds_sd_kg_m": pl.when(run1).then(4.51).otherwise(1.4)},
+        0.11, 0.1, set(),
+    ),
+    "samples_scatter": (
+        "run_points", SUBJECT, {"cw_sd": pl.when(run1).then(6.7).otherwise(3.3)},
+        6.7 / 3.3, 2.0, set(),
+    ),
     "range_not_covered": (
         "run_points", SUBJECT, {"used": pl.col("target_speed_ratio") < 1.1},
         1.1 - 1.01, 0.05, set(),
@@ -228,6 +241,9 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
         "tows", LATER, {"freeboard_lowest_m": 0.36}, 0.04, 0.03, set(),
     ),
     "curve_change_unexplained": ("curves", LATER, heavier, 0.08, 0.05, set()),
+    "unlike_its_type": (
+        "curves", SUBJECT, far_heavier, 1.12 * math.sqrt(1780 / 1765) - 1, 0.1, {"pulled_askew"},
+    ),
     "pulled_askew": (
         "curves", SUBJECT, heavier, 0.08, 0.05, set(),
     ),
@@ -267,6 +283,7 @@ def test_what_is_not_known_is_not_checked(sound: World) -> None:
         freeboard_stern_m=None,
     ).changed("curves", LATER, calibration_factor=None)  # fmt: skip
     missing = {"freeboard_changed", "heavier_after", "unusual_calibration", "pulled_askew"}
+    missing |= {"unlike_its_type"}  # it was towed before
     assert checks_of(unknown, LATER) == set(CODES) - missing
     first = {"weight_changed", "length_changed", "beam_changed", "bow_height_changed"}
     first |= {"curve_change_unexplained", "freeboard_changed"}
@@ -280,6 +297,46 @@ def test_what_explains_that_a_curve_changed(sound: World) -> None:
     load = 1.08**2 * (1005.0 + 760.0) - 760.0
     loaded = sound.changed("tows", LATER, weight_kg=load, weight_after_kg=load)
     assert loaded.changed("curves", LATER, **heavier).flagged(LATER) == {"weight_changed"}
+
+
+def test_scatter_is_judged_only_where_the_method_cuts_runs(sound: World) -> None:
+    whole = sound.changed("run_points", SUBJECT, cw_seconds_sd_kg_m=9.0, cw_sd=9.0, ends_ratio=None)
+    assert whole.flagged(SUBJECT) == set()
+    assert not {"large_scatter_in_run", "samples_scatter"} & checks_of(whole, SUBJECT)
+
+
+def test_samples_that_scatter_alike_all_season_are_the_instruments(sound: World) -> None:
+    """What is usual is the season's own; below the 10 % of the source nothing is too much."""
+    noisy = sound.run_points.with_columns(cw_sd=pl.lit(12.0))
+    assert "samples_scatter" not in replace(sound, run_points=noisy).flagged(SUBJECT)
+    quiet = sound.run_points.with_columns(cw_sd=pl.lit(1.0))
+    for of_gross, is_marked in ((0.099, False), (0.101, True)):
+        world = replace(sound, run_points=quiet)
+        world = world.changed(
+            "run_points", SUBJECT, cw_sd=pl.when(run1).then(41.0 * of_gross).otherwise(1.0)
+        )
+        assert ("samples_scatter" in world.flagged(SUBJECT)) == is_marked
+
+
+def test_a_boat_is_compared_with_its_type_where_no_earlier_tow_can_be(sound: World) -> None:
+    """At its first tow, or after an alteration; weight and length are allowed for."""
+    light = {"a_kg_m": 0.8 * A, "cw_kg_m": 0.8 * CW}
+    assert "unlike_its_type" in sound.changed("curves", SUBJECT, **light).flagged(SUBJECT)
+    assert "unlike_its_type" not in checks_of(sound.changed("curves", LATER, **light), LATER)
+    altered = sound.changed("tows", LATER, altered=True).changed("curves", LATER, **light)
+    assert altered.flagged(LATER) == {"unlike_its_type"}
+    smaller = 0.8**2 * (1005.0 + 760.0) - 760.0
+    small = altered.changed("tows", LATER, weight_kg=smaller, weight_after_kg=smaller)
+    assert small.flagged(LATER) == set()
+    alone = sound.changed("tows", SUBJECT, boat_type="another")
+    assert "unlike_its_type" not in checks_of(alone, SUBJECT)
+
+
+def test_logs_that_are_not_to_scale_make_no_boat_unlike_its_type(sound: World) -> None:
+    curves = sound.curves.with_columns(
+        calibration_factor=pl.when(pl.col("season") == 2014).then("calibration_factor")
+    )
+    assert "unlike_its_type" not in checks_of(replace(sound, curves=curves), SUBJECT)
 
 
 def test_askew_pulling_is_that_of_one_tow_without_a_steering_aid(sound: World) -> None:

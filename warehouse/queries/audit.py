@@ -7,7 +7,7 @@ words is `cli.audit_text`.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot, log
+from math import log
 from typing import Final, TypeAlias
 
 import duckdb
@@ -15,6 +15,7 @@ import duckdb
 from pipeline.consistency.lines import ALL_CREWS
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
+from pipeline.quantiles import differ_beyond_intervals
 from pipeline.tables.row import Row
 from warehouse.store.boats import (
     choose_boat,
@@ -291,7 +292,8 @@ def differences(first: Statistics, *others: Statistics) -> list[str]:
     found = []
     for second in others:
         own, other = _intervals(first), _intervals(second)
-        found += [name for name in own if name in other and apart(own[name], other[name])]
+        both = own.keys() & other.keys()
+        found += [n for n in own if n in both and differ_beyond_intervals(own[n], other[n])]
         if {row["equal_possible"] for row in first["bends"] + second["bends"]} == {True, False}:
             found.append("bends")
     return found
@@ -318,11 +320,6 @@ def _name_line(line: Row) -> str:
     """Name a line by its quantity, what explains it and, where it is of one, its class."""
     name = f"{line['quantity']} {line['explaining']}"
     return name if line["within"] == ALL_CREWS else f"{name} {line['within']}"
-
-
-def apart(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
-    """Whether two numbers, each with its interval, differ by more than both (root sum square)."""
-    return abs(one[0] - other[0]) > hypot(*(0.5 * (hi - lo) for _, lo, hi in (one, other)))
 
 
 _FACTS = f"""

@@ -4,14 +4,14 @@ import dagster as dg
 import polars as pl
 import pytest
 
-from assets.lake import Folders, Lake, kept, outs
+from assets.lake import Folders, Lake, incremental, outs
 
 RAN: list[str] = []
 WORLD = {"numbers": [1.0, 2.0]}
 
 
 @dg.asset
-@kept
+@incremental()
 def numbers() -> pl.DataFrame:
     """Looks outside, so it always runs."""
     RAN.append("numbers")
@@ -19,7 +19,7 @@ def numbers() -> pl.DataFrame:
 
 
 @dg.asset
-@kept
+@incremental()
 def signs(numbers: pl.DataFrame) -> pl.DataFrame:
     """Equal for other positive numbers."""
     RAN.append("signs")
@@ -27,7 +27,7 @@ def signs(numbers: pl.DataFrame) -> pl.DataFrame:
 
 
 @dg.multi_asset(outs=outs("low", "high"), can_subset=True)
-@kept
+@incremental()
 def ends(signs: pl.DataFrame) -> dict[str, pl.DataFrame]:
     """Two tables of one computation."""
     RAN.append("ends")
