@@ -1,6 +1,7 @@
-"""What the archive holds: lists, samples, and of each tow the sums per second."""
+"""What the archive holds: its lists, the samples of every tow, and their sums per second."""
 
 import datetime as dt
+import logging
 from functools import partial
 from typing import Final
 
@@ -9,15 +10,25 @@ import polars as pl
 from pydantic import Field
 
 from assets.lake import Folders, incremental, outs
-from assets.workers import side_by_side
+from assets.workers import map_in_parallel
 from pipeline.blocks.run_blocks import PLACE
 from pipeline.errors import MissingKnowledgeError
 from pipeline.studies.summaries import SUMS, second_means
 from pipeline.tables.lake import SeasonIndex
-from pipeline.tables.schemas import TABLES, conform
-from warehouse.derive.archive_tables import archive_tables
+from pipeline.tables.schemas import conform
+from warehouse.derive.archive_tables import archive_tables, read_earlier
 from warehouse.intake import lake, seasons
-from warehouse.store.store import Store
+from warehouse.store.code import COMPUTING, code_hash
+
+TOWS_PER_TASK: Final = 10
+"""Number of tows that a helper reads before it reports: a helper takes a second to be asked."""
+
+READS_WITH: Final = (*COMPUTING, "warehouse.intake")
+"""Packages with which samples and blocks are brought into the lake. Files are read again for fewer:
+see `warehouse.store.code.READING`."""
+
+PROGRESS: Final = "herijk.progress"
+"""Logger of how many tows are read: attributes `done` and `total` of its records."""
 
 
 @dg.multi_asset(outs=outs(*seasons.INDEXED), can_subset=True)
@@ -33,46 +44,71 @@ NO_SAMPLES: Final = SeasonIndex.create_empty().select(
 """The columns of `samples`, without a row."""
 
 
-class Seasons(dg.Config):
-    """Which seasons to read; the others stay as they are."""
+class SeasonsToRead(dg.Config):
+    """Which seasons to read."""
 
-    seasons: list[int] = Field(default_factory=list)
+    seasons: list[int] = Field(
+        default_factory=list,
+        description="Seasons whose files are read where they changed; those of other seasons stay "
+        "as they are. Empty: all seasons.",
+    )
 
 
-@dg.asset
-@incremental()
+@dg.asset(code_version=code_hash(*READS_WITH))
+@incremental(code=READS_WITH, is_whole=lake.has_all_files)
 def samples(
-    config: Seasons,
+    config: SeasonsToRead,
     folders: Folders,
     listed_tows: pl.DataFrame,
     listed_runs: pl.DataFrame,
-    season_profiles: pl.DataFrame,  # noqa: ARG001 - how files are written: the reader asks itself
+    season_profiles: pl.DataFrame,  # noqa: ARG001 - the reader reads the profiles itself
 ) -> pl.DataFrame:
-    """Where the samples and blocks of each tow lie, or why they cannot be used."""
+    """Where the samples and blocks of each tow lie, or why they cannot be used.
+
+    Files are read in tasks of some tows of a season, side by side. A tow whose file, row of the
+    list and profile are those of the last rebuild is not read again.
+    """
     store, root = folders.store, folders.archive_root
-    by_season = {s: tows for (s,), tows in listed_tows.partition_by("season", as_dict=True).items()}
-    read = sorted(s for s in by_season if not config.seasons or s in config.seasons)
-    if by_season and not read:
+    listed = listed_tows["season"].unique().sort().to_list()
+    wanted = [season for season in listed if not config.seasons or season in config.seasons]
+    if listed and not wanted:
         raise MissingKnowledgeError(
             "the archive lists no tow in the seasons asked for; it has tows of {}",
-            ", ".join(map(str, sorted(by_season))),
+            ", ".join(map(str, listed)),
         )
-    known = store.read("samples")["samples_key"] if store.made_from("samples") else ()
-    work = partial(seasons.read_season, store, root, listed_runs)
-    whole = [s for s in read if seasons.is_read(root, listed_runs, by_season[s], known)]
-    frames = [work(by_season[season]) for season in whole]
-    left = [by_season[season] for season in read if season not in whole]
-    frames += side_by_side(work, left, folders.settings.dask) if len(left) > 1 else map(work, left)
-    if config.seasons and store.made_from("samples") is not None:
-        before = store.read("samples").filter(~pl.col("season").is_in(read))
-        frames.append(before.join(listed_tows, on="tow_id", how="semi"))
+    before = NO_SAMPLES if store.made_from("samples") is None else store.read("samples")
+    frames, tasks, seasons_read = [], [], []
+    for season in wanted:
+        tows = listed_tows.filter(season=season).sort("tow_id")
+        known = seasons.find_known_samples(store, root, listed_runs, tows, before)
+        if known is not None:
+            frames.append(known)
+            continue
+        seasons_read.append(season)
+        tasks += [tows.slice(start, TOWS_PER_TASK) for start in range(0, len(tows), TOWS_PER_TASK)]
+    read = partial(seasons.read_tows, store, root, listed_runs)
+    if len(tasks) == 1:  # starting a helper would take longer
+        frames.append(read(tasks[0]))
+    elif tasks:
+        frames += map_in_parallel(read, tasks, folders.settings.dask, partial(log_progress, tasks))
+    of_others = before.filter(~pl.col("season").is_in(wanted))
+    frames.append(of_others.join(listed_tows, on="tow_id", how="semi"))
     index = pl.concat([NO_SAMPLES, *frames]).sort("season", "tow_id")
     lake.keep_only(store, index)
+    context = dg.AssetExecutionContext.get()
+    context.add_asset_metadata({"seasons_read": seasons_read}, asset_key="samples")
     return index
 
 
-@dg.asset
-@incremental()
+def log_progress(tasks: list[pl.DataFrame], n_done: int) -> None:
+    """Log how many tows are read, about, when a number of tasks is done."""
+    total = sum(task.height for task in tasks)
+    numbers = {"done": min(n_done * TOWS_PER_TASK, total), "total": total}
+    logging.getLogger(PROGRESS).info("tows", extra=numbers)
+
+
+@dg.asset(code_version=code_hash(*READS_WITH))
+@incremental(code=READS_WITH)
 def blocks(folders: Folders, samples: pl.DataFrame) -> pl.DataFrame:
     """Sums over each second of each run of every tow that can be used."""
     return lake.all_blocks(folders.store, samples)
@@ -95,7 +131,7 @@ def archive(
 ) -> dict[str, pl.DataFrame]:
     """Boats, tows that can be read with their runs and windows, and all that was set aside."""
     read = samples.select("tow_id")
-    made = archive_tables(
+    tables = archive_tables(
         list_faults=list_faults,
         listed_boats=listed_boats,
         listed_windows=listed_windows,
@@ -108,25 +144,21 @@ def archive(
         today=dt.date.today(),
     )
     return {
-        "boats": made["boats"],
-        "seasons": made["seasons"],
-        "read_tows": conform("tows", made["tows"]),
-        "read_runs": conform("tow_runs", made["tow_runs"]),
-        "hand_windows": made["hand_windows"],
-        "set_aside": conform("quarantine", made["quarantine"]),
+        "boats": tables["boats"],
+        "seasons": tables["seasons"],
+        "read_tows": conform("tows", tables["tows"]),
+        "read_runs": conform("tow_runs", tables["tow_runs"]),
+        "hand_windows": tables["hand_windows"],
+        "set_aside": conform("quarantine", tables["quarantine"]),
     }
-
-
-def read_earlier(store: Store, table: str) -> pl.DataFrame:
-    """Return a table as the last rebuild left it; empty where there was none."""
-    if store.made_from(table) is None:
-        return TABLES[table].create_empty()
-    return store.read(table)
 
 
 @dg.asset
 @incremental(may_fail=True)
 def trace_seconds(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     """The traces of all runs of sound tows."""
-    of_all = blocks.select(*dict.fromkeys(("tow_id", *PLACE, *SUMS)))
-    return second_means(of_all.join(tows, on="tow_id", how="semi", maintain_order="left"))
+    columns = list(dict.fromkeys(("tow_id", *PLACE, *SUMS)))
+    of_sound_tows = blocks.select(columns).join(
+        tows, on="tow_id", how="semi", maintain_order="left"
+    )
+    return second_means(of_sound_tows)

@@ -6,15 +6,14 @@ from typing import Final
 import dagster as dg
 import polars as pl
 
-from assets.archive import read_earlier
 from assets.lake import Folders, incremental, outs
-from assets.rules import methods_in
+from assets.rules import read_methods
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.recompute.facts import with_hand_windows
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies import summaries
 from pipeline.tables.schemas import conform
-from warehouse.derive.archive_tables import add_first_seen
+from warehouse.derive.archive_tables import add_first_seen, read_earlier
 from warehouse.derive.recomputing import METHOD_TABLES, ArchiveRuns, recompute_archive
 from warehouse.derive.studies import study_tables
 
@@ -42,7 +41,7 @@ def recomputed(
     archive = ArchiveRuns(
         boats=boats, tows=read_tows, tow_runs=read_runs, hand_windows=hand_windows, blocks=blocks
     )
-    made = recompute_archive(methods_in(folders, applied_methods), archive)
+    made = recompute_archive(read_methods(folders, applied_methods), archive)
     before = read_earlier(folders.store, "quarantine")
     failed = add_first_seen(made.set_aside, before, dt.date.today())
     return {
@@ -68,18 +67,21 @@ def studies(
     """The ladder from the first method to each other, and the studies of its options."""
     runs = stack_blocks(blocks, with_hand_windows(tow_runs, hand_windows))
     cache = RunCache()
-    applied = methods_in(folders, methods)
-    made = [
+    applied = read_methods(folders, methods)
+    of_methods = [
         study_tables(method, applied[0], tows, runs, tow_instruments, cache) for method in applied
     ]
-    return {name: pl.concat([of[name] for of in made], how="diagonal") for name in STUDIES}
+    tables = {}
+    for name in STUDIES:
+        tables[name] = pl.concat([made[name] for made in of_methods], how="diagonal")
+    return tables
 
 
 @dg.asset
 @incremental(may_fail=True)
 def season_changes(folders: Folders, methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
     """Cw of each method / Cw of the first method, of the same tow, per season."""
-    return summaries.season_changes(curves, methods_in(folders, methods)[0])
+    return summaries.season_changes(curves, read_methods(folders, methods)[0])
 
 
 @dg.asset

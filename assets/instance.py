@@ -22,9 +22,9 @@ OF_A_COMMAND: Final = {"herijk/by": "rebuild"}
 
 
 def end_lost_runs(instance: dg.DagsterInstance, tags: Mapping[str, str]) -> None:
-    """Records runs as failed whose process was killed: nobody else would, and others wait.
+    """Record runs as failed whose process was killed: nothing else does, and other runs wait.
 
-    Rebuilds ask it of their own kind, as holders of the lock; a new server of all that began.
+    A rebuild does this for runs of its own kind, because it holds the lock; a new server for all.
     """
     begun = [
         dg.DagsterRunStatus.STARTED,
@@ -36,8 +36,8 @@ def end_lost_runs(instance: dg.DagsterInstance, tags: Mapping[str, str]) -> None
 
 
 @contextmanager
-def instance_of(store: Store) -> Iterator[dg.DagsterInstance]:
-    """Dagster's own records: where `DAGSTER_HOME` says, or under the data folder."""
+def open_instance(store: Store) -> Iterator[dg.DagsterInstance]:
+    """Open Dagster's records: where `DAGSTER_HOME` says, or in the data folder."""
     home = prepare_home(store)
     try:
         os.environ["DAGSTER_HOME"] = str(home)
@@ -55,7 +55,7 @@ def instance_of(store: Store) -> Iterator[dg.DagsterInstance]:
 
 
 def prepare_home(store: Store) -> Path:
-    """Dagster's folder, with settings that may be changed by hand afterwards."""
+    """Return Dagster's folder; write its settings there if it has none."""
     home = Path(os.environ.get("DAGSTER_HOME") or store.dagster_home)
     settings = home / "dagster.yaml"
     if not settings.exists():

@@ -1,14 +1,19 @@
-"""Tables of the lake: read and written for assets, and made again only where something changed.
+"""The lake: how assets read and write tables, and when a table is made again.
 
-The one rule of freshness: the footer of a Parquet file holds a fingerprint of what the table was
-made from, the contents of the tables that its asset reads and the code. An asset whose fingerprint
-is unchanged returns at once. An asset that reads no other looks outside, so it always runs. A hash
-of the contents is Dagster's data version, so Dagster's page calls the same tables stale.
+`Lake` is the IO manager: one Parquet file per table. `incremental` is the one rule of freshness:
+the footer of a table's file holds a fingerprint of what the table was made from, namely the
+contents of the tables that its asset reads, its configuration, the declared columns and the code.
+An asset whose fingerprint is unchanged does not run its body. An asset that reads no table looks
+outside Dagster (at the archive or at settings), so its body always runs. The hash of a table's
+contents is Dagster's data version, so Dagster's page calls the same tables stale.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+import logging
+import os
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial, wraps
+from functools import wraps
 from inspect import Signature, signature
 from pathlib import Path
 from typing import Any, Final
@@ -18,64 +23,83 @@ import polars as pl
 from pydantic import Field
 
 from assets.settings import Settings, read_settings
+from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import say
 from pipeline.method.definition import Method
+from pipeline.tables.frames import dtypes
 from pipeline.tables.schemas import TABLES, conform
-from warehouse.store.code import code_hash
+from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.lock import only_writer
 from warehouse.store.methods import KnownMethods, methods_to_apply
 from warehouse.store.store import DamagedFileError, Store, contents_of, fingerprint
 from warehouse.store.unforeseen import is_unforeseen, traced
 
-CODE: Final = ("pipeline", "warehouse.archive", "warehouse.derive", "warehouse.intake")
-"""What tables are computed with, beside the file of the asset: a changed byte makes them again."""
+LOG: Final = logging.getLogger("herijk")
+"""Says which assets are made; the command shows it, and Dagster keeps it with the run."""
 
 FAILED: Final = "failed"
-"""In a footer: the traceback with which a table could not be made; its rows are missing."""
+"""Key in a footer: the traceback with which a table could not be made. Its rows are missing."""
 
-Made = pl.DataFrame | Mapping[str, pl.DataFrame]
+Tables = pl.DataFrame | Mapping[str, pl.DataFrame]
+"""What the body of an asset returns: its table, or several by name."""
+
+AssetBody = Callable[..., Iterator[dg.MaterializeResult]]
 
 
-class Folders(dg.ConfigurableResource):  # type: ignore[type-arg]
-    """The archive that comes in, and the data folder that goes out."""
+class Folders(dg.ConfigurableResource["Folders"]):
+    """The archive that comes in, the data folder that goes out, and the methods to apply."""
 
-    archive: str
-    data: str
-    methods: list[str] = Field(default_factory=list)
+    archive: str = Field(description="The archive folder; read only.")
+    data: str = Field(description="The data folder; made if it is not there.")
+    methods: list[str] = Field(
+        default_factory=list,
+        description="Methods to apply; the others are compared with the first. Empty: those that "
+        "beheer.toml lists, or all that ship.",
+    )
 
     @property
     def archive_root(self) -> Path:
-        """The archive."""
-        return Path(self.archive)
+        """The archive, as an absolute path: a worker of Dask may work in another folder."""
+        return Path(self.archive).resolve()
 
     @property
     def store(self) -> Store:
-        """The data folder."""
-        return Store(Path(self.data))
+        """The data folder, as an absolute path."""
+        return Store(Path(self.data).resolve())
 
     @property
     def settings(self) -> Settings:
         """What `beheer.toml` says."""
         return read_settings(Path(self.data))
 
-    def chosen_methods(self) -> list[Method]:
-        """The methods to apply; the first is what the others are compared with."""
-        asked = self.methods or self.settings.methods
-        return [KnownMethods.of(self.store).get(n) for n in methods_to_apply(self.store, asked)]
+    def get_methods(self) -> list[Method]:
+        """Return the methods to apply; the first is what the others are compared with."""
+        listed = self.methods or self.settings.methods
+        names = methods_to_apply(self.store, listed)
+        known = KnownMethods.of(self.store)
+        return [known.get(name) for name in names]
 
 
 class Lake(dg.ConfigurableIOManager):
-    """A Parquet file per table, written beside and renamed; while a run lasts no other writes."""
+    """A Parquet file per table, swapped in whole. During a run no other process writes."""
 
     folders: dg.ResourceDependency[Folders]
 
     @contextmanager
-    def yield_for_execution(self, context: dg.InitResourceContext) -> Iterator["Lake"]:  # noqa: ARG002 - Dagster's
-        """The lake, with the right to write in it."""
+    def yield_for_execution(self, context: dg.InitResourceContext) -> Iterator["Lake"]:  # noqa: ARG002 - Dagster's signature
+        """Hold the lock of the data folder while the steps of this process run.
+
+        Raises:
+            MissingKnowledgeError: `herijk serve` works on other folders than the launchpad names.
+        """
+        served = [os.environ.get(name, "") for name in ("HERIJK_ARCHIVE", "HERIJK_DATA")]
+        if os.environ.get("HERIJK_SITE") and [self.folders.archive, self.folders.data] != served:
+            raise MissingKnowledgeError("this server works on {} and {} alone", *served)
         with only_writer(Path(self.folders.data), wait=True):
             yield self
 
     def load_input(self, context: dg.InputContext) -> pl.DataFrame:
-        """A table; one that is damaged is removed, so that the next run makes it again."""
+        """Read a table. Remove it if it is damaged, so that the next attempt makes it again."""
         try:
             return self.folders.store.read(context.asset_key.to_user_string())
         except DamagedFileError as error:
@@ -83,109 +107,140 @@ class Lake(dg.ConfigurableIOManager):
             raise
 
     def handle_output(self, context: dg.OutputContext, obj: pl.DataFrame) -> None:
-        """Writes a table with the fingerprint that its asset gave."""
-        told = context.output_metadata
-        about = {key: told[key].value for key in ("made_from", FAILED) if key in told}
-        self.folders.store.write(context.asset_key.to_user_string(), obj, **about)
+        """Write a table, with the fingerprint that its asset gave as metadata."""
+        given = context.output_metadata  # its values are MetadataValues
+        footer = {key: given[key].value for key in ("made_from", FAILED) if key in given}
+        self.folders.store.write(context.asset_key.to_user_string(), obj, **footer)
 
 
-def kept(
-    compute: Callable[..., Made] | None = None,
+def incremental(
     *,
     may_fail: bool = False,
-    code: tuple[str, ...] = CODE,
+    code: tuple[str, ...] = COMPUTING,
+    also: str = "",
     is_whole: Callable[[Store], bool] = lambda _: True,
-) -> Any:
-    """Goes under `@dg.asset`: the body runs only where something that it reads has changed.
+) -> Callable[[Callable[..., Tables]], AssetBody]:
+    """Make the body of an asset run only where something that it is made from has changed.
+
+    Goes under `@dg.asset` or `@dg.multi_asset`. The body takes tables (as frames), resources and a
+    configuration, and returns its table, or its tables by name.
 
     Args:
-        compute: makes the table, or several by name, of those that it reads.
-        may_fail: the rest can be made without it: where our code fails, it is empty.
-        code: packages with which it is computed.
-        is_whole: whether what is made beside the lake is still there and undamaged.
+        may_fail: the other assets can do without the rows of this one. If its body raises an error
+            that nobody foresaw, the table is empty and the check `nothing_unforeseen` fails.
+        code: packages with which the table is computed, besides the module of the asset.
+        also: whatever else the table is made from, as text.
+        is_whole: returns whether what the body makes outside the lake is there and undamaged.
     """
-    if compute is None:
-        return partial(kept, may_fail=may_fail, code=code, is_whole=is_whole)
 
-    @wraps(compute)
-    def body(**given: Any) -> Iterator[dg.MaterializeResult]:
-        context = dg.AssetExecutionContext.get()
-        lake: Lake = context.resources.io_manager
-        store = lake.folders.store
-        read = sorted(
-            key.to_user_string() for key in context.assets_def.keys_by_input_name.values()
+    def decorate(compute: Callable[..., Tables]) -> AssetBody:
+        @wraps(compute)
+        def body(**given: Any) -> Iterator[dg.MaterializeResult]:
+            context = dg.AssetExecutionContext.get()
+            lake: Lake = context.resources.io_manager
+            store = lake.folders.store
+            names = sorted(key.to_user_string() for key in context.selected_asset_keys)
+            read = sorted(key.to_user_string() for key in context.assets_def.dependency_keys)
+            made_from = fingerprint(
+                {name: store.contents(name) for name in read},
+                {name: str(dtypes(TABLES[name])) for name in names if name in TABLES},
+                [value.model_dump() for value in given.values() if isinstance(value, dg.Config)],
+                also,
+                code_hash(*code, compute.__module__),
+            )
+            is_made = all(store.made_from(name) == made_from for name in names)
+            if read and is_made and is_whole(store):
+                yield from confirm_outputs(store, names)
+                return
+            failure = ""
+            began = time.monotonic()
+            try:
+                frames = _compute_frames(compute, given, names)
+            except BaseException as error:  # a panic of a library in Rust is no Exception
+                if not may_fail or not is_unforeseen(error):
+                    raise
+                context.log.exception("Herijk itself failed here: the rows are missing")
+                failure = traced(error)
+                frames = {name: TABLES[name].create_empty() for name in names}
+            seconds = time.monotonic() - began
+            LOG.info(say("{} made in {:.1f} s", context.op_def.name, seconds))
+            yield from hand_over_outputs(frames, made_from, failure)
+
+        # Without a return annotation Dagster leaves the file of a result without a value alone.
+        parameters = signature(compute)
+        body.__signature__ = parameters.replace(return_annotation=Signature.empty)  # type: ignore[attr-defined]
+        hints = dict(compute.__annotations__)
+        hints.pop("return", None)
+        body.__annotations__ = hints
+        return body
+
+    return decorate
+
+
+def _compute_frames(
+    compute: Callable[..., Tables], given: Mapping[str, Any], names: list[str]
+) -> dict[str, pl.DataFrame]:
+    """Run the body of an asset; check its tables. Remove a damaged file that it meets."""
+    try:
+        made = compute(**given)
+    except DamagedFileError as error:
+        error.path.unlink(missing_ok=True)
+        raise
+    tables = {names[0]: made} if isinstance(made, pl.DataFrame) else made
+    frames = {}
+    for name in names:
+        frames[name] = conform(name, tables[name]) if name in TABLES else tables[name]
+    return frames
+
+
+def hand_over_outputs(
+    frames: Mapping[str, pl.DataFrame], made_from: str, failure: str
+) -> Iterator[dg.MaterializeResult]:
+    """Give Dagster tables to be written, with what their footers say."""
+    for name, frame in frames.items():
+        metadata: dict[str, int | bool | str] = {
+            "dagster/row_count": frame.height,
+            "new": True,
+            "made_from": made_from,
+        }
+        if failure:
+            metadata[FAILED] = failure
+        version = dg.DataVersion(contents_of(name, frame))
+        yield dg.MaterializeResult(
+            asset_key=name, value=frame, data_version=version, metadata=metadata
         )
-        inputs = {name: store.contents(name) for name in read}
-        made_from = fingerprint(code_hash(*code, compute.__module__), inputs)
-        names = [key.to_user_string() for key in context.selected_asset_keys]
-        if read and all(store.made_from(n) == made_from for n in names) and is_whole(store):
-            yield from (_confirmed(store, name) for name in names)
-            return
-        failed: dict[str, Any] = {}
-        try:
-            made = compute(**given)
-            if isinstance(made, pl.DataFrame):
-                made = {names[0]: made}
-            frames = {n: conform(n, made[n]) if n in TABLES else made[n] for n in names}
-        except DamagedFileError as error:
-            error.path.unlink(missing_ok=True)
-            raise
-        except BaseException as error:  # a panic of a library in Rust is no Exception
-            if not may_fail or not is_unforeseen(error):
-                raise
-            context.log.exception("an unforeseen error: these rows are missing")
-            failed = {FAILED: traced(error)}
-            frames = {name: TABLES[name].create_empty() for name in names}
-        for name, frame in frames.items():
-            yield dg.MaterializeResult(
-                asset_key=name,
-                value=frame,
-                data_version=dg.DataVersion(contents_of(name, frame)),
-                metadata={
-                    "dagster/row_count": frame.height, "new": True, "made_from": made_from, **failed
-                },
-            )  # fmt: skip
-
-    # No return type: so Dagster leaves the file alone where there is a result without a value.
-    body.__signature__ = signature(compute).replace(return_annotation=Signature.empty)  # type: ignore[attr-defined]
-    body.__annotations__ = {k: v for k, v in compute.__annotations__.items() if k != "return"}
-    return body
 
 
-detector = kept(may_fail=True)
-"""Of a table without which the rest can be made."""
-
-
-def _confirmed(store: Store, name: str) -> dg.MaterializeResult:
-    rows, contents = store.count_rows(name), store.contents(name)
-    about = {"dagster/row_count": rows, "new": False}
-    return dg.MaterializeResult(
-        asset_key=name, data_version=dg.DataVersion(str(contents)), metadata=about
-    )
+def confirm_outputs(store: Store, names: Iterable[str]) -> Iterator[dg.MaterializeResult]:
+    """Tell Dagster that tables are as they were, without writing them."""
+    for name in names:
+        metadata = {"dagster/row_count": store.count_rows(name), "new": False}
+        version = dg.DataVersion(str(store.contents(name)))
+        yield dg.MaterializeResult(asset_key=name, data_version=version, metadata=metadata)
 
 
 def outs(*names: str) -> dict[str, dg.AssetOut]:
-    """The tables of a multi-asset, of which a run may ask for some."""
+    """Return the outputs of a multi-asset of which a run may ask for some tables."""
     return {name: dg.AssetOut(is_required=False) for name in names}
 
 
-def declared(spec: dg.AssetSpec) -> dg.AssetSpec:
-    """An asset with the meaning and the columns of its table, and the version of our code."""
+def describe_table(spec: dg.AssetSpec) -> dg.AssetSpec:
+    """Return an asset's spec with the meaning and columns of its table, and its code version."""
     schema = TABLES.get(spec.key.to_user_string())
-    room = f"assets.{spec.group_name}"
-    version = spec.replace_attributes(code_version=code_hash(*CODE, room))
+    version = spec.code_version or code_hash(*COMPUTING, f"assets.{spec.group_name}")
+    with_code = spec.replace_attributes(code_version=version)
     if schema is None:
-        return version
+        return with_code
     columns = [
         dg.TableColumn(
-            name,
-            str(column.dtype),
-            column.description,
-            dg.TableColumnConstraints(nullable=column.nullable),
+            name=name,
+            type=str(column.dtype),
+            description=column.description,
+            constraints=dg.TableColumnConstraints(nullable=column.nullable),
         )
         for name, column in schema.columns().items()
     ]
-    told = spec.description if spec.description else schema.__doc__
-    return version.replace_attributes(description=told).merge_attributes(
+    description = spec.description if spec.description else schema.__doc__
+    return with_code.replace_attributes(description=description).merge_attributes(
         metadata={"dagster/column_schema": dg.TableSchema(columns)}
     )

@@ -4,70 +4,127 @@ Whether anything has is one question: are the archive, the rules of people, our 
 files those of the last whole rebuild? It is answered without Dagster, whose import takes a second.
 """
 
+import datetime as dt
 from collections.abc import Collection, Sequence
 from pathlib import Path
+from typing import Final
 
-from assets.report import Report, failed_checks, read_report
+from assets.report import Done, Report, confirm_report, failed_checks, read_report, record_failure
 from assets.settings import FILE_NAME
-from pipeline.errors import MissingKnowledgeError
+from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from warehouse.intake.lake import ArchiveChangedError
 from warehouse.intake.seasons import listing
 from warehouse.store.code import code_hash
 from warehouse.store.files import written_beside
+from warehouse.store.lock import only_writer
 from warehouse.store.store import DamagedFileError, Store, fingerprint
 
-EVERYTHING = ("pipeline", "warehouse", "dashboards", "assets")
-OURS = ("lake/tables", "site", "methods", "editions")
-OUR_FILES = ("warehouse.duckdb", "warehouse.duckdb.wal", "besluiten.toml", FILE_NAME)
-ATTEMPTS = 3
+EVERYTHING: Final = ("pipeline", "warehouse", "dashboards", "assets")
+"""Packages of which a changed byte may make any table or page stale."""
+
+OUR_FOLDERS: Final = ("lake/samples", "lake/blocks", "lake/tables", "site", "methods", "editions")
+OUR_FILES: Final = ("warehouse.duckdb", "warehouse.duckdb.wal", "besluiten.toml", FILE_NAME)
+"""What of a data folder a rebuild reads or leaves behind."""
+
+MAX_ATTEMPTS: Final = 3
 
 
 def rebuild(
-    archive: Path, data: Path, methods: Sequence[str], seasons: Collection[int] | None = None
+    archive: Path,
+    data: Path,
+    methods: Sequence[str],
+    seasons: Collection[int] | None = None,
+    selection: Collection[str] | None = None,
 ) -> Report:
-    """Brings the data folder up to date with the archive, and reports what that changed.
+    """Bring the data folder up to date with the archive; report what that changed.
 
-    A damaged file of ours is removed where it is found; so it begins again, as it does where the
-    archive changed meanwhile.
+    A damaged file of the data folder is removed where it is met. The run then begins again and
+    makes it anew, as it does where the archive changed meanwhile.
+
+    Args:
+        archive: the archive folder.
+        data: the data folder; made if it is not there.
+        methods: names of methods; the others are compared with the first.
+        seasons: seasons of which changed files are read; None for all.
+        selection: names of the assets to make; None for all.
 
     Raises:
         HerijkError: there is no archive, a promise was broken, or another rebuild is at work.
     """
     check_apart(archive, data)
-    store, asked = Store(data), fingerprint(sorted(methods), sorted(seasons or ()))
-    if stamp_path(store).exists() and stamp_path(store).read_text() == stamp(store, archive, asked):
-        return read_report(store, nothing_changed=True)
-    from assets.run import run_job  # noqa: PLC0415 - see above
-
-    for attempt in range(ATTEMPTS):
+    store = Store(data.resolve())
+    asked = fingerprint(sorted(methods), sorted(seasons or ()))
+    with only_writer(data):
+        if _read_stamp(store) == compute_stamp(store, archive, asked):
+            return confirm_report(store, dt.datetime.now().astimezone())
         try:
-            made, checks = run_job(archive, data, methods, sorted(seasons or ()))
-            break
+            done = _run_until_sound(archive, data, methods, sorted(seasons or ()), selection)
+        except NoTowsYetError:
+            raise
+        except HerijkError as error:
+            record_failure(store, dt.datetime.now().astimezone(), str(error))
+            raise
+        report = read_report(store, done)
+        if selection is None and not failed_checks(report.checks):
+            with written_beside(_stamp_path(store)) as beside:
+                beside.write_text(compute_stamp(store, archive, asked))
+    return report
+
+
+def _run_until_sound(
+    archive: Path,
+    data: Path,
+    methods: Sequence[str],
+    seasons: Sequence[int],
+    selection: Collection[str] | None,
+) -> Done:
+    """Run the job; again where a damaged file was removed or the archive changed meanwhile."""
+    from assets.run import run_job  # noqa: PLC0415 - it imports Dagster
+
+    for _ in range(MAX_ATTEMPTS - 1):
+        try:
+            return run_job(archive, data, methods, seasons, selection)
         except (DamagedFileError, ArchiveChangedError):
-            if attempt == ATTEMPTS - 1:
-                raise
-    if not failed_checks(checks):
-        with written_beside(stamp_path(store)) as beside:
-            beside.write_text(stamp(store, archive, asked))
-    return read_report(store, checks, nothing_changed="report" not in made, made=made)
+            continue
+    return run_job(archive, data, methods, seasons, selection)
 
 
-def stamp_path(store: Store) -> Path:
-    """Holds the fingerprint of the last rebuild that was whole."""
+def compute_stamp(store: Store, archive: Path, asked: str) -> str:
+    """Return a fingerprint of all that a rebuild reads and leaves behind.
+
+    Files count by size and time of their last change.
+
+    Args:
+        store: the data folder.
+        archive: the archive.
+        asked: fingerprint of what the command was asked to do.
+    """
+    files = []
+    for name in OUR_FOLDERS:
+        files += [file for file in (store.root / name).rglob("*") if file.is_file()]
+    for name in OUR_FILES:
+        if (store.root / name).exists():
+            files.append(store.root / name)
+    ours = []
+    for file in sorted(files):
+        stat = file.stat()
+        ours.append((str(file.relative_to(store.root)), stat.st_size, stat.st_mtime_ns))
+    place = str(archive.resolve())
+    return fingerprint(asked, place, listing(archive), ours, code_hash(*EVERYTHING))
+
+
+def _read_stamp(store: Store) -> str:
+    """Return the fingerprint that the last whole rebuild left; empty where there was none."""
+    path = _stamp_path(store)
+    return path.read_text() if path.exists() else ""
+
+
+def _stamp_path(store: Store) -> Path:
     return store.lake / "whole.txt"
 
 
-def stamp(store: Store, archive: Path, asked: str) -> str:
-    """Fingerprint of all that a rebuild reads and leaves behind, by size and time of each file."""
-    files = [f for name in OURS for f in (store.root / name).rglob("*") if f.is_file()]
-    files += [f for name in OUR_FILES if (f := store.root / name).exists()]
-    ours = sorted((str(f), f.stat().st_size, f.stat().st_mtime_ns) for f in files)
-    where = str(archive.resolve())
-    return fingerprint(asked, where, listing(archive), ours, code_hash(*EVERYTHING))
-
-
 def check_apart(archive: Path, data: Path) -> None:
-    """Refuses an archive in the data folder: a rebuild would write among what it reads.
+    """Refuse an archive in the data folder: a rebuild would write among what it reads.
 
     Raises:
         MissingKnowledgeError: the archive is the data folder, or lies in it.

@@ -4,7 +4,7 @@ import dagster as dg
 import polars as pl
 
 from assets.lake import Folders, incremental, outs
-from assets.rules import methods_in
+from assets.rules import read_methods
 from warehouse.derive import registers as derive
 
 
@@ -44,7 +44,7 @@ def registers(
         decisions=decisions,
         published=published,
         correction_steps=correction_steps,
-        methods=methods_in(folders, methods),
+        methods=read_methods(folders, methods),
     )
 
 

@@ -1,44 +1,72 @@
 """One run of the job `rebuild` in this process, recorded in Dagster."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
+from typing import Any
 
 import dagster as dg
 
 from assets.definitions import build_defs
-from assets.instance import OF_A_COMMAND, end_lost_runs, instance_of
-from assets.report import Check, check_of
+from assets.instance import OF_A_COMMAND, end_lost_runs, open_instance
+from assets.report import Done
 from pipeline.errors import HerijkError
 from warehouse.store.lock import only_writer
 from warehouse.store.store import Store
 
 
 def run_job(
-    archive: Path, data: Path, methods: Sequence[str], seasons: Sequence[int]
-) -> tuple[set[str], list[Check]]:
-    """Makes all that is stale, as Dagster's page and the schedule do; raises as the first step.
+    archive: Path,
+    data: Path,
+    methods: Sequence[str],
+    seasons: Sequence[int],
+    selection: Collection[str] | None = None,
+) -> Done:
+    """Make all that is stale, as Dagster's page and the schedule do.
+
+    Args:
+        archive: the archive folder.
+        data: the data folder.
+        methods: names of the methods to apply.
+        seasons: seasons of which changed files are read; none for all.
+        selection: names of the assets to make; None for all.
 
     Returns:
-        The tables that were made anew, and what the checks said.
+        What was made anew.
+
+    Raises:
+        HerijkError: as the asset raised it.
     """
     job = build_defs(str(archive), str(data), list(methods)).resolve_job_def("rebuild")
-    config = {
-        "ops": {"samples": {"config": {"seasons": list(seasons)}}},
-        "loggers": {"console": {"config": {"log_level": "CRITICAL"}}},
-    }
-    with only_writer(data), instance_of(Store(data)) as instance:
+    config: dict[str, Any] = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
+    if seasons:
+        config["ops"] = {"samples": {"config": {"seasons": list(seasons)}}}
+    with only_writer(data), open_instance(Store(data)) as instance:
         end_lost_runs(instance, OF_A_COMMAND)
         try:
-            done = job.execute_in_process(instance=instance, run_config=config, tags=OF_A_COMMAND)
-        except HerijkError:
-            raise
+            result = job.execute_in_process(
+                instance=instance,
+                run_config=config,
+                tags=OF_A_COMMAND,
+                asset_selection=None if selection is None else list(map(dg.AssetKey, selection)),
+            )
         except dg.DagsterError as error:
             if isinstance(error.__cause__, HerijkError):
                 raise error.__cause__ from error
             raise
-    made = {
-        event.asset_key.to_user_string()
-        for event in done.get_asset_materialization_events()
-        if event.asset_key and event.materialization.metadata["new"].value
-    }
-    return made, [check_of(one) for one in done.get_asset_check_evaluations()]
+    return list_made(result, methods)
+
+
+def list_made(result: dg.ExecuteInProcessResult, methods: Sequence[str]) -> Done:
+    """Return what a run made anew; what it only confirmed is left out."""
+    done = Done()
+    for event in result.get_asset_materialization_events():
+        made = event.materialization
+        is_new = "new" in made.metadata and made.metadata["new"].value
+        name = made.asset_key.to_user_string()
+        if name == "samples" and "seasons_read" in made.metadata:
+            done.seasons = list(made.metadata["seasons_read"].value)  # type: ignore[arg-type]
+        elif name == "curves" and is_new:
+            done.methods = list(methods)
+        elif name == "warehouse_database" and is_new:
+            done.database = True
+    return done

@@ -1,11 +1,14 @@
-"""Where the heavy work runs: processes of this machine, or a Dask cluster."""
+"""Where heavy work runs: in this process and helpers beside it, or on a Dask cluster.
+
+Either is a `concurrent.futures.Executor`, so the assets need not know which.
+"""
 
 import atexit
 import multiprocessing
 import os
 import threading
-from collections.abc import Callable, Iterable
-from concurrent.futures import Executor, ProcessPoolExecutor, wait
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed, wait
 from concurrent.futures.process import BrokenProcessPool
 from functools import cache
 from typing import Final, TypeVar
@@ -19,16 +22,23 @@ CORES: Final = os.cpu_count() or 1
 
 
 @cache
-def executor(scheduler: str | None) -> Executor:
-    """Processes of this machine, or a Dask cluster that sees the same folders by the same paths.
+def get_executor(scheduler: str | None) -> Executor:
+    """Return helper processes on this machine, or a Dask cluster.
+
+    The helpers are started once per process: starting them takes seconds. Workers of a cluster must
+    see the archive and the data folder under the same absolute paths.
+
+    Args:
+        scheduler: address of a Dask scheduler; None for this machine.
 
     Raises:
         MissingKnowledgeError: the library for clusters is not installed.
-        UnavailableError: there is no scheduler there.
+        UnavailableError: there is no scheduler at that address.
     """
     if scheduler is None:
-        afresh = multiprocessing.get_context("spawn")  # a fork of Polars hangs
-        return ProcessPoolExecutor(max(1, CORES - 1), mp_context=afresh, initializer=begin)
+        context = multiprocessing.get_context("spawn")  # a forked Polars hangs
+        n_helpers = max(1, CORES - 1)
+        return ProcessPoolExecutor(n_helpers, mp_context=context, initializer=watch_parent)
     try:
         from distributed import Client  # noqa: PLC0415 - needs the extra dask
 
@@ -41,35 +51,60 @@ def executor(scheduler: str | None) -> Executor:
         raise UnavailableError("there is no Dask scheduler at {}: {}", scheduler, error) from error
 
 
-def side_by_side(
-    work: Callable[[T], R], tasks: Iterable[T], scheduler: str | None = None
+def map_in_parallel(
+    work: Callable[[T], R],
+    tasks: Sequence[T],
+    scheduler: str | None = None,
+    on_progress: Callable[[int], object] = lambda _: None,
 ) -> list[R]:
-    """As `map`, in no order: helpers begin at one end, this process at the other.
+    """Return what `work` makes of each task, in their order.
+
+    Helpers begin at the first task; without a cluster, this process begins at the last.
+
+    Args:
+        work: a function that can be pickled.
+        tasks: its arguments.
+        scheduler: see `get_executor`.
+        on_progress: called with the number of tasks done.
 
     Raises:
-        UnavailableError: a helper was killed, as by a machine short of memory.
+        UnavailableError: a helper was killed, as happens when memory runs out.
     """
-    asked = [(task, executor(scheduler).submit(work, task)) for task in tasks]
+    executor = get_executor(scheduler)
+    futures = [executor.submit(work, task) for task in tasks]
+    made_here: dict[int, R] = {}
     try:
-        here = [work(task) for task, future in reversed(asked) if not scheduler and future.cancel()]
-        return here + [future.result() for _, future in asked if not future.cancelled()]
+        if scheduler is None:
+            for number in reversed(range(len(tasks))):
+                if futures[number].cancel():  # no helper has begun it
+                    made_here[number] = work(tasks[number])
+                    n_done = len(made_here) + sum(f.done() and not f.cancelled() for f in futures)
+                    on_progress(n_done)
+        pending = [future for future in futures if not future.cancelled()]
+        n_before = len(made_here)
+        for n_finished, _ in enumerate(as_completed(pending), start=1):
+            on_progress(n_before + n_finished)
+        results = []
+        for number, future in enumerate(futures):
+            results.append(made_here[number] if number in made_here else future.result())
+        return results
     except BrokenProcessPool as error:
-        executor.cache_clear()
+        get_executor.cache_clear()
         raise UnavailableError(
             "a worker process of the rebuild was killed, perhaps because memory ran out. Run it "
             "again: what was finished is kept"
         ) from error
     finally:
-        wait([future for _, future in asked if not future.cancel()])
+        wait([future for future in futures if not future.cancel()])
 
 
-def begin() -> None:
-    """Ends with the process that is helped: without it, it would write on without the right to."""
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+def watch_parent() -> None:
+    """Exit this helper when its parent exits, because only the parent holds the write lock."""
+    threading.Thread(target=_exit_with_parent, daemon=True).start()
     atexit.register(os._exit, 0)
 
 
-def _end_with_parent() -> None:
+def _exit_with_parent() -> None:
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

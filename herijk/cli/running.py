@@ -66,7 +66,7 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
 @flag("--may-start", help="Let Dagster's page start rebuilds and switch schedules.")
 def serve(archive: Path, store: "Store", host: str, port: int, may_start: bool) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from assets.instance import end_lost_runs, instance_of, prepare_home
+    from assets.instance import end_lost_runs, open_instance, prepare_home
     from assets.rebuild import check_apart
     from assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
@@ -74,7 +74,7 @@ def serve(archive: Path, store: "Store", host: str, port: int, may_start: bool) 
     check_apart(archive, store.root)
     read_settings(store.root)
     with machine_faults_explained(store.root):
-        with instance_of(store) as instance:
+        with open_instance(store) as instance:
             end_lost_runs(instance, {})
         served = Served(archive, store.root, host, port, may_start)
         serve_until_stopped(served, prepare_home(store), lambda line: click.echo(line, err=True))

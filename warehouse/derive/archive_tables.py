@@ -4,21 +4,22 @@ import datetime as dt
 from pathlib import Path
 from typing import Final
 
+import duckdb
 import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
-from pipeline.errors import MissingKnowledgeError, NoTowsYetError
+from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from pipeline.messages import say
 from pipeline.recompute.facts import with_boat_types
-from pipeline.tables.archive import Quarantine
 from pipeline.tables.lake import Faults
-from pipeline.tables.schemas import conform
+from pipeline.tables.schemas import TABLES, conform
 from warehouse.archive.faults import OF_A_HEADER, fault_frame
 from warehouse.archive.lists.windows import outside_run
 from warehouse.derive.plausible import gross_faults, judge, with_doubts
 from warehouse.derive.same_samples import CONTENT, same_samples
 from warehouse.intake import lake
 from warehouse.intake import seasons as intake
+from warehouse.store.database import open_database
 from warehouse.store.store import Store
 
 SAMPLES_MISSING: Final = "samples_missing"
@@ -81,27 +82,56 @@ def archive_tables(
     return tables
 
 
-def read_archive(store: Store, root: Path) -> None:
-    """Makes the tables of an archive in this process, for who looks at it beside a rebuild."""
-    lists = intake.index(store, root)
-    tows, runs = lists["listed_tows"].sort("season", "tow_id"), lists["listed_runs"]
-    by_season = tows.partition_by("season", maintain_order=True)
-    samples = pl.concat([intake.read_season(store, root, runs, own) for own in by_season])
+def read_archive(store: Store, root: Path, today: dt.date | None = None) -> None:
+    """Make the tables about an archive in this process, without Dagster.
+
+    Used by who looks at an archive beside a rebuild, such as a first assessment. All tows that can
+    be read count as sound: whether they can be computed is not tried.
+
+    Args:
+        store: the data folder to write them in.
+        root: the archive.
+        today: day that is noted where a fault is seen for the first time; that of the clock if
+            left out.
+    """
+    tables = intake.index(store, root)
+    tows = tables["listed_tows"].sort("season", "tow_id")
+    runs = tables["listed_runs"]
+    seasons = tows.partition_by("season", maintain_order=True)
+    samples = pl.concat([intake.read_tows(store, root, runs, own) for own in seasons])
+    lake.keep_only(store, samples)
     blocks = lake.all_blocks(store, samples)
     made = archive_tables(
-        list_faults=lists["list_faults"],
-        listed_boats=lists["listed_boats"],
-        listed_windows=lists["listed_windows"],
+        list_faults=tables["list_faults"],
+        listed_boats=tables["listed_boats"],
+        listed_windows=tables["listed_windows"],
         season_tows=tows,
         season_runs=runs.sort("tow_id", "run"),
         index=samples.drop("season"),
         blocks=blocks,
-        quarantine_before=Quarantine.create_empty(),
+        quarantine_before=read_earlier(store, "quarantine"),
         has_earlier_tows=False,
-        today=dt.date.today(),
+        today=today or dt.date.today(),
     )
-    for name, frame in (lists | {"samples": samples, "blocks": blocks} | made).items():
-        store.write(name, conform(name, frame) if name in made else frame)
+    tables |= {"samples": samples, "blocks": blocks}
+    for name, frame in tables.items():
+        store.write(name, frame)
+    for name, frame in made.items():
+        store.write(name, conform(name, frame))
+
+
+def read_earlier(store: Store, table: str) -> pl.DataFrame:
+    """Return a table as the last rebuild left it, from the database where the lake lost it.
+
+    Empty where there was no rebuild.
+    """
+    if store.made_from(table) is not None:
+        return store.read(table)
+    try:
+        with open_database(store.database) as db:
+            return pl.DataFrame(db.table(table).pl())
+    except (HerijkError, duckdb.Error):  # not made yet, or damaged too
+        return TABLES[table].create_empty()
 
 
 def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:

@@ -22,6 +22,11 @@ from warehouse.store.store import Store, fingerprint
 DATABASE_TABLE: Final = "warehouse_database"
 """The tables in the file, and its hash."""
 
+LAKE_ONLY: Final = ("ensemble",)
+"""Tables that are not in the database: 200 rows per tow would make up most of it."""
+
+IN_DATABASE: Final = tuple(name for name in TABLES if name not in LAKE_ONLY)
+
 STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.1 reads the file; the newest form would shut out programs of last year."""
 
@@ -45,6 +50,11 @@ MEANINGS: Final = {
     name: (_meaning(schema), _column_meanings(schema)) for name, schema in (TABLES | ABOUT).items()
 }
 """What the file says of its tables and their columns."""
+
+
+def describe_contents() -> str:
+    """Return all that the file says of its tables, columns and views, as one text."""
+    return str((MEANINGS, VIEWS))
 
 
 def warehouse_database(
@@ -155,7 +165,7 @@ def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 
 def is_whole(store: Store) -> bool:
-    """Whether the files are there as they were made; they may have been damaged since."""
+    """Return whether database and data package are there, byte for byte as they were made."""
     made = store.read(DATABASE_TABLE)["sha256"][0]
     left = left_wal(store.database).exists()  # a reader would replay it
     whole = store.database.exists() and not left and made == file_sha256(store.database)

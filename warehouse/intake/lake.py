@@ -24,15 +24,8 @@ from pipeline.errors import DefectiveInputError, UnavailableError
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import SeasonIndex
 from pipeline.tables.row import Row
-from warehouse.archive import (
-    Fault,
-    FileHashes,
-    SeasonProfile,
-    fault_from,
-    judge_samples,
-    read_tow_samples,
-)
-from warehouse.archive.samples.frame import steps_of
+from warehouse.archive import Fault, FileHashes, SeasonProfile, fault_from
+from warehouse.intake.reading import read_samples
 from warehouse.store.code import ADDING, READING, code_hash
 from warehouse.store.store import (
     DamagedFileError,
@@ -63,17 +56,15 @@ LAKE_FORM: Final = {
 FACTS_KEY: Final = "herijk.facts"
 """In the footer of samples: what the index says of a tow that can be used."""
 
-Tow = Row
 
-
-def read_season(
+def read_tows(
     store: Store,
     root: Path,
     tows: pl.DataFrame,
     runs: pl.DataFrame,
     profile: SeasonProfile,
 ) -> pl.DataFrame:
-    """Brings the samples and blocks of a season's tows into the lake.
+    """Bring the samples and blocks of tows of a season into the lake.
 
     Args:
         store: the data folder.
@@ -83,16 +74,13 @@ def read_season(
         profile: how that season's files are written.
 
     Returns:
-        The season's index, `SeasonIndex`, sorted by tow.
+        Their rows of `SeasonIndex`, sorted by tow.
     """
     hashes = FileHashes.load(store.file_hashes)
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
-    def read(tow: Tow) -> Row:
-        listed_runs = runs_of[tow["tow_id"],]
-        key = _samples_key(tow, listed_runs, profile)
-        found = _bring_in(store, root, tow, listed_runs, profile, key, hashes)
-        return found | {"tow_id": tow["tow_id"]}
+    def read(tow: Row) -> Row:
+        return _bring_in(store, root, tow, runs_of[tow["tow_id"],], profile, hashes)
 
     workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
     with ThreadPoolExecutor(workers) as pool:
@@ -124,34 +112,29 @@ def all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
 def _bring_in(
     store: Store,
     root: Path,
-    tow: Tow,
+    tow: Row,
     runs: pl.DataFrame,
     profile: SeasonProfile,
-    key: str,
     hashes: FileHashes,
 ) -> Row:
-    """Index row of a tow after its samples and blocks are in the lake, or with its fault.
+    """Bring the samples and blocks of a tow into the lake; return its row of `SeasonIndex`.
 
-    The footer of its samples says what it lost: a tow whose file is there is not read again.
+    A tow whose file of samples is there is not read again: the footer says what it lost. Of a tow
+    that cannot be used, the row has the fault.
     """
-    row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
-    path = store.samples_path(profile.season, key)
-    blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDING))
+    samples_key, blocks_key = name_files(tow, runs, profile)
+    row = dict.fromkeys(SeasonIndex.column_names())
+    row |= {"tow_id": tow["tow_id"], "samples_key": samples_key}
+    path = store.samples_path(profile.season, samples_key)
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
-        samples, kept = None, metadata_of(path, FACTS_KEY)
-        facts = None if kept is None else json.loads(kept)
+        samples = None
+        stored = metadata_of(path, FACTS_KEY)
+        facts = None if stored is None else json.loads(stored)
         if facts is None:
-            whole, place = read_tow_samples(root, tow, profile)
-            samples, faults = judge_samples(whole, place, tow, runs)
-            facts = {
-                "losses": [fault.as_row() for fault in faults],
-                "wind_read": samples["wind_speed_m_s"].null_count() == 0,
-                **steps_of(samples),
-            }
+            samples, facts = read_samples(root, tow, runs, profile)
             _check_unchanged(root, tow, hashes)
-            named = samples.select(pl.lit(tow["tow_id"]).alias("tow_id"), pl.all())
-            write_parquet(named, path, {FACTS_KEY: json.dumps(facts)}, LAKE_FORM)
+            write_parquet(samples, path, {FACTS_KEY: json.dumps(facts)}, LAKE_FORM)
         if not blocks_path.exists():
             if samples is None:
                 samples = read_parquet(path, list(SAMPLE_SCHEMA), use_threads=False)
@@ -176,7 +159,7 @@ class ArchiveChangedError(UnavailableError):
     """A file of the archive changed between looking through the archive and reading it."""
 
 
-def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
+def _check_unchanged(root: Path, tow: Row, hashes: FileHashes) -> None:
     """Samples are named by the hash of their file, so they must be that file's.
 
     A file with the size and time it had when it was hashed is not read once more.
@@ -193,27 +176,82 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
             )
 
 
-def samples_keys(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonProfile) -> set[str]:
-    """What the samples of a season's tows are called."""
+def name_files(tow: Row, runs: pl.DataFrame, profile: SeasonProfile) -> tuple[str, str]:
+    """Return the names (keys) of the samples and the blocks of a tow.
+
+    Samples are named by the contents of their files, what the lists say of them, how they are read
+    and the code that reads; blocks by their samples and the code that adds them up.
+    """
+    facts = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
+    samples_key = fingerprint(
+        [tow[name] for name in facts],
+        runs.sort("run").rows(),
+        dataclasses.asdict(profile),
+        code_hash(*READING),
+    )
+    blocks_key = fingerprint(samples_key, tow["sample_rate_hz"], code_hash(*ADDING))
+    return samples_key, blocks_key
+
+
+def is_up_to_date(
+    store: Store,
+    index: pl.DataFrame,
+    tows: pl.DataFrame,
+    runs: pl.DataFrame,
+    profile: SeasonProfile,
+) -> bool:
+    """Return whether rows of `samples` are those that reading tows again would give.
+
+    Args:
+        store: the data folder.
+        index: rows of `samples`.
+        tows: listed tows of one season.
+        runs: listed runs, perhaps also of other tows.
+        profile: how files of that season are written.
+    """
+    known = dict(index.select("tow_id", pl.struct("samples_key", "blocks_key")).iter_rows())
     runs_of = dict(runs.join(tows, on="tow_id", how="semi").partition_by("tow_id", as_dict=True))
-    rows = tows.iter_rows(named=True)
-    return {_samples_key(tow, runs_of[tow["tow_id"],], profile) for tow in rows}
+    for tow in tows.iter_rows(named=True):
+        row = known.get(tow["tow_id"])
+        samples_key, blocks_key = name_files(tow, runs_of[tow["tow_id"],], profile)
+        if row is None or row["samples_key"] != samples_key:
+            return False
+        if row["blocks_key"] not in (None, blocks_key):  # None: the tow cannot be used
+            return False
+    return has_files(store, index)
 
 
-def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
-    names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
-    facts = [tow[n] for n in names], runs.sort("run").rows()
-    return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READING))
+def has_all_files(store: Store) -> bool:
+    """Return whether the samples and blocks that the table `samples` names are there."""
+    return has_files(store, store.read("samples"))
+
+
+def has_files(store: Store, index: pl.DataFrame) -> bool:
+    """Return whether the samples and blocks of tows are there.
+
+    Args:
+        store: the data folder.
+        index: rows of `samples`.
+    """
+    return all(path.exists() for path in list_files(store, index))
+
+
+def list_files(store: Store, index: pl.DataFrame) -> set[Path]:
+    """Return the paths of the samples and blocks of tows that can be used."""
+    sound = index.filter(pl.col("blocks_key").is_not_null())
+    paths = set()
+    for season, samples_key, blocks_key in sound.select(
+        "season", "samples_key", "blocks_key"
+    ).iter_rows():
+        paths.add(store.samples_path(season, samples_key))
+        paths.add(store.blocks_path(season, blocks_key))
+    return paths
 
 
 def keep_only(store: Store, index: pl.DataFrame) -> None:
-    """Removes samples and blocks that the index does not name (any more)."""
-    kept = {
-        path(season, key)
-        for column, path in (("samples_key", store.samples_path), ("blocks_key", store.blocks_path))
-        for season, key in index.select("season", column).drop_nulls().rows()
-    }
+    """Remove samples and blocks that no row of `samples` names."""
+    named = list_files(store, index)
     for kind in ("samples", "blocks"):
         for file in (store.lake / kind).glob("season=*/[!.]*.parquet"):
-            if file not in kept:
+            if file not in named:
                 file.unlink()

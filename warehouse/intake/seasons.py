@@ -5,7 +5,7 @@ Reading one season's files is `warehouse.intake.lake`.
 
 import dataclasses
 import os
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from stat import S_ISDIR
@@ -73,17 +73,32 @@ def index(store: Store, root: Path) -> dict[str, pl.DataFrame]:
     }
 
 
-def is_read(root: Path, runs: pl.DataFrame, tows: pl.DataFrame, known: Collection[str]) -> bool:
-    """Whether nothing of a season has to be read: all samples are known, by their keys."""
+def find_known_samples(
+    store: Store, root: Path, runs: pl.DataFrame, tows: pl.DataFrame, before: pl.DataFrame
+) -> pl.DataFrame | None:
+    """Return the rows of `samples` of a season of which no file has to be read, or None.
+
+    Args:
+        store: the data folder.
+        root: the archive.
+        runs: listed runs.
+        tows: all listed tows of the season.
+        before: rows of `samples` of the last rebuild.
+    """
     profile = read_profiles(root).for_season(tows["season"][0])
-    return lake.samples_keys(tows, runs, profile) <= set(known)
+    own = before.join(tows, on="tow_id", how="semi").sort("tow_id")
+    return own if lake.is_up_to_date(store, own, tows, runs, profile) else None
 
 
-def read_season(store: Store, root: Path, runs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Brings one season's samples and blocks into the lake: its rows of `samples`."""
+def read_tows(store: Store, root: Path, runs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Bring the samples and blocks of some tows of a season into the lake.
+
+    Returns:
+        Their rows of `samples`, sorted by tow.
+    """
     season = tows["season"][0]
     own = runs.join(tows, on="tow_id", how="semi")
-    index = lake.read_season(store, root, tows, own, read_profiles(root).for_season(season))
+    index = lake.read_tows(store, root, tows, own, read_profiles(root).for_season(season))
     return index.select(pl.lit(season).cast(pl.Int32).alias("season"), pl.all())
 
 

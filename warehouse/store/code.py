@@ -13,14 +13,14 @@ from typing import Final
 
 HASH_LENGTH: Final = 12
 
-READING: Final = ("warehouse.archive", "warehouse.intake")
-"""The archive's lists and files are read with these."""
+READING: Final = ("warehouse.archive", "warehouse.intake.reading")
+"""Samples are read with these: a changed byte in them reads all samples again."""
 
 ADDING: Final = ("pipeline.blocks",)
-"""Samples are added up with these."""
+"""Samples are added up to blocks with these."""
 
 COMPUTING: Final = ("pipeline", "warehouse.archive", "warehouse.derive")
-"""All that follows from lists, samples and blocks is computed with these."""
+"""All tables that follow from lists, samples and blocks are computed with these."""
 
 
 @cache

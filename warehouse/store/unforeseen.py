@@ -108,11 +108,6 @@ def forget(root: Path, what: str) -> None:
     _file(root, what).unlink(missing_ok=True)
 
 
-def failures(root: Path) -> list[str]:
-    """What a rebuild could not make, beside tows, as `border` was told; sorted."""
-    return sorted(file.stem for file in (root / UNFORESEEN).glob("[!.]* *.txt"))
-
-
 def _file(root: Path, what: str) -> Path:
     return root / UNFORESEEN / f"{_file_name(what)}.txt"
 
