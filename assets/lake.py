@@ -37,8 +37,11 @@ from warehouse.store.unforeseen import is_unforeseen, traced
 LOG: Final = logging.getLogger("herijk")
 """Says which assets are made; the command shows it, and Dagster keeps it with the run."""
 
-FAILED: Final = "failed"
-"""Key in a footer: the traceback with which a table could not be made. Its rows are missing."""
+MADE_FROM: Final = "herijk/made_from"
+FAILED: Final = "herijk/failed"
+NEW: Final = "herijk/new"
+"""Metadata of an output: the fingerprint of what a table was made from, the traceback with which it
+could not be made, and whether its body ran."""
 
 Tables = pl.DataFrame | Mapping[str, pl.DataFrame]
 """What the body of an asset returns: its table, or several by name."""
@@ -109,8 +112,10 @@ class Lake(dg.ConfigurableIOManager):
     def handle_output(self, context: dg.OutputContext, obj: pl.DataFrame) -> None:
         """Write a table, with the fingerprint that its asset gave as metadata."""
         given = context.output_metadata  # its values are MetadataValues
-        footer = {key: given[key].value for key in ("made_from", FAILED) if key in given}
-        self.folders.store.write(context.asset_key.to_user_string(), obj, **footer)
+        made_from = given[MADE_FROM].value if MADE_FROM in given else ""
+        failed = given[FAILED].value if FAILED in given else ""
+        name = context.asset_key.to_user_string()
+        self.folders.store.write(name, obj, str(made_from), str(failed))
 
 
 def incremental(
@@ -144,7 +149,7 @@ def incremental(
             made_from = fingerprint(
                 {name: store.contents(name) for name in read},
                 {name: str(dtypes(TABLES[name])) for name in names if name in TABLES},
-                [value.model_dump() for value in given.values() if isinstance(value, dg.Config)],
+                get_config(given),
                 also,
                 code_hash(*code, compute.__module__),
             )
@@ -177,6 +182,15 @@ def incremental(
     return decorate
 
 
+def get_config(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the configuration among what the body of an asset is given, without resources."""
+    config = {}
+    for name, value in given.items():
+        if isinstance(value, dg.Config) and not isinstance(value, dg.ConfigurableResource):
+            config[name] = value.model_dump()
+    return config
+
+
 def _compute_frames(
     compute: Callable[..., Tables], given: Mapping[str, Any], names: list[str]
 ) -> dict[str, pl.DataFrame]:
@@ -200,8 +214,8 @@ def hand_over_outputs(
     for name, frame in frames.items():
         metadata: dict[str, int | bool | str] = {
             "dagster/row_count": frame.height,
-            "new": True,
-            "made_from": made_from,
+            NEW: True,
+            MADE_FROM: made_from,
         }
         if failure:
             metadata[FAILED] = failure
@@ -214,7 +228,7 @@ def hand_over_outputs(
 def confirm_outputs(store: Store, names: Iterable[str]) -> Iterator[dg.MaterializeResult]:
     """Tell Dagster that tables are as they were, without writing them."""
     for name in names:
-        metadata = {"dagster/row_count": store.count_rows(name), "new": False}
+        metadata = {"dagster/row_count": store.count_rows(name), NEW: False}
         version = dg.DataVersion(str(store.contents(name)))
         yield dg.MaterializeResult(asset_key=name, data_version=version, metadata=metadata)
 

@@ -8,6 +8,7 @@ import dagster as dg
 
 from assets.definitions import build_defs
 from assets.instance import OF_A_COMMAND, end_lost_runs, open_instance
+from assets.lake import NEW
 from assets.report import Done
 from pipeline.errors import HerijkError
 from warehouse.store.lock import only_writer
@@ -61,7 +62,7 @@ def list_made(result: dg.ExecuteInProcessResult, methods: Sequence[str]) -> Done
     done = Done()
     for event in result.get_asset_materialization_events():
         made = event.materialization
-        is_new = "new" in made.metadata and made.metadata["new"].value
+        is_new = NEW in made.metadata and made.metadata[NEW].value
         name = made.asset_key.to_user_string()
         if name == "samples" and "seasons_read" in made.metadata:
             done.seasons = list(made.metadata["seasons_read"].value)  # type: ignore[arg-type]

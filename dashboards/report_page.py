@@ -19,6 +19,7 @@ from dashboards.statements.rebuild import (
     in_short,
     judged,
     outcome_of,
+    show_minute,
     values_found,
     verdict,
 )
@@ -94,7 +95,7 @@ def report_pages(
                     PAGES[language],
                     say("Report of the rebuild"),
                     [in_words, *sections],
-                    name=f"{speaker(language)('Report of the rebuild')} {run.changed_at[:16].replace('T', ' ')}",
+                    name=f"{speaker(language)('Report of the rebuild')} {show_minute(run.changed_at)}",
                     site=TO_SITE,
                     others=PAGES,
                 )

@@ -131,15 +131,15 @@ OUTCOMES: Final = {
 def describe_run(run: LastRun) -> list[Statement]:
     """Return when and how the last run ended, and when something last changed."""
     ended = told(
-        "last_run", OUTCOMES[run.outcome], ended_at=_show_minute(run.ended_at), reason=run.reason
+        "last_run", OUTCOMES[run.outcome], ended_at=show_minute(run.ended_at), reason=run.reason
     )
     changed = told(
-        "last_change", say("Last change: {changed_at}."), changed_at=_show_minute(run.changed_at)
+        "last_change", say("Last change: {changed_at}."), changed_at=show_minute(run.changed_at)
     )
     return [ended, changed]
 
 
-def _show_minute(moment: str) -> str:
+def show_minute(moment: str) -> str:
     """Return a moment of ISO 8601 as a date and a time in minutes."""
     return moment[:16].replace("T", " ")
 

@@ -7,15 +7,16 @@ import sys
 from contextlib import nullcontext
 from pathlib import Path
 
+import assets.tables
 import dagster as dg
 import pytest
+import warehouse.derive.step
+from assets.resources import Setup
 from polars.testing import assert_frame_equal
+from warehouse.derive.graph import STEPS
 
 import assets.instance
 import assets.run
-import assets.tables
-import warehouse.derive.step
-from assets.resources import Setup
 from assets.run import QUIET_LOG, assets_of
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.schemas import TABLES
@@ -26,7 +27,6 @@ from tests.assets.test_rebuild import (
     spoil,
 )
 from tests.conftest import METHODS, SMALL, Workbench, in_one_process
-from warehouse.derive.graph import STEPS
 from warehouse.intake import seasons as intake
 from warehouse.store.methods import KnownMethods
 

@@ -14,7 +14,7 @@ from unittest import mock
 
 import pytest
 
-from assets.instance import instance_of
+from assets.instance import open_instance
 from pipeline.errors import MissingKnowledgeError, UnavailableError
 from tests.assets.test_rebuild import (
     assert_same_tables,
@@ -247,5 +247,5 @@ def test_settings_of_dagster_that_cannot_be_understood_are_one_sentence(tmp_path
     store.dagster_home.mkdir(parents=True)
     (store.dagster_home / "dagster.yaml").write_text(text)
     expected = pytest.raises(MissingKnowledgeError, match=r"dagster\.yaml cannot be understood")
-    with expected, instance_of(store):
+    with expected, open_instance(store):
         pass

@@ -3,10 +3,10 @@
 import shutil
 
 import pytest
+from warehouse.derive.inputs import ARCHIVE_TABLES
 
 from tests.assets.page import page, wait_for
 from tests.conftest import METHODS
-from warehouse.derive.inputs import ARCHIVE_TABLES
 
 RUNS = "{runsOrError {... on Runs {results {jobName status}}}}"
 BACKFILL = """mutation ($what: LaunchBackfillParams!) {

@@ -3,6 +3,7 @@
 import json
 
 from assets.resources import Setup
+
 from pipeline.method.definition import Steps, shipped_methods
 from tests.conftest import METHODS, directly
 from warehouse.store.methods import methods_to_apply

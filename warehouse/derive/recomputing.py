@@ -81,30 +81,28 @@ def recompute_archive(methods: Sequence[Method], archive: ArchiveRuns) -> Recomp
 
     Raises:
         MissingKnowledgeError: a method says nothing about a season.
-        Exception: an unforeseen error that all tows raise: then there is nothing to go on with.
+        Exception: an unforeseen error that every method raises: there is nothing to go on with.
     """
-    failures: dict[str, str] = {}
-    faults: list[Fault] = []
+    made, errors = _recompute_methods(methods, archive)
     sound = archive
-    cache = RunCache()
-    try:
-        made = [_recompute(method, archive, cache) for method in methods]
-    except BaseException as error:
-        if not is_unforeseen(error):
-            raise
-        failing = find_failing_tows(methods, archive)
-        if len(failing) == archive.tows.height:
-            raise
+    failing: dict[str, BaseException] = {}
+    for method in methods:
+        if method.name in errors:
+            failing = find_failing_tows(method, archive) | failing
+    if failing:
         sound = archive.with_only(set(archive.tows["tow_id"]) - set(failing))
-        paths = dict(archive.tows.select("tow_id", "samples_path").rows())
-        for tow_id, one in failing.items():
-            failures[f"tow {tow_id}"] = traced(one)
-            message = sentence(tow_id, in_short(one))
-            faults.append(Fault(paths[tow_id], tow_id, None, UNFORESEEN, message))
-        made = _recompute_each_method(methods, sound, failures)
-    tables = {name: pl.concat([one[name] for one in made]) for name in METHOD_TABLES}
+        made, errors = _recompute_methods(methods, sound)
+    if not made:
+        raise next(iter(errors.values()))
+    failures = {f"tow {tow_id}": traced(error) for tow_id, error in failing.items()}
+    failures |= {f"method {name}": traced(error) for name, error in errors.items()}
+    paths = dict(archive.tows.select("tow_id", "samples_path").rows())
+    faults = []
+    for tow_id, error in failing.items():
+        message = sentence(tow_id, in_short(error))
+        faults.append(Fault(paths[tow_id], tow_id, None, UNFORESEEN, message))
     return RecomputedArchive(
-        tables=tables,
+        tables={name: pl.concat([one[name] for one in made]) for name in METHOD_TABLES},
         tows=sound.tows,
         tow_runs=sound.tow_runs,
         set_aside=fault_frame(faults),
@@ -115,31 +113,28 @@ def recompute_archive(methods: Sequence[Method], archive: ArchiveRuns) -> Recomp
     )
 
 
-def find_failing_tows(methods: Sequence[Method], archive: ArchiveRuns) -> dict[str, BaseException]:
-    """Return the tows that raise an unforeseen error when they are computed alone, with the error.
+def find_failing_tows(method: Method, archive: ArchiveRuns) -> dict[str, BaseException]:
+    """Return the tows that raise an unforeseen error when computed alone, with the error.
 
-    The first method under which a tow fails counts.
+    None where every tow does: then the method is at fault, not a tow.
     """
     failing: dict[str, BaseException] = {}
     for tow_id in archive.tows["tow_id"]:
-        alone = archive.with_only([tow_id])
-        cache = RunCache()
-        for method in methods:
-            try:
-                _recompute(method, alone, cache)
-            except BaseException as error:
-                if not is_unforeseen(error):
-                    raise
-                failing[tow_id] = error
-                break
-    return failing
+        try:
+            _recompute(method, archive.with_only([tow_id]), RunCache())
+        except BaseException as error:
+            if not is_unforeseen(error):
+                raise
+            failing[tow_id] = error
+    return {} if len(failing) == archive.tows.height else failing
 
 
-def _recompute_each_method(
-    methods: Sequence[Method], archive: ArchiveRuns, failures: dict[str, str]
-) -> list[dict[str, pl.DataFrame]]:
-    """Recompute the methods that can be; note the traceback of each other in `failures`."""
+def _recompute_methods(
+    methods: Sequence[Method], archive: ArchiveRuns
+) -> tuple[list[dict[str, pl.DataFrame]], dict[str, BaseException]]:
+    """Return `METHOD_TABLES` of each method, and the unforeseen error of those that failed."""
     made = []
+    errors: dict[str, BaseException] = {}
     cache = RunCache()
     for method in methods:
         try:
@@ -147,11 +142,8 @@ def _recompute_each_method(
         except BaseException as error:
             if not is_unforeseen(error):
                 raise
-            failures[f"method {method.name}"] = traced(error)
-            last = error
-    if not made:
-        raise last
-    return made
+            errors[method.name] = error
+    return made, errors
 
 
 def _recompute(method: Method, archive: ArchiveRuns, cache: RunCache) -> dict[str, pl.DataFrame]:
