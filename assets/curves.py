@@ -16,12 +16,13 @@ from pipeline.tables.schemas import conform
 from warehouse.derive.archive_tables import add_first_seen, read_earlier
 from warehouse.derive.recomputing import METHOD_TABLES, ArchiveRuns, recompute_archive
 from warehouse.derive.studies import study_tables
+from warehouse.store.unforeseen import note
 
 STUDIES: Final = ("correction_steps", "option_effects", "option_curves")
 
 
 @dg.multi_asset(
-    outs=outs(*METHOD_TABLES, "tows", "tow_runs", "quarantine", "unforeseen"), can_subset=True
+    outs=outs(*METHOD_TABLES, "tows", "tow_runs", "failed_tows", "unforeseen"), can_subset=True
 )
 @incremental()
 def recomputed(
@@ -31,26 +32,36 @@ def recomputed(
     read_tows: pl.DataFrame,
     read_runs: pl.DataFrame,
     hand_windows: pl.DataFrame,
-    set_aside: pl.DataFrame,
     blocks: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
     """Run points, curves, log factors, assessments and members of all tows, per method.
 
-    A tow on which our own code fails is set aside, so tows and quarantine are complete only here.
+    A tow on which our own code fails is set aside, so the sound tows are known only here.
     """
     archive = ArchiveRuns(
         boats=boats, tows=read_tows, tow_runs=read_runs, hand_windows=hand_windows, blocks=blocks
     )
     made = recompute_archive(read_methods(folders, applied_methods), archive)
-    before = read_earlier(folders.store, "quarantine")
-    failed = add_first_seen(made.set_aside, before, dt.date.today())
+    for what, trace in made.failures.iter_rows():
+        note(folders.store.root, what.removeprefix("tow "), trace)
     return {
         **made.tables,
         "tows": made.tows,
         "tow_runs": made.tow_runs,
-        "quarantine": pl.concat([set_aside, conform("quarantine", failed)]),
+        "failed_tows": made.set_aside,
         "unforeseen": made.failures,
     }
+
+
+@dg.asset
+@incremental()
+def quarantine(
+    folders: Folders, set_aside: pl.DataFrame, failed_tows: pl.DataFrame
+) -> pl.DataFrame:
+    """Everything that is set aside: what the archive is wrong in, and tows on which we fail."""
+    before = read_earlier(folders.store, "quarantine")
+    failed = add_first_seen(failed_tows, before, dt.date.today())
+    return pl.concat([set_aside, conform("quarantine", failed)])
 
 
 @dg.multi_asset(outs=outs(*STUDIES), can_subset=True)

@@ -88,6 +88,7 @@ def report_pages(
             " ".join(line(speech) for line in describe_run(run)),
         ),
     )
+    changed_at = show_minute(run.changed_at)
     with Views(store) as views:
         return {
             PAGES[language]: Edition(views, language).html(
@@ -95,7 +96,7 @@ def report_pages(
                     PAGES[language],
                     say("Report of the rebuild"),
                     [in_words, *sections],
-                    name=f"{speaker(language)('Report of the rebuild')} {show_minute(run.changed_at)}",
+                    name=f"{speaker(language)('Report of the rebuild')} {changed_at}",
                     site=TO_SITE,
                     others=PAGES,
                 )

@@ -171,7 +171,7 @@ def test_made_elsewhere_season_by_season_the_tables_are_the_same(
 
 def test_one_method_gives_one_methods_rows(bench, built, files_read):
     done = bench.rebuild(methods=["rebased-2015"]).done
-    assert (done.seasons, done.methods, done.database) == ([], [], True)
+    assert (done.seasons, done.methods, done.database) == ([], ["rebased-2015"], True)
     assert files_read == []
     found = bench.tables()
     for name in ("curves", "run_points", "log_factors", "register", "methods"):

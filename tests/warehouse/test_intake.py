@@ -29,12 +29,12 @@ def test_lists_are_read_again_where_a_file_could_not_be_read(bench, monkeypatch)
 def test_a_fault_in_a_list_of_races_leaves_the_curves_as_they_are(bench):
     races = bench.archive / "wedstrijden" / "grachtenrace_2014.csv"
     races.write_text("wedstrijd;datum\nGrachtenrace;gisteren\n")
-    samples = bench.store.table_path("samples").stat().st_mtime_ns
+    curves = bench.store.table_path("curves").stat().st_mtime_ns
     blocks = bench.store.table_path("blocks").stat().st_mtime_ns
     bench.rebuild()
     assert bench.table("quarantine")["path"].str.ends_with(races.name).any()
     assert bench.store.table_path("blocks").stat().st_mtime_ns == blocks
-    assert bench.store.table_path("samples").stat().st_mtime_ns == samples
+    assert bench.store.table_path("curves").stat().st_mtime_ns == curves
 
 
 @pytest.mark.parametrize("change", ["samples", "list"])
