@@ -17,6 +17,7 @@ from assets.definitions import ASSETS, build_defs
 from tests.assets.page import page
 from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil
 from tests.conftest import METHODS, Workbench, in_one_process
+from warehouse.intake.seasons import INDEXED
 from warehouse.store.store import Store
 
 ROOT = Path(__file__).parents[2]
@@ -62,18 +63,10 @@ def test_after_a_run_dagster_calls_nothing_stale_and_a_change_what_follows(bench
     with page(*command, home=instance.root_directory, **folders) as ask:
         assert stale(ask) == set()
         spoil(samples_files(bench, 2009)[3])
-        assert materialise(bench, instance, "archive_lists", *LISTED).success
+        assert materialise(bench, instance, *INDEXED).success
         assert {"samples", "blocks", "curves", "register", "site"} <= stale(ask)
         assert materialise(bench, instance, *EVERY).success
         assert stale(ask) == set()
-
-
-LISTED = sorted(
-    key.to_user_string()
-    for asset in ASSETS
-    if asset.op.name == "archive_lists"
-    for key in asset.keys
-)
 
 
 @pytest.mark.parametrize("name", ["type_lines", "curves", "register", "tows", "site", "report"])
