@@ -17,6 +17,7 @@ from warehouse.intake.seasons import listing
 from warehouse.store.code import code_hash
 from warehouse.store.files import written_beside
 from warehouse.store.lock import only_writer
+from warehouse.store.machine_faults import machine_faults_explained
 from warehouse.store.store import DamagedFileError, Store, fingerprint
 
 EVERYTHING: Final = ("pipeline", "warehouse", "dashboards", "assets")
@@ -54,11 +55,12 @@ def rebuild(
     check_apart(archive, data)
     store = Store(data.resolve())
     asked = fingerprint(sorted(methods), sorted(seasons or ()))
-    with only_writer(data):
+    with machine_faults_explained(data), only_writer(data):
         if _read_stamp(store) == compute_stamp(store, archive, asked):
             return confirm_report(store, dt.datetime.now().astimezone())
         try:
-            done = _run_until_sound(archive, data, methods, sorted(seasons or ()), selection)
+            with machine_faults_explained(data):
+                done = _run_until_sound(archive, data, methods, sorted(seasons or ()), selection)
         except NoTowsYetError:
             raise
         except HerijkError as error:

@@ -8,6 +8,7 @@ ended: a quiet night differs from one on which nothing ran.
 import datetime as dt
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Final
@@ -24,6 +25,7 @@ from dashboards.statements.rebuild import (
     found,
     headlines,
 )
+from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE
 from warehouse.queries.change_report import ChangeReport, change_report, last_changes, remember
 from warehouse.store.code import code_version
@@ -111,9 +113,13 @@ def confirm_report(store: Store, now: dt.datetime) -> Report:
 
 
 def record_failure(store: Store, now: dt.datetime, reason: str) -> None:
-    """Note that a run failed, and why; do nothing where no run ever ended well."""
-    if _read_latest(store) is not None:
-        _end_run(store, now, FAILED, reason)
+    """Note that a run failed, and why; do nothing where no run ever ended well.
+
+    What made the run fail may also prevent the note, such as a full disk: it is then left out.
+    """
+    with suppress(HerijkError, OSError):
+        if _read_latest(store) is not None:
+            _end_run(store, now, FAILED, reason)
 
 
 def read_report(store: Store, done: Done) -> Report:

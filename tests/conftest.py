@@ -128,7 +128,11 @@ class Workbench:
         left_out = () if whole else (*STUDIES, "site")
         leave_out(self.store, left_out)
         selection = None if whole else EVERY - {*left_out}
-        with in_one_process(), records_in_memory(), nullcontext() if page else without_page():
+        with (
+            in_one_process(),
+            records_in_memory(),
+            nullcontext() if page or whole else without_page(),
+        ):
             return assets.rebuild.rebuild(self.archive, self.data, methods, seasons, selection)
 
     def table(self, name: str) -> pl.DataFrame:
