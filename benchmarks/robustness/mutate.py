@@ -20,13 +20,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import polars as pl
+from warehouse.derive.graph import ARCHIVE, METHOD
+from warehouse.derive.inputs import Scope
 
 from benchmarks.robustness.faults import spoil_bytes, spoil_row, spoil_samples
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.definition import shipped_method
-from warehouse.derive.graph import ARCHIVE, METHOD
-from warehouse.derive.inputs import Scope
 from warehouse.intake.seasons import bring_in
 from warehouse.store.store import Store
 

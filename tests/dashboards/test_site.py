@@ -31,7 +31,7 @@ from tests.conftest import METHODS
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 from tests.texts import said
-from warehouse.derive.inputs import LAKE_ONLY
+from warehouse.derive.database import LAKE_ONLY
 from warehouse.queries.answers import answers, line_changes, newest_edition
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
