@@ -105,6 +105,14 @@ def without_wind(world: Measured, tows: np.ndarray) -> Measured:
     return replace(world, tows=listed, blocks=replace(world.blocks, sums=sums))
 
 
+def with_force_ratio(world: Measured, tows: np.ndarray, ratio: float) -> Measured:
+    """The same world in which the force of some tows, marked in shape (tows,), is read x ratio."""
+    changed, sums = _runs_of(world, tows), dict(world.blocks.sums)
+    for name, power in {"force": 1, "log1_cw": 1, "log1_cw2": 2}.items():
+        sums[name] = np.where(changed, sums[name] * ratio**power, sums[name])
+    return replace(world, blocks=replace(world.blocks, sums=sums))
+
+
 def _runs_of(world: Measured, tows: np.ndarray) -> np.ndarray:
     names = world.tows.filter(pl.Series(tows))["tow_id"].implode()
     return world.blocks.runs["tow_id"].is_in(names).to_numpy()[:, None]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from dashboards import labels
 from dashboards.statements import Number, Statement, Value, told
 from dashboards.statements.boat import interval
+from pipeline.assessment.first_assessment import CHANGED
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.messages import Sentence, say
 from pipeline.tables.row import Row
@@ -26,13 +27,15 @@ SIGNED: Final = (
         "run_off_curve",
         "runs_disagree",
         "load_cell_off",
+        "unlike_other_tows",
+        "boat_changed",
         "curve_change_unexplained",
     ),
     *("differs_from_last", "change_explained", "unlike_its_type", "pulled_askew", "heavier_after"),
     *("weight_changed", "length_changed", "beam_changed", "bow_height_changed"),
 )
 IN_METRES: Final = ("length_changed", "beam_changed", "bow_height_changed")
-CURVES_COMPARED: Final = ("curve_change_unexplained", "differs_from_last", "change_explained")
+CURVES_COMPARED: Final = (*CHANGED, "differs_from_last", "change_explained")
 """How numbers of findings are written, and which findings compare the curve with the last tow's."""
 
 EXPLAINED: Final = say(
@@ -141,6 +144,14 @@ WORDING: Final[dict[str, Sentence]] = {
     ),
     "water_differs": say(
         "The water is {observed} °C off that of the day (at most {limit}): measure it again."
+    ),
+    "unlike_other_tows": say(
+        "Cw is {observed} % from what all tows of the boat together say (limit {limit} %): look at "
+        "the line, the trim and the bottom, and whether the file is of this boat."
+    ),
+    "boat_changed": say(
+        "By all of its tows together the boat's Cw is {observed} % from that at its last tow, "
+        "length and weight allowed for (limit {limit} %): was it altered?"
     ),
     "curve_change_unexplained": say(
         "Cw is {observed} % from its last tow, length and weight allowed for (limit {limit} %): "

@@ -17,7 +17,7 @@ import polars as pl
 from pipeline.assessment.checks import CHECK, CHECKS, CODES, Check
 from pipeline.choice import SAME_SHARE
 from pipeline.season_log.diagnosis import FAULT
-from pipeline.season_log.effects import FLEET
+from pipeline.season_log.observation_model import FLEET
 from pipeline.tables.keys import LINE, SIZES
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
@@ -58,15 +58,16 @@ def assess(
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
         weight not known, season after its last) has no row.
     """
-    boats = _with_boats(curves, tows)
+    boats = _add_boats(curves, tows)
     facts = [
         _beside_papers(tows),
         curves.drop(set(curves.columns) & set(tows.columns) - {"tow_id"}),
         _of_runs(curves, run_points),
         _of_season(curves, tows, diagnosis),
         _of_log(curves, run_points),
-        _beside_previous(boats, curves, diagnosis),
-        _beside_like_boats(boats),
+        _compare_with_previous(boats, curves, diagnosis),
+        _compare_with_best_estimate(curves),
+        _compare_with_season_and_type(boats),
         _compare_with_type(boats, curves, diagnosis),
     ]
     return checked(reduce(_joined, facts, tows).with_columns(by_half_a_step=BY_HALF_A_STEP))
@@ -271,19 +272,24 @@ def measure_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame
     ).with_columns(**{name: pl.when(used).then(value) for name, value in of_runs.items()})
 
 
-def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Tows with a curve, with the boat of the day, sorted by date.
+def _add_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Return tows with a curve, with the boat of the day, sorted by date.
 
-    `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
-    `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is
-    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed.
+    Where the method knows the boat by all of its tows, A and Cw are moved to its best estimate: a
+    tow that is off does not make the boat another. `size` is sqrt(displacement x waterline length):
+    wetted surface follows it (docs of `pipeline.steps.resistance`), and friction, most of Cw,
+    follows wetted surface. `s_s2_m2` is 1/B^2, also of a flat or falling curve, from A and Cw at
+    the declared speed.
     """
     of_tow = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
     displacement = pl.col("weight_kg") + pl.col("crew_weight_kg")
+    best_ratio = (pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).fill_null(1.0)
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
         .join(tows.select("tow_id", "boat_type", *of_tow), on="tow_id", maintain_order="left")
         .with_columns(
+            pl.col("a_kg_m", "cw_kg_m") * best_ratio,
+            is_best=pl.col("cw_best_kg_m").is_not_null(),
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
         )
@@ -356,13 +362,24 @@ def _of_log(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     return seasons.join(found, on="season", maintain_order="left").select("tow_id", "log_slope")
 
 
-def _beside_previous(
+def _compare_with_best_estimate(curves: pl.DataFrame) -> pl.DataFrame:
+    """Return Cw as measured over the best estimate, less 1, of boats with more than one tow.
+
+    The best estimate takes the boat's other tows into account, and that it may have been altered:
+    what is left is the tow's own (pulled askew, a zero, a file of another boat).
+    """
+    of_line = curves.filter(pl.col("cw_kg_m").is_not_null() & (pl.len().over(LINE) > 1))
+    return of_line.select("tow_id", over_best=pl.col("cw_kg_m") / pl.col("cw_best_kg_m") - 1)
+
+
+def _compare_with_previous(
     boats: pl.DataFrame, curves: pl.DataFrame, diagnosis: pl.DataFrame
 ) -> pl.DataFrame:
-    """Cw over that of the previous tow of boat and crew, at its declared speed, less 1.
+    """Return Cw over that of the previous tow of boat and crew, at its declared speed, less 1.
 
-    Less what weight and length explain; null where there is none before, or an alteration was
-    reported. Between seasons whose logs are not on one scale, what all boats changed together is no
+    As `boat_change` by best estimates, where the method has them, else as `curve_change`. Less what
+    weight and length explain; null where there is none before, or an alteration was reported.
+    Between seasons whose logs are not on one scale, what all boats changed together is no
     change of this one.
     """
 
@@ -374,6 +391,7 @@ def _beside_previous(
     changed = boats.select(
         "tow_id",
         "season",
+        "is_best",
         before=before("season"),
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
     )
@@ -382,7 +400,12 @@ def _beside_previous(
         pl.col(column).replace_strict(level, default=0.0, return_dtype=pl.Float64)
         for column in ("season", "before")
     )
-    return changed.select("tow_id", curve_change=(pl.col("ln") - now + then).exp() - 1)
+    ratio = (pl.col("ln") - now + then).exp() - 1
+    return changed.select(
+        "tow_id",
+        curve_change=pl.when(~pl.col("is_best")).then(ratio),
+        boat_change=pl.when("is_best").then(ratio),
+    )
 
 
 def _season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int, float]:
@@ -453,19 +476,21 @@ def _compare_with_type(
     )
 
 
-def _beside_like_boats(boats: pl.DataFrame) -> pl.DataFrame:
-    """Excess of each tow over boats of its type with the same crew.
+def _compare_with_season_and_type(boats: pl.DataFrame) -> pl.DataFrame:
+    """Return the excess of each tow over boats of its type with the same crew.
 
-    Cw at the type's common speed, over its size, against the type's median; less the season's
-    median, which holds the error of its log. Medians, so that a tow pulled askew does not move
-    what it is compared with. An excess that the boat also shows in all of its later tows, when it
-    was steered straight, is its own and does not count.
+    Only for a method that knows no boat by all of its tows. Cw at the type's common speed, over its
+    size, against the type's median; less the season's median, which holds the error of its log.
+    Medians, so that a tow pulled askew does not move what it is compared with. An excess that the
+    boat also shows in all of its later tows, when it was steered straight, is its own and does not
+    count.
     """
     common_speed = pl.col("declared_speed_m_s").median().over(LIKE)
     ln, straight = pl.col("ln_excess"), pl.col("season") > CHECK["pulled_askew"].last_season
     later = ln.filter(straight).min().over("fsn_no")
     return (
-        boats.drop_nulls(["boat_type", "size"])
+        boats.filter(~pl.col("is_best"))
+        .drop_nulls(["boat_type", "size"])
         .filter(pl.col("fsn_no").n_unique().over(LIKE) >= FEWEST_LIKE_BOATS)
         .with_columns(ln_excess=(_cw_at(common_speed) / pl.col("size")).log())
         .with_columns(ln - ln.median().over(LIKE))

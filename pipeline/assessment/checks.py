@@ -136,6 +136,8 @@ CHECKS: Final = (
         "freeboard_changed", "freeboard_change_m", say("freeboard changed"), None, 0.03, unit="m"
     ),
     # The curve against others
+    Check("unlike_other_tows", "over_best", say("unlike its other tows"), -0.035, 0.035),
+    Check("boat_changed", "boat_change", say("boat changed"), -0.025, 0.025),
     Check("curve_change_unexplained", "curve_change", say("unexplained curve change"), -0.05, 0.05),
     Check("unlike_its_type", "over_type", say("unlike its type"), -0.1, 0.1, severity="note"),
     Check(

@@ -54,6 +54,8 @@ JUDGED_BY: Final[dict[str, tuple[Rule, Verdict]]] = {
     "slow_tow": ("plausible", "look"),
     "crew_weight": ("plausible", "look"),
     "water_differs": ("plausible", "look"),
+    "unlike_other_tows": ("near_earlier_curve", "look"),
+    "boat_changed": ("near_earlier_curve", "look"),
     "curve_change_unexplained": ("near_earlier_curve", "look"),
     "instrument_or_boat": ("near_earlier_curve", "look"),
     "unlike_its_type": ("near_earlier_curve", "look"),
@@ -74,6 +76,9 @@ JUDGED_BY: Final[dict[str, tuple[Rule, Verdict]]] = {
 }
 """Every check of `assessments`, with the rule that it belongs to and what is said where it marks a
 tow. An instrument that reads otherwise all season, or papers that do not fit, ask for a look."""
+
+CHANGED: Final = ("unlike_other_tows", "boat_changed", "curve_change_unexplained")
+"""Checks that mark a curve unlike the boat's other ones: the weights are named beside them."""
 
 NOT_IN_CW: Final = ("log2_differs",)
 """Checks of an instrument on which no number rests. As long as it reads as usual in its season, the
@@ -263,12 +268,12 @@ def _median(values: pl.Series) -> float | None:
 def _with_sizes(found: Finding, tow: QuayTow) -> Finding:
     """Return a finding with the sizes that it is about, and the change of Cw that they explain."""
     column, before = SIZES.get(found.finding), tow.boat_before
-    if found.finding == "curve_change_unexplained":
+    if found.finding in CHANGED:
         column, before = "weight_kg", tow.line_before
     if column is None or before is None:
         return found
     explained = None
-    if found.finding == "curve_change_unexplained":
+    if found.finding in CHANGED:
         explained = explain_by_size(tow.tow, before)
     elif found.finding in ("weight_changed", "length_changed"):
         only_this = before | {column: tow.tow[column]}
@@ -360,7 +365,7 @@ def _judge_change(tow: QuayTow) -> Iterator[Finding]:
     if tow.tow["altered"]:
         yield Finding("explained_by_size", "altered_reported", "good")
         return
-    if before is None or now["cw_kg_m"] is None or tow.is_marked("curve_change_unexplained"):
+    if before is None or now["cw_kg_m"] is None or any(map(tow.is_marked, CHANGED)):
         return
     change = now["cw_kg_m"] / before["cw_kg_m"] - 1
     explained = explain_by_size(tow.tow, before)

@@ -39,8 +39,9 @@ TOO_MUCH_AHEAD: Final = 0.1
 NO_WIND_M_S: Final = 0.1
 """Mean wind of a run that an anemometer standing still shows."""
 
-LEAST_OWN_SPEED: Final = 0.1
-"""Apparent wind out and back together / boat speed, below which an anemometer shows nothing."""
+MIN_OWN_SPEED: Final = 1.0
+"""Least mean of the apparent wind out and back / boat speed by which a true wind is divided. An
+anemometer that shows less is wrong, and its wind would pass for a gale."""
 
 LEAST_RESULTANT: Final = float(np.cos(np.radians(3.3)))
 """Length of the mean direction of angles of which half are 0 and half 6.28 degrees."""
@@ -61,7 +62,8 @@ class Seen:
             cancels, and 1 and 0 are left.
         true_wind: true wind / boat speed: the difference of the apparent wind out and back, in
             which the boat's own speed cancels, over their sum, in which the true wind cancels. So
-            it does not depend on the unit or scale of the anemometer.
+            a unit that makes winds too large does not raise it. Where the sum is under the boat's
+            speed, as that of a wind over ground, the difference is taken over the boat's speed.
         speed: ln(speed / intended speed), median of the runs.
         in_radians: all wind angles lie where radians do.
         wind_stands_still: the anemometer shows no wind through a whole run, and some in another.
@@ -95,7 +97,7 @@ class Seen:
         true_ahead = tows.mean_of_ways(tows.direction * ahead, windy)
         true_abeam = tows.mean_of_ways(tows.direction * abeam, windy)
         own_speed = np.hypot(1.0 + self.wind_ahead, self.wind_abeam)
-        self.true_wind = np.hypot(true_ahead, true_abeam) / np.maximum(own_speed, LEAST_OWN_SPEED)
+        self.true_wind = np.hypot(true_ahead, true_abeam) / np.maximum(own_speed, MIN_OWN_SPEED)
         self.speed = _median(tows, speed - np.log(tows.target_speed_ratio), good)
         too_far_ahead = self.wind_ahead > TOO_MUCH_AHEAD
         self.in_radians = _angles_in_radians(tows, windy) & too_far_ahead

@@ -7,5 +7,5 @@ curve is made, which differences matter to a race (`pipeline.register.changes`),
 tables say, people decide.
 
 `observed` joins the tables and carries the measuring errors; `mixed` describes what is fitted to
-`pipeline.model`; `tables` puts it all together.
+`reml`; `tables` puts it all together.
 """

@@ -5,8 +5,8 @@
 The boat's effect has one value for all rows of a boat, `other` (a season, a type) one for all rows
 of that; a cell is the single row. The error's variance is known per row, the other three are
 estimated by restricted maximum likelihood (Patterson & Thompson 1971) with the search of
-`pipeline.model`. With a single row per boat this is the random-effects model of meta-analysis. What
-y and X are is decided elsewhere.
+`consistency.reml`. With a single row per boat this is the random-effects model of meta-analysis.
+What y and X are is decided elsewhere.
 
 Rows are split into the mean of each boat and the deviations from it, which are independent. The few
 effects of `other` are unknowns beside beta, with a prior. So no matrix grows with the rows.
@@ -21,7 +21,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from pipeline.arrays import FloatArray
-from pipeline.model import Likelihood, most_likely
+from pipeline.consistency.reml import Likelihood, minimize_deviance
 from pipeline.quantiles import LEVEL, t_quantile
 
 BOAT, OTHER, CELL = "boat", "other", "cell"
@@ -187,7 +187,7 @@ class Fit:
 
     @cached_property
     def likelihood(self) -> Likelihood:
-        """The restricted likelihood as `most_likely` takes it.
+        """The restricted likelihood as `minimize_deviance` takes it.
 
         The slope of the deviance by a variance that adds K to the covariance is
         tr(P K) - y' P K P y, its average information y' P K P K P y.
@@ -302,11 +302,11 @@ def fit(problem: Problem, *components: str) -> Fit | None:
     # What the errors leave of the spread, in equal parts.
     left = max(spread - problem.variance.mean(), 0.1 * problem.unit)
     start = free * left / max(free.sum(), 1)
-    variances, deviance = most_likely(likelihood, free, start, problem.unit)
+    variances, deviance = minimize_deviance(likelihood, free, start, problem.unit)
     for place in np.flatnonzero(free):
         without = np.where(np.arange(len(free)) == place, 0.0, variances)
         gain = likelihood(without).deviance - deviance
         if variances[place] > 0.0 and np.isfinite(deviance) and gain <= NO_GAIN:
             free[place] = False
-            variances, deviance = most_likely(likelihood, free, without, problem.unit)
+            variances, deviance = minimize_deviance(likelihood, free, without, problem.unit)
     return Fit(problem, variances) if np.isfinite(deviance) else None

@@ -3,9 +3,8 @@
 The wind that a boat feels is the true wind less its own velocity. Out and back the true wind turns
 about the boat and cancels; the boat's own speed is left. So mean apparent wind over boat speed is
 what the anemometer reads of the wind, and needs no resistance and no other boat. A vane that points
-askew turns the mean vector and leaves its length. Here: that ratio per tow, the scale of each
-season with what the other seasons say of it, and its diagnosis. Not here: what wind does to
-resistance (`pipeline.steps.wind`).
+askew turns the mean vector and leaves its length. What wind does to resistance is in
+`pipeline.steps.wind`.
 """
 
 from dataclasses import replace
@@ -30,71 +29,65 @@ from pipeline.season_log.diagnosis import (
 ANEMOMETER: Final = "anemometer_scale"
 """Its name among the instruments of `season_diagnosis`."""
 
-USUAL_SD: Final = 0.05
+SCALE_SD: Final = 0.05
 """Spread of ln scale of an anemometer about which nothing is known."""
-
-USUAL_TOW_SD: Final = 0.06
+TOW_SD: Final = 0.06
 """Spread of a tow's ratio where no season has two tows: wind changes between out and back."""
-
 ARCHIVE_SD: Final = 0.15
 """Spread of ln scale of one anemometer used in all seasons (inferred)."""
-
-BETWEEN_SEASONS: Final = np.geomspace(0.001, 0.5, 60)
-"""Standard deviations of ln scale between seasons that are tried."""
-
-USUAL_BETWEEN: Final = 0.02
+BETWEEN_SEASONS_GRID: Final = np.geomspace(0.001, 0.5, 60)
+"""Standard deviations of ln scale between seasons over which is summed."""
+BETWEEN_SEASONS_SCALE: Final = 0.02
 """Scale of their half-Cauchy prior (Gelman 2006): small as a rule, large if something broke."""
+MIN_RATIO: Final = 1e-3
+UNKNOWN_VARIANCE: Final = 1e6
 
 
-def with_anemometer(c: Computed) -> Computed:
-    """The tows with their wind as it was, where their steps ask to estimate the anemometer.
-
-    The scale of a season is drawn towards that of the archive.
-    """
-    asked = c.plan.option("wind.anemometer") == "estimated"
-    if not asked.any():
+def correct_anemometers(c: Computed) -> Computed:
+    """Return the tows with their wind as it was, where their steps ask to estimate its scale."""
+    is_asked = c.plan.option("wind.anemometer") == "estimated"
+    if not is_asked.any():
         return c
-    scale = scale_of_seasons(_wind_ratios(c).filter(asked))
-    of_tows = c.tows.frame.select("season").join(
-        scale, on="season", how="left", maintain_order="left"
+    scales = estimate_scales(_wind_ratios(c).filter(is_asked))
+    tows = c.tows.frame.select("season").join(
+        scales, on="season", how="left", maintain_order="left"
     )
-    ln_scale, sd = (of_tows[name].to_numpy() for name in ("ln_scale", "sd"))
-    ln_scale, sd = np.where(asked, ln_scale, 0.0), np.where(asked, sd, np.nan)
+    ln_scale = np.where(is_asked, tows["ln_scale"].to_numpy(), 0.0)
+    sd = np.where(is_asked, tows["sd"].to_numpy(), np.nan)
     means = c.means.with_wind(np.exp(ln_scale)[c.tows.tow])
     return replace(c, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
 
 
 def _wind_ratios(c: Computed) -> pl.DataFrame:
-    """Apparent wind of each tow over boat speed, mean of out and back.
+    """Return the apparent wind of each tow over boat speed, mean of out and back.
 
     Returns:
         A row per tow: `season`; `ahead` and `abeam`, the two parts of the mean vector, NaN where
         wind or speed is not known; `shared_sd` of ln boat speed, the part that a season's tows
         share. Boat speed is that by GPS, or by the log as corrected so far where there is none.
     """
-    tows, means = c.tows, c.means
-    blows = c.used & (means.wind_m_s > 0) & (c.speed_m_s > 0)
-    blows &= (tows.measured("wind") & tows.trusted)[tows.tow]
-    by_gps = tows.count(blows & np.isfinite(means.gps_m_s)) == tows.count(blows)
-    boat = np.where(by_gps[tows.tow], means.gps_m_s, c.speed_m_s)
-    mean = tows.mean_of_ways(np.where(blows, boat, 1.0), blows)
-    angle, wind = np.radians(means.wind_angle_deg), means.wind_m_s
+    tows, wind = c.tows, c.means.wind_m_s
+    is_windy = c.used & (wind > 0) & (c.speed_m_s > 0)
+    is_windy &= (tows.measured("wind") & tows.trusted)[tows.tow]
+    by_gps = tows.count(is_windy & np.isfinite(c.means.gps_m_s)) == tows.count(is_windy)
+    speed = np.where(by_gps[tows.tow], c.means.gps_m_s, c.speed_m_s)
+    mean_speed = tows.mean_of_ways(np.where(is_windy, speed, 1.0), is_windy)
+    angle = np.radians(c.means.wind_angle_deg)
     log_sd = np.nan_to_num(c.estimated("ln_sd"), nan=UNKNOWN_LOG_SD)
     return tows.frame.select(
         "season",
-        ahead=pl.Series(tows.mean_of_ways(wind * np.cos(angle), blows) / mean),
-        abeam=pl.Series(tows.mean_of_ways(wind * np.sin(angle), blows) / mean),
+        ahead=pl.Series(tows.mean_of_ways(wind * np.cos(angle), is_windy) / mean_speed),
+        abeam=pl.Series(tows.mean_of_ways(wind * np.sin(angle), is_windy) / mean_speed),
         shared_sd=pl.Series(np.where(by_gps, 0.0, log_sd)),
     )
 
 
-def scale_of_seasons(ratios: pl.DataFrame) -> pl.DataFrame:
-    """What the anemometer of every season reads of the wind.
+def estimate_scales(ratios: pl.DataFrame) -> pl.DataFrame:
+    """Estimate what the anemometer of every season reads of the wind.
 
-    Normal about that of the archive. Seasons without a tow that tells have what the others let
-    expect. Between seasons the standard deviation is summed over a grid (Rue, Martino & Chopin
-    2009), so that one anemometer of many years is known from all of them, and one odd season does
-    not move the others.
+    The observed ln scale of a season is the length of the mean vector of its tows; its variance is
+    the scatter of the tows along that vector, pooled over seasons. Scales of seasons are normal
+    about that of the archive (`shrink_to_archive`).
 
     Args:
         ratios: per tow `season, ahead, abeam, shared_sd`.
@@ -102,82 +95,92 @@ def scale_of_seasons(ratios: pl.DataFrame) -> pl.DataFrame:
     Returns:
         Per season, sorted, `ln_scale`, ln(reading / wind), and its `sd`.
     """
-    parts = pl.col("ahead", "abeam")
-    known = ratios.filter(pl.all_horizontal(parts.is_finite()))
+    ahead, abeam = pl.col("mean_ahead"), pl.col("mean_abeam")
+    length = (ahead**2 + abeam**2).sqrt()
+    known = ratios.filter(pl.col("ahead").is_finite() & pl.col("abeam").is_finite())
     means = known.group_by("season", maintain_order=True).agg(
-        parts.mean().name.suffix("_mean"), pl.col("shared_sd").mean(), tows=pl.len()
+        mean_ahead=pl.col("ahead").mean(),
+        mean_abeam=pl.col("abeam").mean(),
+        shared_sd=pl.col("shared_sd").mean(),
+        tows=pl.len(),
     )
-    ahead, abeam = pl.col("ahead_mean"), pl.col("abeam_mean")
-    square = ahead**2 + abeam**2
-    along = (pl.col("ahead") * ahead + pl.col("abeam") * abeam) / square
-    beside = known.join(means, on="season", maintain_order="left")
-    spare = known.height - means.height
-    off = beside.select(((along - 1.0) ** 2).sum()).item()
-    tow_variance = off / spare if spare else USUAL_TOW_SD**2
+    tow_variance = TOW_SD**2
+    dof = known.height - means.height
+    if dof:
+        along = (pl.col("ahead") * ahead + pl.col("abeam") * abeam) / length**2
+        tows = known.join(means, on="season", maintain_order="left")
+        tow_variance = tows.select(((along - 1.0) ** 2).sum()).item() / dof
+    variance = tow_variance / pl.col("tows") + pl.col("shared_sd") ** 2
     seasons = (
         ratios.select(pl.col("season").unique().sort())
         .join(means, on="season", how="left", maintain_order="left")
         .select(
             "season",
-            seen=square.sqrt().clip(1e-3).log().fill_null(0.0),
-            noise=(tow_variance / pl.col("tows") + pl.col("shared_sd") ** 2).fill_null(1e6),
+            observed=length.clip(MIN_RATIO).log().fill_null(0.0),
+            variance=variance.fill_null(UNKNOWN_VARIANCE),
         )
     )
-    ln_scale, sd = _shrunk(*(seasons[name].to_numpy() for name in ("seen", "noise")))
+    ln_scale, sd = shrink_to_archive(seasons["observed"].to_numpy(), seasons["variance"].to_numpy())
     return seasons.select("season", ln_scale=pl.Series(ln_scale), sd=pl.Series(sd))
 
 
-def _shrunk(seen: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Mean and sd of normal numbers about a common mean, whose spread is summed over a grid."""
-    between = BETWEEN_SEASONS[:, None] ** 2
-    weight = 1.0 / (variance + between)
+def shrink_to_archive(observed: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return posterior mean and sd of normal numbers about a common mean, (n,) each.
+
+    The random-effects model of meta-analysis, observed_i ~ N(theta_i, variance_i), theta_i ~
+    N(mu, tau^2), mu ~ N(0, ARCHIVE_SD^2). The posterior is summed over a grid of tau, so that one
+    anemometer of many years is known from all of them, and one odd season moves no other.
+    """
+    tau2 = BETWEEN_SEASONS_GRID[:, None] ** 2
+    weight = 1.0 / (variance + tau2)  # (grid, n)
     precision = weight.sum(axis=1) + ARCHIVE_SD**-2.0
-    mean = (weight * seen).sum(axis=1) / precision
-    ln_density = 0.5 * (np.log(weight).sum(axis=1) - np.log(precision))
-    ln_density -= 0.5 * ((weight * seen**2).sum(axis=1) - precision * mean**2)
-    # The grid is even in the logarithm: its measure is the standard deviation itself.
-    ln_density += np.log(BETWEEN_SEASONS) - np.log1p((BETWEEN_SEASONS / USUAL_BETWEEN) ** 2)
-    chance = scipy.special.softmax(ln_density)[:, None]
-    pull = between * weight
-    value = mean[:, None] + pull * (seen - mean[:, None])
-    own = pull * variance + (1.0 - pull) ** 2 / precision[:, None]
-    average = (chance * value).sum(axis=0)
-    spread = (chance * (own + (value - average) ** 2)).sum(axis=0)
-    return np.asarray(average), np.sqrt(spread)
+    mu = (weight * observed).sum(axis=1) / precision
+    ln_likelihood = 0.5 * (np.log(weight).sum(axis=1) - np.log(precision))
+    ln_likelihood -= 0.5 * ((weight * observed**2).sum(axis=1) - precision * mu**2)
+    # Half-Cauchy prior; the grid is even in ln tau, so its measure is tau itself.
+    ln_prior = np.log(BETWEEN_SEASONS_GRID)
+    ln_prior -= np.log1p((BETWEEN_SEASONS_GRID / BETWEEN_SEASONS_SCALE) ** 2)
+    probability = scipy.special.softmax(ln_likelihood + ln_prior)[:, None]
+
+    shrinkage = tau2 * weight
+    theta = mu[:, None] + shrinkage * (observed - mu[:, None])
+    theta_variance = shrinkage * variance + (1.0 - shrinkage) ** 2 / precision[:, None]
+    mean = (probability * theta).sum(axis=0)
+    total_variance = (probability * (theta_variance + (theta - mean) ** 2)).sum(axis=0)
+    return np.asarray(mean), np.sqrt(total_variance)
 
 
-def anemometer_diagnosis(c: Computed) -> pl.DataFrame:
-    """Rows of `season_diagnosis`: the anemometer of every season where it was estimated."""
-    tows = c.tows.frame.select(
-        "season", estimate=pl.Series(c.wind_ln_scale), sd=pl.Series(c.wind_ln_sd)
-    )
-    seasons = (
-        tows.filter(pl.col("sd").is_finite())
-        .group_by("season", maintain_order=True)
-        .agg(pl.col("estimate", "sd").first(), pl.len().alias("tows"))
-    )
-    half = NORMAL * pl.col("sd")
-    shown = (USUAL_SD**2 - pl.col("sd") ** 2).clip(MIN_INFORMED_SHARE * USUAL_SD**2).sqrt()
-    distance = pl.col("estimate") / shown
-    alarm = distance.abs() >= ALARM_SD
+def diagnose_anemometers(c: Computed) -> pl.DataFrame:
+    """Return rows of `season_diagnosis`: the anemometer of every season that was estimated."""
+    estimate, sd = pl.col("estimate"), pl.col("sd")
+    shown = (SCALE_SD**2 - sd**2).clip(MIN_INFORMED_SHARE * SCALE_SD**2).sqrt()
+    distance = estimate / shown
+    is_alarm = distance.abs() >= ALARM_SD
     return (
-        seasons.sort("season")
+        c.tows.frame.select(
+            "season", estimate=pl.Series(c.wind_ln_scale), sd=pl.Series(c.wind_ln_sd)
+        )
+        .filter(sd.is_finite())
+        .group_by("season", maintain_order=True)
+        .agg(estimate.first(), sd.first(), tows=pl.len())
+        .sort("season")
         .select(
             "season",
-            pl.lit(0).alias("part"),
-            pl.lit(ANEMOMETER).alias("instrument"),
-            pl.lit("1").alias("unit"),
             "estimate",
-            (pl.col("estimate") - half).alias("lo"),
-            (pl.col("estimate") + half).alias("hi"),
-            pl.lit(None).alias("p_fault"),
-            distance.alias("distance_sd"),
-            pl.when(alarm).then(pl.lit(ALARM)).otherwise(pl.lit(SOUND)).alias("verdict"),
-            alarm.alias("alarm"),
-            pl.lit(None).alias("first_tow"),
-            pl.format("wind out and back of {} tows", "tows").alias("rests_on"),
-            pl.lit(None).alias("shown_by"),
-            pl.lit(None).alias("confused_with"),
+            part=pl.lit(0),
+            instrument=pl.lit(ANEMOMETER),
+            unit=pl.lit("1"),
+            lo=estimate - NORMAL * sd,
+            hi=estimate + NORMAL * sd,
+            p_fault=pl.lit(None),
+            distance_sd=distance,
+            verdict=pl.when(is_alarm).then(pl.lit(ALARM)).otherwise(pl.lit(SOUND)),
+            alarm=is_alarm,
+            first_tow=pl.lit(None),
+            rests_on=pl.format("wind out and back of {} tows", "tows"),
+            shown_by=pl.lit(None),
+            confused_with=pl.lit(None),
         )
+        .select(*DIAGNOSIS_SCHEMA)
         .cast(pl.Schema(DIAGNOSIS_SCHEMA))
     )

@@ -1,13 +1,11 @@
-"""The uncertainty of a curve: the random part from its points, and the budget of every component.
+"""What the uncertainty budget of a tow needs, taken from what was computed.
 
-Here what was computed is given to the formulas of `pipeline.uncertainty.propagation`. A method
-with estimated season factors knows the whole archive: its scatter is pooled over a season. Any
-other method is taken at its word, tow by tow: its interval rests on the tow's own points and holds
-if its log factors are right.
+A method with estimated season factors knows the whole archive: the scatter of its points is pooled
+over a season. Any other method is taken at its word, tow by tow: its interval rests on the tow's
+own points and holds if its log factors are right.
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Final
 
 import numpy as np
@@ -17,112 +15,114 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
-from pipeline.uncertainty.misfit import Departure, departure_of_boats
-from pipeline.uncertainty.propagation import Assumed, residual_scatter
+from pipeline.uncertainty.misfit import fit_parabolas, shrink_to_boats
+from pipeline.uncertainty.propagation import Assumed, pool_scatter
 
 DECLARED: Final = 1.0
 """The declared speed among speed ratios."""
 
 CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(850, 1151, 25))
-"""Speeds of the points of a curve / declared speed: the range in which a curve is valid, with
-`DECLARED` in the middle."""
+"""Speeds of the points of a curve / declared speed: the range in which a curve is valid."""
 
-MOST_BENT: Final = 0.9
-"""r beyond which a curve tells nothing."""
+MAX_R: Final = 0.9
+"""r = (v/B)^2 beyond which a curve tells nothing."""
 
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
 
-_OFF: Final = pl.col("load_cell_ratio") - 1.0
-FORCE_SD: Final = (_OFF**2 + pl.col("load_cell_sd") ** 2).sqrt()
-"""Standard uncertainty of a tow's force by the record of its load cell; null without one.
+_LOAD_CELL_ERROR: Final = pl.col("load_cell_ratio") - 1.0
+FORCE_SD: Final = (_LOAD_CELL_ERROR**2 + pl.col("load_cell_sd") ** 2).sqrt()
+"""Standard uncertainty of a tow's force by the record of its load cell; null without one. The force
+is not corrected by the record, so its error is part of the uncertainty (GUM F.2.4.5)."""
 
-The force is not corrected by the record, so what the cell was off is part of it (GUM F.2.4.5)."""
+
+def assumed_beside(factors: SeasonFactors | None) -> Assumed:
+    """Return what remains assumed beside what the season factors show."""
+    if factors is None:
+        return Assumed()
+    return Assumed().beside_repeats(factors.tow_sd, factors.calibration_sd)
 
 
 def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
-    """Scatter of single run points: pooled over the tows of a season, or of each tow alone.
+    """Return the scatter of single run points: pooled over a season, or of each tow alone.
 
     Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0.
     """
     if not pooled:
         return curve.own_scatter(c.free)
-    residual, used, on_curve = _residuals(c)
-    ratio, dof = residual_scatter(residual, used, c.of_season)
-    known = np.isfinite(ratio) & used.any(axis=1)
-    height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
-    return curve.Scatter((np.where(known, ratio, 0.0) * height) ** 2, np.where(known, dof, 0.0))
+    residual, is_used, on_curve = _residuals(c)
+    sd_ratio, dof = pool_scatter(residual, is_used, c.of_season)
+    is_known = np.isfinite(sd_ratio) & is_used.any(axis=1)
+    mean_cw = np.where(is_used, on_curve, 0.0).sum(axis=1) / np.maximum(is_used.sum(axis=1), 1)
+    variance = (np.where(is_known, sd_ratio, 0.0) * mean_cw) ** 2
+    return curve.Scatter(variance, np.where(is_known, dof, 0.0))
 
 
 def _residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
-    """(point - curve) / curve, which points count, and the curve there, (tows, points) each."""
-    on_curve = curve.cw(
-        c.free.a_kg_m[:, None],
-        c.free.s_s2_m2[:, None],
-        np.where(c.points.used, c.points.speed_m_s, 0.0),
-    )
-    used = c.points.used & np.isfinite(on_curve) & c.free.converged[:, None]
-    ratio = np.where(used, c.points.cw_kg_m / np.where(used, on_curve, 1.0) - 1.0, 0.0)
-    return ratio, used, on_curve
+    """Return (point - curve) / curve, which points count, and the curve; (tows, points) each."""
+    speed = np.where(c.points.used, c.points.speed_m_s, 0.0)
+    on_curve = curve.cw(c.free.a_kg_m[:, None], c.free.s_s2_m2[:, None], speed)
+    is_used = c.points.used & np.isfinite(on_curve) & c.free.converged[:, None]
+    ratio = c.points.cw_kg_m / np.where(is_used, on_curve, 1.0) - 1.0
+    return np.where(is_used, ratio, 0.0), is_used, on_curve
 
 
 def files_log_sd(c: Computed) -> FloatArray:
-    """Standard deviation of a combined tow's mean ln log factor, by how its files differ; (tows,).
+    """Return the sd of a combined tow's mean ln log factor by how its files differ, (tows,).
 
     Each file has a log of its own. What two of them differ by says how far their mean may be off:
     half as far. Pooled over the season's combined tows; 0 for others, and where each is calibrated.
     """
-    ratio, used, _ = _residuals(c)
-    second = c.tows.by_tow(c.tows.in_second_file.astype(np.float64)) > 0
-    files = [used & ~second, used & second]
-    combined = files[0].any(axis=1) & files[1].any(axis=1) & ~c.calibrated
-    of_first, of_second = (
-        np.where(mine, ratio, 0.0).sum(axis=1) / np.maximum(mine.sum(axis=1), 1) for mine in files
-    )
-    r = np.clip(c.free.s_s2_m2 * c.tows.of_tow("declared_speed_m_s") ** 2, -1.0, MOST_BENT)
-    apart = np.where(combined, of_second - of_first, 0.0) * (1.0 - r) / 2.0
-    count = np.maximum(np.bincount(c.of_season, combined), 1)
-    square = np.bincount(c.of_season, apart**2) / count
-    return np.where(combined, 0.5 * np.sqrt(square[c.of_season]), 0.0)
+    residual, is_used, _ = _residuals(c)
+    is_second = c.tows.by_tow(c.tows.in_second_file.astype(np.float64)) > 0
+    in_first, in_second = is_used & ~is_second, is_used & is_second
+    is_combined = in_first.any(axis=1) & in_second.any(axis=1) & ~c.calibrated
+    first_mean = (residual * in_first).sum(axis=1) / np.maximum(in_first.sum(axis=1), 1)
+    second_mean = (residual * in_second).sum(axis=1) / np.maximum(in_second.sum(axis=1), 1)
+    r = np.clip(c.free.s_s2_m2 * c.tows.of_tow("declared_speed_m_s") ** 2, -1.0, MAX_R)
+    kappa = 2.0 / (1.0 - r)
+    ln_log_difference = np.where(is_combined, (second_mean - first_mean) / kappa, 0.0)
+    combined_tows = np.maximum(np.bincount(c.of_season, is_combined), 1)
+    mean_square = np.bincount(c.of_season, ln_log_difference**2) / combined_tows
+    return np.where(is_combined, 0.5 * np.sqrt(mean_square[c.of_season]), 0.0)
 
 
-def facts_of(
-    c: Computed, estimated: SeasonFactors | None, speed_ratios: Sequence[float]
+def make_facts(
+    c: Computed, factors: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
-    """What the budget of every tow asks, at some speeds.
+    """Return what the budget of every tow needs, at some speeds.
 
     Away from the declared speed the random part grows, and a speed error acts through the
     elasticity there.
 
     Args:
         c: all tows under a method.
-        estimated: its season factors, if it has estimated ones.
+        factors: its season factors, if it has estimated ones.
         speed_ratios: those speeds / declared speed.
 
     Returns:
-        A row per tow and speed with the columns of `propagation.budget`; `speed_m_s`, `cw_kg_m`,
-        NaN from B on; `misfit`, hull over curve less 1 by all tows of the boat, and
-        `misfit_variance`, 0 where no season factors are estimated: such a method is taken at its
-        word.
+        A row per tow and speed with the columns of `propagation.make_budget`; `speed_m_s`,
+        `cw_kg_m`, NaN from B on; `misfit`, hull over curve less 1 by all tows of the boat, and
+        `misfit_variance`, 0 where no season factors are estimated.
     """
-    scatter = scatter_of(c, pooled=estimated is not None)
-    tows = _terms_of_tows(c, estimated, scatter)
-    boat = tows["fsn_no"].rank("dense").to_numpy().astype(np.int64) - 1
-    asked = 0.0 if estimated is None else 1.0
-    departures = departure_of_boats(_departure(c, np.array(speed_ratios)), boat)
-    misfit, variance = (asked * part for part in departures)
-    cw, bend, ratio = pl.col("cw_kg_m"), pl.col("bend"), pl.col("speed_ratio")
-    r = (bend / (1.0 + bend) * ratio**2).clip(-1.0, MOST_BENT)
-    return pl.concat(
+    scatter = scatter_of(c, pooled=factors is not None)
+    tows = _facts_at_any_speed(c, factors, scatter)
+    misfit, misfit_variance = _boat_misfit(c, np.array(speed_ratios))
+    if factors is None:
+        misfit, misfit_variance = np.zeros_like(misfit), np.zeros_like(misfit_variance)
+    at_speeds = [
         tows.with_columns(
-            speed_ratio=pl.lit(speed),
-            cw_kg_m=pl.Series(c.cw_at(speed)),
-            random_ratio=pl.Series(_random_ratio(c, scatter, speed)),
+            speed_ratio=pl.lit(speed_ratio),
+            cw_kg_m=pl.Series(c.cw_at(speed_ratio)),
+            random_ratio=pl.Series(_random_ratio(c, scatter, speed_ratio)),
             misfit=pl.Series(misfit[:, place]),
-            misfit_variance=pl.Series(variance[:, place]),
+            misfit_variance=pl.Series(misfit_variance[:, place]),
         )
-        for place, speed in enumerate(speed_ratios)
-    ).with_columns(
+        for place, speed_ratio in enumerate(speed_ratios)
+    ]
+    cw, bend, ratio = pl.col("cw_kg_m"), pl.col("bend"), pl.col("speed_ratio")
+    r = (bend / (1.0 + bend) * ratio**2).clip(-1.0, MAX_R)
+    return pl.concat(at_speeds).with_columns(
         speed_m_s=ratio * pl.col("declared_speed_m_s"),
         kappa=2.0 / (1.0 - r),
         misfit_ratio=(pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt(),
@@ -133,53 +133,59 @@ def facts_of(
     )
 
 
-def _departure(c: Computed, speed_ratios: FloatArray) -> Departure:
-    """How far the points of each tow lie from its curve."""
-    tows, (ratio, used, _) = c.tows, _residuals(c)
-    towed = c.points.speed_m_s / tows.of_tow("declared_speed_m_s")[:, None]
-    way = tows.by_tow(tows.direction.astype(np.float64))
-    counts, target = used & tows.trusted[:, None], tows.by_tow(tows.target_speed_ratio)
-    return Departure.of(ratio, counts, towed, way, target, speed_ratios, c.plan.which)
+def _boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return misfit of each tow's hull and its variance, (tows, speeds) each."""
+    residual, is_used, _ = _residuals(c)
+    tows = c.tows
+    by_tow = fit_parabolas(
+        residual,
+        is_used & tows.trusted[:, None],
+        c.points.speed_m_s / tows.of_tow("declared_speed_m_s")[:, None],
+        tows.by_tow(tows.direction.astype(np.float64)),
+        tows.by_tow(tows.target_speed_ratio),
+        speed_ratios,
+        c.plan.which,
+    )
+    boat = (tows.frame["fsn_no"].rank("dense") - 1).to_numpy().astype(np.int64)
+    return shrink_to_boats(by_tow, boat)
 
 
 def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
-    """Relative random uncertainty of Cw at a speed / declared speed, shape (tows,)."""
+    """Return the relative random uncertainty of Cw at a speed / declared speed, (tows,)."""
     speed = speed_ratio * c.tows.of_tow("declared_speed_m_s")
-    errors = curve.covariance(c.points, c.free, scatter, speed)
+    variance = curve.covariance(c.points, c.free, scatter, speed).c0_variance_kg2_m2
     cw = c.free.cw_at(speed)
-    known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
-    variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
-    return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0)
+    is_known = np.isfinite(cw) & np.isfinite(variance)
+    sd = np.sqrt(np.where(is_known, variance, 1.0))
+    return np.where(is_known, sd / np.where(is_known, cw, 1.0), 1.0)
 
 
-def _terms_of_tows(
+def _facts_at_any_speed(
     c: Computed, factors: SeasonFactors | None, scatter: curve.Scatter
 ) -> pl.DataFrame:
-    """What `propagation.budget` asks of tows, as far as it is the same at any speed."""
+    """Return what the budget needs of each tow as far as it is the same at any speed."""
     tows = c.tows
-    estimated = np.isfinite(c.estimated("ln_sd"))
-    usual = np.full(tows.size, USUAL_BEND) if factors is None else _median_bends(c)
-    bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual)
-    wanders = 0.0 if factors is None else factors.tow_log_sd_of(tows.of_tow("season"))
-    is_wandering = (factors is not None) & ~c.calibrated
+    has_log = np.isfinite(c.estimated("ln_sd"))
+    usual_bend = np.full(tows.size, USUAL_BEND)
+    tow_log_sd = np.zeros(tows.size)
+    if factors is not None:
+        usual_bend = _median_bends(c)
+        log_sd = np.hypot(factors.tow_log_sd_of(tows.of_tow("season")), files_log_sd(c))
+        tow_log_sd = np.where(c.calibrated, 0.0, log_sd)
+    bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual_bend)
+
     # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
     # taken off, and only what is put back for still air has it.
     by_archive = c.plan.of_runs("wind.coefficients") == "archive"
-    net_air = tows.mean(np.where(by_archive, 0.0, c.air_kg_m) - c.still_air_kg_m, c.used)
-    assumed = Assumed()
-    if factors is not None:
-        assumed = assumed.beside_repeats(factors.tow_sd, factors.calibration_sd)
-    of_archive = np.isfinite(c.coefficient_sd)
-    own = {
-        "unmeasured_wind": c.expected_wind_sd,
-        "wind_coefficient": np.where(of_archive, c.coefficient_sd, assumed.wind_coefficient),
-    }
+    net_air = np.where(by_archive, 0.0, c.air_kg_m) - c.still_air_kg_m
     # A larger coefficient takes more off as felt and puts more back for still air.
-    still_unit = c.still_air_kg_m / np.maximum(c.air.still, 1e-9)
-    felt_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
+    still_per_unit = c.still_air_kg_m / np.maximum(c.air.still, 1e-9)
+    felt_per_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
+    coefficient_sd = np.where(
+        np.isfinite(c.coefficient_sd), c.coefficient_sd, Assumed().wind_coefficient
+    )
     return tows.frame.select(
         "tow_id",
-        "fsn_no",
         "season",
         "declared_speed_m_s",
         part="log1_part",
@@ -187,29 +193,29 @@ def _terms_of_tows(
         bend=pl.Series(bend),
         calibrated=pl.Series(c.calibrated),
         askew_ratio=pl.Series(c.estimated("askew_ratio")).fill_nan(None),
-        log_sd=pl.Series(np.where(estimated, c.estimated("ln_sd"), 0.0)),
-        log_dof=pl.Series(np.where(estimated, c.estimated("dof"), np.inf)),
-        tow_log_sd=pl.Series(np.where(is_wandering, np.hypot(wanders, files_log_sd(c)), 0.0)),
-        net_air_kg_m=pl.Series(net_air),
-        wind_ln_sd=pl.Series(c.wind_ln_sd).fill_nan(None),
-        air_per_coefficient_kg_m=pl.Series(tows.mean(still_unit - felt_unit, c.used)),
-        wind_measured=pl.Series(tows.measured("wind")),
+        log_sd=pl.Series(np.where(has_log, c.estimated("ln_sd"), 0.0)),
+        log_dof=pl.Series(np.where(has_log, c.estimated("dof"), np.inf)),
+        tow_log_sd=pl.Series(tow_log_sd),
+        net_air_kg_m=pl.Series(tows.mean(net_air, c.used)),
+        air_per_coefficient_kg_m=pl.Series(tows.mean(still_per_unit - felt_per_unit, c.used)),
         still_air_kg_m=pl.Series(tows.mean(c.still_air_kg_m, c.used)),
+        wind_ln_sd=pl.Series(c.wind_ln_sd).fill_nan(None),
+        wind_measured=pl.Series(tows.measured("wind")),
+        wind_coefficient=pl.Series(coefficient_sd),
+        unmeasured_wind=pl.Series(c.expected_wind_sd),
         temperature_known=pl.Series(c.temperature_known),
         water_off_c=pl.Series(c.water_off_c),
         mass_ln_sd=pl.col("mass_ln_sd").fill_null(0.0),
         water_change_kg_m=pl.Series(tows.mean(c.temperature_kg_m, c.used)),
         force_sd=FORCE_SD,
-        **{name: pl.lit(size) for name, size in asdict(assumed).items() if name not in own},
-        **{name: pl.Series(size) for name, size in own.items()},
     )
 
 
 def _median_bends(c: Computed) -> FloatArray:
-    """Median of q at the declared speed over the tows with the same steps, (tows,)."""
+    """Return the median of q at the declared speed over the tows with the same steps, (tows,)."""
     r = c.free.s_s2_m2 * c.tows.of_tow("declared_speed_m_s") ** 2
-    known = c.free.converged & (r > 0.0) & (r < 1.0)
-    q = pl.Series(np.where(known, r / np.where(known, 1.0 - r, 1.0), np.nan)).fill_nan(None)
-    bends = pl.DataFrame({"which": c.plan.which, "q": q})
-    median = bends.select(pl.col("q").median().over("which").fill_null(USUAL_BEND))
+    is_known = c.free.converged & (r > 0.0) & (r < 1.0)
+    q = pl.Series(np.where(is_known, r / np.where(is_known, 1.0 - r, 1.0), np.nan)).fill_nan(None)
+    bends = pl.DataFrame({"steps": c.plan.which, "q": q})
+    median = bends.select(pl.col("q").median().over("steps").fill_null(USUAL_BEND))
     return median.to_series().to_numpy()

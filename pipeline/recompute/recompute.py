@@ -16,7 +16,7 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, StrArray
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.method.definition import Method
-from pipeline.recompute.anemometer import with_anemometer
+from pipeline.recompute.anemometer import correct_anemometers
 from pipeline.recompute.computed import Coefficients, Computed
 from pipeline.recompute.plan import Plan, without_factor
 from pipeline.recompute.results import Recomputed, as_tables
@@ -85,7 +85,7 @@ def evaluate(plan: Plan, instruments: pl.DataFrame | None = None) -> Computed:
         instruments: rows of the table `tow_instruments`, for steps that ask for an estimate.
     """
     read = _prepare(plan, instruments_of(plan, instruments))
-    return _with_expected_wind(_with_coefficients(with_anemometer(read)))
+    return _with_expected_wind(_with_coefficients(correct_anemometers(read)))
 
 
 def _with_expected_wind(c: Computed) -> Computed:

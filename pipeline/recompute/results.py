@@ -19,12 +19,13 @@ from pipeline.assessment.run_choice import with_run_choice
 from pipeline.method.definition import Method, Steps
 from pipeline.quantiles import t_quantile
 from pipeline.races.race import power_per_rower_w
-from pipeline.recompute.anemometer import anemometer_diagnosis
-from pipeline.recompute.best import with_best
+from pipeline.recompute.anemometer import diagnose_anemometers
+from pipeline.recompute.best import add_best_estimates
 from pipeline.recompute.budget import (
     CURVE_SPEED_RATIOS,
     DECLARED,
-    facts_of,
+    assumed_beside,
+    make_facts,
     scatter_of,
 )
 from pipeline.recompute.computed import Computed
@@ -40,7 +41,7 @@ from pipeline.tables.season_log import (
     SeasonSteps,
     TowInstruments,
 )
-from pipeline.uncertainty.propagation import budget, combine
+from pipeline.uncertainty.propagation import combine, make_budget
 
 OF_ALL_TOWS: Final = {
     "season_links": SeasonLinks,
@@ -90,12 +91,12 @@ def as_tables(
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
     run_points = with_run_choice(named(_run_points(c)))
     speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
-    facts = facts_of(c, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
-    components = budget(facts)
+    facts = make_facts(c, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
+    components = make_budget(facts, assumed_beside(estimated))
     bounds = combine(components)
     at_v0 = components.filter(at_declared)
     curves = named(_curves(c, bounds.filter(at_declared), pooled))
-    curves = with_best(curves, estimated, at_v0, facts.filter(at_declared))
+    curves = add_best_estimates(curves, estimated, at_v0, facts.filter(at_declared))
     diagnosis = _diagnosis(estimated, c)
     assessments = assess(curves, run_points, c.tows.frame, diagnosis)
     rejecting = [
@@ -273,7 +274,7 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
 def _diagnosis(estimated: SeasonFactors | None, c: Computed) -> pl.DataFrame:
     """What is wrong with the instruments of each season; no rows without an estimate."""
     joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
-    both = pl.concat([joint, anemometer_diagnosis(c)])
+    both = pl.concat([joint, diagnose_anemometers(c)])
     return both.sort("season", "part", "instrument")
 
 

@@ -1,7 +1,7 @@
 """What is wrong with the instruments of each season: one row per season and possible fault.
 
 Every season has them all, dGPS or not: dGPS anchors speed and nothing else. Where a fault cannot be
-told from another, both say so.
+told from another, both rows say so.
 """
 
 from typing import Final
@@ -11,32 +11,38 @@ import polars as pl
 
 from pipeline.arrays import FloatArray, IntArray
 from pipeline.quantiles import NORMAL
-from pipeline.season_log.archive_tows import LOG, ArchiveTows
-from pipeline.season_log.boats import LEVEL
-from pipeline.season_log.effects import FORCE, LOG_SCALE, OF_BOATS, ZERO, ZERO_DRIFT
+from pipeline.season_log.archive import LOG, Archive
 from pipeline.season_log.factors import ESTIMATED, NOT_DETERMINED, NOT_SETTLED
 from pipeline.season_log.faults import Posterior
 from pipeline.season_log.fit import Fit
+from pipeline.season_log.observation_model import (
+    BOAT_EFFECTS,
+    FORCE,
+    LOG_SCALE,
+    ZERO,
+    ZERO_DRIFT,
+)
 from pipeline.tables.frames import dtypes
 from pipeline.tables.season_log import SeasonDiagnosis, SeasonSteps
 
-FOUND: Final = 0.5
-"""A fault of this probability is in the model."""
-POSSIBLE: Final = 0.1
-"""One of this probability cannot be told."""
+FAULT_PROBABILITY: Final = 0.5
+"""Probability from which a fault is in the model."""
+DOUBT_PROBABILITY: Final = 0.1
+"""Probability from which a fault cannot be excluded."""
 ALARM_SD: Final = 4.0
+"""Distance of a permanent effect from its prior, in standard deviations, that is an alarm."""
 MIN_INFORMED_SHARE: Final = 0.05
 """Least share of a prior's variance that counts as learned from the archive. Where the archive says
 nearly nothing of an effect, prior and posterior variance are equal but for rounding and for the
 approximation of the posterior, and a quotient by their difference is no distance (inferred)."""
-USUAL_SIZES: Final = 2.0
+MAX_USUAL_SD: Final = 2.0
 """Faults beyond so many standard deviations of their prior are not usual."""
 FAULT: Final = "fault"
 ALARM: Final = "alarm"
 SOUND: Final = "sound"
 CANNOT_BE_TOLD: Final = "cannot be told"
 WOULD_NOT_SHOW: Final = "would not show"
-FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
+LOAD_CELL: Final = (FORCE, ZERO, ZERO_DRIFT)
 ALTERED_BOAT: Final = "altered_boat"
 """What a fault that one boat alone shows may be instead."""
 
@@ -44,167 +50,172 @@ STEP_SCHEMA: Final = dtypes(SeasonSteps, without=["method"])
 DIAGNOSIS_SCHEMA: Final = dtypes(SeasonDiagnosis, without=["method"])
 
 
-def season_diagnosis(posterior: Posterior) -> pl.DataFrame:
-    """The diagnosis of every season.
+def diagnose_seasons(posterior: Posterior) -> pl.DataFrame:
+    """Return the diagnosis of every season.
 
     Returns:
         Rows of `DIAGNOSIS_SCHEMA`. `estimate` with its 95 % interval is the logarithm of a factor,
-        or newtons. `p_fault` is the probability that there is such a fault, null for what there
-        always is. `distance_sd` is how far what is seen lies from what is assumed, in standard
-        deviations. `verdict` is `sound`, `cannot be told`, `fault`, or `would not show`: a fault of
-        the usual size would most likely be taken for something else. A fault that one boat alone
-        shows cannot be told either: `shown_by` names the boat, which may have been altered, and
-        the interval ends where all of it is the instrument's. For the factor of a log it
-        is `estimated` or `not determined`; a distance of 4 is an `alarm`. Where the search did not
-        come to rest, all are `not settled`. `alarm`: a person should look.
+        or newtons. `p_fault` is the probability that there is such a fault, null for an effect that
+        there always is. `distance_sd` is how far the estimate lies from its prior, in standard
+        deviations. `verdict` is `sound`, `fault`, `cannot be told`, or `would not show`: a fault of
+        the usual size would most likely be taken for something else; `alarm` for a distance of 4;
+        of the factor of a log `estimated` or `not determined`; `not settled` of everything where
+        the search did not converge. A fault that one boat alone shows cannot be told either:
+        `shown_by` names the boat, which may have been altered, and the interval ends where all of
+        it is the instrument's. `alarm`: a person should look.
     """
-    tows = posterior.fit.problem.tows
-    effects = posterior.fit.problem.effects.frame.with_row_index("place").drop_nulls("season")
-    rests_on = dict(_rests_on(tows).select("season", "rests_on").rows())
+    instruments: dict[tuple[int, int, str], list[int]] = {}
+    for place, effect in enumerate(posterior.fit.model.effects.listed):
+        if effect.season is not None:
+            instruments.setdefault((effect.season, effect.part, effect.name), []).append(place)
+    evidence = _describe_evidence(posterior.fit.model.archive)
     rows = [
-        {"season": season, "part": part, "instrument": name, "rests_on": rests_on[season]}
-        | _judged(posterior, of_one)
-        for (season, part, name), of_one in effects.sort(
-            "season", "part", "name", "place"
-        ).group_by("season", "part", "name", maintain_order=True)
+        {"season": season, "part": part, "instrument": name, "rests_on": evidence[season][1]}
+        | _diagnose_instrument(posterior, name, np.array(instruments[season, part, name]))
+        for season, part, name in sorted(instruments)
     ]
     return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA)
 
 
-def _judged(posterior: Posterior, effects: pl.DataFrame) -> dict[str, object]:
-    """What all effects of one season and instrument add up to.
+def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> dict[str, object]:
+    """Return the diagnosis of one instrument in one season.
 
     Args:
-        effects: their rows of `Effects.frame`, with `place`.
+        places: its effects: one that there always is, candidate faults, or both.
     """
-    fitted = posterior.fit
-    name, places = effects["name"][0], effects["place"].to_numpy()
-    columns = np.flatnonzero(np.isin(fitted.active, places))
-    faults = np.flatnonzero(np.isin(fitted.problem.effects.faults, places))
-    estimate = float(fitted.value[columns].sum())
-    variance = float(fitted.covariance[np.ix_(columns, columns)].sum())
-    half = NORMAL * np.sqrt(max(variance, 0.0))
-    ends = [estimate - half, estimate + half]
-    chance = min(float(posterior.chance[faults].sum()), 1.0) if len(faults) else None
+    fit, effects = posterior.fit, posterior.fit.model.effects
+    columns = np.flatnonzero(np.isin(fit.active, places))
+    candidates = np.flatnonzero(np.isin(effects.faults, places))
+    estimate = float(fit.value[columns].sum())
+    variance = float(fit.covariance[np.ix_(columns, columns)].sum())
+    half_width = NORMAL * np.sqrt(max(variance, 0.0))
+    bounds = [estimate - half_width, estimate + half_width]
+
+    probability = None
+    first_tow = None
+    if len(candidates):
+        probability = min(float(posterior.probability[candidates].sum()), 1.0)
     unresolved = next((one for one in posterior.unresolved if one.place in places), None)
     if unresolved is not None:
-        ends.append(estimate + unresolved.size)
-        chance = max(chance or 0.0, _chance_beside_alteration(fitted))
-    distance = None if name == LOG_SCALE else _distance(posterior, columns)
-    shows = bool(posterior.shows[faults].any())
-    if not fitted.settled:
+        bounds.append(estimate + unresolved.size)
+        probability = max(probability or 0.0, _probability_beside_alteration(fit))
+    if probability is not None and probability >= DOUBT_PROBABILITY:
+        likeliest = effects.faults[candidates[posterior.probability[candidates].argmax()]]
+        first_tow = effects.listed[likeliest].first_tow
+
+    distance = None if name == LOG_SCALE else _distance_from_prior(fit, columns)
+    if not fit.has_converged:
         verdict = NOT_SETTLED
     elif name == LOG_SCALE:
-        verdict = _of_log(posterior, columns)
+        verdict = _judge_log(posterior, columns[0])
     elif unresolved is not None:
         verdict = CANNOT_BE_TOLD
     else:
-        verdict = _verdict(chance, distance, shows)
-    begins = None
-    if chance is not None and chance >= POSSIBLE:
-        begins = effects["first_tow"][
-            int(len(effects) - len(faults) + posterior.chance[faults].argmax())
-        ]
+        would_show = bool(posterior.would_show[candidates].any())
+        verdict = _judge_fault(probability, distance, would_show)
+    has_too_few_boats = unresolved is not None or not posterior.has_boats[candidates].all()
     return {
         "unit": "N" if name in (ZERO, ZERO_DRIFT) else "1",
         "estimate": estimate,
-        "lo": min(ends),
-        "hi": max(ends),
-        "p_fault": chance,
+        "lo": min(bounds),
+        "hi": max(bounds),
+        "p_fault": probability,
         "distance_sd": distance,
         "verdict": verdict,
         "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD, NOT_SETTLED),
-        "first_tow": begins,
+        "first_tow": first_tow,
         "shown_by": None if unresolved is None else ", ".join(unresolved.boats),
-        "confused_with": _confused_with(
-            posterior,
-            columns,
-            faults,
-            of_one_boat=unresolved is not None or not posterior.has_boats[faults].all(),
-        ),
+        "confused_with": _list_confusions(posterior, columns, candidates, has_too_few_boats),
     }
 
 
-def _chance_beside_alteration(fitted: Fit) -> float:
+def _probability_beside_alteration(fit: Fit) -> float:
     """Return the probability that an instrument failed and not that the one boat was altered.
 
-    Both explain the boat's tows equally well, so their chances beforehand decide.
+    Both explain the boat's tows equally well, so their prior probabilities decide.
     """
-    fault = fitted.problem.settings.fault_chance
-    return float(fault / (fault + fitted.shares[0]))
+    fault = fit.model.priors.fault_probability
+    return float(fault / (fault + fit.share[0]))
 
 
-def _distance(posterior: Posterior, columns: IntArray) -> float | None:
-    """Return how far the archive moves an effect that is always there, in standard deviations."""
-    fitted = posterior.fit
-    always = columns[~fitted.is_fault[columns]]
-    if not len(always):
+def _distance_from_prior(fit: Fit, columns: IntArray) -> float | None:
+    """Return how far the archive moves an effect that is always there, in standard deviations.
+
+    Args:
+        columns: effects of the fit of one instrument in one season.
+    """
+    permanent = columns[~fit.is_fault[columns]]
+    if not len(permanent):
         return None
-    prior = fitted.problem.effects.column("variance", fitted.active[always[0]])
-    learned = prior - fitted.covariance[always[0], always[0]]
-    variance = max(learned, MIN_INFORMED_SHARE * prior)
-    return float(fitted.value[always[0]] / np.sqrt(variance))
+    place = permanent[0]
+    prior = fit.prior_variance[place]
+    learned = prior - fit.covariance[place, place]
+    return float(fit.value[place] / np.sqrt(max(learned, MIN_INFORMED_SHARE * prior)))
 
 
-def _verdict(chance: float | None, distance: float | None, shows: bool) -> str:
-    if chance is not None and chance >= FOUND:
+def _judge_fault(probability: float | None, distance: float | None, would_show: bool) -> str:
+    if probability is not None and probability >= FAULT_PROBABILITY:
         return FAULT
     if distance is not None and abs(distance) >= ALARM_SD:
         return ALARM
-    if chance is None:
+    if probability is None:
         return SOUND
-    if chance >= POSSIBLE:
+    if probability >= DOUBT_PROBABILITY:
         return CANNOT_BE_TOLD
-    return SOUND if shows else WOULD_NOT_SHOW
+    return SOUND if would_show else WOULD_NOT_SHOW
 
 
-def _of_log(posterior: Posterior, columns: IntArray) -> str:
-    """Whether the factor of a log is estimated; it has a column of the fit."""
-    fitted = posterior.fit
-    log = int(fitted.problem.tows.log[fitted.share[:, columns[0]] > 0][0])
-    if posterior.refused[log]:
+def _judge_log(posterior: Posterior, column: int) -> str:
+    """Return whether the factor of the log with this effect is estimated."""
+    fit = posterior.fit
+    log = fit.model.archive.log[fit.covariate[:, column] > 0][0]
+    if posterior.is_refused[log]:
         return NOT_SETTLED
-    return ESTIMATED if posterior.determined[log] else NOT_DETERMINED
+    return ESTIMATED if posterior.is_determined[log] else NOT_DETERMINED
 
 
-def _confused_with(
-    posterior: Posterior, columns: IntArray, faults: IntArray, of_one_boat: bool
+def _list_confusions(
+    posterior: Posterior, columns: IntArray, candidates: IntArray, has_too_few_boats: bool
 ) -> str | None:
-    """Return what one of these faults would pass for if it does not show, and what for it.
+    """Return what these faults pass for while they do not show, and what would pass for them.
 
     Args:
-        of_one_boat: too few boats tell, so that an alteration of one would pass for the fault.
+        has_too_few_boats: an alteration of one boat would pass for the fault.
     """
-    effects, active = posterior.fit.problem.effects, posterior.fit.active
-    label, hidden = effects.frame["label"].to_numpy(), ~posterior.shows
-    passes = active[posterior.hidden_by[faults[hidden[faults]]]]
-    pass_for_it = effects.faults[hidden & np.isin(posterior.hidden_by, columns)]
-    own = {*label[effects.faults[faults]], *label[active[columns]]}
-    others = np.concatenate([passes, pass_for_it])
-    names = [ALTERED_BOAT] if of_one_boat else []
-    if of_one_boat:
-        others = others[~np.isin(effects.column("name", others), OF_BOATS)]
-    names += [name for name in dict.fromkeys(label[others]) if name not in own]
-    return ", ".join(names) or None
+    fit, effects, test = posterior.fit, posterior.fit.model.effects, posterior.test
+    is_hidden = ~posterior.would_show
+    pass_for = fit.active[test.displaced[candidates[is_hidden[candidates]]]]
+    is_taken_for_this = is_hidden & np.isin(test.displaced, columns)
+    others = [effects.listed[p] for p in (*pass_for, *effects.faults[is_taken_for_this])]
+    own = {effects.listed[p].label for p in (*effects.faults[candidates], *fit.active[columns])}
+    labels = []
+    if has_too_few_boats:
+        labels.append(ALTERED_BOAT)
+        others = [effect for effect in others if effect.name not in BOAT_EFFECTS]
+    labels += [label for label in dict.fromkeys(e.label for e in others) if label not in own]
+    return ", ".join(labels) or None
 
 
-def _rests_on(tows: ArchiveTows) -> pl.DataFrame:
-    """What tells of each season: `season`, `n_boats` towed in others too, and `rests_on`."""
-    elsewhere = pl.col("season").n_unique().over("boat") > 1
-    plain = ~pl.col("anchored") & pl.col("gps_ln_ratio").is_not_null()
-    named = {"plain GPS": plain, "dGPS": pl.col("anchored")}
-    seasons = tows.frame.with_columns(elsewhere=elsewhere).group_by("season", maintain_order=True)
-    told = seasons.agg(
-        pl.col("boat").filter("elsewhere").n_unique().alias("n_boats"),
-        *(pl.when(there.any()).then(pl.lit(name)).alias(name) for name, there in named.items()),
-    )
-    boats = pl.format("{} boats towed in other seasons too", "n_boats")
-    rests_on = pl.concat_str(boats, *named, separator=", ", ignore_nulls=True)
-    return told.select("season", "n_boats", rests_on=rests_on)
+def _describe_evidence(archive: Archive) -> dict[int, tuple[int, str]]:
+    """Return for each season how many boats link it to others, and what it rests on, in words."""
+    frame = archive.frame.with_columns(boat=archive.boat)
+    described = {}
+    observed = frame.filter(archive.is_observed)
+    linked = observed.filter(pl.col("season").n_unique().over("boat") > 1)
+    for season in frame["season"].unique().sort():
+        tows = observed.filter(season=season)
+        boats = linked.filter(season=season)["boat"].n_unique()
+        words = [f"{boats} boats towed in other seasons too"]
+        if tows.filter(~pl.col("anchored") & pl.col("gps_ln_ratio").is_not_null()).height:
+            words.append("plain GPS")
+        if tows["anchored"].any():
+            words.append("dGPS")
+        described[season] = (boats, ", ".join(words))
+    return described
 
 
-def season_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
-    """Whether the step of a season against the others comes from the log or from the load cell.
+def attribute_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
+    """Return whether the step of a season against the others is the log's or the load cell's.
 
     Returns:
         Rows of `STEP_SCHEMA`: `level_step`, what log and load cell together do to ln Cw, and
@@ -212,37 +223,40 @@ def season_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
 
         - `force` where a fault of the load cell is likelier than not;
         - `not told` where one cannot be told; where the season is not determined, or the search did
-          not settle; and where a fault of the load cell would not show, and one no larger than
+          not converge; and where a fault of the load cell would not show, and one no larger than
           usual could be the whole step;
         - `log` where the level differs by more than twice its standard deviation;
         - else `none`.
     """
-    fitted, tows = posterior.fit, posterior.fit.problem.tows
-    instruments = np.where(fitted.of_boats, 0.0, fitted.design[:, LEVEL])
-    forces = np.where(np.isin(fitted.name, FORCES), instruments, 0.0)
-    verdicts = {tuple(k): v for *k, v in diagnosis.select(*LOG, "instrument", "verdict").rows()}
-    boats, rows = dict(_rests_on(tows).select("season", "n_boats").rows()), []
-    for (season, part), mine in tows.frame.with_row_index().group_by(LOG, maintain_order=True):
-        step, step_sd = _mean_effect(posterior, instruments[mine["index"]])
-        force, force_sd = _mean_effect(posterior, forces[mine["index"]])
-        of_force = {verdicts.get((season, 0, name)) for name in FORCES}
-        of_log = verdicts.get((season, part, LOG_SCALE))
-        steps = abs(step) > 2.0 * step_sd
-        usual = abs(step) < USUAL_SIZES * fitted.problem.settings.force_fault_sd
-        hidden = verdicts.get((season, 0, FORCE)) == WOULD_NOT_SHOW
-        lost = of_log in (NOT_DETERMINED, NOT_SETTLED) or not fitted.settled
-        if of_force & {FAULT, ALARM}:
+    fit, archive = posterior.fit, posterior.fit.model.archive
+    verdict = {tuple(row[:3]): row[3] for row in diagnosis[[*LOG, "instrument", "verdict"]].rows()}
+    evidence = _describe_evidence(archive)
+    usual_size = MAX_USUAL_SD * fit.model.priors.force_fault_sd
+    is_load_cell = np.isin(fit.name, LOAD_CELL)
+    rows = []
+    for (season, part), tows in archive.frame.with_row_index().group_by(LOG, maintain_order=True):
+        mean_design = fit.instrument_design[tows["index"]].mean(axis=0)
+        step, step_sd = _estimate(posterior, mean_design)
+        force, force_sd = _estimate(posterior, np.where(is_load_cell, mean_design, 0.0))
+        load_cell_verdicts = {verdict.get((season, 0, name)) for name in LOAD_CELL}
+        log_verdict = verdict.get((season, part, LOG_SCALE))
+        is_step = abs(step) > 2.0 * step_sd
+        could_be_force = (
+            verdict.get((season, 0, FORCE)) == WOULD_NOT_SHOW and abs(step) < usual_size
+        )
+        is_unknown = not fit.has_converged or log_verdict in (NOT_DETERMINED, NOT_SETTLED)
+        if load_cell_verdicts & {FAULT, ALARM}:
             cause = "force"
-        elif lost or CANNOT_BE_TOLD in of_force or (hidden and steps and usual):
+        elif is_unknown or CANNOT_BE_TOLD in load_cell_verdicts or (is_step and could_be_force):
             cause = "not told"
         else:
-            cause = "log" if steps else "none"
-        rows.append((season, part, boats[season], step, step_sd, force, force_sd, cause))
+            cause = "log" if is_step else "none"
+        boats = evidence[season][0]
+        rows.append((season, part, boats, step, step_sd, force, force_sd, cause))
     return pl.DataFrame(rows, schema=STEP_SCHEMA, orient="row").sort(LOG)
 
 
-def _mean_effect(posterior: Posterior, effects: FloatArray) -> tuple[float, float]:
-    """Mean over tows of what effects do to ln Cw, and its standard deviation."""
-    along = effects.mean(axis=0)
-    variance = max(float(along @ posterior.fit.covariance @ along), 0.0)
-    return float(along @ posterior.fit.value), float(np.sqrt(variance))
+def _estimate(posterior: Posterior, combination: FloatArray) -> tuple[float, float]:
+    """Return a combination of effects, (k,), and its standard deviation."""
+    variance = max(float(combination @ posterior.fit.covariance @ combination), 0.0)
+    return float(combination @ posterior.fit.value), float(np.sqrt(variance))

@@ -1,4 +1,4 @@
-"""From tows to season factors: the joint posterior as tables."""
+"""From tows to season factors: the joint estimate as tables."""
 
 from dataclasses import dataclass
 
@@ -7,14 +7,14 @@ import polars as pl
 
 from pipeline.arrays import FloatArray
 from pipeline.quantiles import t_quantile
-from pipeline.season_log.archive_tows import ArchiveTows
-from pipeline.season_log.assumed import USUAL
-from pipeline.season_log.diagnosis import season_diagnosis, season_steps
-from pipeline.season_log.effects import AGEING
-from pipeline.season_log.factors import GPS, NOT_SETTLED, factors_of
-from pipeline.season_log.faults import Posterior, roughly, solve
-from pipeline.season_log.fit import OF_TOWS, Problem
-from pipeline.season_log.tow_estimates import with_estimates
+from pipeline.season_log.archive import build_archive
+from pipeline.season_log.diagnosis import attribute_steps, diagnose_seasons
+from pipeline.season_log.factors import BY_GPS, NOT_SETTLED, make_factor_table
+from pipeline.season_log.faults import Posterior, find_posterior, find_rough_posterior
+from pipeline.season_log.fit import build_model
+from pipeline.season_log.observation_model import AGEING
+from pipeline.season_log.priors import PRIORS
+from pipeline.season_log.tow_estimates import estimate_tows
 
 
 @dataclass(frozen=True)
@@ -22,19 +22,16 @@ class SeasonFactors:
     """Log factors with all that is known about them.
 
     Attributes:
-        factors: one row per season, part and log that has tows without dGPS calibration, sorted:
-            rows of the table `season_links`. See `estimate_season_factors`.
-        covariance: covariance of ln factor between the rows of `factors` that are determined, in
-            their order.
+        factors: a row per season and part that has tows without dGPS, sorted: rows of the table
+            `season_links` (`estimate_season_factors`).
+        covariance: of ln factor between the determined rows of `factors`, in their order.
         tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
         calibration_sd: the same of tows calibrated on dGPS.
         tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
         ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
         drift_sd: standard deviation of what a boat drifts from that in a year.
-        tows: what it was estimated from, with what the instruments did to each and what all tows
-            say of its Cw; `weights`: what that rests on (`tow_estimates.with_estimates`).
-        diagnosis: per season and instrument, what is wrong; `steps`: whether a season's step is the
-            log's or the load cell's (`pipeline.season_log.diagnosis`).
+        tows, weights: what was estimated of each tow (`tow_estimates.estimate_tows`).
+        diagnosis, steps: what is wrong in each season (`diagnosis`).
     """
 
     factors: pl.DataFrame
@@ -51,30 +48,30 @@ class SeasonFactors:
     steps: pl.DataFrame
 
     def tow_log_sd_of(self, season: FloatArray) -> FloatArray:
-        """Standard deviation of ln factor from tow to tow, by the era of each season."""
+        """Return the standard deviation of ln factor from tow to tow in given seasons."""
         sd = np.zeros(len(season))
         for first, of_era in sorted(self.tow_log_sd.items()):
             sd = np.where(season >= first, of_era, sd)
         return sd
 
     def of_season(self, season: int) -> tuple[float, float, float, str] | None:
-        """Factor, bounds and source of a season; None where not determined.
+        """Return factor, bounds and source of a season; None where it is not determined.
 
-        Where the log was replaced it is the mean over the tows of its determined parts.
+        Where the log was replaced, the factor is the mean over the tows of its determined parts.
         """
-        known = self.factors.drop_nulls("factor")
-        mine = known["season"] == season
-        parts = known.filter(mine)
+        determined = self.factors.drop_nulls("factor")
+        is_own = determined["season"] == season
+        parts = determined.filter(is_own)
         if parts.height < 2:
             return next(parts.select("factor", "lo", "hi", "source").iter_rows(), None)
-        count = np.where(mine, known["n_tows"].to_numpy(), 0)
-        share = count / count.sum()
-        ln_factor = share @ known["factor"].log().to_numpy()
-        sd = np.sqrt(share @ self.covariance @ share)
-        half = sd * t_quantile(parts["dof"].to_numpy().min())
-        factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half, half])).tolist()
-        sources = [source for source in parts["source"] if source != GPS]
-        return factor, lo, hi, sources[0] if sources else GPS
+        tows = np.where(is_own, determined["n_tows"].to_numpy(), 0)
+        weight = tows / tows.sum()
+        ln_factor = weight @ determined["factor"].log().to_numpy()
+        sd = np.sqrt(weight @ self.covariance @ weight)
+        half_width = sd * t_quantile(parts["dof"].to_numpy().min())
+        factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half_width, half_width])).tolist()
+        other_sources = [source for source in parts["source"] if source != BY_GPS]
+        return factor, lo, hi, other_sources[0] if other_sources else BY_GPS
 
     def is_refused(self, season: int) -> bool:
         """Whether the season has a factor that is not used."""
@@ -83,16 +80,16 @@ class SeasonFactors:
 
 
 def first_estimate(tows: pl.DataFrame) -> Posterior:
-    """A rough one of all that `estimate_season_factors` estimates, from the same rows.
+    """Return a rough estimate from the rows that `estimate_season_factors` takes.
 
     Raises:
-        BrokenPromiseError: as there.
+        BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
-    return roughly(Problem.of(ArchiveTows.of(tows), USUAL))
+    return find_rough_posterior(build_model(build_archive(tows, PRIORS), PRIORS))
 
 
 def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -> SeasonFactors:
-    """Log factors of all seasons at once, from repeat tows and plain GPS.
+    """Estimate the log factors of all seasons at once, from repeat tows and plain GPS.
 
     Args:
         tows: one row per sound tow:
@@ -113,37 +110,36 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         near: a first estimate to begin at.
 
     Returns:
-        The factors. `source` is `estimated` with boats that link the season to others, `gps` with
-        GPS alone, `not determined` (numbers null) where neither ties it to an anchored season, and
-        `not settled` where the search did not come to rest, and (numbers null) where the factor
-        contradicts what needs no model (`factors.refused`). `ln_sd`, the standard deviation of
-        ln factor, is made up of three parts: `repeat_tows_sd`, by the scatter of repeat tows;
-        `gps_sd`, by plain GPS; `assumed_sd`, by what is assumed of log, load cell and boats.
-        `n_links` counts boats also towed elsewhere; `component` is the connected part of the
-        network (0 has the anchor).
+        The factors. `source` is `estimated` with boats that link the season to others; `gps` with
+        GPS alone; `not determined` (numbers null) where neither ties it to an anchored season;
+        `not settled` where the search did not converge, and (numbers null) where the factor is
+        refused (`factors.find_refused`). `ln_sd`, the standard deviation of ln factor, consists of
+        `repeat_tows_sd`, by the scatter of repeat tows; `gps_sd`, by plain GPS; `assumed_sd`, by
+        what is assumed of log, load cell and boats. `n_links` counts boats also towed elsewhere;
+        `component` is the connected part of the network (0 has the anchor).
 
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
-    posterior = solve(Problem.of(ArchiveTows.of(tows), USUAL), near)
-    fitted = posterior.fit
-    factors, covariance = factors_of(fitted, posterior.determined, posterior.refused)
-    of_tows, weights = with_estimates(posterior)
-    diagnosis = season_diagnosis(posterior)
-    sd = np.exp(0.5 * fitted.ln_variance).tolist()
-    *tow_log_sd, calibration_sd, drift_sd = sd[OF_TOWS:]
-    ageing = int(np.flatnonzero(fitted.name == AGEING)[0])
+    posterior = find_posterior(build_model(build_archive(tows, PRIORS), PRIORS), near)
+    fit = posterior.fit
+    factors, covariance = make_factor_table(fit, posterior.is_determined, posterior.is_refused)
+    of_tows, weights = estimate_tows(posterior)
+    diagnosis = diagnose_seasons(posterior)
+    sd = np.exp(0.5 * fit.ln_variance).tolist()
+    eras = len(PRIORS.era_starts)
+    ageing = int(np.flatnonzero(fit.name == AGEING)[0])
     return SeasonFactors(
         factors=factors,
         covariance=covariance,
-        tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
-        calibration_sd=calibration_sd,
+        tow_log_sd=dict(zip(PRIORS.era_starts, sd[3 : 3 + eras], strict=True)),
+        calibration_sd=sd[-2],
         tow_sd=sd[0],
-        ageing_per_year=float(fitted.value[ageing]),
-        ageing_sd=float(np.sqrt(fitted.covariance[ageing, ageing])),
-        drift_sd=drift_sd,
+        ageing_per_year=float(fit.value[ageing]),
+        ageing_sd=float(np.sqrt(fit.covariance[ageing, ageing])),
+        drift_sd=sd[-1],
         tows=of_tows,
         weights=weights,
         diagnosis=diagnosis,
-        steps=season_steps(posterior, diagnosis),
+        steps=attribute_steps(posterior, diagnosis),
     )

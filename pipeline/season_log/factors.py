@@ -1,7 +1,7 @@
-"""The factor of each log with its interval, what that consists of, and whether it can be used.
+"""The factor of each log: its interval, what the interval consists of, and whether it is refused.
 
-A guard needs no insight: whatever the joint estimate believes, no log was off by more than 10 %,
-and boats that were not altered come out alike beside dGPS.
+A guard that needs no model: no log was off by more than 10 %, and boats that were not altered come
+out alike beside dGPS, whatever the joint estimate believes.
 """
 
 import math
@@ -12,144 +12,147 @@ import polars as pl
 
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.quantiles import MAD_TO_SD, t_quantile
-from pipeline.season_log.boats import GPS as GPS_NUMBER
-from pipeline.season_log.boats import LEVEL
-from pipeline.season_log.effects import GPS_SCALE
-from pipeline.season_log.fit import Fit, level_of_boats
+from pipeline.season_log.archive import ANCHORED, GPS, LEVEL
+from pipeline.season_log.fit import Fit
+from pipeline.season_log.observation_model import GPS_SCALE
 
 ESTIMATED: Final = "estimated"
-GPS: Final = "gps"
+BY_GPS: Final = "gps"
 NOT_DETERMINED: Final = "not determined"
 NOT_SETTLED: Final = "not settled"
 
-FARTHEST: Final = 0.10
-"""Of a factor from 1: the worst log was 6 % off."""
-FARTHEST_SD: Final = 4.0
-"""Of a factor from what the repeat tows of its season alone say."""
-FEWEST_BOATS: Final = 5
-"""Fewer have no robust spread (inferred)."""
-OF_MEDIAN: Final = math.sqrt(math.pi / 2.0)
+MAX_LOG_ERROR: Final = 0.10
+"""Largest distance of a factor from 1 that is believed: the worst log was 6 % off."""
+MAX_CONTRADICTION_SD: Final = 4.0
+"""Largest distance, in standard deviations, from what the season's repeat tows say alone."""
+MIN_BOATS: Final = 5
+"""Fewer boats have no robust spread (inferred)."""
+MEDIAN_SD: Final = math.sqrt(math.pi / 2.0)
 """Standard deviation of a median of n normal numbers, times sqrt(n), in theirs."""
 
 
-def means(fitted: Fit) -> FloatArray:
-    """Mean ln factor over the tows of each log as a sum of effects, (logs, k)."""
-    log = fitted.problem.tows.log + 1  # 0, anchored, is left out
-    total = np.zeros((log.max() + 1, len(fitted.active)))
-    np.add.at(total, log, fitted.share * fitted.of_log)
-    return np.asarray((total / np.bincount(log)[:, None].clip(1))[1:])
-
-
-def factors_of(
-    fitted: Fit, known: BoolArray, contradicted: BoolArray
+def make_factor_table(
+    fit: Fit, is_determined: BoolArray, is_refused: BoolArray
 ) -> tuple[pl.DataFrame, FloatArray]:
-    """The factor of each log, and the covariance between those that are determined.
+    """Return rows of `SeasonFactors.factors`, and the covariance of the determined ln factors.
+
+    A factor is the mean over the tows of its log. The scatter of these tows is in that mean as well
+    as in what they tell of the log, so it is part of the error only as far as the prior draws the
+    estimate. With the posterior covariance C of the effects, C = C (priors + data) C: what each
+    number and each prior contributes to a variance adds up.
 
     Args:
-        known: logs that are determined, (logs,).
-        contradicted: those that are `refused`.
-
-    Returns:
-        Rows of `SeasonFactors.factors`, and (determined, determined) covariance of ln factor.
+        is_determined: (logs,) logs whose factor is given.
+        is_refused: (logs,) logs whose factor is not believed.
     """
-    tows, along = fitted.problem.tows, means(fitted)[known]
-    covariance = _of_means(fitted, along @ fitted.covariance @ along.T, known)
-    by_gps, assumed = _beside_repeats(fitted, along)
+    archive = fit.model.archive
+    mean_design = fit.mean_log_design[is_determined]
+    ln_factor = mean_design @ fit.value
+    scatter = fit.mean_log_scatter[is_determined]
+    drawn = scatter / fit.model.priors.log_sd**2
+    covariance = mean_design @ fit.covariance @ mean_design.T
+    covariance = covariance * (1.0 + drawn + drawn[:, None]) - np.diag(scatter)
     variance = np.diag(covariance)
-    mean, dof = along @ fitted.value, fitted.dof(along)
-    half = np.sqrt(variance) * t_quantile(np.maximum(dof, 1.0))
-    found = (
-        tows.logs.select("log_place")
-        .filter(pl.Series(known))
-        .with_columns(
-            factor=np.exp(mean),
-            lo=np.exp(mean - half),
-            hi=np.exp(mean + half),
-            ln_sd=np.sqrt(variance),
-            dof=dof,
-            repeat_tows_sd=np.sqrt(np.maximum(variance - by_gps - assumed, 0.0)),
-            gps_sd=np.sqrt(by_gps),
-            assumed_sd=np.sqrt(assumed),
-        )
-    )
-    tied_by_gps = pl.col("has_gps") | pl.col("calibrated")
-    by_gps_alone = (pl.col("n_links") == 0) & tied_by_gps
-    usable = pl.when(by_gps_alone).then(pl.lit(GPS)).otherwise(pl.lit(ESTIMATED))
+
+    weight = mean_design @ fit.covariance
+    from_prior = weight**2 / fit.prior_variance
+    is_gps_scale = fit.name == GPS_SCALE
+    gps_variance = _variance_from_gps(fit, weight) + from_prior[:, is_gps_scale].sum(axis=1)
+    assumed_variance = from_prior[:, ~is_gps_scale].sum(axis=1)
+    repeat_variance = np.maximum(variance - gps_variance - assumed_variance, 0.0)
+
+    dof = fit.degrees_of_freedom(mean_design)
+    half_width = np.sqrt(variance) * t_quantile(np.maximum(dof, 1.0))
+    numbers = {
+        "factor": np.exp(ln_factor),
+        "lo": np.exp(ln_factor - half_width),
+        "hi": np.exp(ln_factor + half_width),
+        "ln_sd": np.sqrt(variance),
+        "dof": dof,
+        "repeat_tows_sd": np.sqrt(repeat_variance),
+        "gps_sd": np.sqrt(gps_variance),
+        "assumed_sd": np.sqrt(assumed_variance),
+    }
+    columns = []
+    for name, values in numbers.items():
+        of_log = np.full(len(is_determined), np.nan)
+        of_log[is_determined] = values
+        columns.append(pl.Series(name, of_log).fill_nan(None))
+
+    by_gps_alone = (pl.col("n_links") == 0) & (pl.col("has_gps") | pl.col("calibrated"))
     source = (
         pl.when(pl.col("component") > 0)
         .then(pl.lit(NOT_DETERMINED))
-        .when(pl.Series(contradicted) | pl.lit(not fitted.settled))
+        .when(pl.Series(is_refused) | pl.lit(not fit.has_converged))
         .then(pl.lit(NOT_SETTLED))
-        .otherwise(usable)
+        .when(by_gps_alone)
+        .then(pl.lit(BY_GPS))
+        .otherwise(pl.lit(ESTIMATED))
     )
-    factors = tows.logs.with_columns(source=source).join(
-        found, on="log_place", how="left", maintain_order="left"
-    )
-    return factors.drop("log_place", "prior_ln", "prior_sd", "has_gps", "calibrated"), covariance
+    factors = archive.logs.with_columns(source.alias("source"), *columns)
+    return factors.drop("prior_ln", "prior_sd", "has_gps", "calibrated"), covariance
 
 
-def _of_means(fitted: Fit, covariance: FloatArray, known: BoolArray) -> FloatArray:
-    """Covariance of the mean ln factors over tows, by that of what logs do in general.
+def _variance_from_gps(fit: Fit, weight: FloatArray) -> FloatArray:
+    """Return the part of the variance of ln factors that is the scatter of plain GPS, (logs,).
 
-    The scatter of the tows is in their mean as well as in what they tell of the log: it is in the
-    difference only as far as the prior draws the estimate.
+    Args:
+        weight: (logs, k) combination of effects times their covariance.
     """
-    own = fitted.scatter_of_means[known]
-    drawn = own / fitted.problem.settings.log_sd**2
-    return np.asarray(covariance * (1.0 + drawn + drawn[:, None]) - np.diag(own))
+    known = fit.model.archive.y_covariance[:, GPS, GPS]
+    gps_variance = known + np.exp(fit.ln_variance[GPS])
+    total = np.zeros(len(weight))
+    for b in fit.boats:
+        of_number = b.precision_design[:, GPS::3] @ weight.T  # (b, T, logs)
+        total += (of_number**2 * gps_variance[b.group.tow][..., None]).sum(axis=(0, 1))
+    return total
 
 
-def _beside_repeats(fitted: Fit, along: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Parts of the variance of ln factors that are the GPS's, and of what is assumed.
-
-    The covariance C of the effects is C (prior + data) C: what each number and each prior has in it
-    adds up.
-    """
-    weight = along @ fitted.covariance
-    gps = fitted.problem.given[:, GPS_NUMBER, GPS_NUMBER] + np.exp(fitted.ln_variance[GPS_NUMBER])
-    by_gps = ((fitted.weighed[:, GPS_NUMBER] @ weight.T) ** 2 * gps[:, None]).sum(axis=0)
-    by_prior = weight**2 / fitted.problem.effects.column("variance", fitted.active)
-    of_gps = fitted.name == GPS_SCALE
-    return by_gps + by_prior[:, of_gps].sum(axis=1), by_prior[:, ~of_gps].sum(axis=1)
+def find_refused(fit: Fit) -> BoolArray:
+    """Return whether the factor of a log contradicts what needs no model, (logs,)."""
+    mean_design = fit.mean_log_design
+    ln_factor = mean_design @ fit.value
+    variance = ((mean_design @ fit.covariance) * mean_design).sum(axis=1)
+    gap, gap_variance = _compare_repeat_tows(fit)
+    is_far = np.abs(np.expm1(ln_factor)) > MAX_LOG_ERROR
+    is_contradicted = np.abs(gap) > MAX_CONTRADICTION_SD * np.sqrt(gap_variance + variance)
+    return np.asarray((is_far | is_contradicted) & fit.model.archive.is_connected)
 
 
-def refused(fitted: Fit) -> BoolArray:
-    """Logs whose factor contradicts what needs no model, (logs,)."""
-    along = means(fitted)
-    ln_factor = along @ fitted.value
-    variance = ((along @ fitted.covariance) * along).sum(axis=1)
-    gap, gap_variance = _by_repeats_alone(fitted)
-    far = np.abs(np.expm1(ln_factor)) > FARTHEST
-    far |= np.abs(gap) > FARTHEST_SD * np.sqrt(gap_variance + variance)
-    return np.asarray(far & (fitted.problem.tows.logs["component"].to_numpy() == 0))
+def _compare_repeat_tows(fit: Fit) -> tuple[FloatArray, FloatArray]:
+    """Return what repeat tows alone would add to each ln factor, and its variance; 0 where few.
 
-
-def _by_repeats_alone(fitted: Fit) -> tuple[FloatArray, FloatArray]:
-    """What repeat tows add to each ln factor, and its variance; 0 where they are few.
-
-    Of every boat that was also towed beside dGPS the difference in ln Cw, less what all boats
+    The difference in ln Cw of every boat that was also towed beside dGPS, less what all boats
     changed meanwhile, as a ln factor of the log; of these the median. A fault of the load cell is
     not taken off: it is what a wrong factor hides behind.
     """
-    tows = fitted.problem.tows
-    level = tows.numbers("ln_cw") - fitted.slopes.predicted[:, LEVEL] - level_of_boats(fitted)
-    values = tows.frame.select(
-        "boat", "log_place", level=pl.Series(level), kappa=fitted.slopes.ways["speed"][:, LEVEL]
+    archive = fit.model.archive
+    level = archive.column("ln_cw") - fit.linear.predicted[:, LEVEL] - fit.boat_design @ fit.value
+    tows = pl.DataFrame(
+        {
+            "boat": archive.boat,
+            "log": archive.log,
+            "level": level,
+            "kappa": fit.linear.by_channel["log"][:, LEVEL],
+        }
     )
-    of_boats = values.group_by("boat", "log_place", maintain_order=True).mean()
-    beside_gps = of_boats.filter(pl.col("log_place") < 0).select("boat", beside="level")
-    difference = (pl.col("level") - pl.col("beside")) / pl.col("kappa")
-    known = of_boats.filter(pl.col("log_place") >= 0).join(
-        beside_gps, on="boat", maintain_order="left"
-    )
-    spread = MAD_TO_SD * (pl.col("gap") - pl.col("gap").median()).abs().median()
+    boats = tows.group_by("boat", "log", maintain_order=True).mean()
+    anchored = boats.filter(log=ANCHORED).select("boat", anchored_level="level")
+    gap = pl.col("gap")
     gaps = (
-        known.select("log_place", gap=difference)
-        .group_by("log_place", maintain_order=True)
-        .agg(pl.col("gap").median().alias("middle"), sd=OF_MEDIAN * spread, boats=pl.len())
-        .filter(pl.col("boats") >= FEWEST_BOATS)
+        boats.filter(pl.col("log") != ANCHORED)
+        .join(anchored, on="boat", maintain_order="left")
+        .with_columns(gap=(pl.col("level") - pl.col("anchored_level")) / pl.col("kappa"))
+        .group_by("log", maintain_order=True)
+        .agg(
+            boats=pl.len(),
+            median=gap.median(),
+            sd=MEDIAN_SD * MAD_TO_SD * (gap - gap.median()).abs().median(),
+        )
+        .filter(pl.col("boats") >= MIN_BOATS)
     )
-    gap, variance = np.zeros((2, tows.logs.height))
-    gap[gaps["log_place"]] = gaps["middle"]
-    variance[gaps["log_place"]] = gaps["sd"] ** 2 / gaps["boats"]
-    return gap, variance
+    median = np.zeros(archive.logs.height)
+    variance = np.zeros(archive.logs.height)
+    median[gaps["log"]] = gaps["median"]
+    variance[gaps["log"]] = gaps["sd"] ** 2 / gaps["boats"]
+    return median, variance

@@ -1,339 +1,340 @@
-"""All unknowns at once: their mode with given faults, the variances, and what follows from both.
+"""The fit: effects by generalised least squares, variances by REML, patterns by EM.
 
-Given the alterations and faults the model is linear and Gaussian. The unknowns and the variances
-are searched by scoring (REML: Patterson & Thompson 1971; variances with log-normal priors), the
-posterior is Laplace's about the mode. Which faults there are is searched in `faults`.
+Given variances and pattern probabilities the model is linear and Gaussian in the effects, but for
+the curvature of the log's channel, which is linearised anew in every iteration (Gauss-Newton). One
+iteration makes four steps together; they are repeated until nothing moves:
+
+1. E-step: probability of each pattern of each boat (`patterns.judge_patterns`);
+2. effects u: Newton step with the observed information,
+   u += C (X'P r - (u - mean) / prior variance),  C = (X'P X - missing + 1 / prior variance)^-1;
+3. variances: Fisher scoring of the restricted likelihood on the logarithms,
+   gradient_j = 1/2 tr[B_j (P r r'P - P + P X C X'P)],  information_ij = 1/2 tr(P B_i P B_j),
+   with B_j the derivative of the covariance by ln variance j, and a normal prior on each;
+4. shares of altered gaps and askew tows: EM, accelerated by the missing information.
+
+P is the inverse covariance of the numbers, averaged over patterns. Sources: Patterson & Thompson
+1971 (REML); Dempster, Laird & Rubin 1977 (EM); Louis 1982 (information of mixtures).
 """
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final, Self
+from typing import Final
 
 import numpy as np
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
-from pipeline.model import Boats
-from pipeline.season_log.archive_tows import ArchiveTows
-from pipeline.season_log.assumed import Settings
-from pipeline.season_log.boats import GPS, LEVEL, Patterns, patterns_of
-from pipeline.season_log.effects import OF_BOATS, Effects, Slopes, slopes
+from pipeline.season_log.archive import LEVEL, Archive
+from pipeline.season_log.observation_model import (
+    BOAT_EFFECTS,
+    Effects,
+    Linearization,
+    linearize,
+    list_effects,
+)
+from pipeline.season_log.patterns import (
+    BoatGroup,
+    GroupPosterior,
+    group_boats,
+    judge_patterns,
+)
+from pipeline.season_log.priors import Priors
 
 MAX_ITERATIONS: Final = 500
 TOLERANCE: Final = 1e-10
-UNTROUBLED: Final = 4
-"""First iterations, in which no boat is taken for changed: logs may be far off yet.
-
-They step by the information as if that were certain. What is seen may tell next to nothing there,
-and a step by it can leap to where the search finds no way back.
-"""
-MOST_MOVED: Final = 0.9
-"""By how much what is found of changes may seem to move with their share."""
-LEAST_SD: Final = 0.001
-"""No number of a tow is ever better known: keeps the search finite where all tows agree."""
-NOT_OBSERVED: Final = 1e4
-"""Variance of a number that a tow does not have."""
-OF_TOWS: Final = 3
-"""First variances: of ln Cw, bend and GPS between tows. Those of the log follow, per era and where
-calibrated, and the drift of boats per year."""
+"""Largest step of an effect, ln variance or logit share at which the fit has converged."""
+ITERATIONS_WITHOUT_PATTERNS: Final = 4
+"""First iterations of a new fit: logs may be far off, and a wrong log looks like altered boats."""
+MAX_MISSING_INFORMATION: Final = 0.9
+"""Share of the information on a pattern share beyond which EM is not accelerated further."""
+MAX_LN_VARIANCE_STEP: Final = 1.0
 
 
 @dataclass(frozen=True)
-class Problem:
-    """The tows of an archive as arrays; n tows.
+class Model:
+    """An archive with everything that may be estimated of it."""
 
-    Attributes:
-        tows: the tows.
-        observed: (n, 3) level (less its boat's mean), bend and ln(GPS / log).
-        given: (n, 3, 3) their random covariance; huge where a tow has no such number.
-        boat_level: (n,) that mean.
-        q, force_n: (n,) usual bend and force.
-        reference_ln: (n,) ln factor of the log at whose true speed the numbers hold.
-        effects: what moves the numbers.
-        era: (n,) place; the last is that of calibrated tows, whenever.
-        groups: boats by their number of tows, with what may have changed between these.
-    """
-
-    tows: ArchiveTows
-    observed: FloatArray
-    given: FloatArray
-    boat_level: FloatArray
-    q: FloatArray
-    force_n: FloatArray
-    reference_ln: FloatArray
+    archive: Archive
     effects: Effects
-    era: IntArray
-    groups: list[Patterns]
-    settings: Settings
+    groups: list[BoatGroup]
+    priors: Priors
 
-    @classmethod
-    def of(cls, tows: ArchiveTows, settings: Settings) -> Self:
-        """The problem that the tows pose."""
-        level, gps, reference_ln, season, speed = (
-            tows.numbers(name)
-            for name in ("ln_cw", "gps_ln_ratio", "reference_ln", "season", "declared_speed_m_s")
-        )
-        mean = tows.boat_mean(level)
-        has_gps = np.isfinite(gps) & (tows.log >= 0)
-        given = np.zeros((len(level), 3, 3))
-        given[:, 0, 0], given[:, 1, 1] = (tows.numbers(n) ** 2 for n in ("ln_cw_sd", "q_sd"))
-        given[:, 0, 1] = given[:, 1, 0] = tows.numbers("ln_cw_q_cov")
-        given[:, GPS, GPS] = np.where(has_gps, tows.numbers("gps_sd") ** 2, NOT_OBSERVED)
-        excess = 0.25 * (settings.gps_noise_m_s / speed) ** 2
-        era = np.searchsorted(settings.era_starts, season, side="right") - 1
-        return cls(
-            tows,
-            np.stack(
-                [level - mean, tows.numbers("q"), np.where(has_gps, gps - excess, 0.0)], axis=1
-            ),
-            given + LEAST_SD**2 * np.eye(3),
-            mean,
-            tows.boat_mean(0.5 * tows.numbers("kappa") - 1.0),
-            np.exp(level) * (speed * np.exp(-reference_ln)) ** 2,
-            reference_ln,
-            Effects.of(tows, settings),
-            np.where(tows.log >= 0, np.maximum(era, 0), len(settings.era_starts)),
-            patterns_of(tows.boat, season, season < settings.straight_from, settings),
-            settings,
-        )
-
-    def slopes(self, ln_factor: FloatArray) -> Slopes:
-        """The numbers of the tows and their slopes at ln factors of their logs, (n,)."""
-        return slopes(self.q, self.force_n, ln_factor, self.reference_ln)
-
-    def own(self, tangent: Slopes, variance: FloatArray) -> FloatArray:
-        """What each variance but that of drift adds to a tow's covariance, (n, variances, 3, 3).
-
-        A number between tows has one everywhere, the log one per era.
-        """
-        tow, numbers = np.arange(len(self.era)), np.arange(OF_TOWS)
-        own = np.zeros((len(self.era), len(variance) - 1, OF_TOWS, OF_TOWS))
-        own[:, numbers, numbers, numbers] = variance[:OF_TOWS]
-        of_log, by_log = OF_TOWS + self.era, tangent.ways["speed"]
-        squares = by_log[:, :, None] * by_log[:, None]
-        own[tow, of_log] = variance[of_log][:, None, None] * squares
-        return own
-
-    def parts(self, tangent: Slopes, variance: FloatArray) -> list[FloatArray]:
-        """What each variance adds to the covariance of each group's numbers."""
-        own = self.own(tangent, variance)
-        return [g.parts(own, tangent.state, float(variance[-1])) for g in self.groups]
+    def linearize_at(self, ln_factor: FloatArray) -> Linearization:
+        """Return the forward model at ln factors of the logs, (n,)."""
+        a = self.archive
+        return linearize(a.usual_bend, a.force_n, ln_factor, a.reference_ln)
 
     @property
-    def variance_prior(self) -> FloatArray:
-        """Mean of every ln variance."""
-        s = self.settings
-        eras = [s.tow_log_sd] * len(s.era_starts)
-        sd = [s.tow_sd, s.bend_sd_tow, s.gps_sd, *eras, s.calibration_sd, s.drift_sd]
+    def prior_ln_variance(self) -> FloatArray:
+        """Prior means of the ln variances, in the order of `variance_names`."""
+        p = self.priors
+        log_sd = [p.tow_log_sd] * len(p.era_starts)
+        sd = [p.tow_sd, p.tow_bend_sd, p.tow_gps_sd, *log_sd, p.calibration_sd, p.drift_sd]
         return 2.0 * np.log(sd)
+
+
+def variance_names(priors: Priors) -> list[str]:
+    """Return the names of the variance components, in the order of all arrays of variances."""
+    eras = [f"log between tows from {first}" for first in priors.era_starts]
+    return ["ln Cw", "bend", "GPS", *eras, "anchored log", "drift per year"]
+
+
+def build_model(archive: Archive, priors: Priors) -> Model:
+    """Return the model of an archive."""
+    return Model(archive, list_effects(archive, priors), group_boats(archive, priors), priors)
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Effects and variances at their mode; k effects in the model.
+    """Estimates with given faults in the model; k effects, v variances.
 
     Attributes:
-        problem: the archive.
+        model: the archive and its possible effects.
         active: (k,) places of the effects in the model.
-        value: (k,) of them.
-        covariance: (k, k) of the values.
-        ln_variance: as `OF_TOWS` lists them.
-        shares: of gaps between tows with an alteration that was not reported, and of tows that were
-            pulled askew before steering straight was aided.
-        ln_variance_covariance: of these.
-        boats: what each group of the problem says there.
-        slopes: of the numbers of each tow.
-        settled: whether the search, and those that led to it, came to rest within their limits.
+        value: (k,) posterior mode of the effects.
+        covariance: (k, k) of their posterior.
+        ln_variance: (v,), in the order of `variance_names`.
+        ln_variance_covariance: (v, v).
+        share: (2,) of gaps with an unreported alteration, and of early tows pulled askew.
+        linear: the forward model at the estimate.
+        boats: posterior of each group of boats.
+        has_converged: whether this search, and those that led to it, ended within their limits.
     """
 
-    problem: Problem
+    model: Model
     active: IntArray
     value: FloatArray
     covariance: FloatArray
     ln_variance: FloatArray
-    shares: FloatArray
     ln_variance_covariance: FloatArray
-    boats: list[Boats]
-    slopes: Slopes
-    settled: bool = True
+    share: FloatArray
+    linear: Linearization
+    boats: list[GroupPosterior]
+    has_converged: bool = True
 
     @cached_property
     def name(self) -> StrArray:
-        """What each effect in the model is, (k,)."""
-        return np.asarray(self.problem.effects.column("name", self.active), dtype=np.str_)
+        """Names of the effects, (k,)."""
+        return self.model.effects.name[self.active]
+
+    @cached_property
+    def prior_variance(self) -> FloatArray:
+        """Prior variances of the effects, (k,)."""
+        return self.model.effects.variance[self.active]
+
+    @cached_property
+    def covariate(self) -> FloatArray:
+        """By how much each tow has each effect, (n, k)."""
+        return self.model.effects.covariate[:, self.active]
 
     @cached_property
     def design(self) -> FloatArray:
-        """Slopes of each tow's numbers by the effects, (n, 3, k)."""
-        return self.problem.effects.design(self.slopes, self.active)
+        """Derivatives of the tows' numbers by the effects, (n, 3, k)."""
+        return self.model.effects.design(self.linear, self.active)
 
     @cached_property
-    def share(self) -> FloatArray:
-        """How much of each effect a tow has, (n, k)."""
-        return self.problem.effects.share[:, self.active]
+    def is_log(self) -> BoolArray:
+        """Effects that are errors of a log, (k,)."""
+        return np.asarray(self.model.effects.channel[self.active] == "log")
 
     @cached_property
-    def of_boats(self) -> BoolArray:
-        """Effects of boats, (k,); the others are of instruments."""
-        return np.isin(self.name, OF_BOATS)
-
-    @cached_property
-    def of_log(self) -> BoolArray:
-        """Effects that act as the scale of a log does, (k,)."""
-        return np.asarray(self.problem.effects.column("way", self.active) == "speed")
+    def is_boat(self) -> BoolArray:
+        """Effects on boats; the others are errors of instruments, (k,)."""
+        return np.isin(self.name, BOAT_EFFECTS)
 
     @property
     def is_fault(self) -> BoolArray:
         """Effects that are faults, (k,)."""
-        return np.isin(self.active, self.problem.effects.faults)
+        return self.model.effects.probability[self.active] < 1.0
+
+    @cached_property
+    def boat_design(self) -> FloatArray:
+        """Derivatives of ln Cw by the effects on boats, 0 for others, (n, k)."""
+        return np.where(self.is_boat, self.design[:, LEVEL], 0.0)
+
+    @cached_property
+    def instrument_design(self) -> FloatArray:
+        """Derivatives of ln Cw by the errors of instruments, 0 for others, (n, k)."""
+        return np.where(self.is_boat, 0.0, self.design[:, LEVEL])
 
     @property
-    def drift_variance(self) -> float:
-        """Of the drift of a boat's ln Cw, per year."""
-        return float(np.exp(self.ln_variance[-1]))
+    def ln_log_factor(self) -> FloatArray:
+        """Estimated ln factor of each tow's log, (n,)."""
+        return self.covariate @ np.where(self.is_log, self.value, 0.0)
 
     @cached_property
-    def scatter_of_means(self) -> FloatArray:
-        """Variance of a mean ln factor over tows about what the log does in general, (logs,).
+    def tow_weight(self) -> FloatArray:
+        """Weight of each tow in the mean over its log, (n, logs): observed tows count alike."""
+        archive = self.model.archive
+        own = archive.log[:, None] == np.arange(archive.logs.height)
+        observed = own & archive.is_observed[:, None]
+        counted = np.where(observed.any(axis=0), observed, own)
+        return np.asarray(counted / counted.sum(axis=0))
 
-        By it the mean over the very tows that a log is estimated from is better known than the log
-        in general. 0 for a log that is known by other tows, calibrated on dGPS.
+    @cached_property
+    def mean_log_design(self) -> FloatArray:
+        """Mean ln factor over the tows of each log as a combination of effects, (logs, k)."""
+        return np.asarray(self.tow_weight.T @ (self.covariate * self.is_log))
+
+    @cached_property
+    def mean_log_scatter(self) -> FloatArray:
+        """Variance of the mean over each log's tows of the log's deviations, (logs,).
+
+        0 for a log that other tows, calibrated on dGPS, determine: its tows are not in that mean.
         """
-        tows = self.problem.tows
-        scatter = np.exp(self.ln_variance[OF_TOWS + self.problem.era])
-        log = tows.log + 1  # 0, anchored, is left out
-        of_mean = np.bincount(log, scatter)[1:] / np.bincount(log)[1:] ** 2
-        return np.where(tows.logs["calibrated"].to_numpy(), 0.0, of_mean)
+        archive = self.model.archive
+        of_tow = np.exp(self.ln_variance[3 + archive.log_variance])
+        of_mean = (self.tow_weight**2).T @ of_tow
+        return np.where(archive.logs["calibrated"].to_numpy(), 0.0, of_mean)
 
-    def dof(self, direction: FloatArray) -> FloatArray:
-        """Satterthwaite's degrees of freedom of combinations of the effects.
-
-        Args:
-            direction: (combinations, k).
-        """
-        along = direction @ self.covariance
-        by = np.stack([((along @ one) * along).sum(axis=1) for one in self._moved], axis=1)
-        variance = (along * direction).sum(axis=1)
-        spread = np.einsum("ca,ab,cb->c", by, self.ln_variance_covariance, by)
-        return np.asarray(2.0 * variance**2 / np.maximum(spread, 1e-300))
-
-    @cached_property
-    def weighed(self) -> FloatArray:
-        """Precision of all numbers times the design, (n, 3, k)."""
-        by_number = np.zeros((3 * len(self.problem.q), len(self.active)))
-        for boats in self.boats:
-            by_number[boats.rows] = boats.weighed
-        return by_number.reshape(-1, 3, len(self.active))
-
-    @cached_property
-    def _moved(self) -> FloatArray:
-        """Slope of the covariance of the scores by each ln variance, (variances, k, k)."""
-        parts = self.problem.parts(self.slopes, np.exp(self.ln_variance))
-        each = [b.moved_by(part) for b, part in zip(self.boats, parts, strict=True)]
-        return np.asarray(np.sum(each, axis=0))
+    def degrees_of_freedom(self, combination: FloatArray) -> FloatArray:
+        """Return Satterthwaite's degrees of freedom of combinations of effects, (c, k) -> (c,)."""
+        # Derivative of the information on the effects by each ln variance, (v, k, k).
+        derivative = sum(
+            (np.swapaxes(b.precision_design, 1, 2) @ b.parts @ b.precision_design).sum(axis=1)
+            for b in self.boats
+        )
+        along = combination @ self.covariance
+        gradient = ((along @ derivative) * along).sum(axis=2).T  # of the variance, (c, v)
+        estimate = (along * combination).sum(axis=1)
+        spread = ((gradient @ self.ln_variance_covariance) * gradient).sum(axis=1)
+        return np.asarray(2.0 * estimate**2 / np.maximum(spread, 1e-300))
 
 
-def fit(
-    problem: Problem,
+def fit_model(
+    model: Model,
     active: IntArray,
     start: Fit | None = None,
     tolerance: float = TOLERANCE,
-    changes: bool = True,
+    with_patterns: bool = True,
 ) -> Fit:
-    """Effects and variances with given faults in the model.
+    """Fit effects, variances and pattern shares.
 
     Args:
-        active: effects in the model.
+        active: places of the effects in the model.
         start: an earlier fit to begin at.
-        tolerance: movement below which nothing moves any more.
-        changes: boats may have been altered, and tows pulled askew.
+        tolerance: largest step at which the fit has converged.
+        with_patterns: boats may have been altered, and tows pulled askew, without a report.
     """
-    value, ln_variance = problem.effects.frame["mean"].to_numpy().copy(), problem.variance_prior
-    shares = np.array([problem.settings.changed_share, problem.settings.askew_share])
+    priors = model.priors
+    mode = model.effects.mean.copy()
+    ln_variance = model.prior_ln_variance
+    share = np.array([priors.altered_share, priors.askew_share])
     if start is not None:
-        value[start.active], ln_variance, shares = start.value, start.ln_variance, start.shares
-    place = np.concatenate([value[active], ln_variance, scipy.special.logit(shares)])
+        mode[start.active] = start.value
+        ln_variance, share = start.ln_variance, start.share
+    value = mode[active]
     for iteration in range(MAX_ITERATIONS):
-        begins = start is None and iteration < UNTROUBLED
-        fitted, step = _step(problem, active, place, changes and not begins)
-        if np.abs(step).max() < tolerance and not begins:
-            return fitted
-        place = place + step
-    return replace(fitted, settled=False)
-
-
-def _step(
-    problem: Problem, active: IntArray, place: FloatArray, changes: bool
-) -> tuple[Fit, FloatArray]:
-    """What is known at values, ln variances and logits of shares, and the step from there."""
-    value, ln_variance, logit = np.split(place, [len(active), len(place) - 2])
-    shares = scipy.special.expit(logit)
-    effects = problem.effects
-    mean, variance = (effects.column(name, active) for name in ("mean", "variance"))
-    by_speed = effects.column("way", active) == "speed"
-    tangent = problem.slopes(effects.share[:, active] @ np.where(by_speed, value, 0.0))
-    design = effects.design(tangent, active)
-    residual = problem.observed - tangent.predicted - design @ np.where(by_speed, 0.0, value)
-    parts = problem.parts(tangent, np.exp(ln_variance))
-    boats = [
-        group.boats(
-            residual,
-            group.covariance(problem.given, tangent.state, part),
-            tangent,
-            design,
-            shares if changes else None,
+        is_warming_up = start is None and iteration < ITERATIONS_WITHOUT_PATTERNS
+        pattern_share = share if with_patterns and not is_warming_up else None
+        linear, boats = _judge_all_patterns(model, active, value, ln_variance, pattern_share)
+        value_step, covariance = _step_effects_by_gls(model, active, value, boats)
+        ln_variance_step, ln_variance_covariance = _step_variances_by_reml(
+            model, ln_variance, covariance, boats
         )
-        for group, part in zip(problem.groups, parts, strict=True)
+        logit_step = _step_shares_by_em(model, share, boats)
+        fit = Fit(
+            model=model,
+            active=active,
+            value=value,
+            covariance=covariance,
+            ln_variance=ln_variance,
+            ln_variance_covariance=ln_variance_covariance,
+            share=share,
+            linear=linear,
+            boats=boats,
+        )
+        steps = np.concatenate([value_step, ln_variance_step, logit_step])
+        if np.abs(steps).max() < tolerance and not is_warming_up:
+            return fit
+        value = value + value_step
+        ln_variance = ln_variance + ln_variance_step
+        share = scipy.special.expit(scipy.special.logit(share) + logit_step)
+    return replace(fit, has_converged=False)
+
+
+def _judge_all_patterns(
+    model: Model,
+    active: IntArray,
+    value: FloatArray,
+    ln_variance: FloatArray,
+    share: FloatArray | None,
+) -> tuple[Linearization, list[GroupPosterior]]:
+    """Return the forward model and the posterior of the patterns of every boat."""
+    archive, effects = model.archive, model.effects
+    is_log = effects.channel[active] == "log"
+    ln_factor = effects.covariate[:, active] @ np.where(is_log, value, 0.0)
+    linear = model.linearize_at(ln_factor)
+    design = effects.design(linear, active)
+    residual = archive.y - linear.predicted - design @ np.where(is_log, 0.0, value)
+    variance = np.exp(ln_variance)
+    boats = [
+        judge_patterns(group, archive, linear, design, residual, variance, share, model.priors)
+        for group in model.groups
     ]
-    full = np.sum([b.total(b.weighed) for b in boats], axis=0)
-    seen = np.sum([b.total(b.observed) for b in boats], axis=0) if changes else full
-    prior = np.diag(1.0 / variance)
-    covariance: FloatArray = np.linalg.inv(_positive(seen + prior, full + prior)).astype(np.float64)
-    score = np.sum([b.score.sum(axis=0) for b in boats], axis=0)
-    step = covariance @ (score - (value - mean) / variance)
-    each = [b.by_variances(part, covariance) for b, part in zip(boats, parts, strict=True)]
-    slope, fisher = (np.sum(of_groups, axis=0) for of_groups in zip(*each, strict=True))
-    known = problem.settings.spread**-2.0
-    # A variance that shrinks takes its own slope with it: that bends the density of its logarithm.
-    fisher += np.diag(known + np.maximum(-slope, 0.0))
-    of_variances: FloatArray = np.linalg.inv(fisher).astype(np.float64)
-    move = of_variances @ (slope - known * (ln_variance - problem.variance_prior))
-    gain = _share_step(problem, boats, logit)
-    known_here = (value, covariance, ln_variance, shares, of_variances)
-    fitted = Fit(problem, active, *known_here, boats, tangent)
-    return fitted, np.concatenate([step, np.clip(move, -1.0, 1.0), gain])
+    return linear, boats
 
 
-def _positive(seen: FloatArray, full: FloatArray) -> FloatArray:
-    """Observed information; that for known alterations where it is no maximum."""
-    try:
-        np.linalg.cholesky(seen)
-    except np.linalg.LinAlgError:
-        return full
-    return seen
+def _step_effects_by_gls(
+    model: Model, active: IntArray, value: FloatArray, boats: list[GroupPosterior]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the Newton step of the effects, (k,), and their posterior covariance, (k, k)."""
+    prior_precision = 1.0 / model.effects.variance[active]
+    information = np.diag(prior_precision) + sum(b.information for b in boats)
+    if np.linalg.eigvalsh(information)[0] <= 0.0:
+        # Not at a maximum: take the patterns for known.
+        complete = sum(
+            np.tensordot(b.design, b.precision_design, axes=([0, 1], [0, 1])) for b in boats
+        )
+        information = np.diag(prior_precision) + complete
+    covariance: FloatArray = np.linalg.inv(information).astype(np.float64)
+    score = sum(b.score.sum(axis=0) for b in boats)
+    step = covariance @ (score - prior_precision * (value - model.effects.mean[active]))
+    return step, covariance
 
 
-def _share_step(problem: Problem, boats: list[Boats], logit: FloatArray) -> FloatArray:
-    """Step of the logits of the shares of gaps with an alteration and of tows askew.
+def _step_variances_by_reml(
+    model: Model, ln_variance: FloatArray, covariance: FloatArray, boats: list[GroupPosterior]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the REML scoring step of the ln variances, (v,), and their covariance, (v, v)."""
+    v = len(ln_variance)
+    gradient = np.zeros(v)
+    information = np.zeros((v, v))
+    for b in boats:
+        weighted = b.probability[:, :, None] * b.weighted_residual
+        squared_residual = np.swapaxes(weighted, 1, 2) @ b.weighted_residual
+        by_effects = b.precision_design @ covariance @ np.swapaxes(b.precision_design, 1, 2)
+        excess = squared_residual - b.mean_precision + by_effects
+        gradient += 0.5 * np.tensordot(b.parts, excess, axes=3)
+        precision_part = b.mean_precision @ b.parts
+        transposed = np.swapaxes(precision_part, 2, 3)
+        information += 0.5 * precision_part.reshape(v, -1) @ transposed.reshape(v, -1).T
+    prior_precision = model.priors.ln_variance_sd**-2.0
+    # A variance that shrinks takes its own gradient with it: that curves the density of its ln.
+    information += np.diag(prior_precision + np.maximum(-gradient, 0.0))
+    gradient -= prior_precision * (ln_variance - model.prior_ln_variance)
+    ln_variance_covariance: FloatArray = np.linalg.inv(information).astype(np.float64)
+    step = ln_variance_covariance @ gradient
+    return np.clip(step, -MAX_LN_VARIANCE_STEP, MAX_LN_VARIANCE_STEP), ln_variance_covariance
 
-    The shares are those of their priors and of what was found together. What is found moves with
-    the shares (Louis 1982), which the step takes into account as far as it is no leap.
+
+def _step_shares_by_em(model: Model, share: FloatArray, boats: list[GroupPosterior]) -> FloatArray:
+    """Return the step of the logits of the pattern shares, (2,).
+
+    EM sets a share to the expected count over the possible count. It closes only that part of the
+    way which is not missing information, and the step is divided by that part (Louis 1982).
     """
-    s = problem.settings
-    possible = np.array([s.changed_gaps, s.askew_tows])
-    found, moves = possible * (s.changed_share, s.askew_share), np.zeros((2, 2))
-    for group, some in zip(problem.groups, boats, strict=True):
-        of_boats = some.weight @ group.changes
-        found += of_boats.sum(axis=0)
-        moves += np.diag(of_boats.sum(axis=0)) - of_boats.T @ of_boats
-        possible += (group.possible @ group.changes).sum(axis=0)
-    share = found / possible
-    moves /= (found * (1.0 - share))[:, None]
-    moves /= max(1.0, np.abs(moves).sum(axis=1).max() / MOST_MOVED)
-    gain: FloatArray = np.linalg.solve(np.eye(2) - moves, scipy.special.logit(share) - logit)
-    return gain
-
-
-def level_of_boats(fitted: Fit) -> FloatArray:
-    """What all boats changed together, in ln Cw of each tow, (n,)."""
-    return np.asarray(np.where(fitted.of_boats, fitted.design[:, LEVEL], 0.0) @ fitted.value)
+    p = model.priors
+    possible = np.array([p.altered_prior_gaps, p.askew_prior_tows])
+    expected = possible * [p.altered_share, p.askew_share]
+    missing = np.zeros((2, 2))
+    for b in boats:
+        of_boat = b.probability @ b.group.pattern_kind
+        possible += (b.group.is_possible @ b.group.pattern_kind).sum(axis=0)
+        expected += of_boat.sum(axis=0)
+        missing += np.diag(of_boat.sum(axis=0)) - of_boat.T @ of_boat
+    new_share = expected / possible
+    rate = missing / (expected * (1.0 - new_share))[:, None]
+    rate /= max(1.0, np.abs(rate).sum(axis=1).max() / MAX_MISSING_INFORMATION)
+    em_step = scipy.special.logit(new_share) - scipy.special.logit(share)
+    return np.asarray(np.linalg.solve(np.eye(2) - rate, em_step))

@@ -1,11 +1,10 @@
-"""Many equally likely registers, so that any later question has an answer with its uncertainty.
+"""Equally likely registers, so that any later question has an answer with its uncertainty.
 
 Is boat X really heavier than Y, does the winner change: whoever asks counts the members in which
 it holds. What tows share is drawn once per member and used for all of them, which intervals of
 single lines cannot show. The components are in `propagation`; members are kept in the lake.
 """
 
-from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -19,10 +18,6 @@ if TYPE_CHECKING:
 
 MEMBERS: Final = 200
 SEED: Final = 2009
-FEW_ROWS: Final = 8192
-"""Errors added up at a time: those of all tows would take as much memory as the tables."""
-REMEMBERED: Final = 1 << 14
-"""Keys whose errors are kept for the next method, which has the same keys: 26 MB."""
 
 
 def tow_ensemble(
@@ -30,10 +25,10 @@ def tow_ensemble(
     curves: pl.DataFrame,
     ruled: pl.DataFrame,
     budget: pl.DataFrame,
-    estimated: "SeasonFactors | None",
+    factors: "SeasonFactors | None",
     members: int = MEMBERS,
 ) -> pl.DataFrame:
-    """Rows of the table `ensemble` of a method: members of every tow with a curve.
+    """Return the members of every tow with a curve: rows of the table `ensemble`.
 
     They lie around the number that the register uses, as wide as its interval; what tows share
     stays what they share as measured.
@@ -42,17 +37,17 @@ def tow_ensemble(
         method: its name.
         curves, budget: its tables `curves` and `uncertainty_budget`.
         ruled: its curves with the estimate that the register uses.
-        estimated: its season factors, as `ln_errors` takes them.
+        factors: its season factors, as `ln_errors` takes them.
         members: how many.
     """
-    width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
-    used = ruled.select("tow_id", used="cw_kg_m", stated=width)
-    measured = curves.drop_nulls("cw_kg_m").select("tow_id", measured=width)
+    ln_width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
+    measured = curves.drop_nulls("cw_kg_m").select("tow_id", measured_width=ln_width)
+    used = ruled.select("tow_id", cw="cw_kg_m", used_width=ln_width)
     tows = measured.join(used, on="tow_id", maintain_order="left").with_columns(
-        wider=(pl.col("stated") / pl.col("measured")).fill_null(1.0)
+        ratio=(pl.col("used_width") / pl.col("measured_width")).fill_null(1.0)
     )
-    errors = ln_errors(tows["tow_id"], budget, estimated, members)
-    cw = tows["used"].to_numpy()[:, None] * np.exp(errors * tows["wider"].to_numpy()[:, None])
+    errors = ln_errors(tows["tow_id"], budget, factors, members)
+    cw = tows["cw"].to_numpy()[:, None] * np.exp(errors * tows["ratio"].to_numpy()[:, None])
     return pl.DataFrame(
         {
             "method": pl.repeat(method, cw.size, eager=True),
@@ -66,58 +61,37 @@ def tow_ensemble(
 def ln_errors(
     tow_ids: pl.Series,
     budget: pl.DataFrame,
-    estimated: "SeasonFactors | None",
+    factors: "SeasonFactors | None",
     members: int = MEMBERS,
 ) -> FloatArray:
-    """Realisations of the error of ln Cw of tows, shape (tows, members).
+    """Draw errors of ln Cw of tows, (tows, members): the sum of effect times normal error.
 
-    Errors are normal. Every error has a random stream of its own, named by its key: a tow keeps its
-    members when others come or go.
+    Every error has a random stream of its own, named by its key: a tow keeps its members when
+    others come or go. Errors of season factors are correlated as their covariance says.
 
     Args:
         tow_ids: of those tows, each once.
-        budget: rows of `propagation.budget`, at least of those tows.
-        estimated: the season factors, whose errors are drawn with their correlation; None where the
-            method estimates none.
-        members: number of realisations.
+        budget: rows of `propagation.make_budget`, at least of those tows.
+        factors: the season factors; None where the method estimates none.
+        members: number of draws.
     """
+    error_of = {key: _draw(key, members) for key in budget["key"].unique().sort()}
+    if factors is not None and factors.covariance.size:
+        determined = factors.factors.drop_nulls("factor")
+        keys = determined.select(key=log_key(pl.col("season"), pl.col("part")))["key"]
+        sd = np.sqrt(np.diag(factors.covariance))
+        root = np.linalg.cholesky(factors.covariance / np.outer(sd, sd))
+        correlated = root @ np.stack([_draw(key, members) for key in keys])
+        error_of |= dict(zip(keys, correlated, strict=True))
     place = pl.DataFrame({"tow_id": tow_ids}).with_row_index("place")
     rows = budget.join(place, on="tow_id", maintain_order="left")
-    keys, errors = _errors(rows, estimated, members)
-    index = rows.select("key").join(keys, on="key", maintain_order="left")["index"]
-    of_rows = rows["place"].to_numpy(), index.to_numpy(), rows["effect_ratio"].to_numpy()
     ln_error = np.zeros((tow_ids.len(), members))
-    for first in range(0, rows.height, FEW_ROWS):
-        few_row, few_index, effect = (of_all[first : first + FEW_ROWS] for of_all in of_rows)
-        np.add.at(ln_error, few_row, effect[:, None] * errors[few_index])
+    for tow, key, effect in rows.select("place", "key", "effect_ratio").iter_rows():
+        ln_error[tow] += effect * error_of[key]
     return ln_error
 
 
-def _errors(
-    budget: pl.DataFrame, estimated: "SeasonFactors | None", members: int
-) -> tuple[pl.DataFrame, FloatArray]:
-    """Standard normal errors of every key, shape (keys, members), season factors correlated."""
-    keys = budget.select("key").unique().sort("key").with_row_index("index")
-    errors = np.zeros((keys.height, members))
-    for own, key in zip(errors, keys["key"], strict=True):
-        own[:] = _independent(key, members)
-    if estimated is None:
-        return keys, errors
-    determined = estimated.factors.drop_nulls("factor").select(
-        log_key(pl.col("season"), pl.col("part")).alias("key")
-    )
-    sd = np.sqrt(np.diag(estimated.covariance))
-    root = np.linalg.cholesky(estimated.covariance / np.outer(sd, sd))
-    independent = [_independent(key, members) for key in determined["key"]]
-    if independent:
-        joint = root @ np.stack(independent)
-        used = determined.with_row_index("row").join(keys, on="key", maintain_order="left")
-        errors[used["index"].to_numpy()] = joint[used["row"].to_numpy()]
-    return keys, errors
-
-
-@lru_cache(maxsize=REMEMBERED)
-def _independent(key: str, members: int) -> FloatArray:
-    """Standard normal errors of a key, from a stream of its own; not to be written to."""
+def _draw(key: str, members: int) -> FloatArray:
+    """Draw standard normal errors from the random stream of a key."""
     stream = np.random.default_rng(np.array([SEED, *key.encode()], dtype=np.uint32))
     return stream.standard_normal(members)

@@ -1,13 +1,13 @@
 """How far real hulls miss the hyperbola: lack of fit of the run points beyond their pure error.
 
-Runs at one intended speed repeat each other, runs at different speeds show the shape (lack of fit
-against pure error: Draper & Smith, Applied Regression Analysis, 1998, ch. 2). A parabola through
-the residuals of a tow says how far its hull lies from its hyperbola. The mean square over all
-tows, less what scatter alone makes of it, is how much hulls differ in that; a boat's own tows say
-how much of it is the boat's (empirical Bayes: Morris 1983).
+Runs at one intended speed repeat each other, runs at different speeds show the shape (Draper &
+Smith, Applied Regression Analysis, 1998, ch. 2). A parabola through the residuals of a tow says how
+far its hull lies from its hyperbola. The mean square of that over all tows, less what scatter alone
+makes of it, is the variance between hulls; a boat's own tows say how much of it is the boat's
+(empirical Bayes: Morris 1983).
 """
 
-from typing import Final, NamedTuple, Self
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -15,22 +15,19 @@ from pipeline.arrays import BoolArray, FloatArray, IntArray
 
 USUAL_RATIO: Final = 0.002
 """Misfit of a hull of which nothing is known: median of the Delft series (method-details, 9)."""
-
-USUAL_TOWS: Final = 20.0
-"""How many tows `USUAL_RATIO` counts for."""
-
-SHAPE: Final = 4
-"""Numbers of a tow's residuals: mean, slope, bend, and out against back."""
-
-ROUNDING: Final = 1e-20
-"""Mean square of residuals that are rounding alone.
-
-Wind coefficients of each run can bring every point onto the curve: such points tell nothing.
-"""
+PRIOR_TOWS: Final = 20.0
+"""Number of tows that `USUAL_RATIO` counts for."""
+MIN_SPEEDS: Final = 3
+"""Fewest intended speeds that show a shape."""
+PARAMETERS: Final = 4
+"""Parameters of a tow's residuals: mean, slope, bend, and out against back."""
+MIN_SCATTER: Final = 1e-20
+"""Mean square of residuals that are rounding alone. Wind coefficients of each run can bring every
+point onto the curve: such points tell nothing."""
 
 
-class Departure(NamedTuple):
-    """Departure of each tow's points from its hyperbola at some speeds, as a ratio.
+class Misfit(NamedTuple):
+    """Misfit of each tow's hull at some speeds, as a ratio of Cw, by the tow's own points.
 
     Attributes:
         ratio: (tows, speeds); 0 where the tow does not tell.
@@ -40,72 +37,79 @@ class Departure(NamedTuple):
     ratio: FloatArray
     variance: FloatArray
 
-    @classmethod
-    def of(
-        cls,
-        residual_ratio: FloatArray,
-        used: BoolArray,
-        speed_ratio: FloatArray,
-        direction: FloatArray,
-        target: FloatArray,
-        asked: FloatArray,
-        alike: IntArray | None = None,
-    ) -> Self:
-        """Departures of tows by their own points.
 
-        Args:
-            residual_ratio: (point - curve) / curve, (tows, points), as the next four.
-            used: points that count.
-            speed_ratio: speed / declared speed.
-            direction: 1 out, -1 back.
-            target: intended speed / declared speed.
-            asked: speeds / declared speed at which to tell, (speeds,).
-            alike: (tows,) the same for tows that share their scatter; all, when left out.
-        """
-        shape = (len(used), len(asked))
-        ratio, variance = np.zeros(shape), np.full(shape, np.inf)
-        tells = _tells(used, direction, target)
-        if tells.any():
-            weight = used[tells].astype(np.float64)
-            e, x, way = (v[tells] * weight for v in (residual_ratio, speed_ratio - 1.0, direction))
-            design = np.stack([weight, x, x**2, way], axis=2)
-            inverse = np.linalg.inv(np.swapaxes(design, 1, 2) @ design)
-            parabola = np.einsum("tij,tpj,tp->ti", inverse, design, e)
-            rest = e - np.einsum("tpj,tj->tp", design, parabola)
-            group = np.zeros(len(rest), np.int64) if alike is None else alike[tells]
-            spare = np.bincount(group, weight.sum(axis=1) - SHAPE)[group]
-            scatter = (np.bincount(group, (rest**2).sum(axis=1))[group] / spare)[:, None]
-            at = asked - 1.0
-            along = np.stack([np.ones_like(at), at, at**2, np.zeros_like(at)], axis=1)
-            known = scatter > ROUNDING
-            of_scatter = scatter * np.einsum("sj,tjk,sk->ts", along, inverse, along)
-            ratio[tells] = np.where(known, parabola @ along.T, 0.0)
-            variance[tells] = np.where(known, of_scatter, np.inf)
-        return cls(ratio, variance)
-
-
-def _tells(used: BoolArray, direction: FloatArray, target: FloatArray) -> BoolArray:
-    """Tows with runs at three intended speeds, both ways, and one to spare."""
-    levels = np.sort(np.where(used, target, np.nan), axis=1)
-    distinct = 1 + (np.diff(levels, axis=1) > 0).sum(axis=1)
-    both = (used & (direction > 0)).any(axis=1) & (used & (direction < 0)).any(axis=1)
-    return np.asarray((used.sum(axis=1) > SHAPE) & (distinct >= SHAPE - 1) & both)
-
-
-def departure_of_boats(departure: Departure, boat: IntArray) -> tuple[FloatArray, FloatArray]:
-    """What all tows say of the departure of each tow's hull, and its variance, (tows, speeds).
+def fit_parabolas(
+    residual_ratio: FloatArray,
+    is_used: BoolArray,
+    speed_ratio: FloatArray,
+    direction: FloatArray,
+    target: FloatArray,
+    speeds: FloatArray,
+    group: IntArray | None = None,
+) -> Misfit:
+    """Fit a parabola in speed, and a difference of the two ways, to the residuals of each tow.
 
     Args:
-        departure: departures of all tows of an archive.
-        boat: index of each tow's boat.
+        residual_ratio: (tows, points) (point - curve) / curve.
+        is_used: (tows, points) whether a point counts.
+        speed_ratio: (tows, points) speed / declared speed.
+        direction: (tows, points) 1 out, -1 back.
+        target: (tows, points) intended speed / declared speed.
+        speeds: (speeds,) speed / declared speed at which the misfit is asked.
+        group: (tows,) the same for tows that share their scatter; all, when left out.
     """
-    tells = np.isfinite(departure.variance)
-    beyond = np.where(tells, departure.ratio**2 - departure.variance, 0.0).sum(axis=0)
-    between = (USUAL_TOWS * USUAL_RATIO**2 + beyond) / (USUAL_TOWS + tells.sum(axis=0))
+    shape = (len(is_used), len(speeds))
+    ratio, variance = np.zeros(shape), np.full(shape, np.inf)
+    tells = _has_enough_points(is_used, direction, target)
+    if not tells.any():
+        return Misfit(ratio, variance)
+    weight = is_used[tells].astype(np.float64)
+    x = (speed_ratio[tells] - 1.0) * weight
+    y = residual_ratio[tells] * weight
+    design = np.stack([weight, x, x**2, direction[tells] * weight], axis=2)
+    inverse = np.linalg.inv(np.swapaxes(design, 1, 2) @ design)
+    parameters = (inverse @ np.swapaxes(design, 1, 2) @ y[..., None])[..., 0]
+    residual = y - (design @ parameters[..., None])[..., 0]
+
+    # Pure error, pooled over the tows of a group.
+    place = np.zeros(len(y), np.int64) if group is None else group[tells]
+    spare_points = np.bincount(place, weight.sum(axis=1) - PARAMETERS)[place]
+    scatter = (np.bincount(place, (residual**2).sum(axis=1))[place] / spare_points)[:, None]
+
+    at = speeds - 1.0
+    asked = np.stack([np.ones_like(at), at, at**2, np.zeros_like(at)], axis=1)
+    leverage = np.einsum("sj,tjk,sk->ts", asked, inverse, asked)
+    is_known = scatter > MIN_SCATTER
+    ratio[tells] = np.where(is_known, parameters @ asked.T, 0.0)
+    variance[tells] = np.where(is_known, scatter * leverage, np.inf)
+    return Misfit(ratio, variance)
+
+
+def _has_enough_points(is_used: BoolArray, direction: FloatArray, target: FloatArray) -> BoolArray:
+    """Return tows with runs at three intended speeds, both ways, and one to spare, (tows,)."""
+    sorted_targets = np.sort(np.where(is_used, target, np.nan), axis=1)
+    speeds = 1 + (np.diff(sorted_targets, axis=1) > 0).sum(axis=1)
+    has_out = (is_used & (direction > 0)).any(axis=1)
+    has_back = (is_used & (direction < 0)).any(axis=1)
+    has_spare = is_used.sum(axis=1) > PARAMETERS
+    return np.asarray(has_spare & (speeds >= MIN_SPEEDS) & has_out & has_back)
+
+
+def shrink_to_boats(misfit: Misfit, boat: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return what all tows of a boat say of its misfit, and its variance, (tows, speeds) each.
+
+    Args:
+        misfit: of all tows of an archive.
+        boat: (tows,) number of each tow's boat.
+    """
+    tells = np.isfinite(misfit.variance)
+    excess = np.where(tells, misfit.ratio**2 - misfit.variance, 0.0).sum(axis=0)
+    between = (PRIOR_TOWS * USUAL_RATIO**2 + excess) / (PRIOR_TOWS + tells.sum(axis=0))
     between = np.maximum(between, 0.0)
     boats = int(boat.max(initial=-1)) + 1
-    precision, pull = (np.zeros((boats, departure.ratio.shape[1])) for _ in range(2))
-    np.add.at(precision, boat, 1.0 / departure.variance)
-    np.add.at(pull, boat, departure.ratio / departure.variance)
+    precision = np.zeros((boats, misfit.ratio.shape[1]))
+    weighted = np.zeros((boats, misfit.ratio.shape[1]))
+    np.add.at(precision, boat, 1.0 / misfit.variance)
+    np.add.at(weighted, boat, misfit.ratio / misfit.variance)
     variance = between / (1.0 + between * precision)
-    return (variance * pull)[boat], variance[boat]
+    return (variance * weighted)[boat], variance[boat]

@@ -1,12 +1,7 @@
-"""The uncertainty of Cw of a tow, component by component.
+"""The uncertainty budget of Cw, component by component, and the interval that follows.
 
-Belongs here: how far run points scatter about their curves, the budget of a tow with what its
-components share with other tows, and the interval that follows. Does not: the
-covariance of a curve's parameters (`curve`), the season log factors (`season_log`) and drawing
-from the budget (`ensemble`).
-
-Everything is relative: standard deviations of ln Cw. Components that a season or the archive
-shares are kept apart from those of a single tow, because they do not average out.
+Every component is a standard deviation of ln Cw. What a season or the archive shares is kept apart
+from what is a single tow's, because it does not average out.
 """
 
 import math
@@ -22,35 +17,9 @@ from pipeline.steps.speed import LOG
 
 CURVE_PARAMETERS: Final = 2
 
-
-def residual_scatter(
-    residual_ratio: FloatArray, used: BoolArray, season: FloatArray | IntArray
-) -> tuple[FloatArray, FloatArray]:
-    """Relative scatter of run points about their curves, pooled over each season's tows.
-
-    Four degrees of freedom per tow are too few for its own (docs/method-details.md, 9).
-
-    Args:
-        residual_ratio: (point - curve) / curve, shape (tows, points).
-        used: points that count, same shape.
-        season: the same for tows of one season, shape (tows,).
-
-    Returns:
-        Standard deviation and degrees of freedom for each tow's season, shape (tows,); infinite
-        and 0 where no tow of the season has a point to spare.
-    """
-    _, group = np.unique(season, return_inverse=True)
-    spare = np.maximum(used.sum(axis=1) - CURVE_PARAMETERS, 0)
-    squares = np.where(used & (spare > 0)[:, None], residual_ratio, 0.0) ** 2
-    dof = np.bincount(group, spare)[group].astype(np.float64)
-    total = np.bincount(group, squares.sum(axis=1))[group]
-    known = dof > 0
-    return np.where(known, np.sqrt(total / np.where(known, dof, 1.0)), np.inf), dof
-
-
 UNRECORDED_WATER_C: Final = 4.0
 """Standard deviation of a season's water about the reference where nobody wrote it down: boats are
-towed early in the year. The season log assumes the same (`season_log.assumed`)."""
+towed early in the year. The season log assumes the same (`season_log.priors`)."""
 
 
 @dataclass(frozen=True)
@@ -75,17 +44,15 @@ class Assumed:
     between_tows_ratio: float = 0.0  # what repeat tows show of all that differs from tow to tow
 
     def beside_repeats(self, tow_sd: float, calibration_sd: float) -> "Assumed":
-        """What remains assumed where repeat tows show how far tows scatter.
+        """Return what remains assumed where repeat tows show how far tows scatter.
 
-        Calibration, which moves speed, and recorded temperature, straightness and
-        the weighing of the crew, which do not, differ from tow to tow: repeat tows show both sums.
-        What repeat tows share cancels in their difference, so they never shrink it (ISO 5725-1;
-        GUM, type B).
+        Calibration, recorded temperature, straightness and the weighing of the crew differ from tow
+        to tow: repeat tows show their sum. What repeat tows share cancels in their difference, so
+        they never shrink it (ISO 5725-1; GUM, type B).
 
         Args:
-            tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log, from
-                the network of repeat tows (`season_log`).
-            calibration_sd: of the ln speed of tows calibrated on dGPS, from there too.
+            tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
+            calibration_sd: of the ln speed of tows calibrated on dGPS.
         """
         return replace(
             self,
@@ -100,7 +67,7 @@ class Assumed:
 
 
 class Component(NamedTuple):
-    """A component of the uncertainty of Cw, in SQL over the facts of a tow and what is assumed.
+    """A component of the uncertainty of Cw, as expressions over the facts of a tow.
 
     Attributes:
         effect: change of ln Cw by one standard deviation of it, signed.
@@ -108,120 +75,158 @@ class Component(NamedTuple):
         dof: degrees of freedom of the standard deviation; infinite for an assumed one.
     """
 
-    effect: str
-    shared: str = "'single'"
-    dof: str = "CAST('inf' AS DOUBLE)"
+    effect: pl.Expr
+    shared: pl.Expr = pl.lit("single")
+    dof: pl.Expr = pl.lit(math.inf)
 
 
-RULES: Final = {
-    "random": Component("random_ratio", dof="random_dof"),
-    "misfit": Component("misfit_ratio"),
-    "calibration": Component(
-        "kappa * CASE WHEN calibrated THEN calibration_speed_ratio ELSE tow_log_sd END"
-    ),
-    "between_tows": Component("between_tows_ratio"),
-    "force": Component("COALESCE(force_sd, force_ratio)", "'season'"),
-    "wind": Component(
-        "CASE WHEN wind_measured THEN air_per_coefficient * wind_coefficient "
-        "ELSE still_air_ratio * unmeasured_wind END",
-        "CASE WHEN wind_measured THEN 'archive' ELSE 'single' END",
-    ),
-    "anemometer": Component("2 * COALESCE(wind_ln_sd, anemometer_ratio) * air_ratio", "'season'"),
-    "mass": Component("mass_ratio"),
-    "temperature": Component(
-        "SQRT(POW(temperature_formula_ratio, 2) + POW(temperature_ratio_per_c * CASE "
-        "WHEN temperature_known THEN GREATEST(temperature_known_c, water_off_c) "
-        "ELSE temperature_unknown_c END, 2) + POW(0.5 * mass_ln_sd * water_change_ratio, 2))",
-        "CASE WHEN temperature_known THEN 'single' ELSE 'season' END",
-    ),
-    "straightness": Component("COALESCE(askew_ratio, straightness_ratio)"),
-    "season_log": Component("kappa * log_sd", "'season'", "log_dof"),
-}
-"""Every component by its name, in the order in which they are shown.
+def list_components(assumed: Assumed) -> dict[str, Component]:
+    """Return every component by name, in the order in which they are shown.
 
-A speed error acts through the elasticity kappa of the boat. A tow without dGPS has the wander of
-its log in place of calibration: a log feels the water, not the current."""
+    A speed error acts through the elasticity kappa of the boat. A tow without dGPS has the scatter
+    of its log in place of calibration: a log feels the water, not the current.
+    """
+    col, season = pl.col, pl.lit("season")
+    has_wind, has_temperature = pl.col("wind_measured"), pl.col("temperature_known")
+    speed_sd = pl.when("calibrated").then(assumed.calibration_speed_ratio).otherwise("tow_log_sd")
+    wind_scale_sd = col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
+    wind = (
+        pl.when(has_wind)
+        .then(col("air_per_coefficient") * col("wind_coefficient"))
+        .otherwise(col("still_air_ratio") * col("unmeasured_wind"))
+    )
+    temperature_sd_c = (
+        pl.when(has_temperature)
+        .then(col("water_off_c").clip(lower_bound=assumed.temperature_known_c))
+        .otherwise(assumed.temperature_unknown_c)
+    )
+    by_temperature = assumed.temperature_ratio_per_c * temperature_sd_c
+    by_mass = 0.5 * col("mass_ln_sd") * col("water_change_ratio")
+    temperature = (assumed.temperature_formula_ratio**2 + by_temperature**2 + by_mass**2).sqrt()
+    return {
+        "random": Component(col("random_ratio"), dof=col("random_dof")),
+        "misfit": Component(col("misfit_ratio")),
+        "calibration": Component(col("kappa") * speed_sd),
+        "between_tows": Component(pl.lit(assumed.between_tows_ratio)),
+        "force": Component(col("force_sd").fill_null(assumed.force_ratio), season),
+        "wind": Component(
+            wind, pl.when(has_wind).then(pl.lit("archive")).otherwise(pl.lit("single"))
+        ),
+        "anemometer": Component(2.0 * wind_scale_sd * col("air_ratio"), season),
+        "mass": Component(pl.lit(assumed.mass_ratio)),
+        "temperature": Component(
+            temperature,
+            pl.when(has_temperature).then(pl.lit("single")).otherwise(season),
+        ),
+        "straightness": Component(col("askew_ratio").fill_null(assumed.straightness_ratio)),
+        "season_log": Component(col("kappa") * col("log_sd"), season, col("log_dof")),
+    }
 
-COMPONENTS: Final = tuple(RULES)
+
+COMPONENTS: Final = tuple(list_components(Assumed()))
 
 
-def budget(tows: pl.DataFrame) -> pl.DataFrame:
-    """Every component of the uncertainty of Cw at one speed, per tow.
+def make_budget(facts: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
+    """Return every component of the uncertainty of Cw, per tow and speed.
 
     Args:
-        tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
-            `season, part`; `kappa`; `random_ratio` (of C0, from the scatter of the run
-            points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
-            `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
-            where calibrated), `tow_log_sd` of the log (0 where calibrated); `air_ratio`, net
-            wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
-            coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is
-            taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air
-            part / Cw;
+        facts: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
+            `season, part`; `kappa`, elasticity of Cw by a speed error; `random_ratio`, of the
+            scatter of the run points, with `random_dof`; `misfit_ratio`, of the hull about its
+            hyperbola; `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0
+            and any where calibrated), `tow_log_sd` of the log (0 where calibrated); `air_ratio`,
+            net wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
+            coefficient (both signed); `wind_coefficient`, standard deviation of that coefficient;
+            `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it reads;
+            `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw, and
+            `unmeasured_wind`, standard deviation of the net correction over that;
             `temperature_known`; `water_off_c`, of the water from its day's; `mass_ln_sd`, of ln
             mass, 0 where it was weighed, and `water_change_ratio`, the correction for temperature /
             Cw, which goes with the root of the mass; `askew_ratio`, by being pulled askew, null
             where repeat tows do not tell; `force_sd`, of the load cell by its record, null without
-            one; and every number of `Assumed`, with for `wind_coefficient` what the archive-wide
-            search came to where that was used.
+            one.
+        assumed: what the archive does not show.
 
     Returns:
         One row per tow, speed and component: `tow_id, speed_ratio, component, shared`, `key` (rows
         with one key share one error), `effect_ratio`, `u_ratio` (its size) and `dof`.
     """
-    return pl.concat(
-        tows.select(
-            "tow_id",
-            "speed_ratio",
-            component=pl.lit(name),
-            shared=pl.sql_expr(rule.shared),
-            key=_key(name, pl.sql_expr(rule.shared)),
-            effect_ratio=pl.sql_expr(rule.effect).cast(pl.Float64),
-            u_ratio=pl.sql_expr(rule.effect).cast(pl.Float64).abs(),
-            dof=pl.sql_expr(rule.dof).cast(pl.Float64),
+    parts = []
+    for name, component in list_components(assumed).items():
+        season = pl.when(component.shared == "season").then(pl.col("season").cast(pl.String))
+        group = pl.when(component.shared == "single").then("tow_id").otherwise(season)
+        key = pl.concat_str(pl.lit(name), group.fill_null(""), separator="/")
+        if name == "season_log":
+            key = log_key(pl.col("season"), pl.col("part"))
+        effect = component.effect.cast(pl.Float64)
+        parts.append(
+            facts.select(
+                "tow_id",
+                "speed_ratio",
+                component=pl.lit(name),
+                shared=component.shared,
+                key=key,
+                effect_ratio=effect,
+                u_ratio=effect.abs(),
+                dof=component.dof.cast(pl.Float64),
+            )
         )
-        for name, rule in RULES.items()
-    )
-
-
-def _key(component: str, shared: pl.Expr) -> pl.Expr:
-    """What has this error in common: the tow alone, its season (and log), or all."""
-    if component == "season_log":
-        return log_key(pl.col("season"), pl.col("part"))
-    season = pl.when(shared == "season").then(pl.col("season").cast(pl.String))
-    whose = pl.when(shared == "single").then("tow_id").otherwise(season).fill_null("")
-    return pl.concat_str(pl.lit(component), whose, separator="/")
+    return pl.concat(parts)
 
 
 def log_key(season: pl.Expr, part: pl.Expr) -> pl.Expr:
-    """Key of the error of one log factor."""
+    """Return the key of the error of one log factor."""
     named = (pl.lit("season_log"), season.cast(pl.String), part.cast(pl.String), pl.lit(LOG))
     return pl.concat_str(named, separator="/")
 
 
-def combine(components: pl.DataFrame) -> pl.DataFrame:
-    """Adds a budget up per tow and speed.
+def combine(budget: pl.DataFrame) -> pl.DataFrame:
+    """Add a budget up per tow and speed.
 
     Args:
-        components: rows of `budget`.
+        budget: rows of `make_budget`.
 
     Returns:
-        One row per tow and speed, in the order of `components`: `tow_id, speed_ratio, u_ratio`,
+        One row per tow and speed, in the order of `budget`: `tow_id, speed_ratio, u_ratio`,
         `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`: the 95 % bounds of Cw / its value, a
         t interval on the logarithm.
     """
-    square = pl.col("u_ratio") ** 2
-    rows = (
-        components.group_by("tow_id", "speed_ratio", maintain_order=True)
+    variance = pl.col("u_ratio") ** 2
+    total = (
+        budget.group_by("tow_id", "speed_ratio", maintain_order=True)
         .agg(
-            square.sum().sqrt().alias("u_ratio"),
-            (square**2 / pl.col("dof").clip(lower_bound=1.0)).sum().alias("spread"),
+            u_ratio=variance.sum().sqrt(),
+            spread=(variance**2 / pl.col("dof").clip(lower_bound=1.0)).sum(),
         )
-        .with_columns((pl.col("u_ratio") ** 4 / pl.col("spread")).alias("dof"))
-        .with_columns(pl.col("dof").fill_nan(np.inf))
+        .with_columns(dof=(pl.col("u_ratio") ** 4 / pl.col("spread")).fill_nan(np.inf))
+        .drop("spread")
     )
-    quantile = t_quantile(rows["dof"].clip(1.0).to_numpy())
-    half = rows["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)
-    return rows.drop("spread").with_columns(
-        (-half).exp().alias("lo_ratio"), half.exp().alias("hi_ratio")
-    )
+    quantile = t_quantile(total["dof"].clip(1.0).to_numpy())
+    half_width = total["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)
+    return total.with_columns(lo_ratio=(-half_width).exp(), hi_ratio=half_width.exp())
+
+
+def pool_scatter(
+    residual_ratio: FloatArray, is_used: BoolArray, group: FloatArray | IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the relative scatter of run points about their curves, pooled over groups of tows.
+
+    Four degrees of freedom per tow are too few for its own (docs/method-details.md, 9).
+
+    Args:
+        residual_ratio: (tows, points) (point - curve) / curve.
+        is_used: (tows, points) whether a point counts.
+        group: (tows,) the same for tows whose scatter is pooled.
+
+    Returns:
+        Standard deviation and degrees of freedom of each tow's group, (tows,); infinite and 0 where
+        no tow of the group has a point to spare.
+    """
+    _, place = np.unique(group, return_inverse=True)
+    spare_points = np.maximum(is_used.sum(axis=1) - CURVE_PARAMETERS, 0)
+    counts = is_used & (spare_points > 0)[:, None]
+    square = np.where(counts, residual_ratio**2, 0.0).sum(axis=1)
+    dof = np.bincount(place, spare_points)[place].astype(np.float64)
+    total = np.bincount(place, square)[place]
+    sd = np.where(dof > 0, np.sqrt(total / np.maximum(dof, 1.0)), np.inf)
+    return sd, dof

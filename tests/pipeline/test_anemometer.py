@@ -9,7 +9,7 @@ import pytest
 from herijk.simulate import Defects, WorldSettings
 from pipeline.blocks.run_blocks import AIR_SUMS
 from pipeline.method.definition import shipped_method
-from pipeline.recompute.anemometer import scale_of_seasons
+from pipeline.recompute.anemometer import estimate_scales
 from pipeline.recompute.recompute import recompute
 from tests.worlds import measure
 
@@ -24,7 +24,7 @@ def found(scale, vane_deg=0.0, shared_sd=0.0, seed=1):
     ahead, abeam = of_tow * (mean + 0.06 * rng.standard_normal((2, len(SEASONS))))
     shared = shared_sd + 0.0 * SEASONS
     seen = {"season": SEASONS, "ahead": ahead, "abeam": abeam, "shared_sd": shared}
-    return scale_of_seasons(pl.DataFrame(seen)).select("ln_scale", "sd").to_numpy().T
+    return estimate_scales(pl.DataFrame(seen)).select("ln_scale", "sd").to_numpy().T
 
 
 @pytest.mark.parametrize("vane_deg", [0.0, 20.0])

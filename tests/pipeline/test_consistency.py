@@ -6,7 +6,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline import model
+from pipeline.consistency import reml
 from pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from pipeline.consistency.components import variance_components
 from pipeline.consistency.homogeneity import equal_possible, pooled_curves, type_homogeneity
@@ -372,7 +372,7 @@ def test_a_search_that_does_not_come_to_rest_says_so(limit, monkeypatch):
     """No number that rests on it is given, and every table fits its schema."""
     tables = fleet(41, boats=24, seasons=(2014, 2016, 2018), height_sd=0.03, season_sd=0.02)
     settled = everything(*tables)
-    monkeypatch.setattr(model, limit, 0)
+    monkeypatch.setattr(reml, limit, 0)
     forced = {name: conform(name, frame) for name, frame in everything(*tables).items()}
     for name, number in SEARCHED.items():
         assert settled[name].filter(reason="not_settled").is_empty()

@@ -10,7 +10,7 @@ from herijk.simulate import WorldSettings
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
-from pipeline.season_log.assumed import USUAL
+from pipeline.season_log.priors import PRIORS
 from pipeline.uncertainty.propagation import Assumed
 from tests.worlds import Measured, measure
 
@@ -59,15 +59,15 @@ def with_what_is_assumed(world: Measured, rng: np.random.Generator) -> Measured:
     """
     assumed, listed = Assumed(), runs(world)
     shared_by = {
-        "tow": (USUAL.tow_sd, assumed.temperature_formula_ratio, assumed.mass_standard_ratio),
-        "season": (USUAL.force_sd,),
+        "tow": (PRIORS.tow_sd, assumed.temperature_formula_ratio, assumed.mass_standard_ratio),
+        "season": (PRIORS.force_sd,),
     }
     ln_force = assumed.force_standard_ratio * rng.standard_normal()
     for whose, sizes in shared_by.items():
         place = listed[whose].rank("dense").to_numpy() - 1
         drawn = rng.standard_normal(place.max() + 1)[place]
         ln_force = ln_force + np.sqrt(np.square(sizes).sum()) * drawn
-    ln_gps = USUAL.calibration_sd * rng.standard_normal(world.tows.height)[listed["tow"]]
+    ln_gps = PRIORS.calibration_sd * rng.standard_normal(world.tows.height)[listed["tow"]]
     return reading(world, force=np.exp(ln_force), gps=np.exp(ln_gps))
 
 

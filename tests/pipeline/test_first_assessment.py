@@ -255,7 +255,9 @@ def test_2_five_runs_of_which_one_is_alone_at_its_speed_are_not_judged_beyond_it
     assert find_runs_off_curve(off(3, 0.3).with_columns(used=lost)) != []
 
 
-@pytest.mark.parametrize("check", ["curve_change_unexplained", "unlike_its_type"])
+@pytest.mark.parametrize(
+    "check", ["curve_change_unexplained", "unlike_its_type", "unlike_other_tows", "boat_changed"]
+)
 def test_3_another_curve_than_before_or_than_like_boats_is_looked_at(check: str) -> None:
     tow = replace(SOUND, assessments=checks(check))
     assert found_of(tow, "near_earlier_curve") == [(check, "look", [])]
@@ -285,8 +287,9 @@ def test_4_a_change_is_explained_by_weight_and_the_weights_are_named() -> None:
     assert rows["explained_ratio"].to_list() == pytest.approx([explained] * 2)
 
 
-def test_4_an_unexplained_change_comes_with_the_weights() -> None:
-    tow = replace(SOUND, assessments=checks("curve_change_unexplained"), curve=curve_row(1.2 * CW))
+@pytest.mark.parametrize("check", ["curve_change_unexplained", "boat_changed"])
+def test_4_an_unexplained_change_comes_with_the_weights(check: str) -> None:
+    tow = replace(SOUND, assessments=checks(check), curve=curve_row(1.2 * CW))
     row = assess_first(tow).filter(rule="near_earlier_curve").row(0, named=True)
     assert (row["old_value"], row["new_value"], row["explained_ratio"]) == (1000.0, 1000.0, 0.0)
 

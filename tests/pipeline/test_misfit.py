@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pipeline import curve
-from pipeline.uncertainty.misfit import USUAL_RATIO, Departure, departure_of_boats
+from pipeline.uncertainty.misfit import USUAL_RATIO, fit_parabolas, shrink_to_boats
 
 TARGET = np.tile([0.9, 1.0, 1.1], 2)
 WAY = np.repeat([1.0, -1.0], 3)
@@ -24,7 +24,7 @@ def departures(hump, seed=1):
     points = curve.Points.of(speed, true * (1.0 + shape + noise))
     fitted = curve.fit(points)
     on_curve = curve.cw(fitted.a_kg_m[:, None], fitted.s_s2_m2[:, None], speed)
-    found = Departure.of(
+    found = fit_parabolas(
         points.cw_kg_m / on_curve - 1.0,
         points.used,
         speed,
@@ -38,7 +38,7 @@ def departures(hump, seed=1):
 
 def test_a_hump_is_seen_and_its_size_is_known():
     found, boat, true = departures(0.02)
-    mean, variance = (x[:, 0] for x in departure_of_boats(found, boat))
+    mean, variance = (x[:, 0] for x in shrink_to_boats(found, boat))
     assert np.std(true - mean) < 0.7 * np.std(true)
     assert np.abs(true - mean).mean() < 0.01
     assert np.sqrt(mean**2 + variance).mean() == pytest.approx(np.std(true), rel=0.3)
@@ -46,12 +46,12 @@ def test_a_hump_is_seen_and_its_size_is_known():
 
 def test_hyperbolas_have_none():
     found, boat, _ = departures(0.0)
-    mean, variance = departure_of_boats(found, boat)
+    mean, variance = shrink_to_boats(found, boat)
     assert np.sqrt(mean**2 + variance).max() < 0.004
 
 
 def departure_of_residuals(residuals, target):
-    return Departure.of(
+    return fit_parabolas(
         residuals,
         np.ones(residuals.shape, bool),
         np.broadcast_to(TARGET, residuals.shape),
@@ -66,6 +66,6 @@ def test_points_that_wind_coefficients_brought_onto_the_curve_tell_nothing(round
     """One tow under wind coefficients of each run has no scatter at all; its budget held NaN."""
     residuals = rounding * np.random.default_rng(3).standard_normal((1, 6))
     found = departure_of_residuals(residuals, TARGET)
-    mean, variance = departure_of_boats(found, np.zeros(1, np.int64))
+    mean, variance = shrink_to_boats(found, np.zeros(1, np.int64))
     assert mean.item() == 0.0
     assert np.sqrt(variance.item()) == pytest.approx(USUAL_RATIO)

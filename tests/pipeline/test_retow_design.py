@@ -7,7 +7,7 @@ import polars as pl
 import pytest
 
 from pipeline.season_log import estimate_season_factors, retow_choice
-from pipeline.season_log.archive_tows import with_state
+from pipeline.season_log.archive import sort_tows
 from tests.pipeline.season_worlds import CLEAN, simulate
 
 LINE = ["fsn_no", "rowers", "crew_class"]
@@ -33,7 +33,7 @@ def with_boats_as_unknowns(found, new=None):
 
     `new` is a line that is towed once more.
     """
-    tows = with_state(found.tows)
+    tows = sort_tows(found.tows)
     seasons = tows.filter(~pl.col("anchored"))["season"].unique().sort().to_list()
     boats = tows.select(*LINE, "state").unique(maintain_order=True).rows()
     design = np.zeros((tows.height + 1, len(seasons) + len(boats)))

@@ -13,10 +13,11 @@ from scipy.stats import binom, chi2
 from pipeline import curve
 from pipeline.errors import BrokenPromiseError
 from pipeline.season_log import estimate_season_factors, faults, fit, retow_choice
-from pipeline.season_log.archive_tows import ArchiveTows
-from pipeline.season_log.assumed import USUAL
-from pipeline.season_log.effects import slopes
-from pipeline.season_log.factors import refused
+from pipeline.season_log.archive import build_archive
+from pipeline.season_log.factors import find_refused
+from pipeline.season_log.fit import build_model
+from pipeline.season_log.observation_model import linearize
+from pipeline.season_log.priors import PRIORS
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 
@@ -56,12 +57,12 @@ def test_a_scale_error_does_what_refitting_the_hyperbola_does(factor):
     r = (v0 / b) ** 2
     q, force, reference = (np.array([x]) for x in (r / (1 - r), 300.0, 0.0))
     at, above, below = (
-        slopes(q, force, np.array([math.log(factor) + x]), reference) for x in (0, 1e-6, -1e-6)
+        linearize(q, force, np.array([math.log(factor) + x]), reference) for x in (0, 1e-6, -1e-6)
     )
     ln_ratio = math.log(by_log / curve.cw(a, curve.s_of_b(b), v0))
     assert at.predicted[0, 0] == pytest.approx(ln_ratio, abs=1e-12)
     difference = (above.predicted - below.predicted)[0, :2] / 2e-6
-    assert at.ways["speed"][0, :2] == pytest.approx(difference, rel=1e-6)
+    assert at.by_channel["log"][0, :2] == pytest.approx(difference, rel=1e-6)
 
 
 def test_without_noise_factors_are_exact_and_ageing_is_told_from_them():
@@ -124,12 +125,12 @@ def test_no_fault_is_seen_in_an_ordinary_archive():
 
 def test_a_factor_that_repeat_tows_contradict_is_refused():
     world, _ = estimated(CLEAN, 1000)
-    solved = faults.solve(fit.Problem.of(ArchiveTows.of(world.tows), USUAL))
-    assert not solved.refused.any()
+    solved = faults.find_posterior(build_model(build_archive(world.tows, PRIORS), PRIORS))
+    assert not solved.is_refused.any()
     value = solved.fit.value + 0.03 * (np.arange(len(solved.fit.value)) == 0)  # the log of 2009
-    ln_factor = solved.fit.share @ np.where(solved.fit.of_log, value, 0.0)
-    astray = replace(solved.fit, value=value, slopes=solved.fit.problem.slopes(ln_factor))
-    assert refused(astray).tolist() == [True] + 4 * [False]
+    ln_factor = solved.fit.covariate @ np.where(solved.fit.is_log, value, 0.0)
+    astray = replace(solved.fit, value=value, linear=solved.fit.model.linearize_at(ln_factor))
+    assert find_refused(astray).tolist() == [True] + 4 * [False]
 
 
 def test_a_factor_over_ten_per_cent_is_not_used():
@@ -181,7 +182,7 @@ def test_the_search_comes_to_rest(setup, seed):
 
 
 @pytest.mark.parametrize(
-    ("module", "limit", "most"), [(fit, "MAX_ITERATIONS", 8), (faults, "MOST_FAULTS", 0)]
+    ("module", "limit", "most"), [(fit, "MAX_ITERATIONS", 8), (faults, "MAX_FAULTS", 0)]
 )
 def test_a_search_that_does_not_come_to_rest_says_so_of_every_season(
     module, limit, most, monkeypatch
@@ -407,7 +408,7 @@ def test_a_change_far_below_what_is_assumed_is_no_alarm(seed):
     tows, (boat,) = with_few_repeats(seed, 2018, 1)
     found = estimate_season_factors(with_force(tows, 2018, {boat: math.exp(0.06)})).diagnosis
     cell = found.row(by_predicate=FORCE_OF_2018, named=True)
-    assert abs(cell["estimate"]) < 0.5 * USUAL.force_sd
+    assert abs(cell["estimate"]) < 0.5 * PRIORS.force_sd
     assert abs(cell["distance_sd"]) < 4.0
     assert cell["verdict"] != "alarm"
 

@@ -1,7 +1,5 @@
 """Uncertainty of run points and the budget of a tow."""
 
-from dataclasses import asdict
-
 import numpy as np
 import polars as pl
 import pytest
@@ -10,14 +8,14 @@ from scipy import stats
 from pipeline.uncertainty.propagation import (
     COMPONENTS,
     Assumed,
-    budget,
     combine,
-    residual_scatter,
+    make_budget,
+    pool_scatter,
 )
 
 
-def tows(assumed=None, **changed):
-    usual = asdict(assumed or Assumed()) | {
+def tows(**changed):
+    usual = {
         "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0,
         "kappa": 2.86,
         "misfit_ratio": 0.0, "wind_ln_sd": None,
@@ -26,10 +24,16 @@ def tows(assumed=None, **changed):
         "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
         "water_off_c": 0.0, "mass_ln_sd": 0.0, "water_change_ratio": 0.0,
+        "wind_coefficient": Assumed().wind_coefficient,
+        "unmeasured_wind": Assumed().unmeasured_wind,
         "askew_ratio": None,
         "force_sd": None,
     }  # fmt: skip
     return pl.DataFrame([usual | changed])
+
+
+def budget(rows, assumed=None):
+    return make_budget(rows, assumed or Assumed())
 
 
 def u_of(held, component):
@@ -44,11 +48,11 @@ def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():
     noise = rng.standard_normal((1000, 6)) * np.where(season == 2010, 0.02, 0.01)[:, None]
     residual = noise - noise @ np.linalg.pinv(design).T @ design.T
     used = np.ones_like(residual, bool)
-    sd, dof = residual_scatter(residual, used, season)
+    sd, dof = pool_scatter(residual, used, season)
     assert sd[[0, -1]] == pytest.approx([0.02, 0.01], rel=0.05)
     assert dof.tolist() == [2000.0] * 1000
     used[:500, 2:] = False
-    sd, dof = residual_scatter(residual, used, season)
+    sd, dof = pool_scatter(residual, used, season)
     assert np.isinf(sd[0])
     assert dof[0] == 0
 
@@ -92,7 +96,7 @@ def test_interval_takes_few_degrees_of_freedom_into_account():
 def test_repeat_tows_show_what_differs_between_tows_and_shrink_nothing_else():
     """What repeats share cancels in their difference (ISO 5725-1; GUM, type B)."""
     few, many = (Assumed().beside_repeats(sd, 0.5 * sd) for sd in (0.0001, 0.02))
-    held, other = (budget(tows(assumed, temperature_known=True)) for assumed in (few, many))
+    held, other = (budget(tows(temperature_known=True), assumed) for assumed in (few, many))
     shared = pl.col("component").is_in(["force", "wind", "anemometer", "mass", "temperature"])
     assert (held.filter(shared)["u_ratio"] > 0.001).all()
     assert held.filter(shared)["u_ratio"].to_list() == other.filter(shared)["u_ratio"].to_list()
