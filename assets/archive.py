@@ -38,12 +38,6 @@ def archive_lists(folders: Folders) -> dict[str, pl.DataFrame]:
     return seasons.index(folders.store, folders.archive_root)
 
 
-NO_SAMPLES: Final = SeasonIndex.create_empty().select(
-    pl.lit(None, pl.Int32).alias("season"), pl.all()
-)
-"""The columns of `samples`, without a row."""
-
-
 class SeasonsToRead(dg.Config):
     """Which seasons to read."""
 
@@ -76,7 +70,8 @@ def samples(
             "the archive lists no tow in the seasons asked for; it has tows of {}",
             ", ".join(map(str, listed)),
         )
-    before = NO_SAMPLES if store.made_from("samples") is None else store.read("samples")
+    nothing = SeasonIndex.create_empty().select(pl.lit(None, pl.Int32).alias("season"), pl.all())
+    before = nothing if store.made_from("samples") is None else store.read("samples")
     frames, tasks, seasons_read = [], [], []
     for season in wanted:
         tows = listed_tows.filter(season=season).sort("tow_id")
@@ -93,7 +88,7 @@ def samples(
         frames += map_in_parallel(read, tasks, folders.settings.dask, partial(log_progress, tasks))
     of_others = before.filter(~pl.col("season").is_in(wanted))
     frames.append(of_others.join(listed_tows, on="tow_id", how="semi"))
-    index = pl.concat([NO_SAMPLES, *frames]).sort("season", "tow_id")
+    index = pl.concat([nothing, *frames]).sort("season", "tow_id")
     lake.keep_only(store, index)
     context = dg.AssetExecutionContext.get()
     context.add_asset_metadata({"seasons_read": seasons_read}, asset_key="samples")

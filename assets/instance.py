@@ -40,8 +40,7 @@ def open_instance(store: Store) -> Iterator[dg.DagsterInstance]:
     """Open Dagster's records: where `DAGSTER_HOME` says, or in the data folder."""
     home = prepare_home(store)
     try:
-        os.environ["DAGSTER_HOME"] = str(home)
-        opened = dg.DagsterInstance.get()
+        opened = dg.DagsterInstance.from_config(str(home))
     except (yaml.YAMLError, dg.DagsterError) as error:
         what = " ".join(str(error).split())[:200]
         raise MissingKnowledgeError(

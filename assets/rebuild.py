@@ -56,7 +56,7 @@ def rebuild(
     store = Store(data.resolve())
     asked = fingerprint(sorted(methods), sorted(seasons or ()))
     with machine_faults_explained(data), only_writer(data):
-        if _read_stamp(store) == compute_stamp(store, archive, asked):
+        if _is_unchanged(store, archive, asked):
             return confirm_report(store, dt.datetime.now().astimezone())
         try:
             with machine_faults_explained(data):
@@ -115,10 +115,15 @@ def compute_stamp(store: Store, archive: Path, asked: str) -> str:
     return fingerprint(asked, place, listing(archive), ours, code_hash(*EVERYTHING))
 
 
-def _read_stamp(store: Store) -> str:
-    """Return the fingerprint that the last whole rebuild left; empty where there was none."""
+def _is_unchanged(store: Store, archive: Path, asked: str) -> bool:
+    """Return whether everything is as the last whole rebuild left it."""
     path = _stamp_path(store)
-    return path.read_text() if path.exists() else ""
+    if not path.exists():
+        return False
+    try:
+        return path.read_text(encoding="utf-8") == compute_stamp(store, archive, asked)
+    except MissingKnowledgeError:  # the archive is gone: the run says so
+        return False
 
 
 def _stamp_path(store: Store) -> Path:

@@ -231,7 +231,7 @@ def test_a_failing_build_leaves_nothing_half_made_and_the_old_site(
     store, site, tmp_path, monkeypatch
 ):
     before = hashes(site)
-    monkeypatch.setattr("dashboards.site.render.boat_pages", lambda *_: 1 / 0)
+    monkeypatch.setattr("dashboards.site.render.shared_pages", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build_pages(store, tmp_path / "site")
     with pytest.raises(ZeroDivisionError):

@@ -80,7 +80,7 @@ def surfaces(built, herijk, papers):
         boat_type = most_of(views.table("compared_tows"), "boat_type")
         changed = line_changes(views).filter(change="changed").head(3).to_dicts()
     news = ChangeReport(
-        first=False, tows=[{"what": "new"}], seasons_gone=[], methods=[], set_aside=[],
+        first=False, tows=[{"what": "new"}], seasons_gone=[], editions=[], methods=[], set_aside=[],
         factors=[{}], lines=changed,
         judged={"method": DRAFT, "accepted": 1, "flagged": 1, "rejected": 0},
     )  # fmt: skip
