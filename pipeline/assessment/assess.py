@@ -16,7 +16,7 @@ import polars as pl
 
 from pipeline.assessment.checks import CHECK, CHECKS, CODES, Check
 from pipeline.choice import SAME_SHARE
-from pipeline.season_log.diagnosis import FAULT
+from pipeline.season_log.diagnosis import CANNOT_BE_TOLD, FAULT
 from pipeline.season_log.observation_model import FLEET
 from pipeline.tables.keys import LINE, SIZES
 
@@ -306,7 +306,9 @@ def _cw_at(speed: pl.Expr) -> pl.Expr:
 def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:
     """Return whether an instrument of the tow's season is in doubt, where it was diagnosed.
 
-    And whether this boat alone shows that, so that the boat may have been altered instead.
+    It is where a fault is likelier than not. A fault of 10 to 50 % is listed in the diagnosis and
+    widens no tow's number; marking all of its season would mostly mark sound tows. Beside that,
+    whether this boat alone shows a fault, so that the boat may have been altered instead.
 
     An estimated log factor rests on the seasons with dGPS: where all of these are in doubt, so is
     its season. All boats do not change at once: where they seem to, another load cell may have come
@@ -314,7 +316,7 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
     do not rest on that.
     """
     seasons = diagnosis.group_by("season", maintain_order=True).agg(
-        season_in_doubt=pl.col("alarm").any()
+        season_in_doubt=(pl.col("alarm") & (pl.col("verdict") != CANNOT_BE_TOLD)).any()
     )
     doubted = seasons.filter("season_in_doubt")["season"]
     anchors = {*_by_gps(curves)} & {*seasons["season"]}

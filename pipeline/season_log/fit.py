@@ -48,6 +48,10 @@ ITERATIONS_WITHOUT_PATTERNS: Final = 4
 MAX_MISSING_INFORMATION: Final = 0.9
 """Share of the information on a pattern share beyond which EM is not accelerated further."""
 MAX_LN_VARIANCE_STEP: Final = 1.0
+MAX_TURN_BACK_RATIO: Final = 0.5
+"""Share of the last step of a ln variance that the next may go back. Where one boat was towed
+twice, the patterns move with the variance, which curves its density more than the expected
+information says: full steps then go to and fro for ever, so they are halved."""
 
 
 @dataclass(frozen=True)
@@ -224,6 +228,8 @@ def fit_model(
         mode[start.active] = start.value
         ln_variance, share = start.ln_variance, start.share
     value = mode[active]
+    damping = np.ones(len(ln_variance))
+    last_step = np.zeros(len(ln_variance))
     for iteration in range(MAX_ITERATIONS):
         is_warming_up = start is None and iteration < ITERATIONS_WITHOUT_PATTERNS
         pattern_share = share if with_patterns and not is_warming_up else None
@@ -247,8 +253,11 @@ def fit_model(
         steps = np.concatenate([value_step, ln_variance_step, logit_step])
         if np.abs(steps).max() < tolerance and not is_warming_up:
             return fit
+        turns_back = ln_variance_step * last_step < -MAX_TURN_BACK_RATIO * last_step**2
+        damping = np.where(turns_back, 0.5 * damping, damping)
+        last_step = ln_variance_step
         value = value + value_step
-        ln_variance = ln_variance + ln_variance_step
+        ln_variance = ln_variance + damping * ln_variance_step
         share = scipy.special.expit(scipy.special.logit(share) + logit_step)
     return replace(fit, has_converged=False)
 

@@ -409,6 +409,15 @@ def test_what_all_boats_change_between_uncalibrated_seasons_is_not_the_boats(sou
     assert to_scale.filter(check="curve_change_unexplained")["flagged"].all()
 
 
+@pytest.mark.parametrize(
+    ("verdict", "is_marked"),
+    [("fault", True), ("alarm", True), ("not settled", True), ("cannot be told", False)],
+)
+def test_a_season_is_in_doubt_where_a_fault_is_likelier_than_not(sound, verdict, is_marked):
+    world = sound.changed("diagnosis", SUBJECT, verdict=verdict, alarm=True)
+    assert ("season_in_doubt" in world.flagged(SUBJECT)) == is_marked
+
+
 def test_an_estimated_season_is_in_doubt_where_all_seasons_with_dgps_are(sound: World) -> None:
     """What its log was wrong rests on these alone."""
     old = pl.col("season") == 2012

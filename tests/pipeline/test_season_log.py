@@ -389,6 +389,17 @@ def test_a_load_cell_takes_two_boats_and_three_where_they_disagree(ratios, verdi
     assert shown_by == ({", ".join(odd)} if verdict == "cannot be told" else set())
 
 
+@pytest.mark.parametrize("ratio", [0.85, 1.0, 1.25])
+@pytest.mark.parametrize("seed", [9, 12])
+def test_the_search_settles_where_one_boat_alone_was_towed_twice(seed, ratio):
+    """Its variance between tows went to and fro between two values for ever."""
+    tows, (boat,) = with_few_repeats(seed, 2018, 1, HARD)
+    recent = tows.filter(pl.col("season") >= 2014)
+    once = pl.when(pl.col("fsn_no") != boat).then("tow_id").otherwise("fsn_no").alias("fsn_no")
+    found = estimate_season_factors(with_force(recent.with_columns(once), 2018, {boat: ratio}))
+    assert "not settled" not in set(found.diagnosis["verdict"])
+
+
 def test_a_log_that_two_boats_alone_tell_neither_drifted_nor_was_replaced():
     """One of the two boats may have been altered: the scale of the log takes the other."""
     setup = replace(CLEAN, day_sd=1e-6)
