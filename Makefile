@@ -14,7 +14,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test test-more slow texts lint wheel docs pictures bench growth accuracy survive fuzz clean
+.PHONY: help env demo test test-more slow texts lint wheel docs pictures bench growth accuracy survive clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
@@ -30,7 +30,6 @@ help:
 	@echo "make growth measure them from one to three thousand tows"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
 	@echo "make survive  kill $(KILLS) rebuilds at random moments and look what is lost"
-	@echo "make fuzz   throw $(INPUTS) damaged files at the readers, and put 300 faults in an archive"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
 
@@ -136,16 +135,11 @@ PROCESSES ?= 2
 accuracy: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.worlds --seeds $(SEEDS) --processes $(PROCESSES)
 
-# These are long. Shorter: make survive KILLS=10, make fuzz INPUTS=2000
+# This is long. Shorter: make survive KILLS=10
 KILLS ?= 1000
-INPUTS ?= 100000
 
 survive: $(DEVELOP)
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py $(KILLS)
-
-fuzz: $(DEVELOP)
-	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py $(INPUTS)
-	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/mutate.py 300
 
 clean:
 	rm -rf .venv $(DEMO) dist docs/_build .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -36,8 +36,8 @@ from pipeline.blocks.sums import block_sums
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.register.replay import RaceRules
-from warehouse.archive.files.contents import read_bytes
-from warehouse.archive.profile.reading import read_profiles
+from warehouse.archive.files import read_bytes
+from warehouse.archive.profile import read_profiles
 from warehouse.intake import lake
 from warehouse.intake import seasons as intake
 from warehouse.store.store import Store, write_parquet

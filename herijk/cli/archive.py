@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @json_option
 def init(directory: Path) -> None:
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
-    from warehouse.archive.files.empty_archive import write_templates
+    from warehouse.archive.empty_archive import write_templates
 
     try:
         write_templates(directory)

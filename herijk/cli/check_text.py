@@ -110,23 +110,35 @@ def text(report: Checked) -> list[str]:
 def archive_text(report: CheckReport) -> list[str]:
     """What is wrong in an archive, a paragraph per cause."""
     if not report.causes:
-        return [tell("Nothing is wrong in the lists and headers of {} tows.", report.tows)]
+        return [tell("Nothing is wrong in lists and headers. Tows: {}.", report.tows)]
     head = tell(
-        "Causes: {}; places: {}. As it is, {} tows are left for a rebuild to judge.",
+        "Causes: {}; places: {}. Tows that are left for a rebuild to judge: {}.",
         len(report.causes),
         sum(cause.number for cause in report.causes),
         report.tows,
     )
-    return [head, *map(_cause, report.causes)]
+    asks = any(cause.ask for cause in report.causes)
+    told = tell(
+        "Lines with a > are for archief.toml: replace each ? by the answer, and leave out a line "
+        "that is not needed. A heading such as [words] stands there once."
+    )
+    return [head, *([told] if asks else []), *map(_cause, report.causes)]
 
 
 def _cause(cause: CauseReport) -> str:
     lines = [f"{cause.number} x {cause.reason_code}: {cause.sentence}"]
+    if cause.tows:
+        lines.append(f"    {tell('Tows that this costs: {}', cause.tows)}")
     if len(cause.cells) > 1:
         cells = ", ".join(f"'{cell}'" for cell in cause.cells[1:9])
         lines.append(f"    {tell('There is also: {}', cells)}")
     lines += [f"    {place(vars(one))}" for one in cause.places]
     if cause.number > len(cause.places):
         lines.append(f"    {tell('and {} more', cause.number - len(cause.places))}")
-    lines += [f"  > archief.toml: {line}" for line in cause.settings]
+    headings: dict[str, list[str]] = {}
+    for block in cause.ask:
+        heading, _, line = block.rpartition("\n")
+        headings.setdefault(heading, []).append(line)
+    for heading, answers in headings.items():
+        lines += [f"  > {line}" for line in [*heading.split("\n"), *answers]]
     return "\n".join(lines)

@@ -33,7 +33,7 @@ BLOCKS_AT_A_TIME: Final = 16
 """Added up together, so that what is worked on stays in the processor's cache."""
 
 
-def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
+def block_sums(samples: pl.DataFrame, sample_rate_hz: float) -> pl.DataFrame:
     """Adds up the samples of one tow per run and second.
 
     Args:
@@ -41,7 +41,8 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
             Where no wind was measured the air is taken to be still; where there is no log 2, in the
             tow or in a run, it reads as log 1. A sample that is not a number in any channel but the
             GPS is left out of its block.
-        sample_rate_hz: samples per second.
+        sample_rate_hz: samples per second; with a rate that is not whole, some seconds have one
+            sample more than others.
 
     Returns:
         One row per run and second: `run`, `second` (0 is the first), `n` (samples; the last
@@ -78,14 +79,16 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     )
 
 
-def _seconds(run: NDArray[np.int8], rate_hz: int) -> tuple[NDArray[np.int8], IntArray, IntArray]:
+def _seconds(run: NDArray[np.int8], rate_hz: float) -> tuple[NDArray[np.int8], IntArray, IntArray]:
     """Run number, second and number of samples of every block, each of shape (blocks,)."""
     first = np.flatnonzero(np.append(True, run[1:] != run[:-1])[: len(run)])
     length = np.diff(np.append(first, len(run)))
-    blocks = -(-length // rate_hz)
+    blocks = np.ceil(length / rate_hz).astype(np.int64)
     which = np.repeat(np.arange(len(first)), blocks)
     second = np.arange(len(which)) - (np.cumsum(blocks) - blocks)[which]
-    return run[first][which], second, np.minimum(length[which] - rate_hz * second, rate_hz)
+    begin = np.ceil(second * rate_hz).astype(np.int64)
+    end = np.minimum(np.ceil((second + 1) * rate_hz).astype(np.int64), length[which])
+    return run[first][which], second, end - begin
 
 
 def _filled(samples: pl.DataFrame) -> pl.DataFrame:

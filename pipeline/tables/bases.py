@@ -69,7 +69,7 @@ class TowFacts(dy.Schema):
         "1", "speed correction entered by hand, 0.06 for 6 %", min=-0.5, max=0.5
     )
     altered = column.flag("the boat was altered since its previous tow")
-    sample_rate_hz = dy.Int32(
+    sample_rate_hz = dy.Float64(
         description="samples per second", metadata={"unit": "Hz"}, min=1, max=100_000
     )
     empty_thwart = column.text("thwart left free", nullable=True)

@@ -36,6 +36,9 @@ class ListedBoats(Boats):
 class ListedTows(TowFacts):
     """Tows of the lists that could be read, whatever their samples are."""
 
+    samples_runs = column.text("run of each samples file, where each has its own", nullable=True)
+    second_runs = column.text("the same of the second files", nullable=True)
+    run_windows = column.text("begin and end of each run in a recording [s]", nullable=True)
     list_path = column.text("tow list, relative to the archive")
     list_line = column.count("line in it", least=2)
 

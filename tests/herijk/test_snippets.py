@@ -15,7 +15,7 @@ from herijk.cli.main import app
 from pipeline.messages import LANGUAGES, speaker
 from tests.architecture.repository import ROOT, read
 from tests.conftest import in_one_process
-from warehouse.archive.profile.reading import parse_profiles
+from warehouse.archive.profile import parse_profiles
 
 PAGES = sorted(
     str(path.relative_to(ROOT))

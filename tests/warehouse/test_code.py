@@ -42,7 +42,7 @@ def stale_after(file):
         ("pipeline/curve.py", {"table samples", "tables", "site"}),
         ("pipeline/blocks/sums.py", {"blocks of a tow", "table samples", "tables", "site"}),
         (
-            "warehouse/archive/samples/text_files.py",
+            "warehouse/archive/samples.py",
             {"samples of a tow", "table samples", "tables", "site"},
         ),
     ],

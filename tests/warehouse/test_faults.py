@@ -1,7 +1,7 @@
 """What is set aside stands in quarantine, with what it costs and the day it was first seen.
 
-Which faults are found is tried in `archive/test_reason_codes`, that they move no other row in
-`tests/robustness`.
+Which faults are found, and that they move no other tow, is tried in `archive/test_reason_codes` and
+`tests/properties/test_archive`.
 """
 
 import datetime as dt

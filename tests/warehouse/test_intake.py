@@ -3,7 +3,7 @@
 import pytest
 
 from tests.assets.test_rebuild import files_read, samples_files, spoil
-from warehouse.archive.files import hashes
+from warehouse.archive import files as hashes
 
 __all__ = ["files_read"]
 

@@ -21,7 +21,7 @@ from pipeline.blocks.tows import Tows
 from pipeline.recompute.computed import Computed
 from tests.architecture.repository import PACKAGES
 from tests.conftest import METHODS, Workbench, shared
-from warehouse.archive.plausibility.judgement import Judgement
+from warehouse.archive.judgement import Judgement
 from warehouse.derive import recomputing
 
 TINY = WorldSettings(seasons=(2010, 2014), tows_per_season=11, rate_hz=10, seed=5)
@@ -132,7 +132,7 @@ def check_without(bench, expected):
 @pytest.mark.parametrize(
     ("module", "name"),
     [
-        ("warehouse.archive.plausibility.mix_ups", "check_mix_ups"),
+        ("warehouse.archive.plausibility", "_check_whole_tow"),
         ("pipeline.season_log.estimate", "estimate_season_factors"),
         ("pipeline.assessment.assess", "assess"),
     ],

@@ -6,14 +6,12 @@ described in `docs/archive.md`.
 """
 
 from warehouse.archive.faults import Failure, Fault, fault_from
-from warehouse.archive.files.hashes import FileHashes
-from warehouse.archive.index.index import ArchiveIndex, index_archive
-from warehouse.archive.lists.races import read_races
-from warehouse.archive.lists.registers import read_published_registers
-from warehouse.archive.plausibility.judge import judge_samples
-from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.profile.season import SeasonProfile
-from warehouse.archive.samples.tow import read_tow_samples
+from warehouse.archive.files import FileHashes
+from warehouse.archive.index import ArchiveIndex, index_archive
+from warehouse.archive.list_rules import read_published_registers, read_races
+from warehouse.archive.plausibility import judge_samples
+from warehouse.archive.profile import Profiles, SeasonProfile
+from warehouse.archive.samples import read_tow_samples
 
 __all__ = [
     "ArchiveIndex",

@@ -4,7 +4,7 @@ A reason code is stable: it is in the quarantine table, and `docs/archive.md` sa
 Detecting a fault belongs to the module that reads the thing.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from typing import Final, Literal
 
@@ -14,12 +14,12 @@ from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
 from pipeline.tables.row import Row
+from warehouse.archive.columns import DefectiveHeaderError
 from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, traced
 
 Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
 """What a fault costs: seconds of one channel of a run, a run, a tow, or a file; or a row of a list
 that costs no tow, as one of a race, or one of its cells."""
-
 
 OF_A_HEADER: Final = ("missing_column", "unknown_column", "duplicate_column", "unknown_unit")
 """Reason codes of a header: of a list, they cost all of it."""
@@ -38,6 +38,7 @@ class Fault:
         lost: what it costs; None for a tow, a row or a file, as it has a tow, a line or neither.
         run: the run that it costs, or seconds of which.
         lost_s: how many seconds.
+        ask: lines of `archief.toml` that would settle it, with `?` for the answer.
     """
 
     path: str
@@ -48,6 +49,7 @@ class Fault:
     lost: Lost | None = None
     run: int | None = None
     lost_s: float | None = None
+    ask: tuple[str, ...] = ()
 
     @property
     def cause(self) -> str:
@@ -57,7 +59,30 @@ class Fault:
     def as_row(self) -> Row:
         """The fault as a row of `Faults`: only here it is worded in Dutch too."""
         words = {"cause": self.cause, "message_nl": spoken(self.message, "nl")}
-        return {name: getattr(self, name) for name in _FACTS} | words
+        facts = [fact.name for fact in fields(Fault) if fact.name != "ask"]
+        return {name: getattr(self, name) for name in facts} | words
+
+
+@dataclass(frozen=True)
+class Failure(Fault):
+    """A list on which Herijk itself failed, with the traceback."""
+
+    trace: str = ""
+
+
+class DefectiveFileError(DefectiveHeaderError):
+    """A `DefectiveInputError` that knows which of a tow's files it is about."""
+
+    def __init__(
+        self,
+        reason_code: str,
+        message: str,
+        line: int | None,
+        path: str,
+        ask: Sequence[str] = (),
+    ) -> None:
+        super().__init__(reason_code, message, line, ask)
+        self.path = path
 
 
 def fault_frame(faults: Iterable[Fault]) -> dy.DataFrame[Faults]:
@@ -65,43 +90,9 @@ def fault_frame(faults: Iterable[Fault]) -> dy.DataFrame[Faults]:
     return frame_of(Faults, [fault.as_row() for fault in faults])
 
 
-_FACTS: Final = tuple(fact.name for fact in fields(Fault))
-
-
-class DefectiveFileError(DefectiveInputError):
-    """A `DefectiveInputError` that knows which of a tow's files it is about.
-
-    Args:
-        reason_code: short stable code.
-        message: a sentence that a volunteer understands.
-        line: line in the file, where there is one.
-        path: posix path relative to the archive.
-    """
-
-    def __init__(self, reason_code: str, message: str, line: int | None, path: str) -> None:
-        super().__init__(reason_code, message, line)
-        self.path = path
-
-
-def place(line: int, path: str) -> Sentence:
-    """A line of a file, for a sentence."""
-    return say("line {line} of {path}", line=line, path=path)
-
-
 def at_line(line: int, what: str) -> Sentence:
     """A sentence with the line that it is about."""
     return say("Line {line}: {what}", line=line, what=what)
-
-
-@dataclass(frozen=True)
-class Failure(Fault):
-    """A list, or a row of one, on which Herijk itself failed.
-
-    Attributes:
-        trace: the traceback.
-    """
-
-    trace: str = ""
 
 
 def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fault:
@@ -110,17 +101,15 @@ def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fa
     Raises:
         BaseException: the error, where it is neither about the input nor a fault of Herijk.
     """
-    if not isinstance(error, DefectiveInputError):
-        if not is_unforeseen(error):
-            raise error
-        return Failure(path, tow_id, None, UNFORESEEN, _failed(error), trace=traced(error))
-    where = error.path if isinstance(error, DefectiveFileError) else path
-    return Fault(where, tow_id, error.line, error.reason_code, error.message)
-
-
-def _failed(error: BaseException) -> Sentence:
-    return say(
+    if isinstance(error, DefectiveInputError):
+        where = error.path if isinstance(error, DefectiveFileError) else path
+        ask = error.ask if isinstance(error, DefectiveHeaderError) else ()
+        return Fault(where, tow_id, error.line, error.reason_code, error.message, ask=ask)
+    if not is_unforeseen(error):
+        raise error
+    message = say(
         "Herijk itself failed on this list ({}). It may be sound. Please report this to the "
         "maintainer of Herijk, with the folder unforeseen of the data folder.",
         in_short(error),
     )
+    return Failure(path, tow_id, None, UNFORESEEN, message, trace=traced(error))

@@ -14,7 +14,7 @@ from pipeline.recompute.facts import with_boat_types
 from pipeline.tables.lake import Faults
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.archive.faults import OF_A_HEADER, fault_frame
-from warehouse.archive.lists.windows import outside_run
+from warehouse.archive.list_rules import outside_run
 from warehouse.derive.plausible import gross_faults, judge, with_doubts
 from warehouse.derive.same_samples import CONTENT, same_samples
 from warehouse.intake import lake

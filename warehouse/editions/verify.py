@@ -22,7 +22,6 @@ from pipeline.messages import say
 from pipeline.register.register import LINE
 from pipeline.tables.schemas import TABLES
 from warehouse.archive import FileHashes
-from warehouse.archive.files.names import PARTS, split_sheet
 from warehouse.derive.archive_tables import read_archive
 from warehouse.editions import sheets
 from warehouse.editions.compare import parts_of
@@ -237,11 +236,9 @@ def _swapped(path: Path, archive: Path | None, hashes: FileHashes) -> Iterator[F
         yield Finding(path.name, "unchecked", "archive", message)
         return
     for file, kind, sha256 in sheets.read_inputs(path).rows():
-        parts = file.split(PARTS)
-        gone = PARTS.join(p for p in parts if not (archive / split_sheet(p)[0]).is_file())
-        if gone:
-            message = say("{} is gone from the archive; put it back", gone)
-            yield Finding(path.name, "missing", gone, message)
+        if not (archive / file).is_file():
+            message = say("{} is gone from the archive; put it back", file)
+            yield Finding(path.name, "missing", file, message)
         elif hashes.hash_samples(archive, file) != sha256:
             message = say("{} is not the file that the edition was made from", file)
             listed = kind == LIST  # a list grows, and each of its rows is compared below

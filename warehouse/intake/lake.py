@@ -182,7 +182,10 @@ def name_files(tow: Row, runs: pl.DataFrame, profile: SeasonProfile) -> tuple[st
     Samples are named by the contents of their files, what the lists say of them, how they are read
     and the code that reads; blocks by their samples and the code that adds them up.
     """
-    facts = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
+    facts = (
+        *("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s"),
+        *("samples_runs", "second_runs", "run_windows"),
+    )
     samples_key = fingerprint(
         [tow[name] for name in facts],
         runs.sort("run").rows(),

@@ -6,7 +6,7 @@ import polars as pl
 
 from pipeline.tables.row import Row
 from warehouse.archive import SeasonProfile, judge_samples, read_tow_samples
-from warehouse.archive.samples.frame import steps_of
+from warehouse.archive.samples import steps_of
 
 
 def read_samples(

@@ -26,7 +26,7 @@ from warehouse.archive import (
     read_races,
 )
 from warehouse.archive.faults import fault_frame
-from warehouse.archive.profile.reading import read_profiles
+from warehouse.archive.profile import read_profiles
 from warehouse.intake import lake
 from warehouse.store.store import Store, fingerprint
 from warehouse.store.unforeseen import note

@@ -116,9 +116,14 @@ def _samples(seed: int, declared_m_s: float) -> str:
 
 @pytest.fixture(scope="session")
 def _template(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    root = tmp_path_factory.mktemp("template") / "archive"
-    for folder in ("sloepregister", "sleeplijsten", "meetdata_2014", "wedstrijden"):
-        (root / folder).mkdir(parents=True)
+    return small_archive(tmp_path_factory.mktemp("template"))
+
+
+def small_archive(folder: Path) -> Path:
+    """Make a good archive of three tows in a folder; return its root."""
+    root = folder / "archive"
+    for name in ("sloepregister", "sleeplijsten", "meetdata_2014", "wedstrijden"):
+        (root / name).mkdir(parents=True)
     (root / BOATS).write_text(
         "fsn_nr;ht_nr;sloep;type;lengte [m];breedte [m];hoogte [m];gewicht [kg];roeiers;klasse\n"
         "FSN1;0001;eerste boot;Kuikensloep;8,08;2,25;0,90;1417;8;H\n"

@@ -10,8 +10,7 @@ from pipeline.blocks.sums import block_sums
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import run_rows, tow_rows
-from warehouse.archive.plausibility.judge import judge_samples
-from warehouse.archive.plausibility.left_out import LEFT_OUT_S
+from warehouse.archive.plausibility import LEFT_OUT_S, judge_samples
 
 RATE_HZ = 20
 BOATS = 3

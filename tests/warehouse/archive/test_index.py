@@ -16,9 +16,12 @@ from warehouse.archive import (
     read_published_registers,
     read_races,
 )
-from warehouse.archive.files.finding import files_of
-from warehouse.archive.sheets import reading
+from warehouse.archive import lists as reading
 
+TWO_RATES = (
+    '[[profile]]\nseasons = "2012:2014"\nsample_rate_hz = 5\n'
+    '[[profile]]\nseasons = "2014"\nsample_rate_hz = 6\n'
+)
 SAMPLE_ARCHIVE = Path(__file__).parents[2] / "data" / "sample-archive"
 NEXT_TOW = "2014-009;2014-03-09;FSN1;tweede;{second};8;H;2,40;;;;;;;;;{runs};nee;20;\n"
 
@@ -101,19 +104,6 @@ def test_the_profile_says_what_the_vane_reads_for_wind_from_ahead(archive: Archi
     assert ((as_read - turned) % 360 - 90).abs().max() < 1e-3
 
 
-def test_the_profile_sets_rate_and_directions(archive: Archive) -> None:
-    (archive.root / "archief.toml").write_text(
-        'simulated = true\n[[profile]]\nseasons = "2014"\nsample_rate_hz = 20\n'
-        'directions = ["out", "back", "out", "back", "out", "back"]\n'
-    )
-    archive.edit(TOWS, lambda text: text.replace(";20;", ";;"))
-    scan = archive.scan()
-    assert scan.faults == []
-    assert scan.index.profiles.simulated
-    assert scan.index.tows["sample_rate_hz"].to_list() == [20, 20, 20]
-    assert scan.index.runs["direction"].to_list() == [1, -1] * 9
-
-
 def test_a_replaced_log_begins_a_new_part_of_its_season(archive: Archive) -> None:
     days = archive.scan().index.tows["tow_date"].sort().to_list()
     toml = "".join(
@@ -135,7 +125,10 @@ def test_a_replaced_log_begins_a_new_part_of_its_season(archive: Archive) -> Non
         ('[[profile]]\nseasons = "2014"\ncolumns = { log3 = "x" }', "log3"),
         ('[[profile]]\nseasons = "2014"\nunits = { force = "stoon" }', "stoon"),
         ('[[profile]]\nseasons = "2014:2012"', "2014:2012"),
-        ('[[profile]]\nseasons = "2012:2014"\n[[profile]]\nseasons = "2014"', "2014"),
+        (
+            TWO_RATES,
+            "2014",
+        ),
         ("[[set_aside]]\ndate = 2014-03-01", "reason"),
         ("simulated = ", "TOML"),
     ],
@@ -170,19 +163,6 @@ def test_nothing_outside_the_archive_is_read(archive: Archive) -> None:
     index = index_archive(archive.root, hash_file)
     assert {fault.reason_code for fault in index.faults} == {"path_outside_archive"}
     assert not [path for path in hashed if "meetdata" in str(path)]
-
-
-def test_a_folder_of_samples_has_the_season_that_it_or_its_name_in_the_profile_tells(
-    tmp_path: Path,
-) -> None:
-    seasons = {"meetdata": 0, "Meetdata 2014": 2014, "los": 0, "oud": 2013}
-    for folder in seasons:
-        (tmp_path / folder).mkdir()
-        (tmp_path / folder / "a.csv").touch()
-    found = files_of(tmp_path, {"los": "meetdata", "oud": "meetdata_2013"})
-    assert {file.path: file.season for file in found} == {
-        f"{folder}/a.csv": season for folder, season in seasons.items()
-    }
 
 
 def test_sample_archive_reads_without_faults() -> None:
@@ -330,22 +310,14 @@ def test_boats_on_which_two_lists_disagree_are_set_aside_with_both_places(
 def test_a_list_on_which_herijk_fails_costs_that_list(
     archive: Archive, monkeypatch: pytest.MonkeyPatch, path: str, lost: list[str]
 ) -> None:
-    real = reading.date_order
+    real = reading._typed
 
-    def fails(cells: list[str]) -> str:
-        if path == reading_now[-1]:
+    def fails(table, file, *rest):
+        if file.path == path:
             raise ZeroDivisionError("planted")
-        return real(cells)
+        return real(table, file, *rest)
 
-    reading_now: list[str] = []
-    read_bytes = reading.read_bytes
-
-    def noted(full: Path, *arguments: int) -> bytes:
-        reading_now.append(full.relative_to(archive.root).as_posix())
-        return read_bytes(full, *arguments)
-
-    monkeypatch.setattr(reading, "read_bytes", noted)
-    monkeypatch.setattr(reading, "date_order", fails)
+    monkeypatch.setattr(reading, "_typed", fails)
     faults = archive.scan().faults
     (of_list,) = [fault for fault in faults if isinstance(fault, Failure)]
     assert (of_list.path, of_list.reason_code) == (path, "unforeseen")

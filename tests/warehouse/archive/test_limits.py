@@ -6,12 +6,11 @@ The limits are those of the declared tables; nothing here repeats one.
 import pytest
 
 from pipeline.tables.frames import limits
-from warehouse.archive.files import list_kinds
-from warehouse.archive.files.finding import ArchiveFile
-from warehouse.archive.lists.races import read_races
-from warehouse.archive.profile.definition import Profiles
-from warehouse.archive.sheets.reading import read_list
-from warehouse.archive.sheets.rows import faults_of
+from warehouse.archive import kinds as list_kinds
+from warehouse.archive.files import ArchiveFile
+from warehouse.archive.list_rules import read_races
+from warehouse.archive.lists import read_lists
+from warehouse.archive.profile import Profiles
 
 TEXTS = {
     list_kinds.BOATS: """
@@ -49,20 +48,23 @@ def cells_of(text):
     return dict(zip(heads, cells, strict=True))
 
 
-LISTS = {kind.name: (kind, cells_of(text)) for kind, text in TEXTS.items()}
+LISTS = {kind.pattern: (kind, cells_of(text)) for kind, text in TEXTS.items()}
 
 
 def test_every_kind_of_list_is_tried():
-    assert {kind.name for kind, _ in LISTS.values()} == {k.name for k in list_kinds.LIST_KINDS}
+    assert {kind.pattern for kind, _ in LISTS.values()} == {
+        k.pattern for k in list_kinds.LIST_KINDS
+    }
 
 
 def values_of(name, cells, folder):
     """What a list of one row is read as, and what is wrong in it."""
     path = folder / "list.csv"
     path.write_text(";".join(cells) + "\n" + ";".join(cells.values()) + "\n")
-    file = ArchiveFile("list.csv", path, "", 2014, inside=True)
-    rows, found = read_list(file, LISTS[name][0], Profiles())
-    return rows.drop("cells").row(0, named=True), faults_of(rows, found)
+    kind = LISTS[name][0]
+    file = ArchiveFile("list.csv", path, kind, 2014, inside=True)
+    rows = read_lists([file], kind, Profiles())
+    return next(rows.frame.drop("cells").iter_rows(named=True), {}), rows.faults
 
 
 def limited():
@@ -113,7 +115,7 @@ def test_one_step_outside_is_set_aside_and_inside_accepted(
 @pytest.mark.parametrize(("season", "fits"), [(1989, False), (1990, True), (2100, True)])
 def test_a_season_outside_its_limits_is_set_aside_with_a_sentence(season, fits, tmp_path):
     (tmp_path / "wedstrijden").mkdir()
-    race = LISTS[list_kinds.RACES.name][1] | {"datum": f"{season}-06-01"}
+    race = LISTS[list_kinds.RACES.pattern][1] | {"datum": f"{season}-06-01"}
     (tmp_path / f"wedstrijden/a_{season}.csv").write_text(
         ";".join(race) + "\n" + ";".join(race.values()) + "\n"
     )

@@ -16,7 +16,7 @@ TOW = "{id};2014-03-01;FSN{boat};eerste boot 8h 2014;;{rowers};H;2,40;;;;;;;;;;n
 @pytest.mark.parametrize(
     ("row", "reason_code"),
     [
-        (lambda i: {"id": "1"}, "duplicate_tow_id"),
+        (lambda i: {"id": "1", "boat": i}, "duplicate_tow_id"),
         (lambda i: {"rowers": i % 7 + 6}, "samples_listed_twice"),
         (lambda i: {"boat": i}, "samples_listed_twice"),
         (lambda i: {"rowers": f"x{i}"}, "bad_list_row"),

@@ -4,7 +4,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from warehouse.archive.samples.frame import steps_of
+from warehouse.archive.samples import steps_of
 
 RNG = np.random.default_rng(1)
 SPEED = 2.5 + 0.2 * RNG.standard_normal(5_000)

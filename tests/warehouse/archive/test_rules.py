@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from warehouse.archive.faults import DefectiveFileError
-from warehouse.archive.plausibility.judgement import SPARE, Judgement, Run
-from warehouse.archive.plausibility.mix_ups import check_mix_ups, leave_out_other_units
-from warehouse.archive.plausibility.rules import (
+from warehouse.archive.judgement import SPARE, Judgement, Run
+from warehouse.archive.plausibility import (
     RULES,
     apply_rules,
     clipped_percent,
@@ -14,6 +13,7 @@ from warehouse.archive.plausibility.rules import (
     leave_out_stuck_gps,
     mean,
 )
+from warehouse.archive.plausibility import _check_whole_tow as check_mix_ups
 
 RATE_HZ = 20
 TOW = {"tow_id": "2015-001"}
@@ -101,18 +101,6 @@ def test_a_gps_that_holds_one_value_is_stuck_only_where_the_speed_differed(runs,
     assert gps_lost(*runs) == lost
 
 
-@pytest.mark.parametrize(("times", "unit"), [(3.6, "km/h"), (1.9438, "kn"), (0.53, "another unit")])
-def test_a_column_in_another_unit_is_lost_once_for_all_runs(times, unit):
-    runs = [sound(number, speed) for number, speed in enumerate((2.2, 2.4, 2.6), start=1)]
-    for run in runs:
-        run.channels["log2"] *= np.float32(times)
-    judgement = judged(*runs)
-    leave_out_other_units(judgement)
-    assert all("log2" not in run.channels for run in judgement.runs)
-    (fault,) = judgement.faults
-    assert (fault.run, fault.line, unit in fault.message) == (None, 1, True)
-
-
 @pytest.mark.parametrize(
     ("changed", "code"),
     [
@@ -127,7 +115,6 @@ def test_a_mix_up_costs_the_tow_and_sound_runs_have_none(changed, code):
     runs = [sound(number) for number in (1, 2, 3)]
     check_mix_ups(judged(*runs))
     judgement = judged(*(sound(run.number, **changed(run.channels)) for run in runs))
-    leave_out_other_units(judgement)
     with pytest.raises(DefectiveFileError) as error:
         check_mix_ups(judgement)
     assert error.value.reason_code == code

@@ -1,196 +1,292 @@
-"""A workbook that reaches too far is set aside before a reader makes room for it."""
+"""A cell of a workbook means what a person sees in it; a workbook that is too large is refused."""
 
+import datetime as dt
 import io
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
+import openpyxl
 import pytest
 import xlsxwriter
-from xlsxwriter.worksheet import Worksheet
 
-from pipeline.errors import DefectiveInputError
-from tests.warehouse.archive.conftest import TOWS, Archive, Scan
-from tests.warehouse.archive.test_formats import assert_same
-from warehouse.archive import FileHashes
-from warehouse.archive.check import check_archive
-from warehouse.archive.sheets.extent import check_workbook, sheets_of
-from warehouse.archive.sheets.sheet import grids_of_workbook
+from tests.warehouse.archive.conftest import BOATS, TOWS, Archive, Scan
+from tests.warehouse.archive.test_formats import assert_same, cells_of, xlsx
+from warehouse.archive import Fault
+from warehouse.archive.workbooks import MAX_PART_BYTES, show_number
 
-LAST = 1_048_575, 16_383
+LIST = TOWS.replace(".csv", ".xlsx")
+BOAT_LIST = BOATS.replace(".csv", ".xlsx")
+CORRECTION = 16  # column of `correctie [%]`, from 1
 
 
-def workbook(stray: str | None) -> bytes:
-    """A list with a text, or else only a colour, in the last cell there can be."""
-    file = io.BytesIO()
-    with xlsxwriter.Workbook(file) as book:
-        sheet = book.add_worksheet()
-        sheet.write_string(0, 0, "sleep_id")
-        sheet.write(*LAST, stray, book.add_format({"bg_color": "red"}))
-    return file.getvalue()
+def change(archive: Archive, edit: Callable[[openpyxl.Workbook], None], path: str = LIST) -> None:
+    """Write the lists as workbooks, and change one as openpyxl sees it."""
+    xlsx(archive)
+    book = openpyxl.load_workbook(archive.root / path)
+    edit(book)
+    book.save(archive.root / path)
 
 
-def test_the_file_is_set_aside_by_name(archive: Archive) -> None:
-    path = TOWS.replace(".csv", ".xlsx")
+def put(row: int, column: int, value: object, number_format: str = "General"):
+    def edit(book: openpyxl.Workbook) -> None:
+        cell = book.active.cell(row, column, value)
+        cell.number_format = number_format
+
+    return edit
+
+
+def faults_of(scan: Scan, path: str = LIST) -> list[Fault]:
+    return [fault for fault in scan.faults if fault.path == path]
+
+
+@pytest.mark.parametrize(
+    ("value", "number_format", "ratio"),
+    [
+        (6, "General", 0.06),
+        (0.06, "0%", 0.06),
+        (0.0625, "0.0%", 0.0625),
+        (-0.03, "0.00%", -0.03),
+        ("6%", "General", 0.06),
+        ("6 %", "@", 0.06),
+        ("6,5", "@", 0.065),
+    ],
+)
+def test_a_percentage_is_what_a_person_sees(
+    archive: Archive, value: object, number_format: str, ratio: float
+) -> None:
+    change(archive, put(4, CORRECTION, value, number_format))
+    scan = archive.scan()
+    assert faults_of(scan) == []
+    assert scan.index.tows["speed_correction_ratio"][0] == pytest.approx(ratio, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("value", "number_format", "shown"),
+    [
+        (2.4, "General", "2.4"),
+        (2.4, "0.00", "2.4"),
+        (1140, "#,##0", "1140"),
+        (1140, '#,##0.0,"k"', "1.14k"),
+        (0.03, "0.0%", "3%"),
+        (0.07, "0%", "7%"),
+        (8.28, '0.00" km/h"', "8.28km/h"),
+        (8.28, "0.00\\ \\m", "8.28m"),
+        (7, "000", "007"),
+        (7, '"FSN"000', "FSN007"),
+        (1400, "[$€-413] #,##0.00", "1400"),
+        (-5, "0;[Red]-0", "-5"),
+        (1.5e-7, "0.00E+00", "1.5e-07"),
+    ],
+)
+def test_a_number_is_shown_as_its_format_says_with_all_decimals(
+    value: float, number_format: str, shown: str
+) -> None:
+    assert show_number(value, number_format) == shown
+
+
+def test_a_unit_that_a_format_shows_must_be_that_of_the_column(archive: Archive) -> None:
+    change(archive, put(4, 8, 8.64, '0.00" km/h"'))
+    (fault,) = [fault for fault in faults_of(archive.scan()) if fault.tow_id == "2014-001"]
+    assert (fault.reason_code, fault.line) == ("bad_list_row", 4)
+    assert "8.64km/h" in fault.message
+    archive.root.joinpath(LIST).unlink()
+
+
+def test_a_unit_that_repeats_that_of_the_header_is_read(archive: Archive) -> None:
+    change(archive, put(4, 12, 1400, '0" kg"'))
+    scan = archive.scan()
+    assert faults_of(scan) == []
+    assert scan.index.tows["weight_kg"][0] == 1400
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "said", "lost"),
+    [
+        (CORRECTION, "#N/A", "an error of the spreadsheet", None),
+        (CORRECTION, "#VERW!", "an error of the spreadsheet", None),
+        (CORRECTION, "=1+2", "never calculated", None),
+        (14, "=1+2", "never calculated", "cell"),
+        (14, "#DIV/0!", "an error of the spreadsheet", "cell"),
+        (4, '=CONCATENATE("a","b")', "never calculated", None),
+        (3, "#REF!", "an error of the spreadsheet", None),
+        (CORRECTION, "3 of 4", "not an ordinary number", None),
+    ],
+)
+def test_an_error_or_an_uncalculated_formula_is_a_fault_of_its_cell(
+    archive: Archive, column: int, value: str, said: str, lost: str | None
+) -> None:
+    change(archive, put(4, column, value))
+    scan = archive.scan()
+    (fault,) = faults_of(scan)
+    assert (fault.tow_id, fault.line, fault.lost) == ("2014-001", 4, lost)
+    assert said in fault.message
+    assert ("2014-001" in scan.good) == (lost == "cell")
+
+
+def test_a_row_that_begins_with_an_error_is_no_remark(archive: Archive) -> None:
+    change(archive, put(4, 1, "#REF!"))
+    (fault,) = faults_of(archive.scan())
+    assert (fault.reason_code, fault.line) == ("bad_list_row", 4)
+
+
+def test_a_formula_with_its_result_is_read(archive: Archive, good_scan: Scan) -> None:
+    """Also one whose result is an empty text."""
+    header, *rows = cells_of(archive, TOWS)
     (archive.root / TOWS).unlink()
-    (archive.root / path).write_bytes(workbook("x"))
-    assert (path, "too_large") in {(f.path, f.reason_code) for f in archive.scan().index.faults}
-
-
-def test_a_colour_far_outside_is_no_cell_of_a_list() -> None:
-    (grid,) = grids_of_workbook(workbook(None), ())
-    assert grid.rows == [["sleep_id"]]
-
-
-def packed(name: str, *parts: bytes) -> bytes:
-    """A workbook, as far as its directory and this part of it go."""
-    file = io.BytesIO()
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as book, book.open(name, "w") as part:
-        for piece in parts:
-            part.write(piece)
-    return file.getvalue()
-
-
-def of_ods(rows: bytes) -> bytes:
-    return packed("content.xml", b"<table:table>", rows, b"</table:table>")
-
-
-def of_xlsx(rows: bytes) -> bytes:
-    return packed("xl/worksheets/sheet1.xml", b"<sheetData>", rows, b"</sheetData>")
-
-
-CELL = b"<c><v>1</v></c>"
-ODS_CELL = b"<table:table-cell><text:p>1</text:p></table:table-cell>"
-EMPTY_ROWS = (
-    b'<table:table-row table:number-rows-repeated="1048570"><table:table-cell/></table:table-row>'
-)
-
-
-@pytest.mark.parametrize(
-    "book",
-    [
-        of_xlsx(b'<row r="1048576">' + CELL + b"</row>"),
-        of_xlsx(b'<row r="7"><c r="XFC7"/>' + CELL + b"</row>"),
-        of_xlsx(b"<row/>" * 100_000 + b"<row>" + CELL + b"</row>"),
-        of_xlsx(b'<row><c r="CV60000"><v>1</v></c></row>'),
-        of_ods(EMPTY_ROWS + b"<table:table-row>" + ODS_CELL + b"</table:table-row>"),
-        of_ods(
-            b'<table:table-row><table:table-cell table:number-columns-repeated="16383"/>'
-            + ODS_CELL
-            + b"</table:table-row>"
-        ),
-        of_ods(
-            b'<table:table-row table:number-rows-repeated="40000000">'
-            b'<table:table-cell office:value="1"/></table:table-row>'
-        ),
-    ],
-    ids=["row", "column", "no places", "area", "ODS row", "ODS column", "40 million rows"],
-)
-def test_a_sheet_that_reaches_too_far_is_not_read(book: bytes) -> None:
-    with pytest.raises(DefectiveInputError, match="reaches") as raised:
-        check_workbook(book)
-    assert raised.value.reason_code == "too_large"
-
-
-@pytest.mark.parametrize(
-    "book",
-    [
-        of_xlsx(b'<row r="2"><c r="B2"><v>1</v></c></row><row r="1048576" ht="12"/>'),
-        of_ods(ODS_CELL + EMPTY_ROWS),
-        of_ods((b"<table:table-row>" + ODS_CELL + b"</table:table-row>") * 50_000),
-    ],
-)
-def test_empty_rows_to_the_last_one_are_no_list(book: bytes) -> None:
-    check_workbook(book)
-
-
-def test_a_workbook_that_unpacks_to_too_much_is_not_read() -> None:
-    file = io.BytesIO(workbook(None))
-    with zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as book:
-        book.writestr("xl/sharedStrings.xml.more", bytes(100_000_001))
-    with pytest.raises(DefectiveInputError, match="unpacked") as told:
-        grids_of_workbook(file.getvalue(), ())
-    assert told.value.reason_code == "too_large"
-
-
-@pytest.mark.parametrize(("blanks", "sheets"), [(0, ["een"]), (10_000_000, [])])
-def test_a_directory_of_sheets_of_ten_megabytes_is_not_read(
-    tmp_path: Path, blanks: int, sheets: list[str]
-) -> None:
-    path = tmp_path / "a.xlsx"
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as book:
-        book.writestr("xl/workbook.xml", '<sheet name="een" r:id="a"/>' + " " * blanks)
-        book.writestr("xl/_rels/workbook.xml.rels", '<Relationship Id="a" Target="b.xml"/>')
-    assert sheets_of(path) == sheets
-
-
-@pytest.mark.parametrize("named", ["Proeven.xlsx#{}", "{}"])
-def test_samples_in_a_sheet_per_tow_and_in_a_sheet_per_run(
-    archive: Archive, good_scan: Scan, named: str
-) -> None:
-    """One workbook of two tows, named by sheet; one of a tow with its runs in sheets."""
-    names = ("eerste boot 8h 2014", "tweede boot 6d 2014", "derde boot 12h 2014")
-    with xlsxwriter.Workbook(str(archive.root / "meetdata_2014/Proeven.xlsx")) as book:
-        for name in names[:2]:
-            write_samples(book.add_worksheet(name), typed_rows(archive, name))
-            archive.replace(TOWS, f";{name};", ";" + named.format(name) + ";")
-        book.add_worksheet("Blad3")
-    header, *rows = typed_rows(archive, names[2])
-    with xlsxwriter.Workbook(str(archive.root / f"meetdata_2014/{names[2]}.xlsx")) as book:
-        for run in range(1, 7):
-            own = [row[1:] for row in rows if row[0] == run]
-            write_samples(book.add_worksheet(f"run {run}"), [header[1:], *own])
-        book.add_worksheet("Blad7")
-    for name in names:
-        (archive.root / f"meetdata_2014/{name}.csv").unlink()
+    with xlsxwriter.Workbook(str(archive.root / LIST)) as book:
+        sheet = book.add_worksheet()
+        sheet.write_row(0, 0, header)
+        for place, row in enumerate(rows, start=1):
+            sheet.write_row(place, 0, row)
+        sheet.write_formula(1, CORRECTION - 1, "=12/2", None, 6)
+        sheet.write_formula(1, 4, '=IF(1,"","x")', None, "nothing")
+    edit_parts(archive.root / LIST, b"<v>nothing</v>", b"<v></v>")
     scan = archive.scan()
     assert_same(scan, good_scan)
-    assert check_archive(archive.root).causes == []
-    first = scan.index.tows.row(0, named=True)
-    assert first["samples_path"] == f"meetdata_2014/Proeven.xlsx#{names[0]}"
-    assert first["samples_sha256"] == FileHashes().hash_samples(archive.root, first["samples_path"])
 
 
-def test_a_sheet_that_two_workbooks_have_is_asked_about(archive: Archive) -> None:
-    rows = typed_rows(archive, "eerste boot 8h 2014")
-    for name in ("Proeven", "Kopie"):
-        with xlsxwriter.Workbook(str(archive.root / f"meetdata_2014/{name}.xlsx")) as book:
-            write_samples(book.add_worksheet("snol"), rows)
-    archive.replace(TOWS, ";eerste boot 8h 2014;", ";snol;")
-    faults = [f for f in archive.scan().index.faults if f.reason_code == "ambiguous_file"]
-    assert len(faults) == 1
-    assert "'Kopie.xlsx#snol', 'Proeven.xlsx#snol'" in faults[0].message
+def test_a_hidden_sheet_is_not_read_and_named(archive: Archive, good_scan: Scan) -> None:
+    def hide_a_copy(book: openpyxl.Workbook) -> None:
+        copy = book.copy_worksheet(book.active)
+        copy.title = "kopie"
+        copy.sheet_state = "hidden"
+        copy.cell(4, 8, 9.9)
+
+    change(archive, hide_a_copy)
+    scan = archive.scan()
+    (fault,) = scan.faults
+    assert (fault.reason_code, fault.path, fault.lost) == ("hidden", LIST, "row")
+    assert "'kopie'" in fault.message
+    assert scan.good.keys() == good_scan.good.keys()
 
 
-def test_faults_of_samples_in_a_workbook_are_named_with_sheet_and_line(archive: Archive) -> None:
-    header, *rows = typed_rows(archive, "eerste boot 8h 2014")
-    for row in rows[:60]:
-        row[4] = "kapot"
-    with xlsxwriter.Workbook(str(archive.root / "meetdata_2014/Proeven.xlsx")) as book:
-        write_samples(book.add_worksheet("snol"), [["titel"], [], header, *rows])
-        write_samples(book.add_worksheet("anders"), [["run", "log1 [m/s]", "log2 [m/s]"], [1, 2]])
-    archive.replace(TOWS, ";eerste boot 8h 2014;", ";Proeven.xlsx#snol;")
-    archive.replace(TOWS, ";tweede boot 6d 2014;", ";Proeven.xlsx#anders;")
-    archive.replace(TOWS, ";derde boot 12h 2014;", ";Proeven.xlsx#weg;")
-    for path in (archive.root / "meetdata_2014").glob("*.csv"):
-        path.unlink()
-    told = {
-        (place.path, place.line, cause.reason_code)
-        for cause in check_archive(archive.root).causes
-        for place in cause.places
-    }
-    assert told == {
-        ("meetdata_2014/Proeven.xlsx#snol", 4, "bad_number"),
-        ("meetdata_2014/Proeven.xlsx#anders", 1, "missing_column"),
-        ("meetdata_2014/Proeven.xlsx#weg", None, "unreadable_file"),
-    }
+def test_a_hidden_row_is_not_read_and_named(archive: Archive) -> None:
+    def hide(book: openpyxl.Workbook) -> None:
+        book.active.row_dimensions[5].hidden = True
+
+    change(archive, hide)
+    scan = archive.scan()
+    assert [(f.reason_code, f.line) for f in faults_of(scan)] == [("hidden", 5)]
+    assert sorted(scan.good) == ["2014-001", "2014-003"]
 
 
-def typed_rows(archive: Archive, name: str) -> list[list[str | float]]:
-    header, *lines = (archive.root / f"meetdata_2014/{name}.csv").read_text("utf-8").splitlines()
-    cells = (line.replace(",", ".").split(";") for line in lines)
-    return [list(header.split(";")), *([float(cell) for cell in row] for row in cells)]
+def test_the_same_list_as_workbook_and_csv_counts_once(archive: Archive, good_scan: Scan) -> None:
+    for path in (TOWS, BOATS):
+        text = (archive.root / path).read_text()
+        xlsx_of = archive.root / path.replace(".csv", ".xlsx")
+        with xlsxwriter.Workbook(str(xlsx_of)) as book:
+            sheet = book.add_worksheet()
+            for place, line in enumerate(text.splitlines()):
+                for column, cell in enumerate(line.split(";")):
+                    number = cell.replace(",", ".")
+                    is_number = number.replace(".", "", 1).isdigit() and not cell.startswith("0")
+                    sheet.write(place, column, float(number) if is_number else cell)
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.good.keys() == good_scan.good.keys()
+    assert scan.index.boats.sort("fsn_no").equals(good_scan.index.boats)
 
 
-def write_samples(sheet: Worksheet, rows: list[list[str | float]]) -> None:
-    for place, row in enumerate(rows):
-        sheet.write_row(place, 0, row)
+def test_rows_that_differ_between_two_lists_are_set_aside_with_both_places(
+    archive: Archive,
+) -> None:
+    text = (archive.root / TOWS).read_text("utf-8")
+    (archive.root / TOWS.replace(".csv", ".txt")).write_text(text.replace(";2,40;", ";2,41;"))
+    scan = archive.scan()
+    assert sorted(scan.good) == ["2014-002", "2014-003"]
+    places = {(fault.path, fault.line): str(fault.message) for fault in scan.faults}
+    assert set(places) == {(TOWS, 2), (TOWS.replace(".csv", ".txt"), 2)}
+    assert f"line 2 of {TOWS.replace('.csv', '.txt')}" in places[TOWS, 2]
+    assert f"line 2 of {TOWS}" in places[TOWS.replace(".csv", ".txt"), 2]
+
+
+def test_a_total_below_a_list_is_one_fault_and_costs_nothing(
+    archive: Archive, good_scan: Scan
+) -> None:
+    archive.edit(TOWS, lambda text: text + "Totaal;;;;;26;;7,30;;;;;;;;;;;;\n")
+    scan = archive.scan()
+    (fault,) = scan.faults
+    assert (fault.line, fault.lost, fault.tow_id) == (5, "row", None)
+    assert "'Totaal', '26', '7,30'" in fault.message
+    assert scan.good.keys() == good_scan.good.keys()
+
+
+@pytest.mark.parametrize("cell", [" " * 200_000, "x" * 200_000, "8" * 5_000])
+def test_a_cell_too_long_is_a_fault_before_any_pattern_is_tried(
+    archive: Archive, cell: str
+) -> None:
+    archive.replace(TOWS, "2014-03-01", f"{cell}2014-03-01")
+    faults = [fault for fault in archive.scan().faults if fault.path == TOWS]
+    if cell.strip():
+        (fault,) = faults
+        assert (fault.reason_code, fault.line) == ("bad_list_row", 2)
+        assert "'datum' has more than 1000 characters" in fault.message
+    else:
+        assert faults == []
+
+
+@pytest.mark.parametrize("suffix", [".xls", ".ods"])
+def test_other_workbooks_are_refused_with_what_to_do(archive: Archive, suffix: str) -> None:
+    (archive.root / TOWS).rename(archive.root / TOWS.replace(".csv", suffix))
+    (fault,) = [f for f in archive.scan().faults if f.path.endswith(suffix)]
+    assert fault.reason_code == "unreadable_file"
+    assert "save the list as .xlsx" in fault.message
+
+
+def edit_parts(path: Path, old: bytes, new: bytes) -> None:
+    """Replace a text in the parts of a workbook."""
+    with zipfile.ZipFile(path) as book:
+        parts = {name: book.read(name) for name in book.namelist()}
+    assert any(old in part for part in parts.values())
+    with zipfile.ZipFile(path, "w") as book:
+        for name, part in parts.items():
+            book.writestr(name, part.replace(old, new))
+
+
+def too_large(root: Path) -> bytes:
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as book:
+        book.writestr("xl/worksheets/sheet1.xml", bytes(MAX_PART_BYTES + 1))
+    return content.getvalue()
+
+
+def far_cell(root: Path) -> bytes:
+    """A list with a text in the last cell there can be, and no word of how far it reaches."""
+    content = io.BytesIO()
+    with xlsxwriter.Workbook(content) as book:
+        sheet = book.add_worksheet()
+        sheet.write_string(0, 0, "sleep_id")
+        sheet.write_string(1_048_575, 16_383, "x")
+    path = root / "far.xlsx"
+    path.write_bytes(content.getvalue())
+    edit_parts(path, b'<dimension ref="A1:XFD1048576"/>', b"")
+    data = path.read_bytes()
+    path.unlink()
+    return data
+
+
+@pytest.mark.parametrize("made", [too_large, far_cell])
+def test_a_workbook_that_is_too_large_is_refused_by_name(
+    archive: Archive, made: Callable[[Path], bytes]
+) -> None:
+    (archive.root / TOWS).unlink()
+    (archive.root / LIST).write_bytes(made(archive.root))
+    (fault,) = [fault for fault in archive.scan().index.faults if fault.path == LIST]
+    assert fault.reason_code == "too_large"
+    assert "into a new workbook" in fault.message
+
+
+def test_a_time_in_a_cell_is_a_rowing_time(archive: Archive) -> None:
+    header = ["wedstrijd", "datum", "afstand [km]", "fsn_nr", "roeiers", "klasse", "roeitijd"]
+    book = openpyxl.Workbook()
+    book.active.append(header)
+    day = dt.datetime(2014, 6, 1)
+    book.active.append(["Tocht", day, 18.4, 1, 8, "H", dt.time(2, 10, 25)])
+    book.active.append(["Tocht", day, 18.4, 2, 6, "D", dt.timedelta(hours=2, minutes=41)])
+    book.save(archive.root / "wedstrijden/tocht_2014.xlsx")
+    from warehouse.archive import read_races  # noqa: PLC0415
+
+    races, faults = read_races(archive.root)
+    assert faults == []
+    assert races["rowing_time_s"].to_list() == [7825.0, 9660.0]

@@ -1,0 +1,340 @@
+"""The columns that are looked for, and where they are in a header.
+
+A header cell is a name, in any case and with any accents, and its unit in brackets. Nothing is
+guessed: other names are given in `archief.toml`.
+"""
+
+import csv
+import re
+import unicodedata
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache, reduce
+from typing import Final, NamedTuple
+
+import polars as pl
+
+from pipeline.errors import DefectiveInputError
+from pipeline.messages import Sentence, say
+
+HEADER_WITHIN: Final = 30
+"""Lines among which the header is looked for: there may be titles above it."""
+DELIMITERS: Final = (";", "\t", ",", "|")
+LONGEST_QUOTE: Final = 40
+"""Letters of a cell that a sentence quotes."""
+_UNIT: Final = re.compile(r"(.*?)[\[(]([^\[\]()]*)[\])](.*)", re.DOTALL)
+
+
+class Scale(NamedTuple):
+    """What brings a number to its SI unit: times the first, divided by the second.
+
+    871 / 100 is exactly 8.71, and 871 * 0.01 need not be.
+    """
+
+    times: float = 1.0
+    divided_by: float = 1.0
+
+
+SI: Final = Scale()
+CLOCK: Final = Scale(0.0)
+"""Stands for a time of day, which is read as text."""
+UNITS: Final[Mapping[str, Mapping[str, Scale]]] = {
+    "speed": {
+        "m/s": Scale(), "dm/s": Scale(1, 10), "cm/s": Scale(1, 100), "mm/s": Scale(1, 1000),
+        "km/h": Scale(1, 3.6), "km/u": Scale(1, 3.6), "kn": Scale(1852, 3600),
+        "kt": Scale(1852, 3600), "mph": Scale(0.44704), "ft/s": Scale(0.3048),
+    },
+    "force": {
+        "n": Scale(), "dan": Scale(10), "hn": Scale(100), "kn": Scale(1000),
+        "kgf": Scale(9.80665), "kg": Scale(9.80665), "kp": Scale(9.80665),
+        "lbf": Scale(4.4482216152605),
+    },
+    "angle": {
+        "gra": Scale(), "deg": Scale(), "graden": Scale(), "degrees": Scale(), "°": Scale(),
+        "rad": Scale(180, 3.141592653589793), "gon": Scale(9, 10),
+    },
+    "length": {
+        "m": Scale(), "dm": Scale(1, 10), "cm": Scale(1, 100), "mm": Scale(1, 1000),
+        "km": Scale(1000), "nmi": Scale(1852), "ft": Scale(0.3048),
+    },
+    "mass": {"kg": Scale(), "g": Scale(1, 1000), "t": Scale(1000), "lb": Scale(0.45359237)},
+    "temperature": {"c": Scale(), "°c": Scale()},
+    "ratio": {"%": Scale(1, 100)},
+    "rate": {"hz": Scale()},
+    "power": {"w": Scale(), "kw": Scale(1000)},
+    "time": {
+        "s": Scale(), "ms": Scale(1, 1000), "clock": CLOCK, "days": Scale(86400),
+        "epoch_ms": Scale(1, 1000),
+    },
+    "none": {},
+}  # fmt: skip
+"""Per dimension the units that people write, in lower case; the SI unit comes first."""
+
+
+class DefectiveHeaderError(DefectiveInputError):
+    """A `DefectiveInputError` that a line of `archief.toml` can settle.
+
+    Attributes:
+        ask: the lines, with `?` for the answer.
+    """
+
+    def __init__(
+        self, reason_code: str, message: str, line: int | None, ask: Sequence[str] = ()
+    ) -> None:
+        super().__init__(reason_code, message, line)
+        self.ask = tuple(ask)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column to look for.
+
+    Attributes:
+        key: its name inside the project.
+        header: its name in the file, without the unit.
+        dimension: key of `UNITS`.
+        unit: unit of a header that names none.
+        required: a file without it is defective.
+        also: other names for it.
+        reversed: what is in it has the other sign.
+        is_unit_declared: `archief.toml` gives the unit, also where that of the header is unknown.
+    """
+
+    key: str
+    header: str
+    dimension: str = "none"
+    unit: str = ""
+    required: bool = True
+    also: tuple[str, ...] = ()
+    reversed: bool = False
+    is_unit_declared: bool = False
+
+    @property
+    def named(self) -> str:
+        """Name and unit as they are in a header."""
+        return f"{self.header} [{self.unit}]" if self.unit else self.header
+
+    def scale(self, unit: str | None) -> Scale | None:
+        """Return the scale of a unit as written; None where this column cannot have it."""
+        known = UNITS[self.dimension]
+        if unit is None and not self.unit:
+            return Scale()
+        scale = known.get(_fold_unit(self.unit if unit is None else unit))
+        if scale is None and self.is_unit_declared:
+            scale = known.get(_fold_unit(self.unit))
+        return Scale(-scale.times, scale.divided_by) if scale and self.reversed else scale
+
+
+@dataclass(frozen=True)
+class FoundColumn:
+    """Where a column is in a file, its header and unit as written, and what brings it to SI."""
+
+    index: int
+    header: str
+    scale: Scale = SI
+    unit: str = ""
+
+    def to_si(self, number: pl.Expr) -> pl.Expr:
+        """A number of this column in its SI unit."""
+        return (
+            number if self.scale == Scale() else number * self.scale.times / self.scale.divided_by
+        )
+
+
+def _fold_unit(unit: str) -> str:
+    return "".join(unit.casefold().split())
+
+
+@lru_cache(100_000)
+def fold(text: str) -> str:
+    """A header for comparing: its letters and digits, without case and accents."""
+    plain = unicodedata.normalize("NFKD", text).casefold()
+    return "".join(letter for letter in plain if letter.isalnum())
+
+
+@lru_cache(100_000)
+def fold_word(text: str) -> str:
+    """A value or a file name for comparing: without case; blanks inside count once."""
+    return " ".join(unicodedata.normalize("NFC", text).casefold().split())
+
+
+def shorten(text: str) -> str:
+    """The text, cut to a length that fits in a sentence."""
+    return text[:LONGEST_QUOTE] + ("..." if len(text) > LONGEST_QUOTE else "")
+
+
+def decode(data: bytes) -> str:
+    """The text of a file in UTF-8 or UTF-16 (with its mark), or else Windows-1252.
+
+    Raises:
+        DefectiveInputError: `unreadable_file` for anything else, and for an empty file.
+    """
+    if not data.strip():
+        raise DefectiveInputError("unreadable_file", say("The file is empty."))
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        encodings: tuple[str, ...] = ("utf-16",)
+    else:  # no text has a zero byte
+        encodings = () if 0 in data else ("utf-8-sig", "cp1252")
+    for encoding in encodings:
+        try:
+            return unicodedata.normalize("NFC", data.decode(encoding))
+        except UnicodeDecodeError:
+            continue
+    said = say("The file is not text in UTF-8, UTF-16 or Windows-1252: it can be damaged.")
+    raise DefectiveInputError("unreadable_file", said)
+
+
+def split_line(line: str, delimiter: str) -> list[str]:
+    """The fields of one line, quotes taken off.
+
+    Raises:
+        DefectiveInputError: a quotation mark is not closed, or in mid-field.
+    """
+    if '"' not in line:
+        return line.split(delimiter)
+    try:
+        return next(csv.reader([line], delimiter=delimiter, strict=True), [])
+    except csv.Error as error:
+        said = say("a quotation mark is not closed, or in mid-field.")
+        raise DefectiveInputError("unreadable_file", said) from error
+
+
+def split_header(cell: str) -> tuple[str, str | None]:
+    """The folded name in a header cell, and its unit as written where it has one.
+
+    Square brackets hold a unit; round ones only where it is one that anybody knows.
+    """
+    match = _UNIT.fullmatch(cell.strip())
+    if match is None:
+        return fold(cell), None
+    unit = match[2].strip()
+    is_known = any(unit.casefold() in units for units in UNITS.values())
+    return (fold(match[1] + match[3]), unit) if is_known or "[" in cell else (fold(cell), None)
+
+
+def find_header(lines: Sequence[str], columns: Iterable[Column]) -> tuple[int, str]:
+    """Which of the first lines is the header, the one that names most columns; its delimiter."""
+    wanted = tuple(columns)
+    best = 0, 0, ";"
+    for place, line in enumerate(lines[:HEADER_WITHIN]):
+        delimiter = max(DELIMITERS, key=line.count)
+        score = score_of(line.split(delimiter), wanted) if len(line) < 20_000 else 0
+        best = max(best, (score, -place, delimiter))
+    if best[0] == 0:  # nothing is known in any: what is wrong is told of the first
+        filled = next((line for line in lines if line.strip()), "")
+        return lines.index(filled) if filled else 0, max(DELIMITERS, key=filled.count)
+    return -best[1], best[2]
+
+
+def score_of(header: Iterable[str], columns: Iterable[Column]) -> int:
+    """How many cells of a row are names of columns."""
+    names = {fold(name) for column in columns for name in (column.header, *column.also)}
+    return len({split_header(cell.strip('"'))[0] for cell in header} & names)
+
+
+Ask = Callable[..., str]
+"""Makes the line of `archief.toml` that answers a question, with a blank for the answer."""
+
+
+def find_columns(
+    header: Sequence[str],
+    columns: Iterable[Column],
+    line: int = 1,
+    ask: Ask | None = None,
+    also_ask: Sequence[str] = (),
+) -> dict[str, FoundColumn]:
+    """Find columns by name and unit, in any order.
+
+    Two columns may share a name when their dimensions differ (`wind [m/s]`, `wind [gra]`); one of
+    them may leave out its unit.
+
+    Args:
+        header: the cells of the header.
+        columns: the columns to look for.
+        line: the header's line.
+        ask: makes the line of `archief.toml` that would answer what a column or unit is.
+        also_ask: lines to show beside these.
+
+    Raises:
+        DefectiveHeaderError: `missing_column`, `duplicate_column` or `unknown_unit`; all that is
+            wrong is told at once.
+    """
+    by_name: dict[str, list[Column]] = {}
+    for column in columns:
+        for name in {fold(name) for name in (column.header, *column.also)}:
+            by_name.setdefault(name, []).append(column)
+    found: dict[str, FoundColumn] = {}
+    problems: list[_Problem] = []
+    unsettled: set[str] = set()
+    cells = [(*split_header(cell), index) for index, cell in enumerate(header)]
+    for name, unit, index in sorted(cells, key=lambda cell: cell[1] is None):
+        namesakes = by_name.get(name, []) if name else []
+        if not namesakes:
+            continue
+        fitting = [c for c in namesakes if c.scale(unit) is not None]
+        free = [column for column in fitting if column.key not in found]
+        if len(free) == 1:
+            scale = free[0].scale(unit) or Scale()
+            told = free[0].unit if unit is None else unit
+            found[free[0].key] = FoundColumn(index, header[index].strip(), scale, told)
+        else:
+            problem = _explain_column(header[index], unit, namesakes, fitting, free, found)
+            problems.append(problem)
+            unsettled |= {column.key for column in namesakes}
+    wanted = dict.fromkeys(column for named in by_name.values() for column in named)
+    missing = [
+        column
+        for column in wanted
+        if column.required and column.key not in found and column.key not in unsettled
+    ]
+    if missing:
+        said = say(
+            "Not found in the header: {names}. Found: {found}.",
+            names=", ".join(f"'{column.named}'" for column in missing),
+            found=", ".join(f"'{shorten(cell.strip())}'" for cell in header[:30]),
+        )
+        problems.append(_Problem("missing_column", said, [f"columns.{c.key}" for c in missing]))
+    if problems:
+        said = reduce(lambda one, other: say("{} {}", one, other), [p.said for p in problems])
+        keys = dict.fromkeys(key for problem in problems for key in problem.keys)
+        lines = [ask(key) for key in keys] if ask else []
+        raise DefectiveHeaderError(problems[0].reason_code, said, line, (*lines, *also_ask))
+    return found
+
+
+class _Problem(NamedTuple):
+    """What is wrong with a header: its sentence, and the keys of a profile that would settle it."""
+
+    reason_code: str
+    said: Sentence
+    keys: Sequence[str]
+
+
+def _explain_column(
+    cell: str,
+    unit: str | None,
+    namesakes: Sequence[Column],
+    fitting: Sequence[Column],
+    free: Sequence[Column],
+    found: Mapping[str, FoundColumn],
+) -> _Problem:
+    """Return what is wrong with a cell that stands for no column, a taken one, or several."""
+    known = ", ".join(f"[{unit}]" for c in free or namesakes for unit in UNITS[c.dimension])
+    keys = [f"units.{column.key}" for column in free or namesakes]
+    if not fitting:
+        text = say("Column '{header}' has unit [{unit}]; known here: {known}.")
+        said = say(text, header=shorten(cell.strip()), unit=shorten(unit or ""), known=known or "-")
+        return _Problem("unknown_unit", said, keys)
+    if not free:
+        text = say("Columns '{first}' and '{second}' are the same; one of them has to go.")
+        said = say(text, first=found[fitting[0].key].header, second=shorten(cell.strip()))
+        return _Problem("duplicate_column", said, [])
+    text = say("Column '{header}' can be more than one thing; write its unit behind it: {known}.")
+    said = say(text, header=shorten(cell.strip()), known=known)
+    return _Problem("unknown_unit", said, [f"columns.{column.key}" for column in free])
+
+
+def unknown_headers(header: Sequence[str], found: Mapping[str, FoundColumn]) -> list[str]:
+    """The headers of no column that was found; empty ones do not count."""
+    taken = {column.index for column in found.values()}
+    return [cell.strip() for i, cell in enumerate(header) if i not in taken and fold(cell)]

@@ -1,0 +1,123 @@
+"""An empty archive to begin with: folders, spreadsheets that check what is filled in, a page."""
+
+from pathlib import Path
+from typing import Final
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.tables.declare import dy
+from warehouse.archive.columns import Column
+from warehouse.archive.kinds import BOATS, TOWS, ListKind
+from warehouse.archive.profile import PROFILE_FILE
+
+FOLDERS: Final = ("sloepregister", "sleeplijsten", "meetdata_2025", "wedstrijden")
+MOST_ROWS: Final = 500
+README: Final = """\
+# Een sleeparchief voor Herijk
+
+1. Vul `sloepregister/sloependata.xlsx` in: een rij per sloep. Een tweede ploeg of een nieuwe naam
+   van dezelfde sloep is een tweede rij met hetzelfde `fsn_nr`.
+2. Vul per seizoen een sleeplijst in: kopieer `sleeplijsten/sleeplijst_2025.xlsx` en zet het jaar in
+   de naam. Een rij per sleepproef. `meetfile` is de naam van het bestand met metingen.
+3. Zet de metingen in `meetdata_<jaar>/`: tekst (CSV, TXT) of Parquet, een bestand per sleepproef,
+   met een kolom `run`.
+4. Kijk wat er nog mis is, zonder iets te veranderen:
+
+       herijk check MAP
+
+   Wat in een lijst anders heet, noemt u in `archief.toml`.
+5. Reken alles uit: `herijk rebuild --archive MAP`.
+
+De rijen met VOORBEELD in de lijsten zijn een voorbeeld: haal ze weg. Wat niet
+kan kloppen weigeren ze bij het invullen.
+"""
+PROFILE: Final = """\
+# Wat in dit archief anders is dan gewoon. Alles mag weg; haal de # weg van wat u nodig hebt.
+
+# ignore = ["Weer"]                    # kolommen die niet gebruikt worden
+
+# [publication]
+# publisher = "Federatie ..."          # wie de uitkomsten uitgeeft
+# licence = "CC-BY-4.0"                # wat anderen ermee mogen: een SPDX-naam of een webadres
+
+# [words]
+# hrn = "H"                            # wat in een lijst staat = wat het betekent
+
+# [headers]
+# "Proef" = "sleep_id"                 # kop in een lijst = naam die Herijk kent
+
+# [[profile]]
+# seasons = "2025"
+# columns = { log1 = "Snelheid A" }    # kop in de metingen
+# absent = ["wind"]                    # wat niet gemeten is: wind, log2, gps
+# sample_rate_hz = 500
+
+# [[plan]]
+# seasons = "2025"
+# targets = [0.9, 0.9, 1.0, 1.0, 1.1, 1.1]
+# directions = ["out", "back", "out", "back", "out", "back"]
+# seconds = 50
+"""
+EXAMPLE_BOAT: Final = {
+    "fsn_no": "FSN999", "name": "VOORBEELD", "boat_type": "Kromhout", "waterline_length_m": 8.05,
+    "beam_m": 2.25, "bow_height_m": 0.9, "weight_kg": 980, "rowers": 8, "crew_class": "H",
+}  # fmt: skip
+EXAMPLE_TOW: Final = {
+    "tow_id": "VOORBEELD", "tow_date": "2025-03-01", "fsn_no": "FSN999",
+    "file": "voorbeeld 8h 2025",
+    "rowers": 8, "crew_class": "H", "declared_speed_m_s": 2.45, "weight_kg": 980,
+    "crew_weight_kg": 760, "water_temperature_c": 8.5, "use_runs": "1-6", "altered": "nee",
+}  # fmt: skip
+_CHOICES: Final = {"crew_class": ["H", "D"], "altered": ["ja", "nee"]}
+
+
+def write_templates(root: Path) -> None:
+    """Makes an empty archive.
+
+    Raises:
+        MissingKnowledgeError: there is something in the folder already.
+    """
+    if root.exists() and any(root.iterdir()):
+        raise MissingKnowledgeError("{} is not empty; name a folder that is new", root)
+    for folder in FOLDERS:
+        (root / folder).mkdir(parents=True, exist_ok=True)
+    (root / "LEESMIJ.md").write_text(README, encoding="utf-8")
+    (root / PROFILE_FILE).write_text(PROFILE, encoding="utf-8")
+    _write_list(root / "sloepregister/sloependata.xlsx", BOATS, EXAMPLE_BOAT)
+    _write_list(root / "sleeplijsten/sleeplijst_2025.xlsx", TOWS, EXAMPLE_TOW)
+
+
+def _write_list(path: Path, kind: ListKind, example: dict[str, object]) -> None:
+    """Writes a spreadsheet with a header, an example, and a check on each column with limits."""
+    import xlsxwriter  # type: ignore[import-untyped]  # noqa: PLC0415 - only here
+
+    with xlsxwriter.Workbook(str(path)) as book:
+        sheet = book.add_worksheet("lijst")
+        bold = book.add_format({"bold": True, "bottom": 1})
+        sheet.freeze_panes(1, 0)
+        for place, column in enumerate(kind.columns):
+            sheet.set_column(place, place, max(10, len(column.named) + 2))
+            sheet.write(0, place, column.named, bold)
+            sheet.write(1, place, example.get(column.key, ""))
+            rule = _rule(column, kind.table)
+            if rule is not None:
+                sheet.data_validation(1, place, MOST_ROWS, place, rule)
+
+
+def _rule(column: Column, table: type[dy.Schema]) -> dict[str, object] | None:
+    """What a spreadsheet holds a column against: the limits that its table declares."""
+    if column.key in _CHOICES:
+        return {"validate": "list", "source": _CHOICES[column.key]}
+    declared = table.columns().get(column.key)
+    if not isinstance(declared, dy.Float64 | dy.Int32) or column.dimension == "ratio":
+        return None
+    lowest, highest = declared.min, declared.max
+    if lowest is None or highest is None:
+        return None
+    return {
+        "validate": "decimal" if isinstance(declared, dy.Float64) else "integer",
+        "criteria": "between",
+        "minimum": lowest,
+        "maximum": highest,
+        "error_title": "Kan dit kloppen?",
+        "error_message": f"Verwacht wordt {lowest:g} tot {highest:g}.",
+    }

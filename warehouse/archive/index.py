@@ -1,0 +1,192 @@
+"""What an archive says, but for the samples: boats, tows with their files, and the faults."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import polars as pl
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import say
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
+from pipeline.tables.lake import ListedFiles, ListedRuns, ListedTows
+from warehouse.archive.columns import fold
+from warehouse.archive.faults import Fault, fault_from
+from warehouse.archive.files import (
+    SAMPLES,
+    ArchiveFile,
+    files_of,
+    hash_files,
+    match_key,
+    outside_archive,
+)
+from warehouse.archive.kinds import BOATS, TOWS
+from warehouse.archive.list_rules import (
+    check_hand_windows,
+    find_recordings,
+    read_boats,
+    read_force_checks,
+    read_lamps,
+    read_window_lists,
+)
+from warehouse.archive.lists import read_lists
+from warehouse.archive.profile import PROFILE_FILE, Profiles, read_profiles
+from warehouse.archive.tows import check_tows, run_file_names, runs_of, samples_by_name
+
+BOATS_FILE: Final = "sloepregister/sloependata.csv"
+TOWS_FILE: Final = "sleeplijsten/sleeplijst_<jaar>.csv"
+
+
+@dataclass(frozen=True)
+class ArchiveIndex:
+    """Everything an archive says, but for the samples themselves.
+
+    Attributes:
+        boats: one row per boat and crew (`ListedBoats`).
+        tows: one row per tow that can be read.
+        runs: one row per run of those tows; runs of a second file are 21 and on.
+        windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
+            whether they lie in their run.
+        faults: what is set aside, and why.
+        files: every file that was looked at.
+        profiles: `archief.toml`.
+    """
+
+    boats: pl.DataFrame
+    tows: pl.DataFrame
+    runs: dy.DataFrame[ListedRuns]
+    windows: pl.DataFrame
+    faults: tuple[Fault, ...]
+    files: dy.DataFrame[ListedFiles]
+    profiles: Profiles
+
+
+def index_archive(
+    root: Path, hash_file: Callable[[Path], str], profiles: Profiles | None = None
+) -> ArchiveIndex:
+    """Reads the lists of an archive and finds the files of every tow; samples are only hashed.
+
+    Args:
+        root: folder of the archive.
+        hash_file: gives the SHA-256 of a file; `FileHashes.hash_file` remembers them.
+        profiles: `archief.toml`, where it is not the one in the archive.
+
+    Raises:
+        MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
+    """
+    if not root.is_dir():
+        raise MissingKnowledgeError(
+            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
+            "meetdata_<jaar>/.",
+            *(root, BOATS_FILE),
+        )
+    profiles = profiles or read_profiles(root)
+    files = files_of(root)
+    _check_lists_are_there(root, files)
+    hashes, unread = hash_files(files, hash_file)
+    boats = read_boats(files, profiles)
+    rows = read_lists(files, TOWS, profiles)
+    listed = rows.listed.select("season", "tow_id", "tow_date", "file", "second_file")
+    checks, of_checks = read_force_checks(files, profiles)
+    burned, of_lamps = read_lamps(files, profiles, listed["tow_id"])
+    samples = samples_by_name(files, hashes)
+    window_rows = read_window_lists(files, profiles, listed.select("season", "tow_id"))
+    recordings = find_recordings(window_rows, profiles)
+    selections = check_tows(rows, samples, boats, profiles, checks, burned, recordings)
+    tows = rows.as_table(ListedTows)
+    runs = runs_of(tows, selections, profiles)
+    windows = check_hand_windows(window_rows, runs)
+
+    faults = [*boats.faults, *rows.faults, *of_checks, *of_lamps, *window_rows.faults]
+    faults += _not_read(files, profiles)
+    faults += _not_listed(files, listed, rows.unread, profiles)
+    faults += [] if rows.unread else _without_effect(profiles, listed)
+    told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
+    faults += [fault_from(error, error.path) for error in unread if error.path not in told]
+    return ArchiveIndex(
+        boats=boats.listed,
+        tows=tows,
+        runs=runs,
+        windows=windows,
+        faults=tuple(sorted(faults, key=lambda f: (f.path, f.line or 0, f.tow_id or ""))),
+        files=frame_of(ListedFiles, sorted((path, *found) for path, found in hashes.items())),
+        profiles=profiles,
+    )
+
+
+def _check_lists_are_there(root: Path, files: Iterable[ArchiveFile]) -> None:
+    """Raise `MissingKnowledgeError` where there is no boat list or no tow list."""
+    kinds = [file.kind for file in files]
+    said = None
+    if BOATS not in kinds:
+        said = say("there is no list of boats: {path} is expected.", path=BOATS_FILE)
+    elif TOWS not in kinds:
+        said = say("there is no list of tows: {path} is expected.", path=TOWS_FILE)
+    if said is not None:
+        raise MissingKnowledgeError("The archive at {} cannot be read: {}", root, said)
+
+
+def _not_read(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:
+    """What lies in the archive and is not read."""
+    text = say(
+        "'{path}' is not read: it has another name than the archive's files. Rename it, or put it "
+        "under ignore in archief.toml."
+    )
+    return [
+        Fault(file.path, None, None, "unrecognised_file", say(text, path=file.path))
+        for file in files
+        if not file.kind and fold(file.path) not in profiles.ignore
+    ]
+
+
+def _not_listed(
+    files: Iterable[ArchiveFile],
+    listed: pl.DataFrame,
+    unread_lists: set[str],
+    profiles: Profiles,
+) -> list[Fault]:
+    """The samples that no row names, in seasons whose list could be read."""
+    unread_seasons = {file.season for file in files if file.path in unread_lists}
+    named = set()
+    for tow_id, season, *cells in listed.select(
+        "tow_id", "season", "file", "second_file"
+    ).iter_rows():
+        plan, profile = profiles.plan_of(tow_id or "", season), profiles.for_season(season)
+        for cell in filter(None, cells):
+            named |= {match_key(cell), *run_file_names(cell, profile, plan).values()}
+    message = say("No row of a tow list names this file.")
+    return [
+        Fault(file.path, None, None, "samples_not_listed", message)
+        if file.inside
+        else fault_from(outside_archive(file.path), file.path)
+        for file in files
+        if file.kind == SAMPLES
+        and match_key(file.full_path.name) not in named
+        and file.season not in unread_seasons
+    ]
+
+
+def _without_effect(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]:
+    """What `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
+    days, seasons, tows = (set(listed[key]) for key in ("tow_date", "season", "tow_id"))
+
+    def has_none(first: int, last: int) -> bool:
+        return not any(first <= season <= last for season in seasons)
+
+    said: list[tuple[str, object]] = [
+        ("set_aside", one.date) for one in profiles.set_aside if one.date not in days
+    ]
+    said += [
+        ("log_replaced", one.date) for one in profiles.log_replaced if one.date.year not in seasons
+    ]
+    said += [("profile", one.seasons) for one in profiles.profile if has_none(*one.seasons)]
+    for plan in profiles.plan:
+        said += [("plan", tow) for tow in plan.tows if tow not in tows]
+        said += [("plan", plan.seasons)] if plan.seasons and has_none(*plan.seasons) else []
+    text = say("[[{table}]] is for {what}, and no tow list has that: is it mistyped?")
+    return [
+        Fault(PROFILE_FILE, None, None, "idle_setting", say(text, table=table, what=str(what)))
+        for table, what in said
+    ]

@@ -1,0 +1,189 @@
+"""The lists of an archive: where each lies, its columns, and the table that declares its limits."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from pipeline.tables.declare import dy
+from pipeline.tables.lake import (
+    ListedBoats,
+    ListedForceChecks,
+    ListedLamps,
+    ListedRaces,
+    ListedTows,
+    ListedWindows,
+    PrintedLines,
+)
+from warehouse.archive.columns import Column
+
+REMARK: Final = "remark"
+"""A column that is not read: whatever is in it."""
+
+
+@dataclass(frozen=True)
+class ListKind:
+    """A kind of list.
+
+    Attributes:
+        folder: its folder.
+        pattern: its name there without suffix; group 1 is the season.
+        reason_code: what a bad value in it is called.
+        table: declares the type and the limits of its values.
+        columns: the columns to look for.
+        about: `tow_id` where a row is a tow, `fsn_no` where it is a boat: lost with the row.
+        spare: the optional columns of which a cell that cannot be read counts as empty; of others
+            an empty cell would say something else, as that a boat was not altered.
+    """
+
+    folder: str
+    pattern: str
+    reason_code: str
+    table: type[dy.Schema]
+    columns: tuple[Column, ...]
+    about: str = ""
+    spare: frozenset[str] = frozenset()
+
+    def header(self, key: str) -> str:
+        """What the header calls a column, with its unit."""
+        return next(column.named for column in self.columns if column.key == key)
+
+
+def _length(key: str, header: str) -> Column:
+    return Column(key, header, "length", "m", required=False)
+
+
+def _mass(key: str, header: str) -> Column:
+    return Column(key, header, "mass", "kg", required=False)
+
+
+_SIZES: Final = (
+    _length("waterline_length_m", "lengte"),
+    _length("beam_m", "breedte"),
+    _length("bow_height_m", "hoogte"),
+    _mass("weight_kg", "gewicht"),
+)
+"""Sizes of a boat, as it is listed and as it was towed."""
+_BOAT: Final = Column("fsn_no", "fsn_nr")
+_CREW: Final = (Column("rowers", "roeiers"), Column("crew_class", "klasse"))
+_TOW_RUN: Final = (Column("tow_id", "sleep_id"), Column("run", "run"))
+_SECONDS: Final = (
+    Column("start_s", "van", "time", "s"),
+    Column("end_s", "tot", "time", "s"),
+)
+_SPEED: Final = Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s")
+_THWART: Final = Column("empty_thwart", "lege doft", required=False)
+
+BOATS: Final = ListKind(
+    "sloepregister",
+    "sloependata()",
+    "bad_boat_row",
+    ListedBoats,
+    (
+        _BOAT,
+        Column("ht_no", "ht_nr", required=False),
+        Column("name", "sloep"),
+        Column("boat_type", "type", required=False),
+        *_SIZES,
+        Column("rowers", "roeiers", required=False),
+        Column("crew_class", "klasse", required=False),
+    ),
+    about="fsn_no",
+    spare=frozenset({"ht_no", "boat_type"}),
+)
+TOWS: Final = ListKind(
+    "sleeplijsten",
+    "sleeplijst_([0-9]{4})",
+    "bad_list_row",
+    ListedTows,
+    (
+        Column("tow_id", "sleep_id"),
+        Column("tow_date", "datum"),
+        _BOAT,
+        Column("file", "meetfile"),
+        Column("second_file", "meetfile2", required=False),
+        *_CREW,
+        _SPEED,
+        *_SIZES,
+        _mass("weight_after_kg", "gewicht na"),
+        _mass("crew_weight_kg", "bemanning"),
+        Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
+        Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
+        Column("use_runs", "gebruik runs", required=False),
+        Column("altered", "verbouwd", required=False),
+        Column("sample_rate_hz", "meetfrequentie", "rate", "Hz", required=False),
+        _THWART,
+        _length("freeboard_lowest_m", "vrijboord laagst"),
+        _length("freeboard_bow_m", "vrijboord boeg"),
+        _length("freeboard_stern_m", "vrijboord achter"),
+        Column(REMARK, "opmerking", required=False),
+    ),
+    about="tow_id",
+    spare=frozenset(
+        {
+            *(size.key for size in _SIZES),
+            *("weight_after_kg", "crew_weight_kg", "water_temperature_c"),
+            *("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m"),
+        }
+    ),
+)
+WINDOWS: Final = ListKind(
+    "sleeplijsten",
+    "vensters_([0-9]{4})",
+    "bad_window_row",
+    ListedWindows,
+    (*_TOW_RUN, *_SECONDS, Column("reason", "reden")),
+)
+FORCE_CHECKS: Final = ListKind(
+    "sleeplijsten",
+    "krachtijkingen_([0-9]{4})",
+    "bad_instrument_row",
+    ListedForceChecks,
+    (
+        Column("day", "datum"),
+        Column("weight_kg", "gewicht", "mass", "kg"),
+        Column("reading_n", "aflezing", "force", "N"),
+    ),
+)
+"""The load cell read while a known weight hung on it, daily or more often (Sleepproef, R. Pot 2017,
+"Krachtopnemer")."""
+LAMPS: Final = ListKind(
+    "sleeplijsten",
+    "lampjes_([0-9]{4})",
+    "bad_instrument_row",
+    ListedLamps,
+    (*_TOW_RUN, *_SECONDS),
+)
+"""When a lamp beside the beacon burned because the tow line was not square ("Recht sturen")."""
+REGISTERS: Final = ListKind(
+    "sloepregister",
+    "sloepregister_([0-9]{4})",
+    "bad_register_row",
+    PrintedLines,
+    (
+        _BOAT,
+        *_CREW,
+        Column("a_kg_m", "A"),
+        Column("b_m_s", "B", "speed", "m/s"),
+        Column("cw_kg_m", "Cw"),
+        _SPEED,
+        Column("tow_date", "sleepdatum"),
+        _THWART,
+    ),
+)
+RACES: Final = ListKind(
+    "wedstrijden",
+    ".+_([0-9]{4})",
+    "bad_race_row",
+    ListedRaces,
+    (
+        Column("race", "wedstrijd"),
+        Column("race_date", "datum"),
+        Column("distance_m", "afstand", "length", "km"),
+        _BOAT,
+        *_CREW,
+        Column("rowing_time_s", "roeitijd"),
+        Column("stream_m", "stroom", "length", "km", required=False),
+        Column("penalty_w", "straf", "power", "W", required=False),
+        _THWART,
+    ),
+)
+LIST_KINDS: Final = (BOATS, TOWS, WINDOWS, FORCE_CHECKS, LAMPS, REGISTERS, RACES)

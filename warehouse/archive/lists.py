@@ -1,0 +1,527 @@
+"""Reading a list: from the bytes of a spreadsheet or CSV file to typed rows, and what is wrong.
+
+file -> tables of text cells -> columns by their header -> values by the declared types
+"""
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Final, NamedTuple
+
+import polars as pl
+
+from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
+from pipeline.errors import DefectiveInputError
+from pipeline.messages import Sentence, say
+from pipeline.tables.frames import limits
+from warehouse.archive.columns import (
+    Column,
+    DefectiveHeaderError,
+    FoundColumn,
+    Scale,
+    decode,
+    find_columns,
+    find_header,
+    fold,
+    fold_word,
+    score_of,
+    shorten,
+    split_header,
+    split_line,
+    unknown_headers,
+)
+from warehouse.archive.faults import Fault, Lost, at_line, fault_from
+from warehouse.archive.files import (
+    REFUSED_SUFFIXES,
+    TEXT_SUFFIXES,
+    ArchiveFile,
+    outside_archive,
+    read_bytes,
+)
+from warehouse.archive.kinds import REMARK, ListKind
+from warehouse.archive.profile import Profiles
+from warehouse.archive.rows import Rows, declared_column, no_rows
+from warehouse.archive.workbooks import Sheet, read_workbook
+
+LIST_MAX_BYTES: Final = 20_000_000
+MAX_CELL_CHARACTERS: Final = 1_000
+"""A longer cell is a fault before any pattern is tried on it."""
+MAX_QUOTED_LINE: Final = 100_000
+"""Characters of a line of which quotation marks are understood."""
+NUMBER: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+)?$"
+"""An ordinary number with a decimal comma or point; no marks between thousands."""
+_NOTHING: Final = ("", "-", "n.v.t.", "onbekend", "?")
+DID_NOT_FINISH: Final = "uitgevallen"
+"""Instead of a rowing time: no result, and no fault."""
+_YES: Final = ("ja", "x", "1")
+_NO: Final = ("nee", "0")
+_BOAT: Final = r"^(?i:fsn)?[\s._-]*([0-9]{1,6}[a-zA-Z]?)$"
+_RUN: Final = r"^[bB]?([1-9][0-9]?)$"
+_TIME: Final = r"^([0-9]{1,2}):([0-5]?[0-9]):([0-5]?[0-9])$"
+_ISO_DATE: Final = r"^([0-9]{4}-[0-9]{1,2}-[0-9]{1,2})$"
+_DUTCH_DATE: Final = r"^([0-9]{1,2}-[0-9]{1,2}-[0-9]{4})$"
+_SPREADSHEET_ERROR: Final = r"^#(N/[AB]|[A-Z]+(/0)?[!?])$"
+"""As #N/A or #REF!, and as Dutch spreadsheets say it: #N/B, #VERW!"""
+_FORMULA: Final = r"^="
+
+
+class Table(NamedTuple):
+    """A table of text.
+
+    Attributes:
+        header: the cells of its header.
+        line: the header's line.
+        rows: each with its line, its cells, and whether a quotation mark in it is open.
+        sheet: the sheet's name, where a workbook has several; else empty.
+    """
+
+    header: Sequence[str]
+    line: int
+    rows: Sequence[tuple[int, Sequence[str], bool]]
+    sheet: str = ""
+
+
+def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles) -> Rows:
+    """Read all lists of a kind; every row that cannot be used leaves a fault.
+
+    A list with a column that nobody knows is not read: it can be a misspelt one, and left out in
+    silence would change numbers. A list that cannot be read costs no other.
+    """
+    found = Rows(kind, no_rows(kind), listed=no_rows(kind))
+    columns = profiles.named(kind.columns)
+    for file in files:
+        if file.kind != kind:
+            continue
+        try:
+            tables, notes = read_tables(file, columns)
+        except BaseException as error:
+            tables, notes = [], [fault_from(error, file.path)]
+            found.unread.add(file.path)
+        found.faults += notes
+        for table in tables:
+            try:
+                header = [profiles.whole_headers.get(fold(cell), cell) for cell in table.header]
+                renamed = table._replace(header=header)
+                places = _find_places(renamed, columns, profiles)
+                _check_known(renamed, columns, places, profiles)
+                found.add(_typed(renamed, file, kind, places, profiles.meaning))
+            except BaseException as error:
+                found.faults.append(fault_from(error, file.path))
+                found.unread.add(file.path)
+    return found
+
+
+# From bytes to tables of text
+
+
+def read_tables(file: ArchiveFile, columns: Sequence[Column]) -> tuple[list[Table], list[Fault]]:
+    """Return the tables in a file, and what of it is not read.
+
+    Of a workbook these are the visible sheets that name at least half as many columns as the best.
+
+    Raises:
+        DefectiveInputError: the file cannot be read.
+    """
+    if not file.inside:
+        raise outside_archive(file.path)
+    if file.full_path.suffix.lower() in REFUSED_SUFFIXES:
+        text = say("{suffix} files are not read: save the list as .xlsx or as CSV.")
+        raise DefectiveInputError("unreadable_file", say(text, suffix=file.full_path.suffix))
+    data = read_bytes(file.full_path, LIST_MAX_BYTES)
+    if _is_text(file):
+        return [_table_of_text(decode(data), columns)], []
+    return _tables_of_workbook(file.path, data, columns)
+
+
+def _tables_of_workbook(
+    path: str, data: bytes, columns: Sequence[Column]
+) -> tuple[list[Table], list[Fault]]:
+    book = read_workbook(data)
+    filled = [sheet for sheet in book.sheets if sheet.rows]
+    if not filled:
+        said = say("No visible sheet of the workbook holds anything.")
+        raise DefectiveInputError("unreadable_file", said)
+    tables = [_table_of_sheet(sheet, columns) for sheet in filled]
+    scores = [score_of(table.header, columns) for table in tables]
+    enough = max(scores) / 2
+    kept = [table for table, score in zip(tables, scores, strict=True) if score >= enough]
+    kept = kept if max(scores) else kept[:1]
+    named = {table.sheet for table in kept}
+    notes = []
+    for table, score in zip(tables, scores, strict=True):
+        if 1 < score < enough:
+            text = say("sheet '{sheet}' is not read: its header is not that of this list.")
+            notes.append(_not_read(path, table.line, say(text, sheet=table.sheet)))
+    for sheet in book.hidden:
+        if sheet.rows and score_of(_table_of_sheet(sheet, columns).header, columns) >= enough:
+            text = say("sheet '{sheet}' is hidden, and is not read. Show it, or remove it.")
+            notes.append(_not_read(path, 1, say(text, sheet=sheet.name)))
+    for sheet in filled:
+        if sheet.name in named and sheet.hidden_lines:
+            text = say(
+                "{number} rows of sheet '{sheet}' are hidden, and are not read. Show them, or "
+                "remove them."
+            )
+            said = say(text, number=len(sheet.hidden_lines), sheet=sheet.name)
+            notes.append(_not_read(path, sheet.hidden_lines[0], said))
+    if len(kept) == 1:
+        kept = [kept[0]._replace(sheet="")]
+    return kept, notes
+
+
+def _not_read(path: str, line: int, said: Sentence) -> Fault:
+    return Fault(path, None, line, "hidden", at_line(line, said), "row")
+
+
+def _is_text(file: ArchiveFile) -> bool:
+    return file.full_path.suffix.lower() in TEXT_SUFFIXES
+
+
+def _table_of_text(text: str, columns: Sequence[Column]) -> Table:
+    """Read line by line: a quotation mark left open would swallow the rows below."""
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    place, delimiter = find_header(lines, columns)
+    header = split_line(lines[place], delimiter)
+    rows: list[tuple[int, Sequence[str], bool]] = []
+    for number, line in enumerate(lines[place + 1 :], start=place + 2):
+        try:
+            is_plain = len(line) > MAX_QUOTED_LINE
+            cells = line.split(delimiter) if is_plain else split_line(line, delimiter)
+            rows.append((number, cells, False))
+        except DefectiveInputError:
+            rows.append((number, line.split(delimiter), True))
+    return Table(header, place + 1, _filled(rows))
+
+
+def _table_of_sheet(sheet: Sheet, columns: Sequence[Column]) -> Table:
+    lines = ["\t".join(" ".join(cell.split()) for cell in cells) for _, cells in sheet.rows]
+    place, _ = find_header(lines, columns)
+    line, header = sheet.rows[place]
+    rows = [(number, cells, False) for number, cells in sheet.rows[place + 1 :]]
+    return Table(header, line, _filled(rows), sheet.name)
+
+
+def _filled(
+    rows: Iterable[tuple[int, Sequence[str], bool]],
+) -> list[tuple[int, Sequence[str], bool]]:
+    """Return the rows that hold something, without remarks behind a `#`."""
+    return [row for row in rows if "".join(row[1]).strip() and not _is_remark(row[1][0].strip())]
+
+
+def _is_remark(cell: str) -> bool:
+    return cell.startswith("#") and not re.match(_SPREADSHEET_ERROR, cell[:20])
+
+
+# From a table of text to typed rows
+
+
+def _find_places(
+    table: Table, columns: Sequence[Column], profiles: Profiles
+) -> dict[str, FoundColumn]:
+    """Return the columns in the header of a list; raise with a question for every other header."""
+    try:
+        return find_columns(table.header, columns, table.line)
+    except DefectiveHeaderError as error:
+        ask = [
+            _ask_header(cell.strip())
+            for cell in table.header
+            if fold(cell) and fold(cell) not in profiles.ignore and not _can_be(cell, columns)
+        ]
+        raise DefectiveHeaderError(error.reason_code, error.message, error.line, ask) from error
+
+
+def _can_be(cell: str, columns: Iterable[Column]) -> bool:
+    """Return whether a header names a column, with a unit that this can have."""
+    name, unit = split_header(cell)
+    namesakes = [c for c in columns if name in map(fold, (c.header, *c.also))]
+    return any(column.scale(unit) is not None for column in namesakes)
+
+
+def _ask_header(header: str) -> str:
+    quoted = header.replace("\\", "\\\\").replace('"', '\\"')
+    return f'[headers]\n"{quoted}" = "?"'
+
+
+def _check_known(
+    table: Table, columns: Iterable[Column], places: Mapping[str, FoundColumn], profiles: Profiles
+) -> None:
+    """Raises where a column is not known, or one without a name holds something."""
+    unknown = [h for h in unknown_headers(table.header, places) if fold(h) not in profiles.ignore]
+    for index, header in enumerate(table.header):
+        is_filled = any(row[index].strip() for _, row, _ in table.rows if index < len(row))
+        if not fold(header) and is_filled:
+            unknown.append(f"({index + 1})")
+    if unknown:
+        text = say(
+            "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or "
+            "put it there under ignore. Not used yet: {free}."
+        )
+        names = ", ".join(f"'{shorten(header)}'" for header in unknown)
+        free = ", ".join(column.header for column in columns if column.key not in places) or "-"
+        said = say(text, names=names, free=free)
+        ask = [_ask_header(header) for header in unknown if header[:1] != "("]
+        raise DefectiveHeaderError("unknown_column", said, table.line, ask)
+
+
+def _typed(
+    table: Table,
+    file: ArchiveFile,
+    kind: ListKind,
+    places: Mapping[str, FoundColumn],
+    words: Mapping[str, str],
+) -> Rows:
+    """Return the values of a table, by the types that its kind of list declares.
+
+    Every cell that is wrong leaves a fault; a row is set aside unless the kind can spare the cell.
+    """
+    keys = [column.key for column in kind.columns]
+    frame = _cells(table, places, words, keys)
+    needed = [column.key for column in kind.columns if _is_needed(kind, column)]
+    is_fragment = pl.sum_horizontal(pl.col(needed).is_null()) * 2 > len(needed)
+    about = _value(kind, kind.about, places) if kind.about else pl.lit(None, pl.String)
+    rows = Rows(
+        kind,
+        frame.with_columns(
+            path=pl.lit(file.path),
+            sheet=pl.lit(table.sheet),
+            season=pl.lit(file.season, pl.Int32),
+            about=pl.when(~is_fragment).then(about),
+            cells=pl.struct(keys),
+        ),
+    )
+    if "rowing_time_s" in keys:
+        did_finish = pl.col("rowing_time_s").str.to_lowercase() != DID_NOT_FINISH
+        rows.frame = rows.frame.filter(did_finish.fill_null(value=True))
+    every, width = rows.frame.filter(~is_fragment), len(table.header)
+    rows.drop(pl.col("is_open"), say("a quotation mark is not closed, or in mid-field."))
+    text = say("column '{column}' has more than {most} characters in this row.")
+    rows.drop(pl.col("too_long") != "", text, column=pl.col("too_long"), most=MAX_CELL_CHARACTERS)
+    text = say("the row has {fields} fields where the header has {width}.")
+    rows.drop(pl.col("fields") != width, text, fields=pl.col("fields"), width=width)
+    text = say(
+        "there is only {cells} in this row. Remove it if it is a total or a heading; '#' before it "
+        "will do."
+    )
+    filled = pl.concat_str(keys, separator="', '", ignore_nulls=True)
+    rows.drop(is_fragment, text, lost="row", cells=pl.format("'{}'", filled))
+    mark = _decimal_mark(rows.frame, places) if _is_text(file) else ""
+    is_lost, values = _note_empty(rows, needed, places), {}
+    for column in kind.columns:
+        value = _value(kind, column.key, places)
+        is_told = pl.lit(value=False)
+        for is_wrong, said, code, facts in _checks(kind, column, places, value, mark):
+            wrong = is_wrong.fill_null(value=False) & ~is_told
+            is_told |= wrong
+            is_spare = column.key in kind.spare
+            lost: Lost | None = "cell" if is_spare else None
+            rows.note(wrong, said, code, lost, asks_word=said in ASKED_WORDS, **facts)
+            is_lost = is_lost if is_spare else is_lost | wrong
+        values[column.key] = pl.when(~is_told).then(value)
+    schema = no_rows(kind).schema
+    rows.frame, rows.listed = (
+        frame.with_columns(**values).select(schema.names()).cast(schema)
+        for frame in (rows.frame.filter(~is_lost), every)
+    )
+    return rows
+
+
+def _is_needed(kind: ListKind, column: Column) -> bool:
+    """Return whether every row must have a cell of this column."""
+    declared = declared_column(kind, column.key)
+    return column.required and (declared is None or not declared.nullable)
+
+
+def _cells(
+    table: Table, places: Mapping[str, FoundColumn], words: Mapping[str, str], keys: Sequence[str]
+) -> pl.DataFrame:
+    """Return what is written in each column, trimmed and in words that are known.
+
+    An empty cell is null. With the `line` of each row, whether a quotation mark in it `is_open`,
+    the header of a cell that is `too_long`, and how many `fields` it has, blank ones behind the
+    last column aside.
+    """
+    width = len(table.header)
+    found: dict[str, list[object]] = {
+        name: [] for name in ("line", "is_open", "fields", "too_long", *keys)
+    }
+    for line, row, is_open in table.rows:
+        has_more = any(map(str.strip, row[width:]))
+        too_long = ""
+        for key in keys:
+            index = places[key].index if key in places else width
+            cell = row[index].strip() if index < min(len(row), width) else ""
+            if len(cell) > MAX_CELL_CHARACTERS:
+                too_long = places[key].header
+                cell = ""
+            meaning = words.get(fold_word(cell), cell)
+            found[key].append(None if meaning.casefold() in _NOTHING else meaning)
+        found["line"].append(line)
+        found["is_open"].append(is_open)
+        found["fields"].append(len(row) if has_more else min(len(row), width))
+        found["too_long"].append(too_long)
+    schema = {"line": pl.Int64, "is_open": pl.Boolean, "fields": pl.Int64, "too_long": pl.String}
+    return pl.DataFrame(found, schema | dict.fromkeys(keys, pl.String))
+
+
+def _decimal_mark(cells: pl.DataFrame, places: Mapping[str, FoundColumn]) -> str:
+    """The decimal mark of a list: a comma where any cell is a number with one, else a point."""
+    has_comma = cells.select(pl.col(*places).str.contains(r"^[+-]?[0-9]*,[0-9]+$").any())
+    return "," if any(has_comma.row(0)) else "."
+
+
+def _note_empty(rows: Rows, needed: list[str], places: Mapping[str, FoundColumn]) -> pl.Expr:
+    """Note which needed cells of each row are empty; return which rows these are."""
+    names = [pl.when(pl.col(key).is_null()).then(pl.lit(places[key].header)) for key in needed]
+    empty = pl.concat_str(names, separator="', '", ignore_nulls=True)
+    is_empty = pl.any_horizontal(pl.col(needed).is_null())
+    rows.note(is_empty, say("column '{column}' is empty."), column=empty)
+    return is_empty
+
+
+Check = tuple[pl.Expr, str, str | None, dict[str, Any]]
+"""Which rows are wrong, the sentence, its reason code, and what is filled in."""
+
+
+def _checks(
+    kind: ListKind, column: Column, places: Mapping[str, FoundColumn], value: pl.Expr, mark: str
+) -> list[Check]:
+    """What can be wrong with the cells of a column."""
+    text, declared = pl.col(column.key), declared_column(kind, column.key)
+    place = places.get(column.key, FoundColumn(-1, column.header, Scale()))
+    named: dict[str, Any] = {"column": place.header, "cell": text}
+    if column.key == REMARK:
+        return []
+    error = say("column '{column}' is {cell}, an error of the spreadsheet: correct its formula.")
+    formula = say(
+        "column '{column}' is the formula {cell}, which was never calculated: open the list in a "
+        "spreadsheet program and save it there, or type the value."
+    )
+    checks: list[Check] = [
+        (text.str.contains(_SPREADSHEET_ERROR), error, None, named),
+        (text.str.contains(_FORMULA), formula, None, named),
+    ]
+    if declared is None:
+        return checks
+    is_unread = text.is_not_null() & value.is_null()
+    checks.append((is_unread, _not_one(column.key, declared.dtype), None, named))
+    if declared.dtype.is_float() and mark:
+        said = say(
+            "column '{column}' is {cell}, which can be a thousand or little more than one: other "
+            "decimals of this list are behind a '{mark}'."
+        )
+        is_double = text.str.contains(
+            rf"^[+-]?[0-9]{{1,3}}[{',' if mark == '.' else '.'}][0-9]{{3}}$"
+        )
+        checks.append((is_double, said, "ambiguous_number", named | {"mark": mark}))
+    if declared.dtype.is_numeric() and column.key != "run":
+        lowest, highest = limits(kind.table, column.key)
+        low = -float("inf") if lowest is None else lowest
+        high = float("inf") if highest is None else highest
+        said = say("column '{column}' is {cell}; {low:g} to {high:g} can be right.")
+        of_unit = place.scale.divided_by / place.scale.times
+        shown = named | {"low": low * of_unit, "high": high * of_unit}
+        checks.append((~value.is_between(low, high), said, None, shown))
+    return checks
+
+
+_NO_CLASS: Final = say("column '{column}' is '{cell}'; H or D is expected.")
+_NO_YES: Final = say("column '{column}' is '{cell}', not ja, nee or empty.")
+_NO_TIME: Final = say(
+    "column '{column}' is '{cell}', not a time such as 2:10:25. A word for a crew that did not "
+    "finish means 'uitgevallen'."
+)
+ASKED_WORDS: Final = (_NO_CLASS, _NO_YES, _NO_TIME)
+"""What is said of a cell whose word can be given a meaning."""
+
+
+def _not_one(key: str, dtype: pl.DataType) -> Sentence:
+    """What is said of a cell that is not of its column's type."""
+    number = say("column '{column}' is '{cell}', which is not an ordinary number.")
+    whole = say("column '{column}' is {cell}; it must be a whole number.")
+    by_key = {
+        "crew_class": _NO_CLASS,
+        "run": say("column '{column}' is '{cell}'; runs are 1 to 20, of meetfile2 b1 to b20."),
+        "rowing_time_s": _NO_TIME,
+    }
+    by_type = {
+        pl.Date: say("column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014."),
+        pl.Boolean: _NO_YES,
+        pl.Int32: whole,
+        pl.Int16: whole,
+    }
+    return by_key.get(key) or by_type.get(dtype.base_type(), number)
+
+
+# The value of a cell of text, null where it has none
+
+
+def _value(kind: ListKind, key: str, places: Mapping[str, FoundColumn]) -> pl.Expr:
+    """The value of a column, by its name or by the type that its table declares."""
+    text, declared = pl.col(key), declared_column(kind, key)
+    by_type = {pl.Boolean: _yes_or_no, pl.Date: _date}
+    if key in _BY_KEY:
+        return _BY_KEY[key](text)
+    if declared is None or declared.dtype == pl.String():
+        return text
+    if declared.dtype.base_type() in by_type:
+        return by_type[declared.dtype.base_type()](text)
+    return _number(text, places.get(key), declared.dtype.is_integer())
+
+
+def _boat(text: pl.Expr) -> pl.Expr:
+    """`FSN 101`, `fsn101` and `101` are FSN101."""
+    return pl.coalesce("FSN" + text.str.extract(_BOAT).str.to_uppercase(), text)
+
+
+def _tow_id(text: pl.Expr) -> pl.Expr:
+    """2014/17 would be a folder in names of pages and files."""
+    return text.str.replace_all("/", "-", literal=True)
+
+
+def _crew_class(text: pl.Expr) -> pl.Expr:
+    letter = text.str.to_uppercase()
+    return pl.when(letter.is_in(["H", "D"])).then(letter)
+
+
+def _run(text: pl.Expr) -> pl.Expr:
+    """The number of a run: 1 to 20, or 21 to 40 for b1 to b20."""
+    number = text.str.extract(_RUN).cast(pl.Int16)
+    offset = pl.when(text.str.contains("^[bB]")).then(SECOND_FILE_OFFSET).otherwise(0)
+    return pl.when(number <= MOST_RUNS).then(number + offset)
+
+
+def _rowing_time(text: pl.Expr) -> pl.Expr:
+    """Seconds of `2:10:25`."""
+    parts = text.str.extract_groups(_TIME).struct
+    hours, minutes, seconds = (parts.field(str(n)).cast(pl.Float64) for n in (1, 2, 3))
+    total = hours * 3600 + minutes * 60 + seconds
+    return pl.when(total > 0).then(total)
+
+
+def _yes_or_no(text: pl.Expr) -> pl.Expr:
+    word = text.fill_null("nee").str.to_lowercase()
+    return pl.when(word.is_in([*_YES, *_NO])).then(word.is_in(_YES))
+
+
+def _date(text: pl.Expr) -> pl.Expr:
+    iso = text.str.extract(_ISO_DATE).str.to_date("%Y-%m-%d", strict=False)
+    return iso.fill_null(text.str.extract(_DUTCH_DATE).str.to_date("%d-%m-%Y", strict=False))
+
+
+def _number(text: pl.Expr, place: FoundColumn | None, is_whole: bool) -> pl.Expr:
+    """A number in the SI unit of its column."""
+    if place and place.unit:  # 3% under [%]: the unit may be repeated behind the number
+        text = text.str.replace(rf"(?i)\s*{re.escape(place.unit)}$", "")
+    digits = pl.when(text.str.contains(NUMBER)).then(text.str.replace(",", ".", literal=True))
+    number = digits.cast(pl.Float64, strict=False)
+    number = place.to_si(number) if place else number
+    is_good = number.is_finite() & (number == number.round() if is_whole else pl.lit(value=True))
+    return pl.when(is_good).then(number)
+
+
+_BY_KEY: Final[Mapping[str, Callable[[pl.Expr], pl.Expr]]] = {
+    "fsn_no": _boat,
+    "tow_id": _tow_id,
+    "crew_class": _crew_class,
+    "run": _run,
+    "rowing_time_s": _rowing_time,
+}

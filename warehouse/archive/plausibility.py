@@ -1,0 +1,538 @@
+"""Whether the samples of a tow can be true: a fault costs what it touches.
+
+In this order: the runs that are there and long enough; what is wrong with the tow as a whole; the
+samples that cannot be; and the table of `RULES` on each channel of a run.
+"""
+
+from collections.abc import Callable, Mapping
+from itertools import combinations, pairwise
+from typing import Final, Literal, NamedTuple
+
+import numpy as np
+import polars as pl
+import scipy
+from numpy.typing import NDArray
+
+from pipeline.arrays import BoolArray
+from pipeline.channels import SECOND_FILE_OFFSET
+from pipeline.messages import Sentence, say
+from pipeline.tables.row import Row
+from warehouse.archive.faults import Fault
+from warehouse.archive.judgement import (
+    CHANNELS,
+    COLUMN_OF,
+    SPARE,
+    Array,
+    Cost,
+    Judgement,
+    Run,
+    stretches,
+    what_it_holds,
+)
+from warehouse.archive.samples import Place, run_starts
+
+SPEEDS: Final = ("log1", "log2", "gps")
+SHORTEST_RUN_RATIO: Final = 0.99
+LONGEST_RUN_RATIO: Final = 1.8
+"""Shares of the planned time. A rate that is wrong is usually half of the right one (inferred)."""
+LEFT_OUT_S: Final = 2.0
+"""Longest time in all of a run in which what the run point needs may be left out; as long again for
+log 2 and the GPS each."""
+DROPOUT_M_S: Final = 0.1
+SPIKE_RATIO: Final = {"log1": 0.3, "log2": 0.3, "gps": 0.1}
+"""Share of the speed around it: a boat and its crew weigh a ton, and change no faster. A GPS has no
+noise of samples: such a jump is the receiver's (inferred)."""
+AROUND_S: Final = 11
+"""The speed around a sample: the median over so many seconds of each one's median."""
+FORCE_SPIKE_RATIO: Final = (-3.0, 5.0)
+"""Share of the usual force. A tow line cannot push: what a slack one reads is noise about zero."""
+FORCE_DEAD_RATIO: Final = 0.05
+FORCE_DEAD_S: Final = 0.1
+"""A force that stays at one value so near zero, for so long, is not one."""
+GUST_RATIO: Final = 2.5
+GUST_M_S: Final = 4.0
+"""Wind so many times the run's median, and this much more, is not a gust that cups follow."""
+EXTREMES: Final = {"wind_speed": (0.0, 40.0), "wind_angle": (-180.0, 360.0)}
+"""Between which every sample lies."""
+MOVES_AS_A_LOG_HZ: Final = 5.0
+HELD_AS_A_FIX_HZ: Final = (0.1, 2.0)
+"""Changes of value a second, at least of a log and of a receiver of one fix a second."""
+KM_H_RATIO: Final = (3.0, 4.2)
+"""Log 1 over the intended speed where it looks like km/h."""
+GPS_MUST_MOVE_M_S: Final = 0.15
+"""A GPS that holds one value is suspect only where the boat's speed differed more than this."""
+VANE_TURNS_M_S: Final = 0.5
+CLIPPED_TIMES: Final = 3.0
+"""Samples at the highest value, times those at the next one, where coarse steps explain them."""
+
+
+class Judged(NamedTuple):
+    """What is left of a tow's samples.
+
+    Attributes:
+        samples: the given frame without the runs that are lost, NaN where a sample is left out.
+        faults: what was lost: seconds and runs, in the order of the runs.
+    """
+
+    samples: pl.DataFrame
+    faults: list[Fault]
+
+
+def judge_samples(samples: pl.DataFrame, place: Place, tow: Row, runs: pl.DataFrame) -> Judged:
+    """What of the selected runs of a tow can be used; runs that are not selected stay as they are.
+
+    Args:
+        samples: frame of `SAMPLE_SCHEMA`, as `read_tow_samples` returns it.
+        place: where its rows stand.
+        tow: a row of `ArchiveIndex.tows`.
+        runs: `ArchiveIndex.runs`; rows of other tows are ignored.
+
+    Raises:
+        DefectiveFileError: the tow is lost: the most specific cause comes first.
+    """
+    judgement = Judgement(tow, place)
+    _select_runs(judgement, samples, runs)
+    _check_length(judgement)
+    _leave_out_copies(judgement)
+    judgement.check_left()
+    _leave_out_no_wind(judgement)
+    _check_whole_tow(judgement)
+    usual_kg_m = _usual_resistance_kg_m(judgement.runs)
+    for run in judgement.runs:
+        leave_out(judgement, run, usual_kg_m)
+        if run in judgement.runs:
+            apply_rules(judgement, run)
+    leave_out_stuck_gps(judgement)
+    judgement.check_left()
+    return Judged(_as_judged(samples, judgement), judgement.faults)
+
+
+# Runs
+
+
+def _select_runs(judgement: Judgement, samples: pl.DataFrame, runs: pl.DataFrame) -> None:
+    """Finds the selected runs; each that is not there leaves a fault."""
+    tow, number = judgement.tow, samples["run"].to_numpy()
+    bounds = [*run_starts(number).tolist(), len(number)]
+    rows = {int(number[start]): slice(start, end) for start, end in pairwise(bounds)}
+    channels = {
+        key: samples[name].to_numpy()
+        for key, name in CHANNELS.items()
+        if samples[name].null_count() == 0
+    }
+    selected = runs.filter((pl.col("tow_id") == tow["tow_id"]) & pl.col("selected")).sort("run")
+    judgement.wanted = selected.height
+    for run, planned_s, ratio in selected["run", "planned_s", "target_speed_ratio"].iter_rows():
+        if run not in rows:
+            judgement.faults.append(_missing_run(run, tow, sorted(rows)))
+            continue
+        own = {key: values[rows[run]] for key, values in channels.items()}
+        intended_m_s = tow["declared_speed_m_s"] * ratio
+        facts = rows[run].start, tow["sample_rate_hz"], intended_m_s, planned_s, own
+        judgement.runs.append(Run(run, *facts))
+
+
+def _missing_run(run: int, tow: Row, present: list[int]) -> Fault:
+    in_second = run > SECOND_FILE_OFFSET
+    offset = SECOND_FILE_OFFSET if in_second else 0
+    there = [str(n - offset) for n in present if (n > SECOND_FILE_OFFSET) == in_second]
+    text = say("Run {} is to be used but is not in the file; it holds runs {}.")
+    message = say(text, run - offset, ", ".join(there))
+    path = tow["second_path" if in_second else "samples_path"]
+    return Fault(path, tow["tow_id"], None, "missing_run", message, "run", run)
+
+
+def _check_length(judgement: Judgement) -> None:
+    """Takes the runs that are too short; says it where all last far longer than planned.
+
+    That costs nothing: by a wrong rate, windows, averages and what accelerated the boat are taken
+    over another time than is meant.
+    """
+    for run in judgement.runs:
+        missing_s = run.planned_s - run.seconds
+        if run.seconds < SHORTEST_RUN_RATIO * run.planned_s:
+            text = say("it lasts {:.2f} s at {:g} samples per second, {:.2f} s too short")
+            cost: Cost = "run" if missing_s > LEFT_OUT_S else "seconds"
+            what = say(text, run.seconds, run.rate_hz, missing_s)
+            judgement.lose(run, "short_run", what, cost, 0, missing_s)
+    runs = judgement.runs
+    if runs and all(run.seconds >= LONGEST_RUN_RATIO * run.planned_s for run in runs):
+        text = say(
+            "All runs last {:.0f} s or longer at {:g} samples per second, and {:.0f} s is planned: "
+            "is the rate {:.0f}? Nothing is left out."
+        )
+        shortest, first = min(run.seconds for run in runs), runs[0]
+        rate_hz = first.rate_hz * first.seconds / first.planned_s
+        message = say(text, shortest, first.rate_hz, first.planned_s, rate_hz)
+        judgement.lose_of_all("long_run", message)
+
+
+def _leave_out_copies(judgement: Judgement) -> None:
+    """Of runs with exactly the same samples, the one at its intended speed is what was measured."""
+
+    def off_target(run: Run) -> tuple[float, int]:
+        ratio = run.medians["log1"] / run.intended_m_s
+        return float(np.nan_to_num(abs(ratio - 1.0), nan=np.inf)), run.number
+
+    first: dict[bytes, Run] = {}
+    for run in sorted(judgement.runs, key=off_target):
+        content = run.channels["log1"].tobytes() + run.channels["force"].tobytes()
+        is_unread = np.isnan([run.medians["log1"], run.medians["force"]]).all()
+        other = first.setdefault(bytes([run.number]) if is_unread else content, run)
+        if other is not run:
+            what = say("it has exactly the samples of {}", other.name.lower())
+            judgement.lose(run, "samples_listed_twice", what, "run")
+
+
+def _as_judged(samples: pl.DataFrame, judgement: Judgement) -> pl.DataFrame:
+    """The samples without lost runs, NaN where one is left out, null in channels of no run."""
+    if not judgement.faults:
+        return samples
+    changed = []
+    for key, name in CHANNELS.items():
+        values = samples[name].to_numpy().copy()
+        for run in judgement.runs:
+            if key in run.channels:
+                values[run.start : run.start + len(run.channels[key])] = run.channels[key]
+        is_there = key in judgement.runs[0].channels
+        changed.append(pl.Series(name, values if is_there else [None] * len(samples), pl.Float32))
+    lost = [fault.run for fault in judgement.faults if fault.lost == "run"]
+    return samples.with_columns(changed).filter(~pl.col("run").is_in(lost))
+
+
+# The tow as a whole
+
+
+def _leave_out_no_wind(judgement: Judgement) -> None:
+    """Takes a wind speed that in all runs is empty, or one value that cannot be.
+
+    So people write that there was no anemometer: 999 everywhere. The tow goes on as one without.
+    """
+    least, most = EXTREMES["wind_speed"]
+    for run in judgement.runs:
+        wind = run.channels.get("wind_speed")
+        is_held = wind is not None and (wind == wind[0]).all() and not least <= wind[0] <= most
+        if wind is None or not (is_held or np.isnan(wind).all()):
+            return
+    text = say("column '{column}' {} in all runs, which is not wind; the tow goes on without wind.")
+    first = what_it_holds(judgement.runs[0].channels["wind_speed"][0])
+    message = say(text, first, column=COLUMN_OF["wind_speed"])
+    judgement.lose_of_all("implausible_value", message, *EXTREMES)
+
+
+def _check_whole_tow(judgement: Judgement) -> None:
+    """Raises where the force is turned, columns are exchanged, or the speeds are in km/h.
+
+    Seen by what a typical run looks like: medians over the runs, which a fault in one does not
+    move.
+    """
+    runs = judgement.runs
+    force_n = float(np.median([run.medians["force"] for run in runs]))
+    intended_m_s = float(np.median([run.intended_m_s for run in runs]))
+    low, high = USUAL["force"].times(intended_m_s, np.nan)
+    if low <= -force_n <= high:
+        said = say("The force is {:.0f} N in a typical run; it must be positive.", force_n)
+        raise judgement.lost("negative_force", said, runs[0].start)
+    _check_exchanged(judgement, intended_m_s)
+    if all({*SPEEDS} <= run.channels.keys() for run in runs):
+        # A receiver gives a fix a second, held in between; a log moves as log 1 does.
+        log1_hz, log2_hz, gps_hz = (
+            float(np.median([run.changes_hz(channel) for run in runs])) for channel in SPEEDS
+        )
+        least, most = HELD_AS_A_FIX_HZ
+        if min(log1_hz, gps_hz) > MOVES_AS_A_LOG_HZ and least < log2_hz < most:
+            text = say(
+                "Columns 'log2' and 'gps' seem to be exchanged: the first changes {:.1f} times a "
+                "second, the second {:.0f} times."
+            )
+            raise judgement.lost("swapped_columns", say(text, log2_hz, gps_hz))
+    ratio = float(np.median([run.medians["log1"] for run in runs])) / intended_m_s
+    if KM_H_RATIO[0] <= ratio <= KM_H_RATIO[1]:
+        text = say(
+            "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
+            "looks like km/h under another header."
+        )
+        raise judgement.lost("speed_unit", say(text, ratio, *KM_H_RATIO))
+
+
+def _check_exchanged(judgement: Judgement, intended_m_s: float) -> None:
+    """Raises where two channels can be right only the other way round."""
+    runs = judgement.runs
+    typical = {
+        key: np.median([run.typical(key) for run in runs], axis=0) for key in runs[0].channels
+    }
+    wrong = _implausible(typical, intended_m_s)
+    for one, other in combinations(typical, 2):
+        exchanged = typical | {one: typical[other], other: typical[one]}
+        if {one, other} & wrong and not _implausible(exchanged, intended_m_s):
+            text = say("Columns '{}' and '{}' seem to be exchanged: {seen}.")
+            seen = say("typically they hold {:.4g} and {:.4g}", typical[one][0], typical[other][0])
+            said = say(text, COLUMN_OF[one], COLUMN_OF[other], seen=seen)
+            raise judgement.lost("swapped_columns", said)
+
+
+def _implausible(typical: Mapping[str, Array], intended_m_s: float) -> set[str]:
+    """The channels of which median, lowest and highest cannot be what their header says."""
+    wrong = set()
+    for key, (median, lowest, highest) in typical.items():
+        usual = USUAL.get(key, Limits(-np.inf, np.inf))
+        low, high = usual.times(intended_m_s, float(typical["log1"][0]))
+        least, most = EXTREMES.get(key, (-np.inf, np.inf))
+        if not (low <= median <= high and least <= lowest and highest <= most):
+            wrong.add(key)
+    return wrong
+
+
+# Samples
+
+
+def _usual_resistance_kg_m(runs: list[Run]) -> float:
+    """Force / speed squared of a typical run, which a fault over most of one does not move."""
+    each = [run.medians["force"] / run.intended_m_s**2 for run in runs]
+    return abs(float(np.nanmedian(each))) if np.isfinite(each).any() else np.nan
+
+
+def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
+    """Takes the samples of a run that cannot be, and the run where that is too much of it.
+
+    Args:
+        judgement: what is left of the tow.
+        run: as measured.
+        usual_kg_m: usual force over speed squared.
+    """
+    usual_n = usual_kg_m * run.intended_m_s**2
+    wrong = {key: _wrong(run, key, usual_n) for key in run.channels}
+    needed = np.logical_or.reduce([mask for key, mask in wrong.items() if key not in SPARE])
+    most = LEFT_OUT_S * run.rate_hz
+    cost: Cost = "run" if needed.sum() > most else "seconds"
+    no_row = np.logical_and.reduce([np.isnan(values) for values in run.channels.values()])
+    if no_row.any():
+        seconds = float(no_row.sum()) / run.rate_hz
+        what = say("rows lack fields, or their time cannot be read, for {:.3g} s in all", seconds)
+        judgement.lose(run, "broken_row", what, cost, int(no_row.argmax()), seconds)
+    for key, mask in wrong.items():
+        own = mask & ~no_row
+        count = float(own.sum())
+        if not count or (cost == "run" and key in SPARE):
+            continue
+        row, values, seconds = int(own.argmax()), run.channels[key], count / run.rate_hz
+        text = say("column '{column}' {} and is wrong for {:.3g} s in all")
+        what = say(text, what_it_holds(values[row]), seconds, column=COLUMN_OF[key])
+        is_gone = key in SPARE and count > most
+        of_channel: Cost = "column" if is_gone else cost
+        judgement.lose(run, _reason(run, key, row), what, of_channel, row, seconds)
+        run.channels[key] = np.where(own | is_gone, np.float32(np.nan), values)
+
+
+def _reason(run: Run, key: str, row: int) -> str:
+    """The reason code of a channel, by the first of its wrong samples."""
+    value = run.channels[key][row]
+    if not np.isfinite(value):
+        return "bad_number"
+    if key in SPEEDS and value <= DROPOUT_M_S:
+        return "gps_dropout" if key == "gps" else "log_dropout"
+    pushes = FORCE_SPIKE_RATIO[0] * abs(run.medians["force"])
+    return "negative_force" if key == "force" and pushes <= value < 0 else "implausible_value"
+
+
+def _wrong(run: Run, key: str, usual_n: float) -> BoolArray:
+    """Samples of a channel that are no number, have dropped out or cannot be."""
+    values = run.channels[key]
+    if key in SPEEDS:
+        return _wrong_speed(values, run.medians[key], run.rate_hz, SPIKE_RATIO[key])
+    if key == "force":
+        return _wrong_force(run, values, usual_n)
+    least, most = EXTREMES[key]
+    if key == "wind_speed":
+        most = min(most, GUST_RATIO * abs(run.medians[key]) + GUST_M_S)
+    return _outside(values, least, most)
+
+
+def _outside(values: Array, lowest: float, highest: float) -> BoolArray:
+    """Samples that are not between two limits, or no number."""
+    return np.asarray(~((values >= lowest) & (values <= highest)))
+
+
+def _wrong_speed(values: Array, median: float, rate_hz: float, spike_ratio: float) -> BoolArray:
+    far = spike_ratio * abs(median)
+    near = (values > DROPOUT_M_S) & (np.abs(values - median) <= far)
+    if near.all():
+        return np.zeros(len(values), dtype=bool)
+    around = _around(values, round(rate_hz))
+    steady = np.abs(values - around) <= spike_ratio * around
+    return np.asarray(~((values > DROPOUT_M_S) & steady))
+
+
+def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
+    """The speed around each sample, which short faults do not move; 0 without any number."""
+    length = max(len(values) // rate_hz, 1)
+    second = np.minimum(np.arange(len(values)) // rate_hz, length - 1)
+    padded = np.full((length, int(np.bincount(second).max())), np.nan)
+    padded[second, np.arange(len(values)) - second * rate_hz] = values
+    known = np.isfinite(padded).any(axis=1)
+    if not known.any():
+        return np.zeros(len(values))
+    medians = np.nanmedian(padded[known], axis=1)
+    filtered = scipy.ndimage.median_filter(medians, AROUND_S, mode="nearest")
+    each = np.interp(np.arange(length), np.flatnonzero(known), filtered)
+    return np.asarray(each[second], dtype=np.float64)
+
+
+def _wrong_force(run: Run, values: Array, usual_n: float) -> BoolArray:
+    low, high = (ratio * usual_n for ratio in FORCE_SPIKE_RATIO)
+    wrong = _outside(values, low, high)
+    near_zero = FORCE_DEAD_RATIO * usual_n
+    if (np.abs(values) <= near_zero).any():
+        starts, lengths = stretches(values[1:] != values[:-1])
+        least = max(int(FORCE_DEAD_S * run.rate_hz), 3)
+        wrong |= np.repeat((lengths >= least) & (np.abs(values[starts]) <= near_zero), lengths)
+    means = run.second_means(np.where(wrong, np.float32(np.nan), values))
+    if (means < 0).any():  # single negative samples are the surge of the tow line
+        second = np.minimum(np.arange(len(values)) // round(run.rate_hz), len(means) - 1)
+        wrong |= (means < 0)[second]
+    return wrong
+
+
+# Rules on the channels of a run
+
+
+class Limits(NamedTuple):
+    """From `low` up to `high`, times 1, the intended speed in m/s or its square, or log 1."""
+
+    low: float
+    high: float
+    unit: Literal["", "intended", "intended squared", "log1"] = ""
+
+    def times(self, intended_m_s: float, log1_m_s: float) -> tuple[float, float]:
+        """The limits as they are for this speed."""
+        units = {"intended": intended_m_s, "intended squared": intended_m_s**2, "log1": log1_m_s}
+        return self.low * units.get(self.unit, 1.0), self.high * units.get(self.unit, 1.0)
+
+
+USUAL: Final = {
+    "log1": Limits(0.5, 1.6, "intended"),
+    "log2": Limits(0.6, 1.4, "log1"),
+    "gps": Limits(0.6, 1.4, "log1"),
+    "force": Limits(2.0, 500.0, "intended squared"),  # sloops lie between 15 and 60 kg/m
+    "wind_speed": Limits(0.0, 20.0),
+}
+"""Where the mean of a run lies."""
+
+Found = tuple[float, int]
+"""What was measured, and the row of the run where it begins."""
+
+
+def mean(run: Run, channel: str) -> Found:
+    """Of the samples that are numbers."""
+    return float(np.nanmean(run.channels[channel], dtype=np.float64)), 0
+
+
+def held_s(run: Run, channel: str) -> Found:
+    """The longest stretch of one value; cups may stand still, and a vane needs wind."""
+    values = run.channels[channel]
+    changes = values[1:] != values[:-1]
+    least_wind_m_s = {"wind_speed": 0.0, "wind_angle": VANE_TURNS_M_S}.get(channel)
+    if least_wind_m_s is None or "wind_speed" not in run.channels:
+        starts, lengths = stretches(changes)
+    else:
+        moves = run.channels["wind_speed"] > least_wind_m_s
+        starts, lengths = stretches(changes | np.diff(moves))
+        lengths = lengths * moves[starts]
+    longest = int(lengths.argmax())
+    return float(lengths[longest]) / run.rate_hz, int(starts[longest])
+
+
+def clipped_percent(run: Run, channel: str) -> Found:
+    """Samples at the highest value, 0 where coarse steps explain them."""
+    values = run.channels[channel]
+    at_end = values == np.fmax.reduce(values)
+    below = np.nanmax(values, where=~at_end & np.isfinite(values), initial=-np.inf)
+    is_coarse = at_end.sum() <= CLIPPED_TIMES * (values == below).sum()
+    return (0.0 if is_coarse else 100.0 * float(at_end.mean())), int(at_end.argmax())
+
+
+class Rule(NamedTuple):
+    """What can be true of a channel in a run.
+
+    Attributes:
+        measure: what is measured, and in which row of the run it begins.
+        what: said where that is outside the limits: `{found}` is the measure, `{low}` and `{high}`
+            are the limits, `{value}` is the sample with which it begins.
+    """
+
+    reason_code: str
+    channel: str
+    measure: Callable[[Run, str], Found]
+    limits: Limits
+    what: Sentence
+
+
+_STUCK: Final = say(
+    "column '{column}' holds {value:.6g} for {found:.3g} s; less than {high:g} s is normal"
+)
+_MEAN: Final = say(
+    "the mean of column '{column}' is {found:.4g}; {low:.3g} to {high:.3g} can be right"
+)
+_NEGATIVE: Final = say("the mean of column '{column}' is {found:.4g}; it must be positive")
+_CLIPPED: Final = say(
+    "column '{column}' is at its highest value, {value:.6g}, in {found:.0f} % of the samples, as a "
+    "load cell at the end of its range"
+)
+RULES: Final = (
+    Rule("stuck_channel", "log1", held_s, Limits(0, 5), _STUCK),
+    Rule("stuck_channel", "log2", held_s, Limits(0, 5), _STUCK),
+    Rule("stuck_channel", "force", held_s, Limits(0, 5), _STUCK),
+    Rule("stuck_channel", "wind_speed", held_s, Limits(0, 10), _STUCK),
+    Rule("stuck_channel", "wind_angle", held_s, Limits(0, 20), _STUCK),
+    Rule("implausible_speed", "log1", mean, USUAL["log1"], _MEAN),
+    Rule("implausible_value", "log2", mean, USUAL["log2"], _MEAN),
+    Rule("implausible_value", "gps", mean, USUAL["gps"], _MEAN),
+    Rule("negative_force", "force", mean, Limits(0, np.inf), _NEGATIVE),
+    Rule("implausible_value", "force", mean, USUAL["force"], _MEAN),
+    Rule("implausible_value", "wind_speed", mean, USUAL["wind_speed"], _MEAN),
+    Rule("saturated_force", "force", clipped_percent, Limits(0, 2), _CLIPPED),
+)
+
+
+def apply_rules(judgement: Judgement, run: Run) -> None:
+    """Takes what breaks a rule: the run, or a spare channel; without numbers one breaks none."""
+    log1_m_s, _ = mean(run, "log1")
+    known = {key for key, values in run.channels.items() if np.isfinite(values).any()}
+    for rule in RULES:
+        if rule.channel not in known:
+            continue
+        found, row = rule.measure(run, rule.channel)
+        low, high = rule.limits.times(run.intended_m_s, log1_m_s)
+        if low <= found < high:
+            continue
+        value, column = run.channels[rule.channel][row], COLUMN_OF[rule.channel]
+        what = say(rule.what, column=column, value=value, found=found, low=low, high=high)
+        if rule.channel not in SPARE:
+            judgement.lose(run, rule.reason_code, what, "run", row)
+            return
+        judgement.lose(run, rule.reason_code, what, "column", row)
+        run.channels[rule.channel] = np.full_like(run.channels[rule.channel], np.nan)
+        known.remove(rule.channel)
+
+
+def leave_out_stuck_gps(judgement: Judgement) -> None:
+    """Takes a GPS that holds one value while the speed changed, or at another speed.
+
+    It has a fix a second in steps of 0.01 m/s, so of a steady boat it may well hold one value.
+    """
+    alike: dict[float, list[Run]] = {}
+    for run in judgement.runs:
+        gps = run.channels.get("gps")
+        if gps is not None and (gps == gps[0]).all():
+            alike.setdefault(float(gps[0]), []).append(run)
+    for run in [run for held in alike.values() if _speed_differs(held) for run in held]:
+        gps = run.channels["gps"]
+        what = say("gps holds {:.6g} throughout, at other speeds too", gps[0])
+        judgement.lose(run, "stuck_channel", what, "column")
+        run.channels["gps"] = np.full_like(gps, np.nan)
+
+
+def _speed_differs(runs: list[Run]) -> bool:
+    seconds = [run.second_means(run.channels["log1"]) for run in runs]
+    moved_m_s = max(np.nanmax(means) - np.nanmin(means) for means in seconds)
+    return len({run.intended_m_s for run in runs}) > 1 or bool(moved_m_s > GPS_MUST_MOVE_M_S)

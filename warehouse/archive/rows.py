@@ -1,0 +1,184 @@
+"""The rows of lists in a frame: those that can be used stay, each other leaves a fault."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import polars as pl
+
+from pipeline.messages import say
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import column_of, dtypes, limits
+from pipeline.tables.lake import ListedTows
+from warehouse.archive.columns import shorten
+from warehouse.archive.faults import Fault, Lost, at_line
+from warehouse.archive.kinds import REMARK, ListKind
+
+
+@dataclass
+class Rows:
+    """The rows of all lists of one kind.
+
+    Attributes:
+        kind: the kind of list.
+        frame: a row each: its `path`, `line` and `season`, the tow or boat that it is `about`, the
+            declared columns, and what was written in them as the struct `cells`.
+        faults: what is set aside.
+        lost: the first fault of each tow or boat of which a row is set aside.
+        listed: every row that was read, also those that are set aside.
+        unread: the lists that cannot be read.
+    """
+
+    kind: ListKind
+    frame: pl.DataFrame
+    faults: list[Fault] = field(default_factory=list)
+    lost: dict[str, Fault] = field(default_factory=dict)
+    listed: pl.DataFrame = field(default_factory=pl.DataFrame)
+    unread: set[str] = field(default_factory=set)
+
+    def add(self, others: "Rows") -> None:
+        """Adds the rows of another list."""
+        self.frame = pl.concat([self.frame, others.frame])
+        self.listed = pl.concat([self.listed, others.listed])
+        self.faults += others.faults
+        self.lost = others.lost | self.lost
+
+    def drop(
+        self,
+        is_wrong: pl.Expr,
+        text: str,
+        code: str | None = None,
+        lost: Lost | None = None,
+        **facts: Any,
+    ) -> None:
+        """Set rows aside; the arguments are those of `note`."""
+        self.note(is_wrong, text, code, lost, **facts)
+        self.frame = self.frame.filter(~is_wrong.fill_null(value=False))
+
+    def empty(self, key: str, is_wrong: pl.Expr, text: str, **facts: Any) -> None:
+        """Empties cells that a row can do without."""
+        self.note(is_wrong, text, None, "cell", **facts)
+        sound = ~is_wrong.fill_null(value=False)
+        self.frame = self.frame.with_columns(pl.when(sound).then(key).alias(key))
+
+    def note(
+        self,
+        is_wrong: pl.Expr,
+        text: str,
+        code: str | None = None,
+        lost: Lost | None = None,
+        asks_word: bool = False,
+        **facts: Any,
+    ) -> None:
+        """Adds a fault for rows.
+
+        Args:
+            is_wrong: which rows; what is not known is not wrong.
+            text: the sentence.
+            code: its reason code; None for that of the list.
+            lost: what it costs, if not the row.
+            asks_word: whether a meaning can be given to the word that `cell` is.
+            facts: what is filled in: a value, or an expression of the rows.
+        """
+        of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
+        known = self.frame.select("path", "sheet", "line", "about", _wrong=is_wrong, **of_rows)
+        for row in known.filter("_wrong").iter_rows(named=True):
+            filled = {name[1:]: row[name] for name in of_rows}
+            short = {k: shorten(v) if isinstance(v, str) else v for k, v in filled.items()}
+            what = say(text, **facts | short)
+            if row["sheet"]:
+                what = say("sheet '{sheet}': {what}", sheet=row["sheet"], what=what)
+            message = at_line(row["line"], what)
+            if lost == "cell":
+                message = say("{what} The cell counts as empty.", what=message)
+            tow_id = row["about"] if self.kind.about == "tow_id" else None
+            place = row["path"], tow_id, row["line"]
+            ask = (_ask_word(filled["cell"]),) if asks_word else ()
+            fault = Fault(*place, code or self.kind.reason_code, message, lost, ask=ask)
+            self.faults.append(fault)
+            if row["about"]:
+                self.lost.setdefault(row["about"], fault)
+
+    def drop_copies(self, per_file: bool = False) -> None:
+        """Keep the first of rows with equal values: a list can be there twice, as .csv and .xlsx.
+
+        Args:
+            per_file: rows of one file may repeat each other; only those of another are copies.
+        """
+        declared = dtypes(self.kind.table)
+        keys = [column.key for column in self.kind.columns if column.key != REMARK]
+        floats = [key for key in keys if key in declared and declared[key].is_float()]
+        others = [key for key in keys if key not in floats]
+        # 8.28 km/h and 2.3 m/s are one speed, though their last bits differ.
+        value = pl.struct(*others, *(pl.col(key).round_sig_figs(9) for key in floats), "season")
+        nth = pl.int_range(pl.len()).over(value, "path", "sheet") if per_file else pl.lit(0)
+        self.frame = self.frame.with_columns(_value=value, _nth=nth)
+        self.frame = self.frame.unique(["_value", "_nth"], keep="first", maintain_order=True)
+        self.frame = self.frame.drop("_value", "_nth")
+
+    def drop_repeated(self, about: Sequence[str], text: str, code: str | None = None) -> None:
+        """Keep the rows of which there is one about a thing; equal rows count once.
+
+        Args:
+            about: the columns that name the thing.
+            text: the sentence; `of` is the thing, `other` and `line` where another row stands.
+            code: its reason code; None for that of the list.
+        """
+        self.drop_copies()
+        of = pl.concat_str(*about, separator=" ")
+        key = pl.struct(about)
+        is_first = pl.int_range(pl.len()).over(key) == 0
+        places = {
+            name: pl.when(is_first)
+            .then(pl.col(name).shift(-1).first().over(key))
+            .otherwise(pl.col(name).first().over(key))
+            for name in ("line", "path")
+        }
+        self.drop(key.is_duplicated(), text, code, of=of, line=places["line"], other=places["path"])
+
+    def drop_other_years(self, day: str, code: str | None = None) -> None:
+        """Sets aside the rows whose day is not in the year of their list."""
+        text = say("the date {day} is not in {season}, the year of the list.")
+        is_other = pl.col(day).dt.year() != pl.col("season")
+        self.drop(is_other, text, code, day=pl.col(day), season=pl.col("season"))
+
+    def as_table(self, table: type[dy.Schema]) -> pl.DataFrame:
+        """The rows as a table; the year of a list was not held against its limits yet."""
+        low, high = limits(ListedTows, "season")
+        text, season = (
+            say("the year is {cell}; {low:g} to {high:g} can be right."),
+            pl.col("season"),
+        )
+        self.drop(~season.is_between(low, high), text, cell=season, low=low, high=high)
+        return table.validate(self.frame.select(table.column_names()), cast=True)
+
+
+def _ask_word(word: str) -> str:
+    """Return the line of `archief.toml` that says what a word means."""
+    quoted = word.replace("\\", "\\\\").replace('"', '\\"')
+    return f'[words]\n"{quoted}" = "?"'
+
+
+def cell(key: str) -> pl.Expr:
+    """What is written in a column, null for nothing."""
+    return pl.col("cells").struct.field(key)
+
+
+def no_rows(kind: ListKind) -> pl.DataFrame:
+    """The frame of a list without any row."""
+    declared = dtypes(kind.table)
+    values = {c.key: declared.get(c.key, pl.String()) for c in kind.columns}
+    cells = pl.Struct({column.key: pl.String for column in kind.columns})
+    place: dict[str, pl.DataType] = {
+        "path": pl.String(),
+        "sheet": pl.String(),
+        "line": pl.Int64(),
+        "season": pl.Int32(),
+        "about": pl.String(),
+    }
+    return pl.DataFrame(schema=place | values | {"cells": cells})
+
+
+def declared_column(kind: ListKind, key: str) -> dy.Column | None:
+    """The column as its table declares it; None for one that is only used here."""
+    return column_of(kind.table, key) if key in kind.table.column_names() else None

@@ -1,0 +1,329 @@
+"""Reading the samples of a tow: from its files to one frame of `SAMPLE_SCHEMA`.
+
+    files -> tables of numbers -> runs -> SI units, angles, absent channels
+
+The runs are told by a column `run`, by a file for each, or by their begin and end in one recording.
+Form only: whether they can be true is the business of `plausibility`.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from pipeline.arrays import IntArray
+from pipeline.channels import MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
+from pipeline.errors import DefectiveInputError
+from pipeline.messages import say
+from pipeline.tables.row import Row
+from warehouse.archive.columns import DefectiveHeaderError
+from warehouse.archive.faults import DefectiveFileError, at_line
+from warehouse.archive.files import PARTS, path_inside
+from warehouse.archive.profile import SeasonProfile
+from warehouse.archive.sample_files import SampleTable, check_header, read_table
+
+__all__ = ["check_header", "read_samples", "read_tow_samples", "run_starts", "steps_of"]
+
+OUTPUT_NAMES: Final = {
+    "run": "run",
+    "log1": "log1_m_s",
+    "log2": "log2_m_s",
+    "gps": "gps_m_s",
+    "force": "force_n",
+    "wind_speed": "wind_speed_m_s",
+    "wind_angle": "wind_angle_deg",
+}
+RATE_TOLERANCE: Final = 0.01
+"""Relative difference between the rate by the times and the one that is declared."""
+MAX_GAP_S: Final = 1.5
+"""A longer step between two times is a gap, which says nothing of the rate."""
+DAY_S: Final = 86_400
+HIGHEST_ANGLE_DEG: Final = 359.999
+"""Above it an angle can become 360 in 32 bits."""
+ENOUGH_FOR_STEPS: Final = 10_000
+"""Samples that are enough to see in which steps a channel is written."""
+FEWEST_FOR_STEPS: Final = 3
+"""Values that differ."""
+
+Place = Callable[[int], tuple[str, int]]
+"""The file of a row of a tow's samples and the line in it; of the header where it is negative."""
+LineOf = Callable[[int], int]
+"""The line of a row of one file; of the header where it is negative."""
+Windows = dict[int, tuple[float, float]]
+"""Begin and end of each run in a recording [s]."""
+
+
+def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> tuple[pl.DataFrame, Place]:
+    """Read the samples of a tow, those of a second file behind those of the first.
+
+    Args:
+        root: the archive.
+        tow: a row of `ArchiveIndex.tows`.
+        profile: the profile of its season.
+
+    Returns:
+        The frame, as `read_samples`; runs of the second file are numbered 21 and on. And where its
+        rows stand.
+
+    Raises:
+        DefectiveFileError: the first fault, with the file it is in.
+    """
+    files: list[str] = []
+    frames: list[pl.DataFrame] = []
+    lines: list[LineOf] = []
+    windows = read_windows_text(tow.get("run_windows"))
+    for name, numbers, offset in (
+        ("samples_path", "samples_runs", 0),
+        ("second_path", "second_runs", SECOND_FILE_OFFSET),
+    ):
+        paths = tow[name].split(PARTS) if tow[name] else []
+        runs = tow.get(numbers)
+        run_of = [int(run) for run in runs.split(",")] if runs else [None] * len(paths)
+        own = {run - offset: window for run, window in windows.items() if run > offset}
+        own = {run: window for run, window in own.items() if run <= MOST_RUNS}
+        for path, run in zip(paths, run_of, strict=True):
+            with _about_file(path):
+                samples, line_of = read_samples(
+                    path_inside(root, path), profile, tow["sample_rate_hz"], run, own
+                )
+            files.append(path)
+            frames.append(samples.with_columns(pl.col("run") + pl.lit(offset, pl.Int8)))
+            lines.append(line_of)
+    ends = np.cumsum([frame.height for frame in frames])
+
+    def find_place(row: int) -> tuple[str, int]:
+        part = int(np.searchsorted(ends, row, "right")) if row >= 0 else 0
+        before = int(ends[part - 1]) if part else 0
+        return files[part], lines[part](row - before if row >= 0 else row)
+
+    return pl.concat(frames), find_place
+
+
+@contextmanager
+def _about_file(path: str) -> Iterator[None]:
+    """Give a fault the path of the file that it is found in."""
+    try:
+        yield
+    except DefectiveInputError as error:
+        ask = error.ask if isinstance(error, DefectiveHeaderError) else ()
+        told = error.reason_code, error.message, error.line, path
+        raise DefectiveFileError(*told, ask) from error
+
+
+def read_windows_text(text: str | None) -> Windows:
+    """Read the begin and end of runs as `write_windows_text` writes them."""
+    windows = {}
+    for part in text.split(";") if text else ():
+        run, _, seconds = part.partition(":")
+        start, _, end = seconds.partition("-")
+        windows[int(run)] = float(start), float(end)
+    return windows
+
+
+def write_windows_text(windows: Windows) -> str:
+    """Write the begin and end of runs as one text: `1:12.0-62.0;2:70.0-120.0`."""
+    return ";".join(f"{run}:{start!r}-{end!r}" for run, (start, end) in sorted(windows.items()))
+
+
+def read_samples(
+    path: Path,
+    profile: SeasonProfile,
+    sample_rate_hz: float | None = None,
+    run: int | None = None,
+    windows: Windows | None = None,
+) -> tuple[pl.DataFrame, LineOf]:
+    """Read one samples file.
+
+    Args:
+        path: text, packed or not, Parquet or TDMS.
+        profile: how the files of that season are written.
+        sample_rate_hz: rate that a time column must agree with; not checked when None.
+        run: the run that the file is, where there is a file for each.
+        windows: begin and end of each run, where the file is one recording.
+
+    Returns:
+        A frame with the columns of `SAMPLE_SCHEMA`, one row per sample in the order of the file,
+        and the line of each of its rows. What was not measured is null throughout: a GPS that is
+        absent or empty, and what the profile declares absent. Wind angles are brought to [0, 360);
+        one outside -180..360 cannot be an angle and is left as it is, for `judge_samples` to find.
+
+    Raises:
+        DefectiveInputError: the first fault that costs the whole file, with its line.
+    """
+    has_run_column = run is None and profile.runs != "windows"
+    table = read_table(path, profile if has_run_column else profile.with_optional_run())
+    row_of: IntArray | None = None
+    if has_run_column:
+        raw = _with_every_run(table.frame)
+    elif run is not None:
+        raw = _as_one_run(table, run)
+    else:
+        raw, row_of = _cut_recording(table, profile.season, windows or {}, sample_rate_hz)
+
+    def find_line(row: int) -> int:
+        if row < 0:
+            return table.header_line
+        return table.first_line + (row if row_of is None else int(row_of[row]))
+
+    scaled = [key for key in raw.columns if key not in ("run", "time")]
+    raw = raw.with_columns(table.columns[key].to_si(pl.col(key)) for key in scaled)
+    _check_runs(raw["run"], find_line)
+    if "time" in raw.columns and sample_rate_hz:
+        _check_times(raw, sample_rate_hz, find_line)
+    return _to_schema(raw, profile.wind_zero_deg), find_line
+
+
+# Runs and times
+
+
+def _as_one_run(table: SampleTable, run: int) -> pl.DataFrame:
+    """Return the samples of a file that is one run; a column `run` in it must say the same."""
+    told = table.frame["run"].drop_nans().unique() if "run" in table.frame.columns else pl.Series()
+    others = [number for number in told if number != run]
+    if others:
+        text = say("This is the file of run {run}, and its column 'run' says {other:g}.")
+        raise DefectiveInputError("unknown_run", say(text, run=run, other=others[0]))
+    return table.frame.with_columns(run=pl.lit(float(run)))
+
+
+def _cut_recording(
+    table: SampleTable, season: int, windows: Windows, rate_hz: float | None
+) -> tuple[pl.DataFrame, IntArray]:
+    """Return the runs of one recording, and the row of the file that each of their rows is.
+
+    A window counts from the first sample, by the time column where there is one.
+    """
+    if not windows:
+        text = say(
+            "Nobody says where the runs are in this recording: give begin and end of each in "
+            "sleeplijsten/vensters_{season}.csv."
+        )
+        raise DefectiveInputError("missing_run", say(text, season=season))
+    rows = np.arange(table.frame.height)
+    if "time" in table.frame.columns:
+        times = table.frame["time"].to_numpy()
+        seconds = np.nan_to_num(times - np.nanmin(times), nan=-1.0)
+    else:
+        seconds = rows / (rate_hz or 1.0)
+    number = np.zeros(len(rows))
+    for run, (start, end) in windows.items():
+        number[(seconds >= start - 1e-9) & (seconds < end - 1e-9)] = run
+    is_in_run = number > 0
+    kept = rows[is_in_run]
+    if not len(kept):
+        said = say("The recording lasts {seconds:.1f} s, and no run begins in it.",
+                   seconds=float(seconds.max()))  # fmt: skip
+        raise DefectiveInputError("missing_run", said)
+    frame = table.frame.with_columns(run=pl.Series(number)).filter(pl.Series(is_in_run))
+    return frame, kept
+
+
+def _with_every_run(raw: pl.DataFrame) -> pl.DataFrame:
+    """Return the samples with every row in a run; one whose run cannot be read holds no numbers."""
+    unread = raw["run"].is_nan()
+    if not unread.any():
+        return raw
+    run = raw["run"].fill_nan(None).forward_fill().backward_fill()
+    if run.null_count():
+        raise DefectiveInputError("unreadable_file", say("No row has a number in column 'run'."))
+    others = pl.exclude("run", "time")
+    return raw.with_columns(run, pl.when(unread).then(float("nan")).otherwise(others).name.keep())
+
+
+def _check_runs(run: pl.Series, line_of: LineOf) -> None:
+    """Raise where a run has a number that does not exist, or is not one piece."""
+    starts = run_starts(run.to_numpy())
+    for row in starts.tolist():
+        if run[row] not in range(1, MOST_RUNS + 1):
+            text = say("run {run:g} does not exist; runs are numbered 1 to {last}.")
+            raise _at(line_of(row), "unknown_run", say(text, run=run[row], last=MOST_RUNS))
+    again = starts[(~run.gather(starts).is_first_distinct()).to_numpy()]
+    if len(again):
+        row = int(again[0])
+        text = say("run {run:g} begins again; its rows must be together.")
+        raise _at(line_of(row), "split_run", say(text, run=run[row]))
+
+
+def _at(line: int, code: str, what: str) -> DefectiveInputError:
+    return DefectiveInputError(code, at_line(line, what), line)
+
+
+def run_starts(run: NDArray[np.generic]) -> NDArray[np.intp]:
+    """Return the row at which each run begins."""
+    return np.flatnonzero(np.concatenate(([True], run[1:] != run[:-1])))
+
+
+def _check_times(raw: pl.DataFrame, rate_hz: float, line_of: LineOf) -> None:
+    """Raise where the times of a run jump back, or rise at another rate than is declared."""
+    step_s = pl.col("time").diff()
+    # A clock begins again at midnight.
+    step_s = pl.when(step_s < -DAY_S / 2).then(step_s + DAY_S).otherwise(step_s).fill_nan(None)
+    frame = raw.with_row_index("row").with_columns(step=step_s.over("run"))
+    runs = frame.group_by("run", maintain_order=True)
+    step = pl.col("step")
+    found = runs.agg(
+        pl.col("row").first(),
+        turn=pl.col("row").filter(step < 0).first(),
+        # Times may be rounded, so that some are equal; and seconds may be missing between two.
+        usual=1 / step.median(),
+        average=1 / step.filter(step < MAX_GAP_S).mean(),
+    )
+    for run, row, turn, *rates in found.rows():
+        if turn is not None:
+            what = say("the times of run {run:g} jump back.", run=run)
+            raise _at(line_of(turn), "bad_time", what)
+        known = [rate for rate in rates if rate]
+        hz = known[-1] if known else 0.0
+        if not any(abs(rate / rate_hz - 1) <= RATE_TOLERANCE for rate in known):
+            text = say(
+                "run {run:g} has {observed:.6g} samples per second by its times; by the list or "
+                "the profile it is {rate:.6g}. Correct 'meetfrequentie' in the tow list, or "
+                "sample_rate_hz under [[profile]]."
+            )
+            what = say(text, run=run, observed=hz, rate=rate_hz)
+            raise _at(line_of(row), "bad_time", what)
+
+
+def _to_schema(raw: pl.DataFrame, wind_zero_deg: float) -> pl.DataFrame:
+    """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
+    absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
+    raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
+    angle = pl.col("wind_angle")
+    lowest, highest = raw["wind_angle"].min(), raw["wind_angle"].max()
+    is_within = isinstance(lowest, float) and isinstance(highest, float)
+    if wind_zero_deg or not (is_within and lowest >= 0 and highest < HIGHEST_ANGLE_DEG):  # type: ignore[operator]
+        turned = ((angle - wind_zero_deg) % 360).cast(pl.Float32)
+        turned = pl.when(turned == 360).then(0.0).otherwise(turned)
+        wrapped = pl.when(angle.is_between(-180, 360)).then(turned).otherwise(angle)
+        raw = raw.with_columns(wrapped.alias("wind_angle"))
+    samples = raw.select(
+        pl.col(key).cast(SAMPLE_SCHEMA[name]).alias(name) for key, name in OUTPUT_NAMES.items()
+    )
+    # A number such as 1e39 is finite in 64 bits and not in 32.
+    infinite = [column.name for column in samples.iter_columns()
+                if column.dtype.is_float() and column.is_infinite().any()]  # fmt: skip
+    floats = pl.col(infinite)
+    return samples.with_columns(pl.when(floats.is_infinite()).then(float("nan")).otherwise(floats))
+
+
+def steps_of(samples: pl.DataFrame) -> dict[str, float | None]:
+    """Return in which steps GPS and force are written: the least difference between two readings.
+
+    Coarse steps do no harm where readings are rounded, as the unrest of a run is larger. Nothing in
+    the samples tells whether they were rounded or cut off, which makes all half a step too small.
+
+    Returns:
+        `gps_step_m_s` and `force_step_n`; None where a channel has too few values to tell.
+    """
+    names = {"gps_step_m_s": "gps_m_s", "force_step_n": "force_n"}
+    return {step: _least_step(samples[name]) for step, name in names.items()}
+
+
+def _least_step(channel: pl.Series) -> float | None:
+    values = channel.drop_nulls().to_numpy()[:: max(len(channel) // ENOUGH_FOR_STEPS, 1)]
+    distinct = np.unique(values[np.isfinite(values)].astype(np.float64))
+    return float(np.diff(distinct).min()) if len(distinct) >= FEWEST_FOR_STEPS else None

@@ -1,0 +1,339 @@
+"""The rows of the tow lists held against each other, the files, the boats and `archief.toml`.
+
+Every check sets rows aside and leaves a fault; a tow falls out at the first that it does not pass.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any, Final
+
+import polars as pl
+
+from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
+from pipeline.messages import say
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
+from pipeline.tables.lake import ListedRuns
+from warehouse.archive.files import (
+    PARTS,
+    SAMPLES,
+    ArchiveFile,
+    Hashes,
+    combine_hashes,
+    match_key,
+)
+from warehouse.archive.kinds import TOWS
+from warehouse.archive.list_rules import Boats, name_boats
+from warehouse.archive.profile import Plan, Profiles, SeasonProfile
+from warehouse.archive.rows import Rows, cell
+
+TWICE: Final = 2.0
+"""A size this many times that of the boat list cannot be right (inferred)."""
+_SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m")
+"""What a tow or else its boat must have; the height of the bow only where wind was measured."""
+_TOW_ID: Final = r"^[^/\\\x00-\x1f]{1,64}$"
+_RANGE: Final = re.compile(r"(b?)([0-9]{1,2})-b?([0-9]{1,2})")
+
+
+def check_tows(
+    rows: Rows,
+    samples: pl.DataFrame,
+    boats: Boats,
+    profiles: Profiles,
+    checks: pl.DataFrame,
+    burned: pl.DataFrame,
+    recordings: Mapping[str, str],
+) -> dict[str, frozenset[int]]:
+    """Keeps the rows of tows that can be used, with all that is known of them.
+
+    Args:
+        rows: of all tow lists.
+        samples: as `samples_by_name` gives them.
+        boats: the boat lists.
+        profiles: `archief.toml`.
+        checks: the load cell by season and day, as `read_force_checks` gives it.
+        burned: how long a lamp burned, as `read_lamps` gives it.
+        recordings: begin and end of the runs of tows whose file is one recording, as text.
+
+    Returns:
+        The runs to use of every tow; runs of the second file are 21 and on.
+    """
+    text = say("'{tow}' cannot be a sleep_id: it is too long, or has a slash.")
+    rows.drop(~pl.col("tow_id").str.contains(_TOW_ID), text, tow=pl.col("tow_id"))
+    text = say(
+        "sleep_id {of} is also on line {line} of {other}, and the rows differ: neither counts."
+    )
+    rows.drop_repeated(["tow_id"], text, "duplicate_tow_id")
+    rows.drop_other_years("tow_date", "date_outside_season")
+    name_boats(rows, boats)
+    selections = _selections(rows, profiles)
+    samples = _with_run_files(rows, samples, profiles)
+    for key in ("file", "second_file"):
+        _with_samples(rows, key, samples)
+    _check_own_samples(rows)
+    _with_boat(rows, boats)
+    _with_season(rows, profiles)
+    _with_instruments(rows, profiles, checks, burned)
+    rows.frame = rows.frame.with_columns(
+        run_windows=pl.col("tow_id").replace_strict(
+            recordings, default=None, return_dtype=pl.String
+        ),
+        list_path="path",
+        list_line="line",
+    )
+    return selections
+
+
+def _selections(rows: Rows, profiles: Profiles) -> dict[str, frozenset[int]]:
+    """The runs to use of every tow."""
+    selections = {}
+    facts = rows.frame.select("tow_id", "season", "use_runs", "second_file")
+    for tow_id, season, written, second in facts.iter_rows():
+        plan = profiles.plan_of(tow_id, season)
+        selections[tow_id] = read_selection(written or "", second is not None, plan)
+    unread = [tow_id for tow_id, runs in selections.items() if not runs]
+    text = say(
+        "column 'gebruik runs' is '{cell}'; runs are numbers of the plan with commas between them, "
+        "each once, and b1 and on of meetfile2."
+    )
+    rows.drop(pl.col("tow_id").is_in(unread), text, cell=pl.col("use_runs"))
+    return selections
+
+
+def read_selection(written: str, has_second: bool, plan: Plan) -> frozenset[int]:
+    """The runs to use, none where that cannot be read; all of the first file for an empty cell.
+
+    Args:
+        written: what the list says: `1,2,3`, `1-6`, `1,2,3,b4,b5,b6`.
+        has_second: the tow has a second file; all of its runs count too where the plan has them.
+        plan: the runs of the tow.
+    """
+    if not written:
+        second = plan.runs if plan.second_directions and has_second else ()
+        return frozenset([*plan.runs, *(SECOND_FILE_OFFSET + run for run in second)])
+    parts: list[str] = []
+    for part in re.split(r"[\s,;]+", written.casefold()):
+        match = _RANGE.fullmatch(part)
+        numbers = range(int(match[2]), min(int(match[3]), MOST_RUNS) + 1) if match else ()
+        parts += [f"{match[1]}{number}" for number in numbers] if match else [part]
+    planned = {str(run): run for run in plan.runs}
+    if has_second:
+        planned |= {f"b{run}": SECOND_FILE_OFFSET + run for run in plan.runs}
+    runs = [planned.get(part) for part in parts]
+    is_good = None not in runs and len({*runs}) == len(runs)
+    return frozenset(run for run in runs if run) if is_good else frozenset()
+
+
+def samples_by_name(files: Iterable[ArchiveFile], hashes: Hashes) -> pl.DataFrame:
+    """The samples files by `season` and the `name` that they answer to.
+
+    Of several with one name, their `number` and the first: whether it is `inside`, its `path`, and
+    its `sha256`, null where it cannot be read.
+    """
+    found = [
+        (file.season, match_key(file.full_path.name), file.inside, file.path,
+         hashes.get(file.path, (None, 0))[0])
+        for file in files if file.kind == SAMPLES
+    ]  # fmt: skip
+    schema = {"season": pl.Int32, "name": pl.String, "inside": pl.Boolean}
+    frame = pl.DataFrame(found, schema | {"path": pl.String, "sha256": pl.String}, orient="row")
+    first = pl.col("inside", "path", "sha256").first()
+    return frame.group_by("season", "name", maintain_order=True).agg(
+        first, number=pl.len(), runs=pl.lit(None, pl.String)
+    )
+
+
+def run_file_names(cell: str, profile: SeasonProfile, plan: Plan) -> dict[int, str]:
+    """Return the names of the files of each run of a tow; none where all runs are in one file.
+
+    The cell of the tow list has `{run}` for the number of the run, or else the profile says that
+    there is a file for each run, and how these are named.
+    """
+    if "{run}" in cell:
+        pattern = cell
+    elif profile.runs == "file":
+        pattern = profile.run_files.replace("{meetfile}", match_key(cell))
+    else:
+        return {}
+    return {run: match_key(pattern.replace("{run}", str(run))) for run in plan.runs}
+
+
+def _with_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl.DataFrame:
+    """Return the samples with an entry for each tow that has a file for each run."""
+    known = {(row["season"], row["name"]): row for row in samples.iter_rows(named=True)}
+    together: dict[tuple[int, str], dict[str, Any]] = {}
+    facts = rows.frame.select("tow_id", "season", "file", "second_file")
+    for tow_id, season, *cells in facts.iter_rows():
+        plan, profile = profiles.plan_of(tow_id, season), profiles.for_season(season)
+        for cell_text in filter(None, cells):
+            names = run_file_names(cell_text, profile, plan)
+            parts = {run: known[season, name] for run, name in names.items()
+                     if (season, name) in known}  # fmt: skip
+            if not parts:
+                continue
+            hashes = [part["sha256"] for part in parts.values()]
+            together[season, match_key(cell_text)] = {
+                "season": season,
+                "name": match_key(cell_text),
+                "inside": all(part["inside"] for part in parts.values()),
+                "path": PARTS.join(part["path"] for part in parts.values()),
+                "sha256": None if None in hashes else combine_hashes(hashes),
+                "number": max(part["number"] for part in parts.values()),
+                "runs": ",".join(map(str, parts)),
+            }
+    entries = known | together
+    return pl.DataFrame([*entries.values()], samples.schema, orient="row")
+
+
+def _with_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
+    """Adds path and hash of the samples that a cell names, or sets the row aside."""
+    prefix = {"file": "samples", "second_file": "second"}[key]
+    text = say("'{name}' is a path; only the name of a file in meetdata_{season}/ is given here.")
+    cell_of = pl.col(key)
+    facts: dict[str, Any] = {"name": pl.col(key), "season": pl.col("season")}
+    rows.drop(cell_of.str.contains(r"[/\\]|^\.\."), text, "path_outside_archive", **facts)
+    named = samples.rename({name: f"{prefix}_{name}" for name in ("path", "sha256", "runs")})
+    name = cell_of.map_elements(match_key, pl.String)
+    rows.frame = rows.frame.with_columns(name=name).join(
+        named, on=["season", "name"], how="left", maintain_order="left"
+    )
+    path, is_named = pl.col(f"{prefix}_path"), cell_of.is_not_null()
+    text = say("there is no file '{name}' in meetdata_{season}/.")
+    rows.drop(is_named & path.is_null(), text, "samples_missing", **facts)
+    text = say("'{name}' can be any of {number} files in meetdata_{season}/.")
+    number = pl.col("number")
+    rows.drop(number > 1, text, "ambiguous_file", **facts, number=number)
+    text = say("'{path}' leads outside the archive, where nothing is read.")
+    rows.drop(~pl.col("inside"), text, "path_outside_archive", path=path)
+    is_unread = path.is_not_null() & pl.col(f"{prefix}_sha256").is_null()
+    rows.drop(is_unread, say("'{path}' cannot be read."), "unreadable_file", path=path)
+    rows.frame = rows.frame.drop("name", "inside", "number")
+
+
+def _check_own_samples(rows: Rows) -> None:
+    """Sets aside rows whose samples are not their own, by content.
+
+    A first file may be the second file of another tow of the same boat: that is how two tows are
+    combined.
+    """
+    first, second, boat = "samples_sha256", "second_sha256", pl.col("fsn_no")
+    text = say("meetfile and meetfile2 hold the same samples.")
+    rows.drop(pl.col(first) == pl.col(second), text, "samples_listed_twice")
+    crew = pl.format("{}{}", "rowers", "crew_class").alias("crew")
+    firsts = rows.frame.select(boat, crew, content=first)
+    seconds = rows.frame.select(boat, content=second).drop_nulls()
+    users = pl.concat([firsts, seconds], how="diagonal").group_by("content", maintain_order=True)
+    users_of = users.agg(pl.col("fsn_no").n_unique(), pl.col("crew").drop_nulls().n_unique())
+    shared = users_of.filter((pl.col("fsn_no") > 1) | (pl.col("crew") > 1))["content"]
+    is_shared = pl.any_horizontal(pl.col(first, second).is_in(shared.implode()))
+    text = say("'{path}' is used for several boats or crews; whose samples they are is unclear.")
+    path = pl.col("samples_path")
+    rows.drop(is_shared, text, "samples_listed_twice", path=path)
+    text = say("'{path}' holds the samples that line {line} uses already for {boat}.")
+    facts: dict[str, Any] = {"path": path, "line": pl.col("line").first().over(first), "boat": boat}
+    rows.drop(~pl.col(first).is_first_distinct(), text, "duplicate_tow", **facts)
+
+
+def _with_boat(rows: Rows, boats: Boats) -> None:
+    """Adds the sizes of the boat where those of that day were not written down."""
+    text = say("boat {boat} cannot be used, see {path}: {why}")
+    for boat, fault in boats.lost.items():
+        facts: dict[str, Any] = {"boat": boat, "path": fault.path, "why": fault.message}
+        rows.drop(pl.col("fsn_no") == boat, text, fault.reason_code, **facts)
+    text, boat_of = say("boat {boat} is not in the boat list."), pl.col("fsn_no")
+    is_known = boat_of.is_in(boats.listed["fsn_no"].implode())
+    rows.drop(~is_known, text, "unknown_boat", boat=boat_of)
+    sizes = boats.listed.unique("fsn_no", maintain_order=True).select(
+        "fsn_no", pl.col(*_SIZES, "weight_kg").name.prefix("listed_")
+    )
+    rows.frame = rows.frame.join(sizes, on="fsn_no", how="left", maintain_order="left")
+    text = say(
+        "column '{column}' is {cell} and the boat list says {listed:g}; one of the two cannot be "
+        "right."
+    )
+    for key in (*_SIZES, "weight_kg"):
+        # No rebuilding makes a boat twice as long or heavy: in feet, or a digit too many.
+        listed = pl.col(f"listed_{key}")
+        is_apart = ~(pl.col(key) / listed).is_between(1 / TWICE, TWICE, closed="none")
+        facts = {"column": TOWS.header(key), "cell": cell(key), "listed": listed}
+        if key in _SIZES:
+            rows.drop(is_apart, text, **facts)
+            rows.frame = rows.frame.with_columns(pl.coalesce(key, listed).alias(key))
+        else:  # a tow can do without
+            rows.empty(key, is_apart, text, **facts)
+
+
+def _with_season(rows: Rows, profiles: Profiles) -> None:
+    """Adds what `archief.toml` says of season and day, and sets aside the days that it names."""
+    reason = _by(rows, "tow_date", profiles.reason_set_aside, pl.String())
+    text = say("{day} is set aside in archief.toml: {reason}.")
+    facts: dict[str, Any] = {"day": pl.col("tow_date"), "reason": reason}
+    rows.drop(reason.is_not_null(), text, "day_set_aside", **facts)
+
+    def of_season(read: Callable[[SeasonProfile], object], dtype: pl.DataType) -> pl.Expr:
+        return _by(rows, "season", lambda season: read(profiles.for_season(season)), dtype)
+
+    rate = of_season(lambda profile: profile.sample_rate_hz, pl.Float64())
+    rows.frame = rows.frame.with_columns(
+        wind_measured=of_season(lambda profile: "wind" not in profile.absent, pl.Boolean()),
+        log2_measured=of_season(lambda profile: "log2" not in profile.absent, pl.Boolean()),
+        sample_rate_hz=pl.coalesce("sample_rate_hz", rate),
+        log1_part=_by(rows, "tow_date", partial(profiles.part_of_log, "log1"), pl.Int32()),
+        log2_part=_by(rows, "tow_date", partial(profiles.part_of_log, "log2"), pl.Int32()),
+    )
+    for key in _SIZES:
+        is_needed = pl.col("wind_measured") if key == "bow_height_m" else pl.lit(value=True)
+        text = say("'{names}' must be there, here or in the boat list.")
+        rows.drop(pl.col(key).is_null() & is_needed, text, names=TOWS.header(key))
+
+
+def _by(rows: Rows, key: str, read: Callable[[Any], object], dtype: pl.DataType) -> pl.Expr:
+    """What follows from the value of a column, read once for each."""
+    found = {value: read(value) for value in rows.frame[key].unique()}
+    if not found:
+        return pl.lit(None, dtype)
+    return pl.col(key).replace_strict(found, return_dtype=dtype)
+
+
+def _with_instruments(
+    rows: Rows, profiles: Profiles, checks: pl.DataFrame, burned: pl.DataFrame
+) -> None:
+    """Adds what is known of the load cell and the warning lamps.
+
+    Of the load cell the last day counts on which it was checked before the tow, else the first
+    after it in the season.
+    """
+    frame = rows.frame.with_row_index("_row").sort("tow_date")
+    before, after = (
+        frame.join_asof(
+            checks, left_on="tow_date", right_on="day", by="season", strategy=strategy,
+            check_sortedness=False,
+        ).select("load_cell_ratio", "load_cell_sd")
+        for strategy in ("backward", "forward")
+    )  # fmt: skip
+    for name in ("load_cell_ratio", "load_cell_sd"):
+        frame = frame.with_columns(before[name].fill_null(after[name]))
+    frame = frame.sort("_row").join(burned, on="tow_id", how="left", maintain_order="left")
+    plans = (profiles.plan_of(*tow) for tow in frame.select("tow_id", "season").rows())
+    planned_s = pl.Series([plan.seconds for plan in plans], dtype=pl.Float64)
+    rows.frame = frame.with_columns(lamp_ratio=pl.col("burned_s") / planned_s)
+
+
+def runs_of(
+    tows: pl.DataFrame, selections: Mapping[str, frozenset[int]], profiles: Profiles
+) -> dy.DataFrame[ListedRuns]:
+    """The runs that the tows are meant to have; those of a second file are 21 and on."""
+    runs = []
+    facts = tows.select("tow_id", "season", pl.col("second_path").is_not_null())
+    for tow_id, season, has_second in facts.iter_rows():
+        plan = profiles.plan_of(tow_id, season)
+        files = [(0, plan.directions)]
+        if has_second:
+            files.append((SECOND_FILE_OFFSET, plan.second_directions or plan.directions))
+        for offset, directions in files:
+            for number, direction, target in zip(plan.runs, directions, plan.targets, strict=True):
+                run = offset + number
+                selected = run in selections[tow_id]
+                runs.append((tow_id, run, direction, target, selected, plan.seconds))
+    return frame_of(ListedRuns, runs)
