@@ -20,14 +20,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import polars as pl
-from warehouse.derive.graph import ARCHIVE, METHOD
-from warehouse.derive.inputs import Scope
 
 from benchmarks.robustness.faults import spoil_bytes, spoil_row, spoil_samples
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.definition import shipped_method
-from warehouse.intake.seasons import bring_in
+from warehouse.derive.archive_tables import read_archive
+from warehouse.derive.recomputing import ArchiveRuns, recompute_archive
 from warehouse.store.store import Store
 
 WORLD = WorldSettings(seasons=(2009,), tows_per_season=20, rate_hz=20, seed=3)
@@ -86,13 +85,15 @@ class Ground:
     def read(self) -> tuple[Rows, set[str]]:
         """Rows of each tow in each table, and the tows of which something is set aside."""
         store = self.store
-        bring_in(store, self.archive)
-        ARCHIVE.make(Scope(store, (), today=SEEN))
-        found = {name: store.read(name) for name in ("tows", "tow_runs")}
-        for name in METHODS:
-            METHOD.make(Scope(store, [shipped_method(name)]))
-            applied = {table: store.read(table, name) for table in ("run_points", "curves")}
-            found |= {f"{table} {name}": frame for table, frame in applied.items()}
+        read_archive(store, self.archive, SEEN)
+        inputs = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
+        archive = ArchiveRuns(**{name: store.read(name) for name in inputs})
+        made = recompute_archive([shipped_method(name) for name in METHODS], archive)
+        assert made.failures.is_empty()
+        found = {"tows": made.tows, "tow_runs": made.tow_runs}
+        for table in ("run_points", "curves"):
+            for name in METHODS:
+                found[f"{table} {name}"] = made.tables[table].filter(method=name)
         aside = set(store.read("quarantine")["tow_id"].drop_nulls())
         return {name: _by_tow(frame) for name, frame in found.items()}, aside
 

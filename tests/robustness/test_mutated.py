@@ -19,7 +19,7 @@ def test_every_faulty_tow_is_set_aside_or_keeps_its_numbers(tmp_path):
 
 def test_a_reader_that_looks_away_is_noticed(tmp_path, monkeypatch):
     monkeypatch.setattr(
-        "warehouse.intake.lake.judge_samples", lambda samples, *_: Judged(samples, [])
+        "warehouse.intake.reading.judge_samples", lambda samples, *_: Judged(samples, [])
     )
     assert mutate.mutate(tmp_path, 15, 2, quiet).wrong != []
 
