@@ -9,7 +9,7 @@ import pytest
 from python_calamine import load_workbook
 
 from dashboards.speech import Speech
-from dashboards.statements.rebuild import judged, mail, verdict
+from dashboards.statements.rebuild import LastRun, judged, mail, verdict
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.errors import MissingKnowledgeError
@@ -185,7 +185,11 @@ def test_flagged_tows_are_counted_wherever_a_rebuild_is_reported(built):
     changes = replace(changes, judged=two_of_three)
     assert "1 accepted, 2 flagged" in judged(changes)(Speech("en"))
     assert "In order" not in verdict(changes, [])(Speech("en"))
-    assert "nog te beoordelen" in mail(changes, [], simulated=False)[1]
+    run = LastRun("2026-11-20T03:00:00+01:00", "unchanged", "", "2026-11-18T03:01:00+01:00")
+    text = mail(changes, [], simulated=False, run=run)[1]
+    assert "nog te beoordelen" in text
+    assert "2026-11-20 03:00. Er was niets veranderd." in text
+    assert "Laatste verandering: 2026-11-18 03:01." in text
     assert "In order" in verdict(replace(changes, judged=two_of_three | {"flagged": 0}), [])(
         Speech("en")
     )
