@@ -150,8 +150,6 @@ COLUMNS: Final[dict[str, Sentence]] = {
     "beyond_curve": say("Beyond the curve"),
     "position": say("Order"),
     "seasons": say("Towed in"),
-    "factor_sd_before_percent": say("sd before [%]"),
-    "factor_sd_after_percent": say("sd after [%]"),
     "size_lo": say("low"),
     "size_hi": say("high"),
     "instrument": say("What"),

@@ -100,7 +100,7 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
 
 
 def _boats(views: Views, methods: Sequence[str]) -> Page:
-    """Who has to tow again, at what speed, and which boats to tow again."""
+    """Return the page of who has to tow again, and at what speed."""
     rows = views.ask("due_list").filter(method=default_method(methods))
     rows = rows.rename({"tow_date": "last_tow"})
     due = Table(
@@ -112,8 +112,6 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
         search=True,
         cards="name fsn_no rowers crew_class valid_until status tow_speed_m_s",
     )
-    choice = views.ask("retow_choice").filter(method=default_method(methods))
-    sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
     due_list = Section(
         "due_list",
         say("Who has to tow again"),
@@ -121,21 +119,7 @@ def _boats(views: Views, methods: Sequence[str]) -> Page:
         tables=[due],
         headline=of_due.due(rows),
     )
-    to_tow = Section(
-        "retow_choice",
-        of_due.RETOW_TITLE,
-        of_due.RETOW,
-        tables=[
-            Table(
-                "retow_choice",
-                choice.hstack(sd),
-                "position name fsn_no rowers crew_class seasons valid_until tow_speed_m_s "
-                "factor_sd_before_percent factor_sd_after_percent",
-            )
-        ],
-        headline=of_due.retow(choice) if choice.height else None,
-    )
-    return Page("boats.html", say("Boats"), [due_list, to_tow])
+    return Page("boats.html", say("Boats"), [due_list])
 
 
 def _seasons(views: Views, methods: Sequence[str]) -> Page:

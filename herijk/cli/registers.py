@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 @argument("edition", required=False, help="Edition or draft. Default: the newest.")
 @flag(
     "--due",
-    help="When each tow expires, at what speed to tow next, and which boats to tow again, by the "
-    "curves of the edition's method.",
+    help="When each tow expires, and at what speed to tow next, by the curves of the edition's "
+    "method.",
 )
 @data_option
 @as_of_option

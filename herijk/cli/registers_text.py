@@ -33,7 +33,6 @@ DUE: Final = (
     "valid_until fsn_no name crew tow_date declared_speed_m_s power_w raced_speed_m_s "
     "lowest_speed_m_s highest_speed_m_s tow_speed_m_s beyond_curve speed_reason"
 )
-RETOW: Final = "position fsn_no name crew seasons valid_until tow_speed_m_s factor_sd_after_percent"
 
 
 def register(report: "RegisterReport") -> Iterator[Part]:
@@ -58,25 +57,13 @@ URGENCIES: Final = {
 
 
 def due(report: "DueReport") -> Iterator[Part]:
-    """Who is due, at what speed, and which boats to tow again."""
+    """Yield who is due, and at what speed."""
     yield marked(report.simulated)
     yield Section("", [of_due.due(_frame(report.lines))], report.method)
     for urgency, title in URGENCIES.items():
         rows = [row for row in report.lines if row["urgency"] == urgency]
         yield Section(tell(title), rows=rows, columns=DUE)
     yield prose(tell(of_due.SPEEDS))
-    choice = report.retow_choice
-    yield Section(
-        tell(of_due.RETOW_TITLE),
-        [of_due.retow(_frame(choice))] if choice else [],
-        report.method,
-        rows=[
-            row | {"factor_sd_after_percent": 100 * row["factor_sd_after_ratio"]} for row in choice
-        ],
-        columns=RETOW,
-        empty=tell("Nobody: this method estimates no log error, so no tow would narrow it."),
-        note=tell(of_due.RETOW) if choice else "",
-    )
 
 
 # Seasons

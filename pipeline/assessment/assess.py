@@ -21,23 +21,23 @@ from pipeline.season_log.observation_model import FLEET
 from pipeline.tables.keys import LINE, SIZES
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
-FEWEST_LIKE_BOATS: Final = 4
+MIN_LIKE_BOATS: Final = 4
 """Fewest boats of a type among which one can stand out (inferred)."""
 
-FEWEST_CHANGES: Final = 4
+MIN_CHANGES: Final = 4
 """Fewest changes for which what they share is taken to be the season's (inferred)."""
 
-ROUNDS: Final = 60
+POLISH_ROUNDS: Final = 60
 """Half a step is made in each, as neighbouring seasons move each other; 1e-4 is left at most."""
 
-FEWEST_TOWS: Final = 6
+MIN_TOWS_WITH_GPS: Final = 6
 """Fewest tows with GPS that show whether the log of their season is in proportion to speed."""
 
-CLEAR_SD: Final = 3.5
+MIN_SLOPE_SD: Final = 3.5
 """Standard errors from which chance does not explain that it is not. With the limit of its check
 none of 990 sound seasons of 90 simulated archives is marked, and all 36 with logs of v^1.03."""
 
-LEAST_SPREAD: Final = 0.004
+MIN_LN_SPEED_SQUARES: Final = 0.004
 """Least sum of squares of ln speed, about the mean of a direction, over the runs of a tow."""
 
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
@@ -47,7 +47,7 @@ LISTED: Final = {"waterline_length_m": "listed_length_m", "beam_m": "listed_beam
 def assess(
     curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
 ) -> pl.DataFrame:
-    """Every check of every tow with what was observed and what it is compared with.
+    """Return every check of every tow with what was observed and what it is compared with.
 
     Args:
         curves, run_points: the tables of one method, curves without `status` and `flags`.
@@ -60,25 +60,27 @@ def assess(
     """
     boats = _add_boats(curves, tows)
     facts = [
-        _beside_papers(tows),
+        _compare_with_papers(tows),
         curves.drop(set(curves.columns) & set(tows.columns) - {"tow_id"}),
-        _of_runs(curves, run_points),
-        _of_season(curves, tows, diagnosis),
-        _of_log(curves, run_points),
+        _summarize_runs(curves, run_points),
+        _doubt_seasons(curves, tows, diagnosis),
+        _estimate_log_slopes(curves, run_points),
         _compare_with_previous(boats, curves, diagnosis),
         _compare_with_best_estimate(curves),
         _compare_with_season_and_type(boats),
         _compare_with_type(boats, curves, diagnosis),
     ]
-    return checked(reduce(_joined, facts, tows).with_columns(by_half_a_step=BY_HALF_A_STEP))
+    return apply_checks(
+        reduce(_join_by_tow, facts, tows).with_columns(by_half_a_step=HALF_STEP_RATIO)
+    )
 
 
-def _joined(tows: pl.DataFrame, facts: pl.DataFrame) -> pl.DataFrame:
+def _join_by_tow(tows: pl.DataFrame, facts: pl.DataFrame) -> pl.DataFrame:
     return tows.join(facts, on="tow_id", how="left", maintain_order="left")
 
 
-def checked(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.DataFrame:
-    """Rules applied to the facts of tows.
+def apply_checks(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.DataFrame:
+    """Apply rules to the facts of tows.
 
     Args:
         tows: a row per tow with all that the rules measure; those that have no `method`, without
@@ -94,11 +96,11 @@ def checked(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.DataFram
     nearer_lowest = highest.is_null() | nearer
     index = ("method", "tow_id", "season", "crew_class")
     return (
-        tows.select(*index, *(_number(check) for check in checks))
+        tows.select(*index, *(_measure(check) for check in checks))
         .filter(pl.col("method").is_not_null())
         .unpivot(index=index, variable_name="check", value_name="observed")
         .filter(x.is_finite())
-        .join(_limits(), on=["check", "crew_class"], maintain_order="left")
+        .join(_list_limits(), on=["check", "crew_class"], maintain_order="left")
         .filter(pl.col("season") <= pl.col("last_season").fill_null(pl.col("season")))
         .select(
             "method",
@@ -113,11 +115,11 @@ def checked(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.DataFram
     )
 
 
-def _number(check: Check) -> pl.Expr:
+def _measure(check: Check) -> pl.Expr:
     return pl.sql_expr(check.measured).cast(pl.Float64).alias(check.code)
 
 
-def _limits() -> pl.DataFrame:
+def _list_limits() -> pl.DataFrame:
     rows = [
         (c.code, crew_class, *c.limits(crew_class), c.unit, c.severity, c.last_season)
         for c in CHECKS
@@ -128,10 +130,10 @@ def _limits() -> pl.DataFrame:
     return pl.DataFrame(rows, schema=schema | {"last_season": pl.Int32()}, orient="row")
 
 
-def with_status(
+def add_status(
     curves: pl.DataFrame, assessments: pl.DataFrame, rejecting: Sequence[tuple[int, str]]
 ) -> pl.DataFrame:
-    """The curves with `status` and `flags`.
+    """Add `status` and `flags` to curves.
 
     Rejected is a tow without a curve or with a flag that rejects; flagged one that somebody must
     look at; the others are accepted. Notes are not listed, unless they reject.
@@ -170,7 +172,7 @@ def with_status(
 
 # The facts
 
-BY_HALF_A_STEP: Final = pl.max_horizontal(
+HALF_STEP_RATIO: Final = pl.max_horizontal(
     pl.when(pl.col("calibration_factor").is_not_null()).then(
         pl.col("gps_step_m_s") / pl.col("declared_speed_m_s")
     ),
@@ -180,8 +182,8 @@ BY_HALF_A_STEP: Final = pl.max_horizontal(
 of speed counts twice. That of a GPS counts only where it calibrates the tow."""
 
 
-def _beside_papers(tows: pl.DataFrame) -> pl.DataFrame:
-    """Measurements against the boat list, and against those of the boat's previous tow.
+def _compare_with_papers(tows: pl.DataFrame) -> pl.DataFrame:
+    """Compare measurements with the boat list, and with those of the boat's previous tow.
 
     Null for a boat that was ever altered, and after a reported alteration, which explain it.
     """
@@ -200,8 +202,8 @@ def _beside_papers(tows: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
-    """How the runs that count lie about the curve and the intended speeds."""
+def _summarize_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    """Return how the runs that count lie about the curve and the intended speeds."""
     speed, way = pl.col("speed_m_s"), pl.col("direction")
     declared, target = pl.col("declared_speed_m_s"), pl.col("target_speed_ratio")
     on_curve = pl.col("cw_kg_m") / pl.col("fitted_cw_kg_m")
@@ -225,7 +227,7 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-LEAST_USUAL_SCATTER: Final = 0.05
+MIN_USUAL_SCATTER: Final = 0.05
 """Least standard deviation of samples over Cw that counts as usual: half of the 10 % under which
 nothing is too much (Sleepproef, R. Pot 2017, "Eerste beoordeling")."""
 
@@ -260,7 +262,7 @@ def measure_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame
     log1_m_s = pl.col("speed_m_s") / pl.col("speed_factor")
     gross = pl.col("gross_cw_kg_m")
     of_samples = pl.when(used & is_cut & (gross > 0)).then(pl.col("cw_sd") / gross)
-    usual = of_samples.median().over("season").clip(lower_bound=LEAST_USUAL_SCATTER)
+    usual = of_samples.median().over("season").clip(lower_bound=MIN_USUAL_SCATTER)
     of_runs = {
         "off_target": (on_target / level - 1).abs(),
         "log2_off_m_s": ((pl.col("log2_ratio") - 1) * log1_m_s).abs(),
@@ -298,12 +300,14 @@ def _add_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _cw_at(speed: pl.Expr) -> pl.Expr:
-    """Cw of each curve at a speed; null from B on."""
+    """Return Cw of each curve at a speed; null from B on."""
     below_b = 1 - pl.col("s_s2_m2") * speed**2
     return pl.when(below_b > 0).then(pl.col("a_kg_m") / below_b)
 
 
-def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:
+def _doubt_seasons(
+    curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
+) -> pl.DataFrame:
     """Return whether an instrument of the tow's season is in doubt, where it was diagnosed.
 
     It is where a fault is likelier than not. A fault of 10 to 50 % is listed in the diagnosis and
@@ -319,7 +323,7 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
         season_in_doubt=(pl.col("alarm") & (pl.col("verdict") != CANNOT_BE_TOLD)).any()
     )
     doubted = seasons.filter("season_in_doubt")["season"]
-    anchors = {*_by_gps(curves)} & {*seasons["season"]}
+    anchors = {*_calibrated_seasons(curves)} & {*seasons["season"]}
     if anchors and anchors <= {*doubted}:
         estimated = diagnosis.filter(verdict="estimated")["season"]
         rests = pl.col("season").is_in(estimated.implode())
@@ -337,8 +341,8 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
     )
 
 
-def _of_log(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
-    """How the log's factor changes with speed, by the GPS of all tows of its season.
+def _estimate_log_slopes(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    """Return how the log's factor changes with speed, by the GPS of all tows of its season.
 
     The slope of ln(GPS / log) by ln speed among runs one way, in which the current is the same; its
     mean over the season, 0 where chance explains it.
@@ -350,16 +354,16 @@ def _of_log(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
         .select("tow_id", x=x - x.mean().over(ways), y=y - y.mean().over(ways))
         .group_by("tow_id", maintain_order=True)
         .agg(product=(pl.col("x") * pl.col("y")).sum(), spread=(pl.col("x") ** 2).sum())
-        .filter(pl.col("spread") > LEAST_SPREAD)
+        .filter(pl.col("spread") > MIN_LN_SPEED_SQUARES)
         .with_columns(slope=pl.col("product") / pl.col("spread"))
     )
     seasons = curves.select("tow_id", "season")
-    by_chance = CLEAR_SD * slope.std() / pl.len().sqrt()
+    by_chance = MIN_SLOPE_SD * slope.std() / pl.len().sqrt()
     found = (
         of_tows.join(seasons, on="tow_id", maintain_order="left")
         .group_by("season", maintain_order=True)
         .agg(pl.len(), log_slope=slope.mean() * (slope.mean().abs() > by_chance))
-        .filter(pl.col("len") >= FEWEST_TOWS)
+        .filter(pl.col("len") >= MIN_TOWS_WITH_GPS)
     )
     return seasons.join(found, on="season", maintain_order="left").select("tow_id", "log_slope")
 
@@ -397,12 +401,12 @@ def _compare_with_previous(
         before=before("season"),
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
     )
-    level = _season_levels(changed.drop_nulls("ln"), _seasons_to_scale(curves, diagnosis))
-    now, then = (
-        pl.col(column).replace_strict(level, default=0.0, return_dtype=pl.Float64)
-        for column in ("season", "before")
+    level = _estimate_season_levels(
+        changed.drop_nulls("ln"), _list_seasons_to_scale(curves, diagnosis)
     )
-    ratio = (pl.col("ln") - now + then).exp() - 1
+    level_now = pl.col("season").replace_strict(level, default=0.0, return_dtype=pl.Float64)
+    level_before = pl.col("before").replace_strict(level, default=0.0, return_dtype=pl.Float64)
+    ratio = (pl.col("ln") - level_now + level_before).exp() - 1
     return changed.select(
         "tow_id",
         curve_change=pl.when(~pl.col("is_best")).then(ratio),
@@ -410,8 +414,8 @@ def _compare_with_previous(
     )
 
 
-def _season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int, float]:
-    """Level of ln Cw of every season that is not to scale and has enough changes.
+def _estimate_season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int, float]:
+    """Return the level of ln Cw of every season that is not to scale and has enough changes.
 
     A log that nothing calibrates gives every tow of its season the same error: between two such
     seasons each boat seems to change. By medians, so that a tow that is off moves it little (median
@@ -430,22 +434,22 @@ def _season_levels(changes: pl.DataFrame, to_scale: Collection[int]) -> dict[int
     )
     seasons, place = np.unique(rows[["here", "there"]].to_numpy(), return_inverse=True)
     here, there = place.reshape(-1, 2).T
-    free = np.bincount(here, minlength=len(seasons)) >= FEWEST_CHANGES
+    free = np.bincount(here, minlength=len(seasons)) >= MIN_CHANGES
     free &= ~np.isin(seasons, list(to_scale))
     level, ln = np.zeros(len(seasons)), rows["ln"].to_numpy()
-    for _ in range(ROUNDS):
+    for _ in range(POLISH_ROUNDS):
         apart = ln + level[there] - level[here]
         level += [0.5 * np.median(apart[here == s]) if free[s] else 0.0 for s in range(len(level))]
     return dict(zip(seasons[free].tolist(), level[free].tolist(), strict=True))
 
 
-def _by_gps(curves: pl.DataFrame) -> pl.Series:
+def _calibrated_seasons(curves: pl.DataFrame) -> pl.Series:
     return curves.drop_nulls("calibration_factor")["season"]
 
 
-def _seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:
+def _list_seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:
     """Return the seasons whose logs are on the scale of GPS: calibrated, or estimated."""
-    return {*_by_gps(curves), *diagnosis.filter(verdict="estimated")["season"]}
+    return {*_calibrated_seasons(curves), *diagnosis.filter(verdict="estimated")["season"]}
 
 
 def _compare_with_type(
@@ -459,7 +463,7 @@ def _compare_with_type(
     whose logs are to scale take part: other logs can make a type seem 20 % off.
     """
     to_scale = boats.filter(
-        pl.col("season").is_in(_seasons_to_scale(curves, diagnosis))
+        pl.col("season").is_in(_list_seasons_to_scale(curves, diagnosis))
     ).drop_nulls(["boat_type", "size"])
     is_first = pl.int_range(pl.len()).over(LINE) == 0
     firsts = boats.filter(is_first | pl.col("altered"))["tow_id"]
@@ -493,7 +497,7 @@ def _compare_with_season_and_type(boats: pl.DataFrame) -> pl.DataFrame:
     return (
         boats.filter(~pl.col("is_best"))
         .drop_nulls(["boat_type", "size"])
-        .filter(pl.col("fsn_no").n_unique().over(LIKE) >= FEWEST_LIKE_BOATS)
+        .filter(pl.col("fsn_no").n_unique().over(LIKE) >= MIN_LIKE_BOATS)
         .with_columns(ln_excess=(_cw_at(common_speed) / pl.col("size")).log())
         .with_columns(ln - ln.median().over(LIKE))
         .with_columns(ln - ln.median().over("season"))

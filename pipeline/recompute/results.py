@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.assessment.assess import assess, with_status
+from pipeline.assessment.assess import add_status, assess
 from pipeline.assessment.run_choice import with_run_choice
 from pipeline.method.definition import Method, Steps
 from pipeline.quantiles import t_quantile
@@ -29,14 +29,13 @@ from pipeline.recompute.budget import (
     scatter_of,
 )
 from pipeline.recompute.computed import Computed
-from pipeline.season_log import SeasonFactors, retow_choice
+from pipeline.season_log import SeasonFactors
 from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
 from pipeline.season_log.factors import NOT_SETTLED
 from pipeline.tables.frames import dtypes
 from pipeline.tables.season_log import (
     BestEstimateWeights,
     LogFactors,
-    RetowChoice,
     SeasonLinks,
     SeasonSteps,
     TowInstruments,
@@ -45,7 +44,6 @@ from pipeline.uncertainty.propagation import combine, make_budget
 
 OF_ALL_TOWS: Final = {
     "season_links": SeasonLinks,
-    "retow_choice": RetowChoice,
     "season_steps": SeasonSteps,
     "tow_instruments": TowInstruments,
     "best_estimate_weights": BestEstimateWeights,
@@ -68,7 +66,6 @@ class Recomputed:
     uncertainty_budget: pl.DataFrame
     curve_points: pl.DataFrame
     season_links: pl.DataFrame
-    retow_choice: pl.DataFrame
     season_steps: pl.DataFrame
     season_diagnosis: pl.DataFrame
     tow_instruments: pl.DataFrame
@@ -106,7 +103,7 @@ def as_tables(
     ]
     return Recomputed(
         run_points=run_points,
-        curves=with_status(curves, assessments, rejecting),
+        curves=add_status(curves, assessments, rejecting),
         log_factors=named(_log_factors(c, estimated)),
         assessments=assessments,
         uncertainty_budget=at_v0.select(
@@ -264,7 +261,6 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
     of_links = schemas["season_links"]
     return {
         "season_links": estimated.factors.select(*of_links).cast(pl.Schema(of_links)),
-        "retow_choice": retow_choice(estimated),
         "season_steps": estimated.steps,
         "tow_instruments": estimated.tows.select(*schemas["tow_instruments"]).sort("tow_id"),
         "best_estimate_weights": estimated.weights,

@@ -2,8 +2,7 @@
 
 The rule for the speed is the federation's (Sleepproef, R. Pot 2017, "Sleepsnelheid"): on the known
 curve it takes 70-90 W per rower (men) or 40-55 W (women). Belongs here: that rule with its
-exceptions. Does not: which tow counts (`pipeline.register.register`) and which boats would tie the
-seasons together (`pipeline.season_log.retow_design`).
+exceptions. Does not: which tow counts (`pipeline.register.register`).
 """
 
 import datetime as dt

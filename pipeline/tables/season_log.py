@@ -2,7 +2,6 @@
 
 from pipeline.tables import column
 from pipeline.tables.bases import PerMethod, PerPart, PerTow
-from pipeline.tables.declare import dy
 
 
 class LogFactors(PerMethod):
@@ -111,17 +110,3 @@ class BestEstimateWeights(PerTow):
 
     rests_on = column.text("the tow that it rests on", primary_key=True)
     weight = column.number("1", "its share")
-
-
-class RetowChoice(PerMethod):
-    """Which few boats to tow again, with dGPS, to narrow the season factors most."""
-
-    position = dy.Int32(primary_key=True, description="order: 1 reduces the uncertainty most")
-    fsn_no = column.fsn_no()
-    rowers = column.rowers()
-    crew_class = column.crew_class()
-    seasons = column.text("seasons without dGPS in which it was towed as it is now")
-    factor_sd_before_ratio = column.number(
-        "1", "typical uncertainty of a season's factor before", min=0
-    )
-    factor_sd_after_ratio = column.number("1", "the same when this boat is towed too", min=0)

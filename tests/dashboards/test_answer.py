@@ -8,7 +8,7 @@ import pytest
 
 from dashboards import labels
 from dashboards.speech import Speech, duration
-from dashboards.statements import Statement, boat_type, due, edition
+from dashboards.statements import Statement, boat_type, edition
 from dashboards.statements.boat import Answer
 from dashboards.statements.race import winners
 from pipeline.messages import say
@@ -97,11 +97,6 @@ def homogeneity(equal_possible):
     return boat_type.homogeneity(pl.DataFrame(test))
 
 
-def retow(after):
-    sd = {"factor_sd_before_ratio": [0.004667], "factor_sd_after_ratio": [after]}
-    return due.retow(pl.DataFrame(sd))
-
-
 def slope(value, low, high):
     line = {"slope": value, "slope_lo": low, "slope_hi": high, "explaining": "weight_kg"}
     return boat_type.slope(line | {"reason": "few_boats"})
@@ -119,8 +114,6 @@ def of_many():
         "old_rank": [1, None, 2], "new_rank": [1, None, 2],
     }  # fmt: skip
     yield "a race", "one not placed", winners(pl.DataFrame(ranked), {("R 2025-06-04", "H"): 0.1})
-    for after in (0.004606, 0.003):
-        yield "towing again", after, retow(after)
     for equal_possible in (True, None, False):
         yield "bends of a type", equal_possible, homogeneity(equal_possible)
     for line in ((0.0123, 0.0101, 0.0149), (-2.5, -4.0, -1.0), (0.0, -14.0, 14.0), (None,) * 3):

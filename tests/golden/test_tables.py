@@ -26,7 +26,7 @@ from pipeline.consistency.observed import observe
 from pipeline.consistency.tables import line_tables
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
-from pipeline.season_log import estimate_season_factors, retow_choice
+from pipeline.season_log import estimate_season_factors
 from tests.architecture.repository import ROOT
 from tests.conftest import METHODS, Workbench, build_small
 from tests.pipeline.consistency_fleet import consistency_tables, fleet
@@ -82,7 +82,7 @@ def of_a_fleet() -> dict[str, pl.DataFrame]:
 def of_logs() -> dict[str, pl.DataFrame]:
     """Season factors of a hard archive, and what is doubted in it."""
     found = estimate_season_factors(simulate(HARD, 1002).tows)
-    return frames(found) | {"retow_choice": retow_choice(found)}
+    return frames(found)
 
 
 def of_statements(store: Store) -> dict[str, pl.DataFrame]:

@@ -12,7 +12,7 @@ from typing import Any
 import polars as pl
 import pytest
 
-from pipeline.assessment.assess import assess, with_status
+from pipeline.assessment.assess import add_status, assess
 from pipeline.assessment.checks import CODES
 from pipeline.method.definition import parse_method, shipped_method
 
@@ -446,7 +446,7 @@ def test_all_seasons_are_in_doubt_where_all_boats_changed(sound: World, tow: str
 )
 def test_a_method_rejects_and_the_numbers_stay(sound, power_w, rejecting, status, flags) -> None:
     world = sound.changed("curves", SUBJECT, power_w=power_w)
-    curves = with_status(world.curves, world.assessed(), rejecting)
+    curves = add_status(world.curves, world.assessed(), rejecting)
     assert curves.select(world.curves.columns).equals(world.curves)
     row = curves.row(by_predicate=pl.col("tow_id") == SUBJECT, named=True)
     assert (row["status"], row["flags"]) == (status, flags)

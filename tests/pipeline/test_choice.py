@@ -4,7 +4,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.assessment.assess import checked
+from pipeline.assessment.assess import apply_checks
 from pipeline.assessment.checks import CHECK
 from pipeline.choice import first_largest
 
@@ -29,4 +29,4 @@ def test_half_way_between_two_limits_rounding_does_not_choose(observed, side):
     check = CHECK["out_and_back_differ"]
     of_tow = {"method": ["m"], "tow_id": ["t"], "season": [2014], "crew_class": ["H"]}
     tows = pl.DataFrame({**of_tow, "out_over_back": [observed + 1.0]})
-    assert checked(tows, (check,))["limit"].item() == check.limits("H")[side]
+    assert apply_checks(tows, (check,))["limit"].item() == check.limits("H")[side]

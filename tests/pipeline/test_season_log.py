@@ -12,7 +12,7 @@ from scipy.stats import binom, chi2
 
 from pipeline import curve
 from pipeline.errors import BrokenPromiseError
-from pipeline.season_log import estimate_season_factors, faults, fit, retow_choice
+from pipeline.season_log import estimate_season_factors, faults, fit
 from pipeline.season_log.archive import build_archive
 from pipeline.season_log.factors import find_refused
 from pipeline.season_log.fit import build_model
@@ -270,8 +270,6 @@ def test_the_last_bits_of_the_tows_do_not_reach_the_factors():
     other = estimate_season_factors(jittered(world.tows, 1002))
     assert unequal({"factors": found.factors}, {"factors": other.factors}) == []
     assert found.tow_log_sd == pytest.approx(other.tow_log_sd, rel=SAME)
-    chosen, others = (retow_choice(one) for one in (found, other))
-    assert unequal({"choice": chosen}, {"choice": others}) == []
 
 
 @pytest.mark.parametrize(("cause", "force"), [("log", None), ("force", (2010, 0.16))])

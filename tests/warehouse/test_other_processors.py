@@ -86,7 +86,7 @@ def test_another_processor_makes_the_same_tables(here_and_there):
     here, there, _ = here_and_there
     tables = all_tables(here)
     assert unequal(tables, all_tables(there)) == []
-    estimated = ("season_links", "retow_choice", "predicted_cw", "race_changes")
+    estimated = ("season_links", "predicted_cw", "race_changes")
     assert all(tables[name].height for name in estimated)
     assert tables["variance_components"]["sd_ratio"].null_count() == 0
 

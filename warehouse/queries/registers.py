@@ -43,14 +43,12 @@ class DueReport:
         simulated: whether the archive is.
         as_of: day on which validity is judged.
         lines: rows of `due_list` with `name`, `boat_type` and `urgency`.
-        retow_choice: rows of that table with `name`, `valid_until` and `tow_speed_m_s`.
     """
 
     method: str
     simulated: bool
     as_of: dt.date
     lines: list[Row]
-    retow_choice: list[Row]
 
 
 def register_report(
@@ -77,7 +75,7 @@ def register_report(
 
 
 def due_report(store: Store, method: str | None = None, as_of: dt.date | None = None) -> DueReport:
-    """Who is due under a method, at what speed, and which boats to tow again.
+    """Return who is due under a method, and at what speed.
 
     Args:
         store: the data folder.
@@ -89,7 +87,6 @@ def due_report(store: Store, method: str | None = None, as_of: dt.date | None = 
     """
     with Views(store, as_of) as views:
         due = views.ask("due_list")
-        choice = views.ask("retow_choice")
         chosen = method or default_method(views.table("methods")["method"].to_list())
         simulated = views.simulated(draft_name(chosen))
     lines = due.filter(method=chosen).to_dicts()
@@ -106,7 +103,6 @@ def due_report(store: Store, method: str | None = None, as_of: dt.date | None = 
         simulated=simulated,
         as_of=lines[0]["as_of"],
         lines=[line | {"urgency": _urgency(line)} for line in lines],
-        retow_choice=choice.filter(method=chosen).to_dicts(),
     )
 
 

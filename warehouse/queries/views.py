@@ -201,17 +201,6 @@ FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
 SELECT t.* EXCLUDE ln_ratio, b.name FROM repeat_pairs AS t LEFT JOIN boats AS b USING (fsn_no)
 ORDER BY method, tow_id
 """,
-    # Boats to tow again, with last day and next speed of the line that lasts longest.
-    "retow_choice": """
-SELECT c.*, b.name, d.valid_until, d.tow_speed_m_s
-FROM retow_choice AS c LEFT JOIN boats AS b USING (fsn_no)
-LEFT JOIN (
-    SELECT method, fsn_no, rowers, crew_class, max(valid_until) AS valid_until,
-           arg_max(tow_speed_m_s, valid_until) AS tow_speed_m_s
-    FROM due_list GROUP BY method, fsn_no, rowers, crew_class
-) AS d USING (method, fsn_no, rowers, crew_class)
-ORDER BY c.method, c.position
-""",
     # Run points with boat and season; the angle of the wind is 0 from ahead, minus from port.
     "run_points": """
 SELECT p.* REPLACE ((wind_angle_deg + 180) % 360 - 180 AS wind_angle_deg),
