@@ -267,7 +267,9 @@ def find_columns(
     problems: list[_Problem] = []
     unsettled: set[str] = set()
     cells = [(*split_header(cell), index) for index, cell in enumerate(header)]
-    for name, unit, index in sorted(cells, key=lambda cell: cell[1] is None):
+    # First what can be one column only: of two names for `wind` the other one remains.
+    cells.sort(key=lambda cell: (cell[1] is None, len(by_name.get(cell[0], []))))
+    for name, unit, index in cells:
         namesakes = by_name.get(name, []) if name else []
         if not namesakes:
             continue

@@ -22,7 +22,7 @@ from warehouse.archive.files import (
     match_key,
     outside_archive,
 )
-from warehouse.archive.kinds import BOATS, TOWS
+from warehouse.archive.kinds import BOATS, FORCE_CHECKS, LAMPS, TOWS
 from warehouse.archive.list_rules import (
     check_hand_windows,
     find_recordings,
@@ -30,6 +30,7 @@ from warehouse.archive.list_rules import (
     read_force_checks,
     read_lamps,
     read_window_lists,
+    read_within_border,
 )
 from warehouse.archive.lists import read_lists
 from warehouse.archive.profile import PROFILE_FILE, Profiles, read_profiles
@@ -89,8 +90,12 @@ def index_archive(
     boats = read_boats(files, profiles)
     rows = read_lists(files, TOWS, profiles)
     listed = rows.listed.select("season", "tow_id", "tow_date", "file", "second_file")
-    checks, of_checks = read_force_checks(files, profiles)
-    burned, of_lamps = read_lamps(files, profiles, listed["tow_id"])
+    checks, of_checks = read_within_border(
+        FORCE_CHECKS, files, lambda own: read_force_checks(own, profiles)
+    )
+    burned, of_lamps = read_within_border(
+        LAMPS, files, lambda own: read_lamps(own, profiles, listed["tow_id"])
+    )
     samples = samples_by_name(files, hashes)
     window_rows = read_window_lists(files, profiles, listed.select("season", "tow_id"))
     recordings = find_recordings(window_rows, profiles)

@@ -3,7 +3,7 @@
 What lists say about each other belongs to `index`.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -17,9 +17,17 @@ from pipeline.tables.bases import TowFacts
 from pipeline.tables.frames import limits
 from pipeline.tables.lake import ListedBoats
 from warehouse.archive.columns import fold_word
-from warehouse.archive.faults import Fault, at_line
+from warehouse.archive.faults import Fault, at_line, fault_from
 from warehouse.archive.files import ArchiveFile, files_of
-from warehouse.archive.kinds import BOATS, FORCE_CHECKS, LAMPS, RACES, REGISTERS, WINDOWS
+from warehouse.archive.kinds import (
+    BOATS,
+    FORCE_CHECKS,
+    LAMPS,
+    RACES,
+    REGISTERS,
+    WINDOWS,
+    ListKind,
+)
 from warehouse.archive.lists import read_lists
 from warehouse.archive.profile import Profiles, read_profiles
 from warehouse.archive.rows import Rows, cell
@@ -212,6 +220,19 @@ def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
     ]
 
 
+def read_within_border(
+    kind: ListKind, files: Iterable[ArchiveFile], read: Callable[[Iterable[ArchiveFile]], _Read]
+) -> _Read:
+    """Read lists of a kind; one on which Herijk fails costs these lists, and nothing else."""
+    own = [file for file in files if file.kind == kind]
+    try:
+        return read(own)
+    except BaseException as error:
+        fault = fault_from(error, own[0].path if own else kind.folder)
+        nothing, _ = read([])
+        return nothing, [fault]
+
+
 def read_force_checks(files: Iterable[ArchiveFile], profiles: Profiles) -> _Read:
     """The days on which the load cell was checked: reading / weight as a ratio, and its sd.
 
@@ -246,8 +267,13 @@ def read_races(root: Path, profiles: Profiles | None = None) -> _Read:
     A crew has one result in a race; of equal rows the first counts.
     """
     files, profiles = files_of(root), profiles or read_profiles(root)
+    boats = read_boats(files, profiles)
+    return read_within_border(RACES, files, lambda own: _read_races(own, profiles, boats))
+
+
+def _read_races(files: Iterable[ArchiveFile], profiles: Profiles, boats: Boats) -> _Read:
     rows = read_lists(files, RACES, profiles)
-    name_boats(rows, read_boats(files, profiles))
+    name_boats(rows, boats)
     rows.drop_other_years("race_date")
     through_water_m = pl.col("distance_m") - pl.col("stream_m").fill_null(0.0)
     speed = through_water_m / pl.col("rowing_time_s")
@@ -275,8 +301,13 @@ def read_published_registers(root: Path, profiles: Profiles | None = None) -> _R
     A / (1 - (v/B)^2), however the numbers were rounded; else one of them is mistyped.
     """
     files, profiles = files_of(root), profiles or read_profiles(root)
+    boats = read_boats(files, profiles)
+    return read_within_border(REGISTERS, files, lambda own: _read_registers(own, profiles, boats))
+
+
+def _read_registers(files: Iterable[ArchiveFile], profiles: Profiles, boats: Boats) -> _Read:
     rows = read_lists(files, REGISTERS, profiles)
-    name_boats(rows, read_boats(files, profiles))
+    name_boats(rows, boats)
     rows.drop_copies()
     has_curve = ~pl.col("cw_kg_m").is_between(*NEVER_TOWED_CW).fill_null(value=False)
     rows.frame = rows.frame.with_columns(has_valid_curve=has_curve)

@@ -533,3 +533,22 @@ def test_the_conversion_of_labview_text_that_is_documented_works(
     exec(code, scope)  # noqa: S102 - as it is printed
     scope["convert_lvm"](source, archive.root / FIRST)
     assert_first_tow_is(archive.scan(), good_scan)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "sleeplijsten/sleeplijst_0000.csv",
+        "sleeplijsten/vensters_9999.csv",
+        "meetdata_2014/run 99999999999999999999.csv",
+        "meetdata_2014/{run} {} %s.csv",
+        "meetdata_2014/\u0661\u0662.csv",
+        "wedstrijden/_2014.csv",
+        "sloepregister/sloepregister_2014.xlsx",
+    ],
+)
+def test_a_file_of_any_name_costs_no_tow(archive: Archive, good_scan: Scan, name: str) -> None:
+    (archive.root / name).write_text("sleep_id;datum\n1;2\n")
+    scan = archive.scan()
+    assert scan.good.keys() == good_scan.good.keys()
+    assert check_archive(archive.root).tows == 3
