@@ -1,4 +1,4 @@
-"""Kill rebuilds and publications at random moments; every rerun must end as if nothing had happened.
+"""Kill rebuilds and publications at random moments; each rerun must end as if nothing happened.
 
     python benchmarks/robustness/survive.py [kills] [seed]
 
