@@ -108,7 +108,8 @@ def name_boats(rows: Rows, boats: Boats) -> None:
     known = boats.listed.with_columns(
         folded=pl.col("name").map_elements(fold_word, pl.String)
     ).select("folded", number="fsn_no")
-    by_name = known.unique().group_by("folded").agg("number").filter(pl.col("folded") != "")
+    known = known.unique(maintain_order=True).filter(pl.col("folded") != "")
+    by_name = known.group_by("folded", maintain_order=True).agg("number")
     numbers: dict[str, list[str]] = dict(by_name.iter_rows())
     listed = {*boats.listed["fsn_no"], *boats.lost}
     named = {

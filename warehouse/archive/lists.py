@@ -124,7 +124,10 @@ def read_tables(file: ArchiveFile, columns: Sequence[Column]) -> tuple[list[Tabl
     if not file.inside:
         raise outside_archive(file.path)
     if file.full_path.suffix.lower() in REFUSED_SUFFIXES:
-        text = say("{suffix} files are not read: save the list as .xlsx or as CSV.")
+        text = say(
+            "A {suffix} file, such as an old Excel workbook, is not read: save the list as .xlsx "
+            "or as CSV."
+        )
         raise DefectiveInputError("unreadable_file", say(text, suffix=file.full_path.suffix))
     data = read_bytes(file.full_path, LIST_MAX_BYTES)
     if _is_text(file):
