@@ -33,10 +33,12 @@ def herijk(*words: object) -> subprocess.Popen[bytes]:
 
 def digest_tables(data: Path) -> dict[str, str]:
     """Return a hash of every table that a reader finds, but for the day of first sight."""
+    digests = {}
     with open_database(Store(data).database) as db:
-        names = [row[2] for row in db.execute("SHOW ALL TABLES").fetchall()]
-        tables = {name: db.sql(f'SELECT * FROM "{name}"').pl() for name in names}
-    return {n: table_digest(t.drop("first_seen", strict=False)) for n, t in tables.items()}
+        for _, _, name, *_ in db.execute("SHOW ALL TABLES").fetchall():
+            table = db.sql(f'SELECT * FROM "{name}"').pl()
+            digests[name] = table_digest(table.drop("first_seen", strict=False))
+    return digests
 
 
 def survive(root: Path, kills: int, seed: int) -> int:
@@ -62,7 +64,6 @@ def survive(root: Path, kills: int, seed: int) -> int:
         shutil.rmtree(data, ignore_errors=True)
         if command is publish or number % 4 == 2:  # publish, or rebuild where there is a database
             shutil.copytree(root / "unpublished", data)
-            shutil.rmtree(data / "lake" / "blocks" / "season=2014")
         victim = herijk(*command, data)
         time.sleep(chosen.uniform(0.1, duration_s if command is rebuild else duration_s / 5))
         victim.kill()
