@@ -62,7 +62,8 @@ def diagnose_seasons(posterior: Posterior) -> pl.DataFrame:
         of the factor of a log `estimated` or `not determined`; `not settled` of everything where
         the search did not converge. A fault that one boat alone shows cannot be told either:
         `shown_by` names the boat, which may have been altered, and the interval ends where all of
-        it is the instrument's. `alarm`: a person should look.
+        it is the instrument's. `alarm`: a person should look; not at what is less probable than
+        its absence.
     """
     instruments: dict[tuple[int, int, str], list[int]] = {}
     for place, effect in enumerate(posterior.fit.model.effects.listed):
@@ -122,7 +123,7 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
         "p_fault": probability,
         "distance_sd": distance,
         "verdict": verdict,
-        "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD, NOT_SETTLED),
+        "alarm": verdict in (FAULT, ALARM, NOT_SETTLED) or unresolved is not None,
         "first_tow": first_tow,
         "shown_by": None if unresolved is None else ", ".join(unresolved.boats),
         "confused_with": _list_confusions(posterior, columns, candidates, has_too_few_boats),

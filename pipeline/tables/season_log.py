@@ -80,7 +80,9 @@ class SeasonDiagnosis(PerPart):
         regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined"
         "|not settled)$",
     )
-    alarm = column.flag("a person should look: fault, cannot be told, alarm, or not settled")
+    alarm = column.flag(
+        "a person should look: fault, alarm, not settled, or shown by one boat alone"
+    )
     first_tow = column.text("likeliest first tow after a log changed", nullable=True)
     rests_on = column.text("what tells")
     shown_by = column.text(
