@@ -125,7 +125,7 @@ def read_tables(file: ArchiveFile, columns: Sequence[Column]) -> tuple[list[Tabl
         raise outside_archive(file.path)
     if file.full_path.suffix.lower() in REFUSED_SUFFIXES:
         text = say(
-            "A {suffix} file, such as an old Excel workbook, is not read: save the list as .xlsx "
+            "A {suffix} file, such as an old Excel workbook, is not read: save it as .xlsx "
             "or as CSV."
         )
         raise DefectiveInputError("unreadable_file", say(text, suffix=file.full_path.suffix))

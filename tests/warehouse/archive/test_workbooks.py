@@ -231,7 +231,7 @@ def test_other_workbooks_are_refused_with_what_to_do(archive: Archive, suffix: s
     (archive.root / TOWS).rename(archive.root / TOWS.replace(".csv", suffix))
     (fault,) = [f for f in archive.scan().faults if f.path.endswith(suffix)]
     assert fault.reason_code == "unreadable_file"
-    assert "save the list as .xlsx" in fault.message
+    assert "save it as .xlsx" in fault.message
 
 
 def edit_parts(path: Path, old: bytes, new: bytes) -> None:
