@@ -29,7 +29,7 @@ help:
 	@echo "make bench  measure speed and memory"
 	@echo "make growth measure them from one to three thousand tows"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
-	@echo "make survive  kill $(KILLS) rebuilds at random moments and look what is lost"
+	@echo "make survive  kill $(KILLS) rebuilds and publications at random moments and look what is lost"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
 
@@ -135,11 +135,11 @@ PROCESSES ?= 2
 accuracy: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.worlds --seeds $(SEEDS) --processes $(PROCESSES)
 
-# This is long. Shorter: make survive KILLS=10
-KILLS ?= 1000
+# This is long. Shorter: make survive KILLS=4
+KILLS ?= 40
 
 survive: $(DEVELOP)
-	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py $(KILLS)
+	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/survive.py $(KILLS)
 
 clean:
 	rm -rf .venv $(DEMO) dist docs/_build .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -1,11 +1,8 @@
-"""Who runs: Dagster assets, jobs, checks and resources, as thin as they can be.
+"""Who runs: Dagster assets, checks, job, schedule and sensors.
 
-If an asset needs an `if` on data, that `if` belongs in `pipeline` or `warehouse`.
-
-- What Dagster loads: `definitions`; assets and checks are put together in `location`, from
-  `archive`, `tables`, `site` and `checks`, with `resources` and the `workers` that help.
-- A rebuild: `rebuild` asks what is stale, has it made in one run (`instance`), and `report`
-  writes what changed.
-- Without anybody asking: `automation`, by the `settings` in `beheer.toml`; it mails how it went.
-- Dagster's page behind the guard: `webserver`.
+- Assets by subject: `archive`, `rules` (what people decide), `curves`, `consistency`, `register`,
+  `database` (with site, report and checks). Each is a function of the tables that it names.
+- `lake` reads and writes tables, and holds the one rule of freshness. `definitions` is what
+  Dagster loads; `automation`, what starts by itself, by the `settings` in `beheer.toml`.
+- The command: `rebuild` asks whether anything changed, `run` runs the job in this process.
 """

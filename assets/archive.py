@@ -1,149 +1,159 @@
-"""From archive files to blocks: the heavy part, partitioned by season."""
+"""What the archive holds: its lists, the samples of every tow, and their sums per second."""
 
+import datetime as dt
 import logging
-import time
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 import dagster as dg
 import polars as pl
+from pydantic import Field
 
-from assets.resources import Setup
-from pipeline.blocks.run_blocks import BLOCK_SCHEMA
-from pipeline.channels import SAMPLE_SCHEMA
-from pipeline.messages import say
-from warehouse.derive.inputs import state_of_table
-from warehouse.derive.mending import mending
-from warehouse.intake import seasons as intake
-from warehouse.store.code import ADDING, READING, code_hash
-from warehouse.store.store import Store, fingerprint
+from assets.lake import Folders, incremental, outs
+from assets.workers import map_in_parallel
+from pipeline.blocks.run_blocks import PLACE
+from pipeline.errors import MissingKnowledgeError
+from pipeline.studies.summaries import SUMS, second_means
+from pipeline.tables.lake import SeasonIndex
+from pipeline.tables.schemas import conform
+from warehouse.derive.archive_tables import archive_tables, read_earlier
+from warehouse.intake import lake, seasons
+from warehouse.store.code import COMPUTING, code_hash
 
-LOG: Final = logging.getLogger("herijk")
+TOWS_PER_TASK: Final = 10
+"""Number of tows that a helper reads before it reports: a helper takes a second to be asked."""
 
-SEASONS: Final = dg.DynamicPartitionsDefinition(name="season")
-"""Seasons are found in the archive, so a new campaign needs no change of code."""
+READS_WITH: Final = (*COMPUTING, "warehouse.intake")
+"""Packages with which samples and blocks are brought into the lake. Files are read again for fewer:
+see `warehouse.store.code.READING`."""
 
-VERSION_TAG: Final = "dagster/data_version"
-
-GROUP: Final = "archive"
-
-
-@dg.multi_asset(
-    specs=[
-        dg.AssetSpec(
-            name,
-            code_version=code_hash(*READING),
-            description=f"{name}: of the lists of the archive",
-            group_name=GROUP,
-        )
-        for name in intake.INDEXED
-    ]
-)
-def archive_index(
-    context: dg.AssetExecutionContext, setup: Setup
-) -> Iterator[dg.MaterializeResult]:
-    """Boats, tow lists and files of the archive, with what is wrong in the lists."""
-    look = partial(intake.index, setup.store, setup.archive_root)
-    mending(setup.store, look, again=look)
-    know_seasons(context.instance, setup.store)
-    for name in intake.INDEXED:
-        yield dg.MaterializeResult(
-            asset_key=name,
-            data_version=dg.DataVersion(fingerprint(state_of_table(setup.scope, name))),
-            metadata={"dagster/row_count": setup.store.read(name).height},
-        )
+PROGRESS: Final = "herijk.progress"
+"""Logger of how many tows are read: attributes `done` and `total` of its records."""
 
 
-def know_seasons(instance: dg.DagsterInstance, store: Store) -> Sequence[str]:
-    """Makes the seasons of the archive those of Dagster; gives them in Dagster's order."""
-    kind, listed = str(SEASONS.name), list(map(str, intake.listed_seasons(store)))
-    instance.add_dynamic_partitions(kind, listed)
-    for season in set(instance.get_dynamic_partitions(kind)) - {*listed}:
-        instance.delete_dynamic_partition(kind, season)
-    return instance.get_dynamic_partitions(kind)
+@dg.multi_asset(outs=outs(*seasons.INDEXED), can_subset=True)
+@incremental()
+def archive_lists(folders: Folders) -> dict[str, pl.DataFrame]:
+    """Boats, tows, races and files of the archive, and what is wrong in the lists."""
+    return seasons.index(folders.store, folders.archive_root)
 
 
-def _columns(schema: Mapping[str, pl.DataType]) -> dict[str, dg.TableSchema]:
-    columns = [dg.TableColumn(name, str(kind)) for name, kind in schema.items()]
-    return {"dagster/column_schema": dg.TableSchema(columns)}
+class SeasonsToRead(dg.Config):
+    """Which seasons to read."""
 
-
-@dg.multi_asset(
-    name="seasons_read",
-    specs=[
-        dg.AssetSpec(
-            "samples",
-            deps=["listed_tows", "listed_runs"],
-            description="The samples of the tows of seasons, in Parquet; faulty ones are set aside",
-            code_version=code_hash(*READING, *ADDING),
-            metadata=_columns(SAMPLE_SCHEMA),
-            group_name=GROUP,
-        ),
-        dg.AssetSpec(
-            "blocks",
-            deps=["samples"],
-            description="Sums over each second of each run of seasons",
-            code_version=code_hash(*ADDING),
-            metadata=_columns(BLOCK_SCHEMA),
-            group_name=GROUP,
-        ),
-    ],
-    partitions_def=SEASONS,
-)
-def samples_and_blocks(
-    context: dg.AssetExecutionContext, setup: Setup
-) -> Iterator[dg.MaterializeResult]:
-    """Samples and blocks of the seasons of which the archive or the code changed."""
-    store, root = setup.store, setup.archive_root
-    asked, read = setup.wanted(context.partition_keys), set()
-
-    def work() -> None:
-        stale = intake.stale_seasons(store, root, asked)
-        listed = Counter(store.read("listed_tows", columns=["season"])["season"])
-        tows, began = sum(listed[season] for season in stale), time.monotonic()
-        LOG.info(say("reading {} tows", tows))
-        for season, _ in setup.map(partial(intake.read_season, store, root), stale):
-            read.add(season)
-            done = sum(listed[season] for season in read)
-            left_s = (time.monotonic() - began) * (tows - done) / done
-            LOG.info(say("{} of {} tows were read; {:.0f} s left", done, tows, left_s))
-
-    intake.index(store, root)
-    mending(store, work, again=partial(intake.index, store, root))
-    yield dg.MaterializeResult(asset_key="samples")
-    for season in asked:
-        index = store.read("season_index", str(season))
-        aside = index["reason_code"].drop_nulls().value_counts(sort=True)
-        about = {
-            "dagster/row_count": int(index["samples"].sum()),
-            "tows": index["reason_code"].null_count(),
-            "set_aside": dict(aside.rows()),
-            "new": season in read,
-        }
-        contents = [store.contents(name, str(season)) for name in intake.READ]
-        _record(context, "samples", str(season), contents, about)
-    yield dg.MaterializeResult(asset_key="blocks")
-    for season in asked:
-        rows = store.count_rows("blocks", str(season))
-        about = {"dagster/row_count": rows, "new": season in read}
-        _record(context, "blocks", str(season), store.contents("blocks", str(season)), about)
-
-
-def _record(
-    context: dg.AssetExecutionContext,
-    asset: str,
-    partition: str,
-    state: object,
-    metadata: Mapping[str, Any],
-) -> None:
-    """Records a season once more, with a version of its own: a result has one for a whole range."""
-    key = dg.AssetKey(asset)
-    here = dg.AssetRecordsFilter(asset_key=key, asset_partitions=[partition])
-    (last,) = context.instance.fetch_materializations(here, limit=1).records
-    assert last.asset_materialization is not None  # noqa: S101 - the event that Dagster just wrote
-    tags = {**(last.asset_materialization.tags or {}), VERSION_TAG: fingerprint(state)}
-    context.log_event(
-        dg.AssetMaterialization(key, partition=partition, metadata=metadata, tags=tags)
+    seasons: list[int] = Field(
+        default_factory=list,
+        description="Seasons whose files are read where they changed; those of other seasons stay "
+        "as they are. Empty: all seasons.",
     )
+
+
+@dg.asset(code_version=code_hash(*READS_WITH))
+@incremental(code=READS_WITH, is_whole=lake.has_all_files)
+def samples(
+    config: SeasonsToRead,
+    folders: Folders,
+    listed_tows: pl.DataFrame,
+    listed_runs: pl.DataFrame,
+    season_profiles: pl.DataFrame,  # noqa: ARG001 - the reader reads the profiles itself
+) -> pl.DataFrame:
+    """Where the samples and blocks of each tow lie, or why they cannot be used.
+
+    Files are read in tasks of some tows of a season, side by side. A tow whose file, row of the
+    list and profile are those of the last rebuild is not read again.
+    """
+    store, root = folders.store, folders.archive_root
+    listed = listed_tows["season"].unique().sort().to_list()
+    wanted = [season for season in listed if not config.seasons or season in config.seasons]
+    if listed and not wanted:
+        raise MissingKnowledgeError(
+            "the archive lists no tow in the seasons asked for; it has tows of {}",
+            ", ".join(map(str, listed)),
+        )
+    nothing = SeasonIndex.create_empty().select(pl.lit(None, pl.Int32).alias("season"), pl.all())
+    before = nothing if store.made_from("samples") is None else store.read("samples")
+    frames, tasks, seasons_read = [], [], []
+    for season in wanted:
+        tows = listed_tows.filter(season=season).sort("tow_id")
+        known = seasons.find_known_samples(store, root, listed_runs, tows, before)
+        if known is not None:
+            frames.append(known)
+            continue
+        seasons_read.append(season)
+        tasks += [tows.slice(start, TOWS_PER_TASK) for start in range(0, len(tows), TOWS_PER_TASK)]
+    read = partial(seasons.read_tows, store, root, listed_runs)
+    if len(tasks) == 1:  # starting a helper would take longer
+        frames.append(read(tasks[0]))
+    elif tasks:
+        frames += map_in_parallel(read, tasks, folders.settings.dask, partial(log_progress, tasks))
+    of_others = before.filter(~pl.col("season").is_in(wanted))
+    frames.append(of_others.join(listed_tows, on="tow_id", how="semi"))
+    index = pl.concat([nothing, *frames]).sort("season", "tow_id")
+    lake.keep_only(store, index)
+    context = dg.AssetExecutionContext.get()
+    context.add_asset_metadata({"seasons_read": seasons_read}, asset_key="samples")
+    return index
+
+
+def log_progress(tasks: list[pl.DataFrame], n_done: int) -> None:
+    """Log how many tows are read, about, when a number of tasks is done."""
+    total = sum(task.height for task in tasks)
+    numbers = {"done": min(n_done * TOWS_PER_TASK, total), "total": total}
+    logging.getLogger(PROGRESS).info("tows", extra=numbers)
+
+
+@dg.asset(code_version=code_hash(*READS_WITH))
+@incremental(code=READS_WITH)
+def blocks(folders: Folders, samples: pl.DataFrame) -> pl.DataFrame:
+    """Sums over each second of each run of every tow that can be used."""
+    return lake.all_blocks(folders.store, samples)
+
+
+@dg.multi_asset(
+    outs=outs("boats", "seasons", "read_tows", "read_runs", "hand_windows", "set_aside"),
+    can_subset=True,
+)
+@incremental()
+def archive(
+    folders: Folders,
+    list_faults: pl.DataFrame,
+    listed_boats: pl.DataFrame,
+    listed_windows: pl.DataFrame,
+    listed_tows: pl.DataFrame,
+    listed_runs: pl.DataFrame,
+    samples: pl.DataFrame,
+    blocks: pl.DataFrame,
+) -> dict[str, pl.DataFrame]:
+    """Boats, tows that can be read with their runs and windows, and all that was set aside."""
+    read = samples.select("tow_id")
+    tables = archive_tables(
+        list_faults=list_faults,
+        listed_boats=listed_boats,
+        listed_windows=listed_windows,
+        season_tows=listed_tows.join(read, on="tow_id", how="semi").sort("season", "tow_id"),
+        season_runs=listed_runs.join(read, on="tow_id", how="semi").sort("tow_id", "run"),
+        index=samples.drop("season"),
+        blocks=blocks,
+        quarantine_before=read_earlier(folders.store, "quarantine"),
+        has_earlier_tows=not read_earlier(folders.store, "tows").is_empty(),
+        today=dt.date.today(),
+    )
+    return {
+        "boats": tables["boats"],
+        "seasons": tables["seasons"],
+        "read_tows": conform("tows", tables["tows"]),
+        "read_runs": conform("tow_runs", tables["tow_runs"]),
+        "hand_windows": tables["hand_windows"],
+        "set_aside": conform("quarantine", tables["quarantine"]),
+    }
+
+
+@dg.asset
+@incremental(may_fail=True)
+def trace_seconds(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
+    """The traces of all runs of sound tows."""
+    columns = list(dict.fromkeys(("tow_id", *PLACE, *SUMS)))
+    of_sound_tows = blocks.select(columns).join(
+        tows, on="tow_id", how="semi", maintain_order="left"
+    )
+    return second_means(of_sound_tows)

@@ -4,6 +4,7 @@ The job runs the same rebuild as the command. It makes drafts; publishing is not
 it went is mailed, as `beheer.toml` asks.
 """
 
+import datetime as dt
 import os
 import smtplib
 import ssl
@@ -15,68 +16,55 @@ from typing import Final
 
 import dagster as dg
 
-from assets.rebuild import rebuild
-from assets.report import failed_checks
-from assets.resources import Setup
+from assets.instance import OF_A_COMMAND
+from assets.report import Done, read_report, record_failure
 from assets.settings import Settings
 from dashboards.guard import LOOPBACK
-from dashboards.statements.rebuild import mail
+from dashboards.statements.rebuild import CHANGED, mail
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say, speaker
 from warehouse.intake.seasons import listing
-from warehouse.store.store import fingerprint
+from warehouse.store.store import Store, fingerprint
 
 ONE_AT_A_TIME = {"herijk/rebuild": "data folder"}
 """The tag of which one run at a time is started (see `dagster.yaml`)."""
 
-LONGEST_S = 12 * 3600
-"""A run that takes longer hangs, and is ended so that the next can begin."""
+MAX_RUNTIME_S = 12 * 3600
+"""A run that takes longer hangs. It is ended, so that the next can begin."""
 
 TIMEOUT_S: Final = 10.0
 PASSWORD_VARIABLE: Final = "HERIJK_SMTP_PASSWORD"  # noqa: S105 - its name
 
 
-@dg.op
-def rebuild_archive(context: dg.OpExecutionContext, setup: Setup) -> None:
-    """The whole rebuild, as `herijk rebuild` does it; its news is mailed."""
-    data, names = Path(setup.data), [method.name for method in setup.chosen_methods]
-    report = rebuild(setup.archive_root, data, names, setup.seasons or None)
-    context.add_output_metadata(
-        {
-            "nothing_changed": report.nothing_changed,
-            "headlines": dg.MetadataValue.json(report.headlines),
-            "report": dg.MetadataValue.path(str(data / "report" / "latest.html")),
-        }
-    )
-    if failed := failed_checks(report.checks):
-        raise dg.Failure("; ".join(failed))
-    if not report.nothing_changed:
-        try:
-            send_mail(setup.settings, *mail(report, report.checks, report.simulated))
-        except (OSError, ValueError) as error:  # SMTP's errors are OSErrors
-            context.log.error(f"the report could not be mailed: {error}")
+BEGIN_AGAIN: Final = {
+    "dagster/max_retries": "1",
+    "dagster/retry_on_asset_or_op_failure": "true",
+    "dagster/retry_strategy": "ALL_STEPS",
+}
+"""A failed run begins once again: one that met a damaged file of ours has removed it."""
 
-
-@dg.job(name="rebuild", tags=ONE_AT_A_TIME | {"dagster/max_runtime": str(LONGEST_S)})
-def rebuild_job() -> None:
-    """Everything from the archive to the drafts, the site and a report; publishes nothing."""
-    rebuild_archive()
+rebuild_job = dg.define_asset_job(
+    "rebuild",
+    selection=dg.AssetSelection.all(),
+    tags=ONE_AT_A_TIME | BEGIN_AGAIN | {"dagster/max_runtime": str(MAX_RUNTIME_S)},
+    description="Everything from the archive to drafts, site and report; publishes nothing.",
+)
 
 
 def nightly(settings: Settings, is_served: bool) -> dg.ScheduleDefinition:
-    """Everything, every night; it runs where `herijk serve` serves, or who switches it on."""
-    status = dg.DefaultScheduleStatus.RUNNING if is_served else dg.DefaultScheduleStatus.STOPPED
+    """Return the schedule that looks at everything every night."""
+    running, stopped = dg.DefaultScheduleStatus.RUNNING, dg.DefaultScheduleStatus.STOPPED
     return dg.ScheduleDefinition(
         name="nightly",
         job=rebuild_job,
         cron_schedule=settings.nightly,
         execution_timezone=settings.timezone,
-        default_status=status,
+        default_status=running if is_served else stopped,
     )
 
 
 def archive_changed(archive: Path, is_served: bool) -> dg.SensorDefinition:
-    """The sensor that asks for a rebuild when the files of the archive change.
+    """Return the sensor that asks for a rebuild when files of the archive change.
 
     A change counts when two ticks see the same listing: so no clock is asked, and no half copy is
     read. The cursor holds the digests of the listings of the last request and of the last tick.
@@ -101,26 +89,60 @@ def archive_changed(archive: Path, is_served: bool) -> dg.SensorDefinition:
         evaluation_fn=look,
         job=rebuild_job,
         minimum_interval_seconds=60,
-        default_status=_status(is_served),
+        default_status=_get_status(is_served),
     )
 
 
-def rebuild_failed(settings: Settings, is_served: bool) -> dg.SensorDefinition:
-    """The sensor that mails that a rebuild failed, whatever made it fail."""
+def rebuild_succeeded(settings: Settings, data: Path, is_served: bool) -> dg.SensorDefinition:
+    """Return the sensor that mails what a run changed that nobody watched."""
+
+    @dg.run_status_sensor(
+        run_status=dg.DagsterRunStatus.SUCCESS,
+        name="rebuild_succeeded",
+        monitored_jobs=[rebuild_job],
+        default_status=_get_status(is_served),
+    )
+    def mail_news(context: dg.RunStatusSensorContext) -> None:
+        report = read_report(Store(data), Done())
+        is_of_run = report.made_at >= _get_start(context)
+        if report.outcome == CHANGED and is_of_run and not _is_watched(context):
+            send_mail(settings, *mail(report, report.checks, report.simulated, report.last_run))
+
+    return mail_news
+
+
+def _is_watched(context: dg.RunStatusSensorContext) -> bool:
+    """Return whether a run is that of a command, which told its user itself."""
+    return OF_A_COMMAND.items() <= context.dagster_run.tags.items()
+
+
+def _get_start(context: dg.RunStatusSensorContext) -> str:
+    """Return when a run began, ISO 8601 in local time, as reports have it."""
+    seconds = context.instance.get_run_stats(context.dagster_run.run_id).start_time or 0.0
+    return dt.datetime.fromtimestamp(seconds).astimezone().isoformat(timespec="seconds")
+
+
+def rebuild_failed(settings: Settings, data: Path, is_served: bool) -> dg.SensorDefinition:
+    """Return the sensor that mails that a run failed, whatever made it fail, and reports it."""
 
     @dg.run_failure_sensor(
-        name="rebuild_failed", monitored_jobs=[rebuild_job], default_status=_status(is_served)
+        name="rebuild_failed",
+        monitored_jobs=[rebuild_job],
+        default_status=_get_status(is_served),
     )
-    def tell(context: dg.RunFailureSensorContext) -> None:
-        why = "\n".join(map(_why, context.get_step_failure_events()))
-        why = why or str(context.failure_event.message)
-        send_mail(settings, speaker("nl")(say("The rebuild failed")), f"{why}\n")
+    def mail_failure(context: dg.RunFailureSensorContext) -> None:
+        if _is_watched(context) or context.dagster_run.tags.get("dagster/will_retry") == "true":
+            return
+        reasons = [_explain_step(event) for event in context.get_step_failure_events()]
+        reason = "\n".join(reasons) or str(context.failure_event.message)
+        record_failure(Store(data), dt.datetime.now().astimezone(), reason)
+        send_mail(settings, speaker("nl")(say("The rebuild failed")), f"{reason}\n")
 
-    return tell
+    return mail_failure
 
 
-def _why(event: dg.DagsterEvent) -> str:
-    """What a failed step said: of a check its own words, else the error behind Dagster's."""
+def _explain_step(event: dg.DagsterEvent) -> str:
+    """Return what a failed step says: the error behind Dagster's own."""
     failure = event.step_failure_data
     if failure.user_failure_data is not None:
         return failure.user_failure_data.description or ""
@@ -128,12 +150,12 @@ def _why(event: dg.DagsterEvent) -> str:
     return "" if error is None else (error.cause or error).message
 
 
-def _status(is_served: bool) -> dg.DefaultSensorStatus:
+def _get_status(is_served: bool) -> dg.DefaultSensorStatus:
     return dg.DefaultSensorStatus.RUNNING if is_served else dg.DefaultSensorStatus.STOPPED
 
 
 def send_mail(settings: Settings, subject: str, text: str) -> None:
-    """Sends a mail, unencrypted on this machine only; nothing where the settings name nobody.
+    """Send a mail, unencrypted on this machine only; none where the settings name nobody.
 
     Raises:
         OSError: the mail server cannot be reached or does not take it, or its password cannot be
@@ -161,7 +183,7 @@ def send_mail(settings: Settings, subject: str, text: str) -> None:
 
 
 def _password(settings: Settings) -> str:
-    """The password of the mail server: from the environment, or the file that the settings name."""
+    """Return the password of the mail server, from the environment or from its file."""
     password = os.environ.get(PASSWORD_VARIABLE, "")
     if password or settings.smtp_password_file is None:
         return password

@@ -2,34 +2,69 @@
 
 import os
 from pathlib import Path
+from typing import Final
 
 import dagster as dg
 
-from assets import automation
-from assets.resources import Setup
-from assets.run import assets_of
-from assets.settings import Settings, read_settings
+from assets import archive, automation, checks, consistency, curves, database, register, rules
+from assets.lake import Folders, Lake, describe_table
+from assets.settings import read_settings
+
+DEMO: Final = Path(__file__).parents[1] / "demo"
+"""What `make demo` makes in a clone."""
+
+SUBJECTS: Final = (archive, rules, curves, consistency, register, database)
+"""The modules with assets; the name of each is the group of its assets."""
+
+
+def load_assets() -> list[dg.AssetsDefinition]:
+    """Return the assets of all modules, each with the columns of its table."""
+    loaded: list[dg.AssetsDefinition] = []
+    for module in SUBJECTS:
+        group = module.__name__.partition(".")[2]
+        found = dg.load_assets_from_modules([module], group_name=group)
+        assets = [one for one in found if isinstance(one, dg.AssetsDefinition)]
+        loaded += [asset.map_asset_specs(describe_table) for asset in assets]
+    return loaded
+
+
+ASSETS: Final = load_assets()
 
 
 def build_defs(
-    archive: str, data: str, settings: Settings, is_served: bool = False
+    archive: str, data: str, methods: list[str], is_served: bool = False
 ) -> dg.Definitions:
-    """The same, with the job of a rebuild, and what starts it when nobody asks."""
-    by_itself = dg.Definitions(
+    """Return the definitions of an archive and a data folder.
+
+    Args:
+        archive: the archive folder.
+        data: the data folder.
+        methods: names of methods to apply; none for those of the settings.
+        is_served: schedule and sensors start by themselves, as `herijk serve` promises.
+    """
+    folders = Folders(archive=archive, data=data, methods=methods)
+    settings = read_settings(Path(data))
+    return dg.Definitions(
+        assets=ASSETS,
+        asset_checks=checks.DAGSTER_CHECKS,
+        resources={"folders": folders, "io_manager": Lake(folders=folders)},
         jobs=[automation.rebuild_job],
         schedules=[automation.nightly(settings, is_served)],
         sensors=[
             automation.archive_changed(Path(archive), is_served),
-            automation.rebuild_failed(settings, is_served),
+            automation.rebuild_succeeded(settings, Path(data), is_served),
+            automation.rebuild_failed(settings, Path(data), is_served),
         ],
+        executor=dg.in_process_executor,
     )
-    setup = Setup(archive=archive, data=data, methods=list(settings.methods))
-    return dg.Definitions.merge(assets_of(setup), by_itself)
 
 
 @dg.definitions
 def defs() -> dg.Definitions:
-    """What the environment names."""
-    data = os.environ.get("HERIJK_DATA", "data")
-    archive = os.environ.get("HERIJK_ARCHIVE", "archive")
-    return build_defs(archive, data, read_settings(Path(data)), "HERIJK_SITE" in os.environ)
+    """Return the definitions of the folders that the environment names, else of the demo's."""
+    return build_defs(
+        os.environ.get("HERIJK_ARCHIVE", str(DEMO / "archief")),
+        os.environ.get("HERIJK_DATA", str(DEMO / "data")),
+        methods=[],
+        is_served="HERIJK_SITE" in os.environ,
+    )

@@ -2,20 +2,16 @@
 
 import os
 import shutil
-import sqlite3
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
-from unittest import mock
 
 import dagster as dg
 import yaml  # type: ignore[import-untyped]
-from sqlalchemy import event
-from sqlalchemy.engine import Engine
 
 from pipeline.errors import MissingKnowledgeError
-from warehouse.store.files import written_beside
+from warehouse.store.files import TEMPORARY_PREFIX, written_beside
 from warehouse.store.store import Store
 
 INSTANCE_SETTINGS: Final = Path(__file__).with_name("dagster.yaml")
@@ -25,17 +21,10 @@ OF_A_COMMAND: Final = {"herijk/by": "rebuild"}
 """Marks runs that live and die with the process of a rebuild."""
 
 
-@event.listens_for(Engine, "connect")
-def _without_waiting_for_the_disk(connection: object, _: object) -> None:
-    """Dagster commits 500 times in a run. Its records survive a kill, and can be made again."""
-    if isinstance(connection, sqlite3.Connection):
-        connection.execute("PRAGMA synchronous = OFF")
-
-
 def end_lost_runs(instance: dg.DagsterInstance, tags: Mapping[str, str]) -> None:
-    """Records runs as failed whose process was killed: nobody else would, and others wait.
+    """Record runs as failed whose process was killed: nothing else does, and other runs wait.
 
-    Rebuilds ask it of their own kind, as holders of the lock; a new server of all that began.
+    A rebuild does this for runs of its own kind, because it holds the lock; a new server for all.
     """
     begun = [
         dg.DagsterRunStatus.STARTED,
@@ -47,12 +36,11 @@ def end_lost_runs(instance: dg.DagsterInstance, tags: Mapping[str, str]) -> None
 
 
 @contextmanager
-def instance_of(store: Store) -> Iterator[dg.DagsterInstance]:
-    """Dagster's own records: where `DAGSTER_HOME` says, or under the data folder."""
+def open_instance(store: Store) -> Iterator[dg.DagsterInstance]:
+    """Open Dagster's records: where `DAGSTER_HOME` says, or in the data folder."""
     home = prepare_home(store)
     try:
-        with mock.patch.dict(os.environ, DAGSTER_HOME=str(home)):
-            opened = dg.DagsterInstance.from_config(str(home))
+        opened = dg.DagsterInstance.from_config(str(home))
     except (yaml.YAMLError, dg.DagsterError) as error:
         what = " ".join(str(error).split())[:200]
         raise MissingKnowledgeError(
@@ -66,10 +54,12 @@ def instance_of(store: Store) -> Iterator[dg.DagsterInstance]:
 
 
 def prepare_home(store: Store) -> Path:
-    """Dagster's folder, with settings that may be changed by hand afterwards."""
+    """Return Dagster's folder; write its settings there if it has none."""
     home = Path(os.environ.get("DAGSTER_HOME") or store.dagster_home)
     settings = home / "dagster.yaml"
     if not settings.exists():
+        for left in home.glob(f"{TEMPORARY_PREFIX}*"):  # of a process that was killed here
+            left.unlink()
         with written_beside(settings) as beside:
             shutil.copyfile(INSTANCE_SETTINGS, beside)
     return home.resolve()

@@ -1,76 +1,137 @@
-"""A rebuild: all assets in one run of Dagster, where any of them is stale; then a report.
+"""The command `herijk rebuild`: one run of the job `rebuild`, unless nothing has changed.
 
-What is stale is known from fingerprints. Dagster is imported when there is work to do: looking
-that there is none takes a second, importing it two.
+Whether anything has is one question: are the archive, the rules of people, our code and our own
+files those of the last whole rebuild? It is answered without Dagster, whose import takes a second.
 """
 
 import datetime as dt
-import logging
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Final
 
-from assets import workers
-from assets.report import Done, Report, write_report
-from assets.settings import read_settings
-from assets.site import SITE
-from pipeline.errors import MissingKnowledgeError
-from pipeline.messages import say
-from pipeline.method.definition import Method
-from warehouse.derive.graph import STEPS
-from warehouse.derive.inputs import forget_other_methods
-from warehouse.derive.mending import mending
-from warehouse.intake import seasons as intake
-from warehouse.queries.change_report import is_reported
+from assets.report import Done, Report, confirm_report, failed_checks, read_report, record_failure
+from assets.settings import FILE_NAME
+from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
+from warehouse.intake.lake import ArchiveChangedError
+from warehouse.intake.seasons import listing
+from warehouse.store.code import code_hash
+from warehouse.store.files import written_beside
 from warehouse.store.lock import only_writer
 from warehouse.store.machine_faults import machine_faults_explained
-from warehouse.store.methods import KnownMethods
-from warehouse.store.store import Store
+from warehouse.store.store import DamagedFileError, Store, fingerprint
 
-if TYPE_CHECKING:
-    import dagster as dg
+EVERYTHING: Final = ("pipeline", "warehouse", "dashboards", "assets")
+"""Packages of which a changed byte may make any table or page stale."""
+
+OUR_FOLDERS: Final = ("lake/samples", "lake/blocks", "lake/tables", "site", "methods", "editions")
+OUR_FILES: Final = ("warehouse.duckdb", "warehouse.duckdb.wal", "besluiten.toml", FILE_NAME)
+"""What of a data folder a rebuild reads or leaves behind."""
+
+MAX_ATTEMPTS: Final = 3
 
 
 def rebuild(
-    archive: Path, data: Path, methods: Sequence[str], seasons: Collection[int] | None = None
+    archive: Path,
+    data: Path,
+    methods: Sequence[str],
+    seasons: Collection[int] | None = None,
+    selection: Collection[str] | None = None,
 ) -> Report:
-    """Brings the data folder up to date with the archive, and reports what that changed.
+    """Bring the data folder up to date with the archive; report what that changed.
 
-    Files of ours that turn out to be damaged are made again. Where the archive changes during the
-    rebuild, it begins again. The logger `herijk` says how far it is.
+    A damaged file of the data folder is removed where it is met. The run then begins again and
+    makes it anew, as it does where the archive changed meanwhile.
 
     Args:
         archive: the archive folder.
         data: the data folder; made if it is not there.
-        methods: names of methods; the first is what the others are compared with.
-        seasons: seasons to read; None for all. Others stay as they are.
+        methods: names of methods; the others are compared with the first.
+        seasons: seasons of which changed files are read; None for all.
+        selection: names of the assets to make; None for all.
 
     Raises:
-        HerijkError: there is no archive, a promise was broken, another rebuild is at work, or the
-            machine is in the way.
+        HerijkError: there is no archive, a promise was broken, or another rebuild is at work.
     """
     check_apart(archive, data)
-    with machine_faults_explained(data):
-        dask = read_settings(data).dask
+    store = Store(data.resolve())
+    asked = fingerprint(sorted(methods), sorted(seasons or ()))
     with machine_faults_explained(data), only_writer(data):
-        store, done = Store(data), Done()
-        known = [KnownMethods.of(store).get(name) for name in methods]
-        checks: list[dg.AssetCheckEvaluation] = []
+        if _is_unchanged(store, archive, asked):
+            return confirm_report(store, dt.datetime.now().astimezone())
+        try:
+            with machine_faults_explained(data):
+                done = _run_until_sound(archive, data, methods, sorted(seasons or ()), selection)
+        except NoTowsYetError:
+            raise
+        except HerijkError as error:
+            record_failure(store, dt.datetime.now().astimezone(), str(error))
+            raise
+        report = read_report(store, done)
+        if selection is None and not failed_checks(report.checks):
+            with written_beside(_stamp_path(store)) as beside:
+                beside.write_text(compute_stamp(store, archive, asked))
+    return report
 
-        def work() -> None:
-            logging.getLogger("herijk").info(say("looking at what the archive holds"))
-            if is_stale(archive, store, known, seasons):
-                workers.get_ready(dask)
-                from assets.run import run_assets  # noqa: PLC0415 - see above
 
-                checks[:] = run_assets(archive, data, methods, seasons, done)
+def _run_until_sound(
+    archive: Path,
+    data: Path,
+    methods: Sequence[str],
+    seasons: Sequence[int],
+    selection: Collection[str] | None,
+) -> Done:
+    """Run the job; again where a damaged file was removed or the archive changed meanwhile."""
+    from assets.run import run_job  # noqa: PLC0415 - it imports Dagster
 
-        mending(store, work, again=lambda: None)
-        return write_report(store, done, checks, dt.datetime.now().astimezone())
+    for _ in range(MAX_ATTEMPTS - 1):
+        try:
+            return run_job(archive, data, methods, seasons, selection)
+        except (DamagedFileError, ArchiveChangedError):
+            continue
+    return run_job(archive, data, methods, seasons, selection)
+
+
+def compute_stamp(store: Store, archive: Path, asked: str) -> str:
+    """Return a fingerprint of all that a rebuild reads and leaves behind.
+
+    Files count by size and time of their last change.
+
+    Args:
+        store: the data folder.
+        archive: the archive.
+        asked: fingerprint of what the command was asked to do.
+    """
+    files = []
+    for name in OUR_FOLDERS:
+        files += [file for file in (store.root / name).rglob("*") if file.is_file()]
+    for name in OUR_FILES:
+        if (store.root / name).exists():
+            files.append(store.root / name)
+    ours = []
+    for file in sorted(files):
+        stat = file.stat()
+        ours.append((str(file.relative_to(store.root)), stat.st_size, stat.st_mtime_ns))
+    place = str(archive.resolve())
+    return fingerprint(asked, place, listing(archive), ours, code_hash(*EVERYTHING))
+
+
+def _is_unchanged(store: Store, archive: Path, asked: str) -> bool:
+    """Return whether everything is as the last whole rebuild left it."""
+    path = _stamp_path(store)
+    if not path.exists():
+        return False
+    try:
+        return path.read_text(encoding="utf-8") == compute_stamp(store, archive, asked)
+    except MissingKnowledgeError:  # the archive is gone: the run says so
+        return False
+
+
+def _stamp_path(store: Store) -> Path:
+    return store.lake / "whole.txt"
 
 
 def check_apart(archive: Path, data: Path) -> None:
-    """Refuses an archive in the data folder: a rebuild would write among what it reads.
+    """Refuse an archive in the data folder: a rebuild would write among what it reads.
 
     Raises:
         MissingKnowledgeError: the archive is the data folder, or lies in it.
@@ -81,36 +142,4 @@ def check_apart(archive: Path, data: Path) -> None:
             "folder outside the archive with --data",
             archive,
             data,
-        )
-
-
-def is_stale(
-    archive: Path, store: Store, methods: Sequence[Method], wanted: Collection[int] | None
-) -> bool:
-    """Looks through the archive, and whether anything made of it has to be made again.
-
-    Raises:
-        MissingKnowledgeError: there is no archive, or nothing of the seasons that are wanted.
-    """
-    intake.index(store, archive)
-    intake.forget_unlisted_seasons(store)
-    forget_other_methods(store, {method.name for method in methods})
-    _check_listed(wanted, intake.listed_seasons(store))
-    return (
-        bool(intake.stale_seasons(store, archive, wanted))
-        or any(step.stale(store, methods) for step in (*STEPS, SITE))
-        or not is_reported(store)
-    )
-
-
-def _check_listed(wanted: Collection[int] | None, listed: Sequence[int]) -> None:
-    """Refuses seasons of which the archive lists no tow: a typing error would pass unseen.
-
-    Raises:
-        MissingKnowledgeError: it lists none in any of them.
-    """
-    if wanted is not None and listed and not set(wanted) & set(listed):
-        raise MissingKnowledgeError(
-            "the archive lists no tow in the seasons asked for; it has tows of {}",
-            ", ".join(map(str, listed)),
         )

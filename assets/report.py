@@ -1,30 +1,37 @@
-"""What a rebuild leaves to be read: a page and JSON.
+"""What a rebuild did, when, and how it ended; what changed; and the pages that say so.
 
-They are under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
-about the last that changed something, and a dated JSON for each that did.
+`report/latest.json` is about the last run, also one that changed nothing or failed. Each change has
+a dated file of its own beside it. The page shows the last change, and when and how the last run
+ended: a quiet night differs from one on which nothing ran.
 """
 
 import datetime as dt
 import json
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Any, Final
+
+import polars as pl
 
 from dashboards.speech import Speech
-from dashboards.statements.rebuild import Check, found, headlines
+from dashboards.statements.rebuild import (
+    CHANGED,
+    FAILED,
+    UNCHANGED,
+    Check,
+    LastRun,
+    found,
+    headlines,
+)
+from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE
-from warehouse.derive.step import QUARANTINE
-from warehouse.queries.change_report import ChangeReport, change_report, remember
+from warehouse.queries.change_report import ChangeReport, change_report, last_changes, remember
 from warehouse.store.code import code_version
 from warehouse.store.files import written_beside
 from warehouse.store.store import Store
-from warehouse.store.unforeseen import UNFORESEEN, failures
 
-if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
-    import dagster as dg
-
-FIRST_FAILURES: Final = 5
 ERROR: Final = "ERROR"
 """Dagster's word for a check whose failing means that a table is not what it promises."""
 
@@ -44,7 +51,10 @@ class Report(ChangeReport):
 
     Attributes:
         nothing_changed: whether that is so.
-        made_at: the moment, ISO 8601.
+        made_at: when the last run ended, ISO 8601.
+        outcome: how it ended: changed, unchanged or failed.
+        reason: why it failed; else empty.
+        changed_at: when a run last changed something, ISO 8601.
         archive: where it is.
         simulated: whether the archive is.
         code_version: of the code that made the tables.
@@ -53,6 +63,9 @@ class Report(ChangeReport):
 
     nothing_changed: bool
     made_at: str
+    outcome: str
+    reason: str
+    changed_at: str
     archive: str
     simulated: bool
     code_version: str
@@ -60,71 +73,142 @@ class Report(ChangeReport):
     checks: list[Check]
     headlines: list[str]
 
+    @property
+    def last_run(self) -> LastRun:
+        """When and how the last run ended, and when one last changed something."""
+        return LastRun(self.made_at, self.outcome, self.reason, self.changed_at)
 
-def write_report(
-    store: Store, done: Done, evaluated: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
-) -> Report:
-    """Finds out what changed, and writes page and JSON; the page about the last change stays."""
+
+def write_report(store: Store, check_results: pl.DataFrame, now: dt.datetime) -> Report:
+    """Report on the tables as they are: what changed since the last report, and the checks."""
     changes = change_report(store)
     about = store.read("about_archive")
-    checks = [*(_check(one) for one in evaluated), *_unforeseen(store)]
+    checks = read_checks(check_results)
+    moment = now.isoformat(timespec="seconds")
+    before = _read_latest(store)
     report = Report(
         **vars(changes),
         nothing_changed=changes.nothing,
-        made_at=now.isoformat(timespec="seconds"),
+        made_at=moment,
+        outcome=UNCHANGED if changes.nothing else CHANGED,
+        reason="",
+        changed_at=str(before["changed_at"]) if changes.nothing and before else moment,
         archive=about["root"][0],
         simulated=about["simulated"][0],
         code_version=code_version(),
-        done=done,
+        done=Done(),
         checks=checks,
-        headlines=[line(Speech("en")) for line in headlines(changes, checks)],
+        headlines=_headlines_in_english(changes, checks),
     )
-    text = json.dumps(asdict(report), default=str, indent=1)
-    folder = store.root / "report"
     if not changes.nothing:
-        from dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
-
-        for name, page in report_pages(store, changes, checks, f"{now:%Y-%m-%d %H:%M}").items():
-            _write(folder / name, page)
-        _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
-    _write(folder / "latest.json", text)
+        _write(store.root / "report" / f"{now:%Y-%m-%dT%H%M%S}.json", _to_json(report))
+    _publish(store, report, changes if not changes.nothing else last_changes(store))
     remember(store)
     return report
 
 
-def _unforeseen(store: Store) -> Iterator[Check]:
-    """On what Herijk itself failed: tows are set aside, anything else is an error."""
-    failed_on = store.read(QUARANTINE).filter(reason_code=UNFORESEEN)
-    tows = [tow or path for tow, path in failed_on.select("tow_id", "path").rows()]
-    for asset, severity, failed in (
-        (QUARANTINE, "WARN", tows),
-        ("site", ERROR, failures(store.root)),
-    ):
-        if failed:
-            found = {"number": len(failed), "first": failed[:FIRST_FAILURES]}
-            yield Check(asset, "nothing_unforeseen", False, severity, found)
+def confirm_report(store: Store, now: dt.datetime) -> Report:
+    """Report on a run that found nothing to do."""
+    return _end_run(store, now, UNCHANGED, "")
 
 
-def _check(evaluated: "dg.AssetCheckEvaluation") -> Check:
-    return Check(
-        asset=evaluated.asset_key.to_user_string(),
-        check=evaluated.check_name,
-        passed=evaluated.passed,
-        severity=evaluated.severity.value,
-        found={name: value.value for name, value in evaluated.metadata.items()},
+def record_failure(store: Store, now: dt.datetime, reason: str) -> None:
+    """Note that a run failed, and why; do nothing where no run ever ended well.
+
+    What made the run fail may also prevent the note, such as a full disk: it is then left out.
+    """
+    with suppress(HerijkError, OSError):
+        if _read_latest(store) is not None:
+            _end_run(store, now, FAILED, reason)
+
+
+def read_report(store: Store, done: Done) -> Report:
+    """Return the report of the last run, with what the run did."""
+    stored = _read_latest(store)
+    if stored is None:
+        raise FileNotFoundError(_latest_path(store))
+    checks = [Check(**check) for check in stored.pop("checks")]
+    stored.pop("done")
+    return Report(**stored, checks=checks, done=done)
+
+
+def read_checks(check_results: pl.DataFrame) -> list[Check]:
+    """Return the rows of `check_results` as checks."""
+    checks = []
+    for row in check_results.iter_rows(named=True):
+        passed = row["number"] == 0
+        found_there = {"number": row["number"], "first": row["first"]}
+        checks.append(Check(row["asset"], row["check"], passed, row["severity"], found_there))
+    return checks
+
+
+def failed_checks(checks: Sequence[Check]) -> list[str]:
+    """Return a sentence for each check whose failing breaks a promise of a table."""
+    speech = Speech(LANGUAGE.get())
+    broken = [check for check in checks if not check.passed and check.severity == ERROR]
+    return [f"{check.check}: {found(check)(speech)}" for check in broken]
+
+
+def _end_run(store: Store, now: dt.datetime, outcome: str, reason: str) -> Report:
+    """Report on a run that changed no table."""
+    last = last_changes(store)
+    nothing: dict[str, Any] = {
+        one.name: [] for one in fields(ChangeReport) if one.name not in ("first", "judged")
+    }
+    report = replace(
+        read_report(store, Done()),
+        **nothing,
+        first=False,
+        nothing_changed=True,
+        made_at=now.isoformat(timespec="seconds"),
+        outcome=outcome,
+        reason=reason,
     )
+    report = replace(report, headlines=_headlines_in_english(report, report.checks))
+    _publish(store, report, last)
+    return report
+
+
+def _publish(store: Store, report: Report, shown: ChangeReport | None) -> None:
+    """Write the report of the last run, and the page with the last change.
+
+    Args:
+        store: the data folder.
+        report: the last run.
+        shown: the last change.
+    """
+    _write(_latest_path(store), _to_json(report))
+    if shown is None or not store.database.exists():
+        return
+    from dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
+
+    for name, page in report_pages(store, shown, report.checks, report.last_run).items():
+        _write(store.root / "report" / name, page)
+
+
+def _headlines_in_english(changes: ChangeReport, checks: Sequence[Check]) -> list[str]:
+    speech = Speech("en")
+    return [line(speech) for line in headlines(changes, checks)]
+
+
+def _latest_path(store: Store) -> Path:
+    return store.root / "report" / "latest.json"
+
+
+def _read_latest(store: Store) -> dict[str, Any] | None:
+    """Return the report of the last run; None where none ended well or the file is not ours."""
+    try:
+        stored: Mapping[str, Any] = json.loads(_latest_path(store).read_text(encoding="utf-8"))
+    except (FileNotFoundError, ValueError):
+        return None
+    known = {one.name for one in fields(Report)}
+    return dict(stored) if set(stored) == known else None
+
+
+def _to_json(report: Report) -> str:
+    return json.dumps(asdict(report), default=str, indent=1)
 
 
 def _write(path: Path, text: str) -> None:
     with written_beside(path) as beside:
         beside.write_text(text, encoding="utf-8")
-
-
-def failed_checks(checks: Sequence[Check]) -> list[str]:
-    """Checks whose failing means that a table is not what it promises."""
-    speech = Speech(LANGUAGE.get())
-    return [
-        f"{check.check}: {found(check)(speech)}"
-        for check in checks
-        if not check.passed and check.severity == ERROR
-    ]

@@ -1,81 +1,73 @@
-"""All assets and checks, and the one run in which a rebuild makes them."""
+"""One run of the job `rebuild` in this process, recorded in Dagster."""
 
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any
 
 import dagster as dg
 
-from assets import archive, checks, instance
+from assets.definitions import build_defs
+from assets.instance import OF_A_COMMAND, end_lost_runs, open_instance
+from assets.lake import NEW
 from assets.report import Done
-from assets.resources import Setup
-from assets.tables import STEP_ASSETS
-from warehouse.derive import database
-
-ASSETS: Final = [archive.archive_index, archive.samples_and_blocks, *STEP_ASSETS]
-
-QUIET_LOG: Final = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
-"""Nothing on the terminal: what Dagster says is in its records."""
+from pipeline.errors import HerijkError
+from warehouse.store.lock import only_writer
+from warehouse.store.store import Store
 
 
-def assets_of(setup: Setup) -> dg.Definitions:
-    """Assets and checks, made one after the other in one process: it holds the lock."""
-    return dg.Definitions(
-        assets=ASSETS,
-        asset_checks=[checks.of_the_whole],
-        resources={"setup": setup},
-        executor=dg.in_process_executor,
-    )
-
-
-def run_assets(
-    archive_root: Path,
+def run_job(
+    archive: Path,
     data: Path,
     methods: Sequence[str],
-    wanted: Collection[int] | None,
-    done: Done,
-) -> Sequence[dg.AssetCheckEvaluation]:
-    """Makes, or confirms, all assets in one run, of the seasons that are wanted; raises as they do.
+    seasons: Sequence[int],
+    selection: Collection[str] | None = None,
+) -> Done:
+    """Make all that is stale, as Dagster's page and the schedule do.
 
-    Seasons can be asked for as a range only: those between confirm that they are fresh. What was
-    made anew is noted as `done`.
+    Args:
+        archive: the archive folder.
+        data: the data folder.
+        methods: names of the methods to apply.
+        seasons: seasons of which changed files are read; none for all.
+        selection: names of the assets to make; None for all.
 
     Returns:
-        What the checks said.
+        What was made anew.
+
+    Raises:
+        HerijkError: as the asset raised it.
     """
-    setup = Setup(
-        archive=str(archive_root),
-        data=str(data),
-        methods=list(methods),
-        seasons=sorted(wanted or ()),
-    )
-    job = assets_of(setup).resolve_implicit_global_asset_job_def()
-    with instance.instance_of(setup.store) as records:
-        instance.end_lost_runs(records, instance.OF_A_COMMAND)
-        seasons = [s for s in archive.know_seasons(records, setup.store) if setup.wanted([s])]
-        ends = {"start": seasons[0], "end": seasons[-1]} if seasons else {}
-        ranges = {f"dagster/asset_partition_range_{end}": season for end, season in ends.items()}
-        # A partitioned asset cannot run without a partition: with no season there are no samples.
-        made = [asset for asset in ASSETS if seasons or asset is not archive.samples_and_blocks]
-        result = job.execute_in_process(
-            instance=records,
-            run_config=QUIET_LOG,
-            tags=instance.OF_A_COMMAND | ranges,
-            asset_selection=[key for asset in made for key in asset.keys],
-        )
+    job = build_defs(str(archive), str(data), list(methods)).resolve_job_def("rebuild")
+    config: dict[str, Any] = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
+    if seasons:
+        config["ops"] = {"samples": {"config": {"seasons": list(seasons)}}}
+    with only_writer(data), open_instance(Store(data)) as instance:
+        end_lost_runs(instance, OF_A_COMMAND)
+        try:
+            result = job.execute_in_process(
+                instance=instance,
+                run_config=config,
+                tags=OF_A_COMMAND,
+                asset_selection=None if selection is None else list(map(dg.AssetKey, selection)),
+            )
+        except dg.DagsterError as error:
+            if isinstance(error.__cause__, HerijkError):
+                raise error.__cause__ from error
+            raise
+    return list_made(result, methods)
+
+
+def list_made(result: dg.ExecuteInProcessResult, methods: Sequence[str]) -> Done:
+    """Return what a run made anew; what it only confirmed is left out."""
+    done = Done()
     for event in result.get_asset_materialization_events():
-        _note(done, event.materialization, setup.methods)
-    return result.get_asset_check_evaluations()
-
-
-def _note(done: Done, made: dg.AssetMaterialization, methods: Sequence[str]) -> None:
-    """Notes what was made anew."""
-    if "new" not in made.metadata or not (new := made.metadata["new"].value):
-        return
-    match made.asset_key.to_user_string():
-        case "samples":
-            done.seasons = sorted({*done.seasons, int(str(made.partition))})
-        case "curves" if isinstance(new, list):
-            done.methods = [name for name in methods if name in (*done.methods, *new)]
-        case database.DATABASE_TABLE:
+        made = event.materialization
+        is_new = NEW in made.metadata and made.metadata[NEW].value
+        name = made.asset_key.to_user_string()
+        if name == "samples" and "seasons_read" in made.metadata:
+            done.seasons = list(made.metadata["seasons_read"].value)  # type: ignore[arg-type]
+        elif name == "curves" and is_new:
+            done.methods = list(methods)
+        elif name == "warehouse_database" and is_new:
             done.database = True
+    return done

@@ -55,8 +55,8 @@ _READING: Final = """
 import sys
 from pathlib import Path
 from warehouse.store.store import Store
-from warehouse.intake.seasons import bring_in
-bring_in(Store(Path(sys.argv[2])), Path(sys.argv[1]))
+from warehouse.derive.archive_tables import read_archive
+read_archive(Store(Path(sys.argv[2])), Path(sys.argv[1]))
 """
 
 

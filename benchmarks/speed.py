@@ -77,7 +77,7 @@ class World:
     def tows(self, count: int | None = None) -> pl.DataFrame:
         """Sound tows with their place in the lake; `count` of them, evenly spread over the
         seasons, whose text any reader understands as it stands."""
-        index = self.store.read_all("season_index").drop_nulls("samples_key")
+        index = self.store.read("samples").drop_nulls("samples_key")
         keys = index.select("tow_id", "samples_key", "blocks_key")
         found = self.store.read("tows").join(keys, on="tow_id").sort("tow_id")
         if count is None:
@@ -138,14 +138,11 @@ def read_text(world: World, tows: pl.DataFrame, folder: Path) -> None:
     shutil.copy(world.store.file_hashes, store.file_hashes)
     profiles = read_profiles(world.archive)
     for season in tows["season"].unique().sort():
-        listed, runs = (
-            world.store.read(name, str(season)).join(
-                tows.select("tow_id"), on="tow_id", how="semi", maintain_order="left"
-            )
-            for name in ("season_tows", "season_runs")
-        )
+        own = tows.filter(season=season).select("tow_id")
+        listed = world.store.read("listed_tows").join(own, on="tow_id", how="semi")
+        runs = world.store.read("listed_runs").join(own, on="tow_id", how="semi")
         profile = profiles.for_season(season)
-        index = lake.read_season(store, world.archive, listed, runs, profile)
+        index = lake.read_tows(store, world.archive, listed, runs, profile)
         assert index["reason_code"].null_count() == index.height
 
 

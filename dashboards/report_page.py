@@ -14,9 +14,12 @@ from dashboards.site.render import Edition
 from dashboards.statements.rebuild import (
     PAGES,
     Check,
+    LastRun,
+    describe_run,
     in_short,
     judged,
     outcome_of,
+    show_minute,
     values_found,
     verdict,
 )
@@ -48,11 +51,12 @@ _COLUMNS: Final = {
 
 
 def report_pages(
-    store: Store, changes: ChangeReport, checks: Sequence[Check], moment: str
+    store: Store, changes: ChangeReport, checks: Sequence[Check], run: LastRun
 ) -> dict[str, str]:
-    """The page by its file name, in each language, with the moment of the rebuild.
+    """Return the page by its file name, in each language.
 
-    It has what came in, what was set aside, what changed and why, and what the checks say.
+    It has what came in, what was set aside, what changed and why, what the checks say, and when and
+    how the last run ended.
     """
     of_checks = pl.DataFrame(
         [
@@ -78,10 +82,13 @@ def report_pages(
         say("In short"),
         headline=verdict(changes, checks),
         state="good" if all(check.passed for check in checks) else "bad",
-        prose=lambda speech: Markup("<p>{}</p><p>{}</p>").format(
-            in_short(changes)(speech), judged(changes)(speech)
+        prose=lambda speech: Markup("<p>{}</p><p>{}</p><p>{}</p>").format(
+            in_short(changes)(speech),
+            judged(changes)(speech),
+            " ".join(line(speech) for line in describe_run(run)),
         ),
     )
+    changed_at = show_minute(run.changed_at)
     with Views(store) as views:
         return {
             PAGES[language]: Edition(views, language).html(
@@ -89,7 +96,7 @@ def report_pages(
                     PAGES[language],
                     say("Report of the rebuild"),
                     [in_words, *sections],
-                    name=f"{speaker(language)('Report of the rebuild')} {moment}",
+                    name=f"{speaker(language)('Report of the rebuild')} {changed_at}",
                     site=TO_SITE,
                     others=PAGES,
                 )

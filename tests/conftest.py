@@ -17,20 +17,17 @@ import pytest
 from filelock import FileLock
 from hypothesis import settings
 
-import assets.instance
 import assets.rebuild
 import assets.run
 import assets.workers
 import dashboards.report_page
-from assets.report import Done, Report
+from assets.definitions import ASSETS
+from assets.report import Report
 from hatch_build import compile_catalogues
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.tables.schemas import TABLES
-from warehouse.derive.graph import DATABASE, METHOD, STEPS
-from warehouse.intake import seasons as intake
 from warehouse.store.database import open_database
-from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
 compile_catalogues(Path(__file__).parents[1])
@@ -47,8 +44,16 @@ SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=20, rate_hz=20, seed
 """Season 2009 is written as plain CSV, 2014 as .csv.gz."""
 
 
-LEFT_OUT: Final = ("studies", "lines", "consistency")
-"""Groups of steps that take two thirds of the time of a small rebuild."""
+STUDIES: Final = frozenset(
+    key.to_user_string()
+    for asset in ASSETS
+    for key in asset.keys
+    if asset.group_names_by_key[key] == "consistency"
+    or key.to_user_string() in ("correction_steps", "option_effects", "option_curves")
+)
+"""Tables that take two thirds of the time of a small rebuild."""
+
+EVERY: Final = frozenset(key.to_user_string() for asset in ASSETS for key in asset.keys)
 
 DEMO: Final = WorldSettings(seasons=tuple(range(2009, 2019)), tows_per_season=6, rate_hz=20, seed=1)
 """The archive of `make demo` with fewer tows and samples."""
@@ -56,56 +61,45 @@ DEMO_METHODS: Final = ("as-published", "rebased-2015", "rebased")
 """Those that the documents name in what they tell a reader to type."""
 
 
-def _make_directly(
-    archive: Path,
-    data: Path,
-    methods: Sequence[str],
-    seasons: Collection[int] | None,
-    done: Done,
-    left_out: Collection[str] = LEFT_OUT,
-) -> list[object]:
-    """What a rebuild makes without Dagster, and with empty tables where they are left out."""
-    store = Store(data)
-    known = [KnownMethods.of(store).get(name) for name in methods]
-    for season in intake.stale_seasons(store, archive, seasons):
-        intake.read_season(store, archive, season)
-        done.seasons = sorted({*done.seasons, season})
-    for step in STEPS:
-        for scope in step.stale(store, known):
-            if step.group in left_out:
-                partition = scope.at_hand.name if step.per_method else None
-                for name in step.outputs:
-                    empty = TABLES[name].create_empty()
-                    store.write(name, empty, step.made_from(scope), partition)
-            else:
-                step.make(scope)
-            if step is METHOD:
-                applied = {*done.methods, scope.at_hand.name}
-                done.methods = [name for name in methods if name in applied]
-            done.database |= step is DATABASE
-    return []
+def leave_out(store: Store, tables: Collection[str]) -> None:
+    """Let tables that a rebuild leaves out be there: empty, unless they are."""
+    for name in tables:
+        if store.made_from(name) is None:
+            frame = NO_SITE if name == "site" else TABLES[name].create_empty()
+            store.write(name, frame)
 
 
-@contextmanager
-def directly(page: bool = False, left_out: Collection[str] = LEFT_OUT) -> Iterator[None]:
-    """Inside, rebuilds do their work without Dagster, and the site counts as made.
-
-    Args:
-        page: make the page about the rebuild too, a quarter of the work.
-        left_out: groups of steps whose tables stay empty.
-    """
-    no_site = mock.patch.object(assets.rebuild, "SITE", mock.Mock(stale=lambda *_: []))
-    make = partial(_make_directly, left_out=left_out)
-    no_dagster = mock.patch.object(assets.run, "run_assets", make)
-    no_page = mock.patch.object(dashboards.report_page, "report_pages", return_value={})
-    with no_site, no_dagster, nullcontext() if page else no_page:
-        yield
+NO_SITE: Final = pl.DataFrame({"failed": [[]]}, schema={"failed": pl.List(pl.String)})
 
 
 def in_one_process() -> AbstractContextManager[object]:
     """Inside, a thread does the heavy work: a process takes seconds to import what it needs."""
     thread = ThreadPoolExecutor(1)
-    return mock.patch.object(assets.workers, "workers", return_value=thread)
+    return mock.patch.object(assets.workers, "get_executor", return_value=thread)
+
+
+def without_page() -> AbstractContextManager[object]:
+    """Inside, the page about a rebuild is not drawn: that takes a second."""
+    return mock.patch.object(dashboards.report_page, "report_pages", return_value={})
+
+
+def records_in_memory() -> AbstractContextManager[object]:
+    """Inside, rebuilds keep no records of Dagster's on disk."""
+    in_memory = dg.DagsterInstance.ephemeral
+    return mock.patch.object(assets.run, "open_instance", side_effect=lambda _: in_memory())
+
+
+@contextmanager
+def quickly(store: Store, left_out: Collection[str] = (*STUDIES, "site")) -> Iterator[None]:
+    """Inside, `assets.rebuild.rebuild` makes all but some tables, and no page about itself."""
+    leave_out(store, left_out)
+    run_all = assets.rebuild.rebuild
+    made = partial(run_all, selection=EVERY - {*left_out})
+    with (
+        in_one_process(), records_in_memory(), without_page(),
+        mock.patch.object(assets.rebuild, "rebuild", made),
+    ):  # fmt: skip
+        yield
 
 
 @dataclass(frozen=True)
@@ -126,19 +120,20 @@ class Workbench:
         whole: bool = False,
         page: bool = False,
     ) -> Report:
-        """A rebuild in this process.
+        """Run the job in this process, recorded in memory.
 
-        The whole has Dagster's runs (recorded in memory), studies, comparisons of types, checks and
-        pages; most tests do without, and without the page about the rebuild.
+        The whole has studies, comparisons of types and pages; most tests do without, and without
+        the page about the rebuild.
         """
-        with in_one_process(), self.records_in_memory() if whole else directly(page):
-            return assets.rebuild.rebuild(self.archive, self.data, methods, seasons)
-
-    @staticmethod
-    def records_in_memory() -> AbstractContextManager[object]:
-        """Inside, rebuilds keep no records of Dagster's on disk."""
-        in_memory = dg.DagsterInstance.ephemeral
-        return mock.patch.object(assets.instance, "instance_of", side_effect=lambda _: in_memory())
+        left_out = () if whole else (*STUDIES, "site")
+        leave_out(self.store, left_out)
+        selection = None if whole else EVERY - {*left_out}
+        with (
+            in_one_process(),
+            records_in_memory(),
+            nullcontext() if page or whole else without_page(),
+        ):
+            return assets.rebuild.rebuild(self.archive, self.data, methods, seasons, selection)
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""
@@ -209,7 +204,7 @@ def build_demo(root: Path) -> None:
     """Make the small demo with all its tables; the samples of one tow are missing."""
     write_simulated_archive(root / "archief", simulate_world(DEMO))
     sorted((root / "archief").glob("meetdata_2014/*"))[-1].unlink()
-    with in_one_process(), directly(left_out=()):
+    with quickly(Store(root / "data"), left_out=("site",)):
         assets.rebuild.rebuild(root / "archief", root / "data", DEMO_METHODS)
 
 

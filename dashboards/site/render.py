@@ -10,7 +10,7 @@ import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache, partial
 from pathlib import Path
-from typing import Final
+from typing import Final, TypedDict
 
 import jinja2
 
@@ -64,14 +64,22 @@ POLICY: Final = "; ".join(
 is in the style sheet, because some browsers keep fonts of another folder from such a page."""
 
 
-Each = Callable[[Callable[[str], None], Sequence[str]], Iterable[object]]
+Each = Callable[[Callable[[str], list[str]], Sequence[str]], Iterable[list[str]]]
 """Does a piece of work for each of these: one after the other, as `map` does, or side by side."""
 SHARED: Final = "shared"
 """What is made once for the pages of all languages."""
 
 
-def build_site(store: Store, each: Each = map) -> dict[str, int]:
-    """Makes all pages from the database and swaps them in; gives files and bytes of the site."""
+class BuiltPages(TypedDict):
+    """What was built: number of files, their bytes, and what Herijk itself failed on."""
+
+    files: int
+    bytes: int
+    failed: list[str]
+
+
+def build_site(store: Store, each: Each = map) -> BuiltPages:
+    """Make all pages from the database and swap them in."""
     return build_pages(store, store.root / "site", each=each)
 
 
@@ -81,22 +89,44 @@ def build_pages(
     as_of: dt.date | None = None,
     bordered: Border | None = None,
     each: Each = map,
-) -> dict[str, int]:
-    """The same in another folder, and as of a day; what stood in the folder is replaced."""
-    bordered = bordered or partial(border, store.root)
+) -> BuiltPages:
+    """Make all pages in a folder, as of a day; what stood in the folder is replaced.
+
+    Args:
+        store: the data folder.
+        target: the folder.
+        as_of: the day on which lines count as valid; the last that the archive knows if left out.
+        bordered: goes round the making of each page; by default a page that fails is left out.
+        each: see `Each`.
+    """
     with folder_written_beside(target) as beside:
         work = partial(_write_part, store, beside, as_of, bordered, target.parent == store.root)
-        list(each(work, (LANGUAGES[1], SHARED, LANGUAGES[0])))
+        failed = sorted({what for part in each(work, PARTS) for what in part})
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = sum(f.stat().st_size for f in written)
-    return {"files": len(written), "bytes": size}
+    return {"files": len(written), "bytes": size, "failed": failed}
+
+
+PARTS: Final = (LANGUAGES[1], SHARED, LANGUAGES[0])
+"""What is made by itself: the pages of each language, and what all pages share."""
 
 
 def _write_part(
-    store: Store, folder: Path, as_of: dt.date | None, bordered: Border, by_reports: bool, part: str
-) -> None:
-    """The pages of one language with the data of all, or what all pages share."""
+    store: Store,
+    folder: Path,
+    as_of: dt.date | None,
+    bordered: Border | None,
+    by_reports: bool,
+    part: str,
+) -> list[str]:
+    """Write the pages of one language with the data of all, or what all pages share.
+
+    Returns:
+        The pages on which Herijk itself failed.
+    """
+    failed: list[str] = []
+    bordered = bordered or partial(border, store.root, failed=failed)
     with Views(store, as_of) as views:
         if part == SHARED:
             files = shared_files() | {"find.js": _search_script(views)}
@@ -105,6 +135,7 @@ def _write_part(
             files = charts_file(part)
         for name, text in files.items():
             _put(folder / "static" / name, text)
+    return failed
 
 
 def shared_files() -> dict[str, str]:
@@ -124,16 +155,17 @@ def charts_file(language: str) -> dict[str, str]:
 def _write_pages(
     border: Border, views: Views, folder: Path, by_reports: bool, language: str
 ) -> None:
-    """Writes every page in a language."""
+    """Write every page in a language."""
     edition, methods = Edition(views, language), method_names(views)
     for name, make in shared_pages(views, by_reports).items():
         with border(f"pages {name}"):
             for page in make():
                 with border(f"page {page.path}"):
                     _write_page(folder, page, edition)
-    for fsn_no, make_page in boat_pages(views, methods):
-        with border(f"page {fsn_no}"):
-            _write_page(folder, make_page(), edition)
+    with border("pages of boats"):
+        for fsn_no, make_page in boat_pages(views, methods):
+            with border(f"page {fsn_no}"):
+                _write_page(folder, make_page(), edition)
 
 
 def _write_page(folder: Path, page: Page, edition: "Edition") -> None:

@@ -21,6 +21,27 @@ PAGES: Final = {"nl": "latest.html", "en": "latest.en.html"}
 NOTHING: Final = say("Nothing changed since the last report.")
 
 
+CHANGED, UNCHANGED, FAILED = "changed", "unchanged", "failed"
+"""How a run can end."""
+
+
+@dataclass(frozen=True)
+class LastRun:
+    """When and how the last run ended.
+
+    Attributes:
+        ended_at: when it ended, ISO 8601.
+        outcome: `CHANGED`, `UNCHANGED` or `FAILED`.
+        reason: why it failed; else empty.
+        changed_at: when a run last changed something, ISO 8601.
+    """
+
+    ended_at: str
+    outcome: str
+    reason: str
+    changed_at: str
+
+
 @dataclass(frozen=True)
 class Check:
     """How a check of a table ended.
@@ -100,7 +121,32 @@ def judged(changes: ChangeReport) -> Statement:
     )
 
 
-def mail(changes: ChangeReport, checks: Sequence[Check], simulated: bool) -> tuple[str, str]:
+OUTCOMES: Final = {
+    CHANGED: say("Last run: {ended_at}. It changed tables."),
+    UNCHANGED: say("Last run: {ended_at}. Nothing had changed."),
+    FAILED: say("Last run: {ended_at}. It failed: {reason}"),
+}
+
+
+def describe_run(run: LastRun) -> list[Statement]:
+    """Return when and how the last run ended, and when something last changed."""
+    ended = told(
+        "last_run", OUTCOMES[run.outcome], ended_at=show_minute(run.ended_at), reason=run.reason
+    )
+    changed = told(
+        "last_change", say("Last change: {changed_at}."), changed_at=show_minute(run.changed_at)
+    )
+    return [ended, changed]
+
+
+def show_minute(moment: str) -> str:
+    """Return a moment of ISO 8601 as a date and a time in minutes."""
+    return moment[:16].replace("T", " ")
+
+
+def mail(
+    changes: ChangeReport, checks: Sequence[Check], simulated: bool, run: LastRun
+) -> tuple[str, str]:
     """Subject and text of the mail, in Dutch."""
     speech = Speech("nl")
     lines = [line(speech) for line in headlines(changes, checks)]
@@ -108,7 +154,17 @@ def mail(changes: ChangeReport, checks: Sequence[Check], simulated: bool) -> tup
     moved = [f"  {_line(line)(speech)}" for line in changes.lines[:LINES_IN_MAIL]]
     more = len(changes.lines) - len(moved)
     rest = [f"  + {more}"] if more > 0 else []
-    text = "\n".join([*marked, *lines, judged(changes)(speech), "", *moved, *rest])
+    text = "\n".join(
+        [
+            *marked,
+            *lines,
+            judged(changes)(speech),
+            *(line(speech) for line in describe_run(run)),
+            "",
+            *moved,
+            *rest,
+        ]
+    )
     return f"{speech.say('Tow tests re-based')}: {lines[0]}", f"{text}\n"
 
 
@@ -122,7 +178,7 @@ def _line(line: Row) -> Statement:
     return told("changed_line", wording, line, edition=edition, crew=crew, by=by)
 
 
-FAILED: Final = {
+WHY_WRONG: Final = {
     "tables_fit_their_schemas": say("tables do not fit their schemas"),
     "few_tows_set_aside": say("many tows are set aside"),
     "nothing_unforeseen": say(
@@ -143,7 +199,10 @@ def _wrong(checks: Sequence[Check]) -> Iterator[Statement]:
     wording = say("{outcome}: {failed} ({found})")
     for check in sorted(checks, key=lambda check: check.check != "nothing_unforeseen"):
         if not check.passed:
-            outcome, failed = labels.code(outcome_of(check)), FAILED.get(check.check, check.check)
+            outcome, failed = (
+                labels.code(outcome_of(check)),
+                WHY_WRONG.get(check.check, check.check),
+            )
             yield told("check", wording, outcome=outcome, failed=failed, found=found(check))
 
 
@@ -153,6 +212,10 @@ def _moved(changes: ChangeReport) -> Iterator[Statement]:
     if changes.seasons_gone:
         wording = say("Seasons of which the archive has no tow any more: {seasons}")
         yield told("gone", wording, seasons=", ".join(map(str, changes.seasons_gone)))
+    for row in changes.editions:
+        wording = say("Edition {edition}: {done}")
+        edition, done = EditionName(row["edition"]), labels.code(row["what"])
+        yield told("edition", wording, row, edition=edition, done=done)
     for row in changes.methods:
         yield told("method", say("Method {method}: {done}"), row, done=labels.code(row["what"]))
     yield from _counted(pgettext("number", "Tows"), changes.tows)

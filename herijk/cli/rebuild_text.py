@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from assets.report import Report
-from dashboards.statements.rebuild import headlines, judged
+from dashboards.statements.rebuild import describe_run, headlines, judged
 from herijk.cli.render import Part, Section, marked, set_aside
 from pipeline.messages import tell
 from warehouse.queries.reports import RebuildReport
@@ -47,7 +47,7 @@ def text(made: Rebuilt) -> Iterator[Part]:
         if done.database
         else tell("Nothing changed: no file was read again, all tables are up to date.")
     )
-    news = headlines(made.since, made.since.checks)
+    news = [*headlines(made.since, made.since.checks), *describe_run(made.since.last_run)]
     yield Section(tell("Since the last report:"), news)
     tows = ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
     yield Section(tell("Tows by season: ") + tows, [judged(made.since)])

@@ -34,7 +34,7 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     from assets.rebuild import rebuild as run
     from assets.report import failed_checks
     from assets.settings import applied
-    from herijk.cli.progress import log_shown
+    from herijk.cli.progress import rebuild_shown
     from herijk.cli.rebuild_text import NoTowsYet, Rebuilt, text
     from warehouse.queries.reports import rebuild_report
     from warehouse.store.methods import KnownMethods
@@ -42,7 +42,7 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     known = KnownMethods.of(store)
     chosen = applied(store.root, [known.kept(name) for name in methods])
     try:
-        with log_shown():
+        with machine_faults_explained(store.root), rebuild_shown():
             news = run(archive, store.root, chosen, seasons)
     except NoTowsYetError as error:  # a new archive is no failure
         reason = spoken(error, LANGUAGE.get())
@@ -56,17 +56,17 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
 @click.command(cls=Command)
 @archive_option
 @data_option
-@option("--host", default="127.0.0.1", help="Address to listen on.")
+@option("--host", default="127.0.0.1", help="Address on which the site is served.")
 @option(
     "--port",
     type=click.IntRange(1, 65534),
     default=3000,
-    help="Port of Dagster's page; the site has the next.",
+    help="Port of Dagster's page, on this machine only; the site has the next.",
 )
 @flag("--may-start", help="Let Dagster's page start rebuilds and switch schedules.")
 def serve(archive: Path, store: "Store", host: str, port: int, may_start: bool) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from assets.instance import end_lost_runs, instance_of, prepare_home
+    from assets.instance import end_lost_runs, open_instance, prepare_home
     from assets.rebuild import check_apart
     from assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
@@ -74,7 +74,7 @@ def serve(archive: Path, store: "Store", host: str, port: int, may_start: bool) 
     check_apart(archive, store.root)
     read_settings(store.root)
     with machine_faults_explained(store.root):
-        with instance_of(store) as instance:
+        with open_instance(store) as instance:
             end_lost_runs(instance, {})
         served = Served(archive, store.root, host, port, may_start)
         serve_until_stopped(served, prepare_home(store), lambda line: click.echo(line, err=True))

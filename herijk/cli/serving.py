@@ -1,7 +1,8 @@
 """`herijk serve`: Dagster's web page and daemon, and the site, until somebody stops it.
 
-All three listen on the given address only, this machine unless told otherwise. Dagster's two are
-processes of their own; they end with this one, however it ends.
+Dagster's web server runs as it is, listens on this machine only and has no password. The site is
+plain files behind the guard, and may listen elsewhere. Dagster's two are processes of their own;
+they end with this one, however it ends.
 """
 
 import ctypes
@@ -22,7 +23,6 @@ from starlette.responses import RedirectResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from assets.webserver import MAY_START, READ_ONLY
 from dashboards.guard import LOOPBACK, guarded, listen
 from pipeline.errors import UnavailableError
 from pipeline.messages import LANGUAGE, say
@@ -31,8 +31,8 @@ SHOWN: Final = ("site", "report")
 """What of the data folder the site's address shows."""
 
 EXPOSED: Final = say(
-    "WARNING: everybody who can reach {host} can read the site and Dagster's page: there is no "
-    "password. Put a proxy with one in front (docs/operations.md), or serve on 127.0.0.1"
+    "WARNING: everybody who can reach {host} can read the site: there is no password. Put a proxy "
+    "with one in front (docs/operations.md), or serve on 127.0.0.1"
 )
 
 PATIENCE_S: Final = 20.0
@@ -42,9 +42,10 @@ _DIE_WITH_PARENT: Final = 1
 
 @dataclass(frozen=True)
 class Served:
-    """What is served and where: Dagster at `port`, the site at the next.
+    """What is served and where: Dagster at `port` of this machine, the site at the next port.
 
     Attributes:
+        host: address on which the site is served.
         may_start: whether Dagster's page may start rebuilds and switch schedules.
     """
 
@@ -76,10 +77,10 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
         signal.signal(number, lambda *_: stop.set())
     if what.host not in LOOPBACK:
         tell(say(EXPOSED, host=what.host).spoken(LANGUAGE.get()))
-    listen(what.host, what.port).close()  # told now, not by a child
+    listen(LOOPBACK[0], what.port).close()  # told now, not by a child
     with _site(what), _dagster(what, home) as children:
         tell(f"Site: {what.site}/index.html")
-        tell(f"Dagster: http://{what.host}:{what.port}/")
+        tell(f"Dagster: http://{LOOPBACK[0]}:{what.port}/")
         while not stop.wait(0.5):
             for name, child in children.items():
                 if child.poll() is not None:
@@ -126,17 +127,16 @@ def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[by
         "HERIJK_SITE": what.site,
         "DAGSTER_DISABLE_TELEMETRY": "1",
     }
-    rights = MAY_START if what.may_start else READ_ONLY
+    programs = Path(sys.executable).parent
+    address = ["-h", LOOPBACK[0], "-p", str(what.port)]
+    read_only = [] if what.may_start else ["--read-only"]
+    location = ["-m", "assets.definitions"]
     commands = {
         "Dagster's page": [
-            *(sys.executable, "-m", "assets.webserver"),
-            *(what.host, str(what.port), rights),
+            str(programs / "dagster-webserver"), *location, *address, *read_only,
         ],
-        "Dagster's daemon": [
-            str(Path(sys.executable).with_name("dagster-daemon")),
-            *("run", "-m", "assets.definitions"),
-        ],
-    }
+        "Dagster's daemon": [str(programs / "dagster-daemon"), "run", *location],
+    }  # fmt: skip
     children: dict[str, subprocess.Popen[bytes]] = {}
     try:
         for name, command in commands.items():

@@ -66,7 +66,7 @@ UNION ALL SELECT view_name, comment FROM duckdb_views() WHERE NOT internal ORDER
         if tow.is_empty():
             raise MissingKnowledgeError("there is no tow {!r} in the table tows", tow_id)
         season = int(tow["season"][0])
-        index = self._store.read("season_index", str(season))
+        index = self._store.read("samples").filter(season=season)
         key = str(index.filter(pl.col("tow_id") == tow_id)["samples_key"][0])
         return read_parquet(self._store.samples_path(season, key))
 

@@ -225,3 +225,10 @@ def q_at(observed: Observed, speed_m_s: FloatArray | float) -> tuple[FloatArray,
     q = np.where(below, r / np.where(below, 1.0 - r, 1.0), np.nan)
     stretch = (speed_m_s / declared * (1.0 + q) / (1.0 + observed.column("q"))) ** 2
     return q, stretch * stretch * observed.column("q_unit_variance")
+
+
+def observe_trusted(
+    curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
+) -> Observed:
+    """What statistics look at: the tows that nothing is doubted about."""
+    return observe(of_trusted(curves, tows), tows, boats, of_trusted(run_points, tows))

@@ -149,18 +149,3 @@ class SeasonIndex(dy.Schema):
     losses = dy.List(
         dy.Struct(Faults.columns()), nullable=True, description="faults that did not cost the tow"
     )
-
-
-class FailedTows(dy.Schema):
-    """Tows on which Herijk itself failed."""
-
-    tow_id = column.tow_id()
-    told = column.text("kind and first words of the error")
-
-
-SEASON_TABLES: dict[str, type[dy.Schema]] = {
-    "season_tows": ListedTows,
-    "season_runs": ListedRuns,
-    "season_index": SeasonIndex,
-}
-"""Tables with a partition per season."""

@@ -16,7 +16,7 @@ PATIENCE_S = 600
 
 
 @contextmanager
-def page(*command, home=None):
+def page(*command, home=None, **environment):
     """Starts a command with `--port`; gives a function that asks the page that it serves."""
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
@@ -24,7 +24,8 @@ def page(*command, home=None):
     process = subprocess.Popen(
         [sys.executable, "-m", *command, "--port", port],
         cwd=ROOT,
-        env=os.environ | {"LC_ALL": "C", **({"DAGSTER_HOME": str(home)} if home else {})},
+        env=os.environ
+        | {"LC_ALL": "C", **environment, **({"DAGSTER_HOME": str(home)} if home else {})},
     )
 
     def ask(query, **variables):

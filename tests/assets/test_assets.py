@@ -1,10 +1,11 @@
 """Assets as Dagster sees them: what is stale, what its page can make, and what is mended."""
 
 import os
-import shutil
+import signal
 import subprocess
 import sys
-from contextlib import nullcontext
+import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import dagster as dg
@@ -12,151 +13,100 @@ import pytest
 from polars.testing import assert_frame_equal
 
 import assets.instance
-import assets.run
-import assets.tables
-import warehouse.derive.step
-from assets.resources import Setup
-from assets.run import QUIET_LOG, assets_of
-from pipeline.errors import MissingKnowledgeError
-from pipeline.tables.schemas import TABLES
+from assets.definitions import ASSETS, build_defs
 from tests.assets.page import page
-from tests.assets.test_rebuild import (
-    assert_same_tables,
-    samples_files,
-    spoil,
-)
-from tests.conftest import METHODS, SMALL, Workbench, in_one_process
-from warehouse.derive.graph import STEPS
-from warehouse.intake import seasons as intake
-from warehouse.store.methods import KnownMethods
+from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil
+from tests.conftest import METHODS, Workbench, in_one_process
+from warehouse.intake.seasons import INDEXED
+from warehouse.store.store import Store
 
 ROOT = Path(__file__).parents[2]
-PAGE = ("dagster_webserver", "--python-file")
+QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
+EVERY = sorted(key.to_user_string() for asset in ASSETS for key in asset.keys)
 
 
 @pytest.fixture
-def instance(monkeypatch, tmp_path):
+def instance(tmp_path):
     """Records of Dagster that last as long as the test."""
     (tmp_path / "records").mkdir()
     with dg.DagsterInstance.local_temp(str(tmp_path / "records")) as instance:
-        monkeypatch.setattr(Workbench, "records_in_memory", staticmethod(nullcontext))
-        monkeypatch.setattr(assets.instance, "instance_of", lambda _: nullcontext(instance))
         yield instance
 
 
-def materialise(bench, instance, *assets, season=None):
-    """What a person does from Dagster's page."""
-    setup = Setup(archive=str(bench.archive), data=str(bench.data), methods=list(METHODS))
-    instance.add_dynamic_partitions("season", list(map(str, SMALL.seasons)))
-    job = assets_of(setup).resolve_implicit_global_asset_job_def()
+def materialise(bench, instance, *names, retry=False):
+    """What a person does from Dagster's page, or by `dagster asset materialize --select`."""
+    location = build_defs(str(bench.archive), str(bench.data), list(METHODS))
     with in_one_process():
-        return job.execute_in_process(
+        return location.resolve_implicit_global_asset_job_def().execute_in_process(
             instance=instance,
-            asset_selection=[dg.AssetKey(name) for name in assets],
-            partition_key=None if season is None else str(season),
+            asset_selection=[dg.AssetKey(name) for name in names],
             run_config=QUIET_LOG,
+            raise_on_error=not retry,
         )
 
 
-STALENESS = """query ($seasons: [String!]!) {
-  whole: assetNodes { assetKey { path } isMaterializable isPartitioned staleStatus }
-  bySeason: assetNodes(assetKeys: [{path: "samples"}, {path: "blocks"}]) {
-    assetKey { path }
-    staleStatusByPartition(partitions: $seasons)
-  }
-}"""
-
-
-def stale_in_dagster(ask):
-    """Assets, or seasons of them, that Dagster's page calls stale."""
-    seasons = list(map(str, SMALL.seasons))
-    answer = ask(STALENESS, seasons=seasons)
-    said = {
-        (*node["assetKey"]["path"], None): node["staleStatus"]
-        for node in answer["whole"]
-        if node["isMaterializable"] and not node["isPartitioned"]
-    }
-    for node in answer["bySeason"]:
-        by_season = zip(seasons, node["staleStatusByPartition"], strict=True)
-        said |= {(*node["assetKey"]["path"], season): status for season, status in by_season}
-    assert len(said) > len(TABLES)
-    assert "MISSING" not in said.values()
-    return {of for of, status in said.items() if status == "STALE"}
-
-
-def stale_to_us(bench):
-    """The same by fingerprints."""
-    store = bench.store
-    known = [KnownMethods.of(store).get(name) for name in METHODS]
-    seasons = {("samples", str(s)) for s in intake.stale_seasons(store, bench.archive)}
-    return seasons | {
-        (name, None) for step in STEPS if step.stale(store, known) for name in step.outputs
-    }
-
-
-def other_race(bench):
-    (path, *_) = sorted((bench.archive / "wedstrijden").iterdir())
-    first, *rest = path.read_text("utf-8").splitlines()
-    path.write_text("\n".join([first, *rest[1:]]), "utf-8")
+STALENESS = "query { assetNodes { assetKey { path } isMaterializable staleStatus } }"
 
 
 @pytest.mark.slow
-def test_what_dagster_calls_stale_has_all_that_is_and_nothing_after_a_rebuild(
-    bench, instance, monkeypatch
-):
-    def new_code(_):
-        for module in (warehouse.derive.step, assets.tables):
-            monkeypatch.setattr(module, "code_hash", lambda *_: "other")
-        steps = [assets.tables.step_asset(step) for step in (*STEPS, assets.tables.SITE)]
-        kept = [a for a in assets.run.ASSETS if a not in assets.tables.STEP_ASSETS]
-        monkeypatch.setattr(assets.run, "ASSETS", [*kept, *steps])
+def test_after_a_run_dagster_calls_nothing_stale_and_a_change_what_follows(bench, instance):
+    def stale(ask):
+        nodes = ask(STALENESS)["assetNodes"]
+        said = {n["assetKey"]["path"][0]: n["staleStatus"] for n in nodes if n["isMaterializable"]}
+        assert said.keys() == set(EVERY)
+        assert "MISSING" not in said.values()
+        return {name for name, status in said.items() if status == "STALE"}
 
-    def agrees_after(change, ask):
-        change(bench)
-        materialise(bench, instance, *intake.INDEXED)
-        ours = stale_to_us(bench)
-        assert ours
-        assert ours <= stale_in_dagster(ask)
-        bench.rebuild(whole=True)
-        assert stale_in_dagster(ask) == set()
-        assert stale_to_us(bench) == set()
-
-    bench.store.database.unlink()
-    shutil.rmtree(bench.data / "lake")
-    bench.rebuild(whole=True)
-    with page(*PAGE, "assets/definitions.py", home=instance.root_directory) as ask:
-        assert stale_in_dagster(ask) == set()
-        agrees_after(lambda bench: spoil(samples_files(bench, 2009)[3]), ask)
-        agrees_after(other_race, ask)
-    with page(*PAGE, "tests/assets/other_code.py", home=instance.root_directory) as ask:
-        agrees_after(new_code, ask)
+    folders = {"HERIJK_ARCHIVE": str(bench.archive), "HERIJK_DATA": str(bench.data)}
+    assert materialise(bench, instance, *EVERY).success
+    command = ("dagster_webserver", "--python-file", "assets/definitions.py")
+    with page(*command, home=instance.root_directory, **folders) as ask:
+        assert stale(ask) == set()
+        spoil(samples_files(bench, 2009)[3])
+        assert materialise(bench, instance, *INDEXED).success
+        assert {"samples", "blocks", "curves", "register", "site"} <= stale(ask)
+        assert materialise(bench, instance, *EVERY).success
+        assert stale(ask) == set()
 
 
-@pytest.mark.more
-def test_a_season_is_made_from_dagsters_page_and_what_follows_too(bench, built, instance, tmp_path):
-    fresh = Workbench(bench.archive, tmp_path / "fresh")
-    materialise(fresh, instance, *intake.INDEXED)
-    assert materialise(fresh, instance, "samples", "blocks", season=2009).success
-    assert fresh.store.partitions("blocks") == ["2009"]
-    following = [name for step in STEPS[:3] for name in step.outputs]
-    assert materialise(fresh, instance, *following).success
-    of_2009 = built.store.read("tows").filter(season=2009)["tow_id"]
-    assert fresh.store.read("tows")["tow_id"].equals(of_2009)
+@pytest.mark.parametrize("name", ["type_lines", "curves", "register", "tows", "site", "report"])
+def test_an_asset_can_be_made_alone(name, bench, built, instance):
+    bench.store.table_path(name).unlink()
+    assert materialise(bench, instance, name).success
+    if name in built.tables():
+        assert_frame_equal(bench.store.read(name), built.store.read(name))
 
 
-def test_a_damaged_table_that_an_asset_reads_is_made_again(bench, built, instance):
+def test_a_damaged_table_is_made_again_by_a_second_run(bench, built, instance):
     path = bench.store.table_path("tows")
     content = path.read_bytes()
     path.write_bytes(content[: len(content) // 2])
-    bench.store.table_path("curves", METHODS[0]).unlink()
-    assert materialise(bench, instance, *STEPS[2].outputs).success
+    bench.store.table_path("register").unlink()
+    assert not materialise(bench, instance, "register", retry=True).success
+    assert not path.exists()
+    assert materialise(bench, instance, "tows", "register").success
     assert_frame_equal(bench.store.read("tows"), built.store.read("tows"))
-    assert bench.store.read("curves", METHODS[0]).equals(built.store.read("curves", METHODS[0]))
+    assert_frame_equal(bench.store.read("register"), built.store.read("register"))
+
+
+def test_a_run_on_schedule_that_fails_begins_once_again():
+    tags = build_defs("archive", "data", []).resolve_job_def("rebuild").tags
+    assert tags["dagster/max_retries"] == "1"
+    assert tags["dagster/retry_on_asset_or_op_failure"] == "true"
+
+
+def test_checks_of_the_last_rebuild_are_shown_on_the_assets(bench, instance):
+    result = materialise(bench, instance, "check_results", "quarantine")
+    shown = {one.check_name: one for one in result.get_asset_check_evaluations()}
+    stored = {row["check"]: row for row in bench.store.read("check_results").to_dicts()}
+    assert {"archive_without_faults", "every_listed_tow_accounted_for"} <= shown.keys()
+    for name in shown.keys() & stored.keys():
+        assert shown[name].passed == (stored[name]["number"] == 0)
 
 
 def test_records_are_kept_where_dagster_home_says(bench, tmp_path, monkeypatch):
     monkeypatch.setenv("DAGSTER_HOME", str(tmp_path / "home"))
-    with assets.instance.instance_of(bench.store) as instance:
+    with assets.instance.open_instance(bench.store) as instance:
         assert instance.root_directory == str(tmp_path / "home")
     assert (tmp_path / "home" / "dagster.yaml").exists()
     assert not (bench.data / "dagster").exists() or list((bench.data / "dagster").iterdir())
@@ -170,30 +120,57 @@ def test_a_server_works_on_its_own_folders_alone(bench, instance, tmp_path, monk
     ):
         monkeypatch.setenv(name, value)
     assert materialise(bench, instance, "era_shifts").success
-    with pytest.raises(dg.DagsterError) as refused:
+    with pytest.raises(dg.DagsterError, match="Error executing resource_fn"):
         materialise(Workbench(bench.archive, tmp_path / "other"), instance, "era_shifts")
-    assert isinstance(refused.value.__cause__, MissingKnowledgeError)
     assert not (tmp_path / "other").exists()
 
 
+@contextmanager
+def dask_cluster(folder):
+    """A scheduler and two workers, in another folder; gives its address and the workers."""
+    scheduler_file = folder / "scheduler.json"
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    here = ("--scheduler-file", str(scheduler_file))
+    commands = [
+        ("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"),
+        *2 * [("distributed.cli.dask_worker", "--nthreads", "1", "--no-nanny", "--no-dashboard")],
+    ]
+    processes = [
+        subprocess.Popen([sys.executable, "-m", *command, *here], cwd=folder, env=environment)
+        for command in commands
+    ]
+    try:
+        from distributed import Client  # noqa: PLC0415 - takes seconds to import
+
+        while not scheduler_file.exists():
+            time.sleep(0.1)
+        with Client(scheduler_file=str(scheduler_file)) as client:
+            client.wait_for_workers(2)
+            yield client.scheduler.address, processes[1:]
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+
+
 @pytest.mark.slow
-def test_two_workers_of_a_dask_cluster_make_the_same_tables(built, tmp_path):
+def test_dask_workers_read_an_archive_although_one_is_killed(built, tmp_path):
+    """The command names its folders relative to its own folder; the workers are in another."""
     bench = Workbench(built.archive, tmp_path / "data")
     bench.data.mkdir()
-    from distributed import LocalCluster  # noqa: PLC0415 - takes seconds to import
-
-    here = {"host": "127.0.0.1", "dashboard_address": None, "local_directory": tmp_path / "dask"}
-    with LocalCluster(n_workers=2, threads_per_worker=1, **here) as cluster:
-        (bench.data / "beheer.toml").write_text(f'dask = "{cluster.scheduler_address}"\n')
-        names = [part for name in METHODS for part in ("--method", name)]
-        done = subprocess.run(
-            [
-                *(sys.executable, "-m", "herijk", "rebuild", *names),
-                *("--archive", str(bench.archive), "--data", str(bench.data)),
-            ],
-            cwd=ROOT, env=os.environ | {"LC_ALL": "C"}, check=False, capture_output=True, text=True,
-        )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert_same_tables(
-        {n: f for n, f in bench.tables().items() if n != "warehouse_database"}, built.tables()
-    )
+    (tmp_path / "cluster").mkdir()
+    names = [part for name in METHODS for part in ("--method", name)]
+    with dask_cluster(tmp_path / "cluster") as (address, workers):
+        (bench.data / "beheer.toml").write_text(f'dask = "{address}"\n')
+        archive = os.path.relpath(bench.archive, tmp_path)
+        command = [sys.executable, "-m", "herijk", "rebuild", "--archive", archive, *names]
+        run = subprocess.Popen(command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)})
+        samples = bench.data / "lake" / "samples"
+        while run.poll() is None and not list(samples.rglob("[!.]*.parquet")):
+            time.sleep(0.05)
+        workers[0].send_signal(signal.SIGKILL)
+        assert run.wait(500) == 0
+    found = {name: frame for name, frame in bench.tables().items() if name != "about"}
+    expected = {name: frame for name, frame in built.tables().items() if name != "about"}
+    assert_same_tables(found, expected)
+    assert Store(bench.data).made_from("site") is not None

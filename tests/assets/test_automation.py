@@ -13,12 +13,13 @@ from typing import ClassVar
 import dagster as dg
 import pytest
 
-from assets.automation import archive_changed, rebuild_failed, send_mail
+from assets.automation import archive_changed, rebuild_failed, rebuild_succeeded, send_mail
 from assets.definitions import build_defs
+from assets.report import Done, read_report
 from assets.settings import Settings, read_settings
 from pipeline.errors import MissingKnowledgeError
 from tests.assets.test_rebuild import samples_files, spoil
-from tests.conftest import METHODS, directly, in_one_process
+from tests.conftest import EVERY, METHODS, STUDIES, in_one_process, without_page
 
 ROOT = Path(__file__).parents[2]
 
@@ -127,31 +128,46 @@ def test_mail_goes_by_the_mail_server_with_the_password(mailed, monkeypatch):
 @contextmanager
 def run_job(bench, settings):
     """The job as the schedule runs it: its result, and Dagster's records."""
-    location = build_defs(str(bench.archive), str(bench.data), settings)
-    with dg.DagsterInstance.ephemeral() as instance, directly(), in_one_process():
+    location = build_defs(str(bench.archive), str(bench.data), list(settings.methods))
+    made = [dg.AssetKey(name) for name in EVERY - {*STUDIES, "site"}]
+    with dg.DagsterInstance.ephemeral() as instance, without_page(), in_one_process():
         job = location.resolve_job_def("rebuild")
-        yield job.execute_in_process(instance=instance, raise_on_error=False), instance
+        result = job.execute_in_process(
+            instance=instance, raise_on_error=False, asset_selection=made
+        )
+        yield result, instance
+
+
+def tell_of_success(bench, settings, result, instance):
+    """What the sensor does after a run that ended well."""
+    context = dg.build_run_status_sensor_context(
+        "rebuild_succeeded", result.get_run_success_event(), instance, result.dagster_run
+    )
+    rebuild_succeeded(settings, bench.data, is_served=True)(context)
 
 
 def test_a_night_without_a_change_does_no_work_and_mails_nothing(bench, mailed):
     settings, taken = mailed
-    bench.rebuild()
     before = bench.lake_files(), bench.store.database.stat().st_mtime_ns
-    with run_job(bench, settings) as (result, _):
-        (output,) = [e for e in result.all_events if e.event_type_value == "STEP_OUTPUT"]
-    assert output.step_output_data.metadata["nothing_changed"].value is True
+    was = read_report(bench.store, Done())
+    with run_job(bench, settings) as (result, instance):
+        assert result.success
+        tell_of_success(bench, settings, result, instance)
+    report = read_report(bench.store, Done())
+    assert (report.outcome, report.changed_at) == ("unchanged", was.changed_at)
+    assert report.made_at > was.made_at
     assert (bench.lake_files(), bench.store.database.stat().st_mtime_ns) == before
     assert taken == []
 
 
-def test_a_night_with_news_mails_it(bench, mailed, monkeypatch):
+def test_a_night_with_news_mails_it(bench, mailed):
     settings, taken = mailed
-    monkeypatch.setattr("assets.resources.read_settings", lambda _: settings)
-    bench.rebuild()
     spoil(samples_files(bench, 2009)[3])
-    with run_job(bench, settings) as (result, _):
+    with run_job(bench, settings) as (result, instance):
         assert result.success
+        tell_of_success(bench, settings, result, instance)
     (mail,) = taken
+    assert "Laatste verandering" in mail
     assert "1 nieuw" in mail
     assert "GESIMULEERD" in mail
 
@@ -164,7 +180,10 @@ def test_a_night_that_fails_is_mailed_with_why(bench, mailed):
         context = dg.build_run_status_sensor_context(
             "rebuild_failed", failed, instance, result.dagster_run
         ).for_run_failure()
-        rebuild_failed(settings, is_served=True)(context)
+        rebuild_failed(settings, bench.data, is_served=True)(context)
+    report = read_report(bench.store, Done())
+    assert report.outcome == "failed"
+    assert "There is no archive" in report.reason
     (mail,) = taken
     assert f"There is no archive at {bench.archive}" in mail.replace("=\r\n", "")
 

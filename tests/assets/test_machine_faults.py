@@ -14,7 +14,7 @@ from unittest import mock
 
 import pytest
 
-from assets.instance import instance_of
+from assets.instance import open_instance
 from pipeline.errors import MissingKnowledgeError, UnavailableError
 from tests.assets.test_rebuild import (
     assert_same_tables,
@@ -130,7 +130,7 @@ def test_what_the_machine_lacks_is_said_and_the_next_rebuild_ends_equal(
             cwd=ROOT, capture_output=True, text=True, check=False, **settings,
         )  # fmt: skip
 
-    for table in ("season_index/2009", "blocks/2009", f"curves/{METHODS[0]}"):
+    for table in ("samples", "blocks", "curves"):
         (bench.data / "lake" / "tables" / f"{table}.parquet").unlink()
     with fault(bench, tmp_path) as settings:
         stopped = command(**settings)
@@ -185,13 +185,13 @@ def damaged(path, how):
 
 
 DAMAGED = {
-    "cut": ("season_tows/2009", "curves/rebased-2015", "tows"),
-    "empty": ("season_index/2014", "run_points/rebased-2015", "boats"),
-    "garbage": ("season_runs/2009", "curves/as-published", "tow_runs"),
-    "a byte": ("season_tows/2014", "blocks/2014", "season_index/2009", "quarantine"),
+    "cut": ("listed_tows", "curves", "tows"),
+    "empty": ("samples", "run_points", "boats"),
+    "garbage": ("listed_runs", "log_factors", "tow_runs"),
+    "a byte": ("read_tows", "blocks", "quarantine"),
 }
-"""Tables of a season, of a method and of the whole. Of one with a changed byte the end is sound, so
-it is met only where it is read: those are."""
+"""Tables of lists, of methods and of the whole. Of one with a changed byte the end is sound, so it
+is met only where it is read: those are."""
 
 
 @pytest.mark.slow
@@ -215,7 +215,7 @@ def test_damaged_tables_are_made_again_when_they_are_needed(bench, built):
 
 @pytest.mark.slow
 def test_a_damaged_database_is_made_again_by_the_next_run(bench, built):
-    statistics = bench.store.table_path("type_lines", METHODS[0])
+    statistics = bench.store.table_path("type_lines")
     made = statistics.stat().st_mtime_ns
     for how in DAMAGED:
         damaged(bench.store.database, how)
@@ -247,5 +247,5 @@ def test_settings_of_dagster_that_cannot_be_understood_are_one_sentence(tmp_path
     store.dagster_home.mkdir(parents=True)
     (store.dagster_home / "dagster.yaml").write_text(text)
     expected = pytest.raises(MissingKnowledgeError, match=r"dagster\.yaml cannot be understood")
-    with expected, instance_of(store):
+    with expected, open_instance(store):
         pass

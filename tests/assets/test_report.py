@@ -98,7 +98,7 @@ def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, mo
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr("assets.rebuild.write_report", killed)
+        patched.setattr("assets.database.write_report", killed)
         with pytest.raises(KeyboardInterrupt):
             bench.rebuild()
     report = bench.rebuild()

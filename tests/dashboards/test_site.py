@@ -31,7 +31,7 @@ from tests.conftest import METHODS
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 from tests.texts import said
-from warehouse.derive.inputs import LAKE_ONLY
+from warehouse.derive.database import LAKE_ONLY
 from warehouse.queries.answers import answers, line_changes, newest_edition
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
@@ -231,7 +231,7 @@ def test_a_failing_build_leaves_nothing_half_made_and_the_old_site(
     store, site, tmp_path, monkeypatch
 ):
     before = hashes(site)
-    monkeypatch.setattr("dashboards.site.render.boat_pages", lambda *_: 1 / 0)
+    monkeypatch.setattr("dashboards.site.render.shared_pages", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build_pages(store, tmp_path / "site")
     with pytest.raises(ZeroDivisionError):

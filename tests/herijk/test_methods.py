@@ -2,9 +2,9 @@
 
 import json
 
-from assets.resources import Setup
+from assets.lake import Folders
 from pipeline.method.definition import Steps, shipped_methods
-from tests.conftest import METHODS, directly
+from tests.conftest import METHODS, quickly
 from warehouse.store.methods import methods_to_apply
 from warehouse.store.store import Store
 
@@ -46,9 +46,9 @@ def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
     file = tmp_path / "ours.toml"
     file.write_text('name = "ours"\ntitle = "Onze"\nextends = "rebased-2015"\n', encoding="utf-8")
     folders = ("--archive", bench.archive, "--data", bench.data)
-    with directly():
+    with quickly(bench.store):
         printed = herijk("rebuild", *folders, "--method", file)[1]
-    assert "Seasons read: none. Methods applied: ours." in printed
+    assert "Seasons read: none. Methods applied: as-published, rebased-2015, ours." in printed
     assert "Method ours: new" in printed
     assert set(bench.table("methods")["method"]) == {*METHODS, "ours"}
     assert set(bench.table("register")["method"]) == {*METHODS, "ours"}
@@ -60,7 +60,7 @@ def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
 def test_a_method_goes_by_a_list_without_it_and_the_report_says_so(herijk, bench):
     folders = ("--archive", bench.archive, "--data", bench.data)
     (bench.data / "beheer.toml").write_text(f'methods = ["{METHODS[1]}"]', encoding="utf-8")
-    with directly():
+    with quickly(bench.store):
         printed = herijk("rebuild", *folders)[1]
         assert f"Method {METHODS[0]}: gone" in printed
         assert set(bench.table("register")["method"]) == {METHODS[1]}
@@ -73,8 +73,8 @@ def test_without_a_list_all_that_ship_are_applied_and_those_that_are_there(tmp_p
     assert methods_to_apply(Store(tmp_path), (), ["rebased"]) == ["rebased"]
     assert methods_to_apply(built.store, (), ["rebased"]) == ["as-published", "rebased", METHODS[1]]
     assert methods_to_apply(built.store, ("rebased",)) == ["rebased"]
-    setup = Setup(archive="", data=str(built.data), methods=[])
-    assert [method.name for method in setup.chosen_methods] == list(shipped_methods())
+    folders = Folders(archive="", data=str(built.data))
+    assert [method.name for method in folders.get_methods()] == list(shipped_methods())
 
 
 def test_editions_and_methods_are_compared_with_each_other(herijk, published):

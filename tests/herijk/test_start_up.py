@@ -10,18 +10,21 @@ READING = "warehouse.intake"
 HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy", "sqlalchemy"}
 WEB = {"starlette", "uvicorn"}
 HEAVY |= {READING} | WEB
+DECLARED = {"dataframely", "sqlalchemy"}
+"""What declares and checks tables; the second comes with the first."""
+
 NEEDED = {
     "herijk.cli.main": set(),
     "herijk.cli.render": set(),
     "herijk.cli.registers_text": {"duckdb", "numpy", "polars"},
-    "herijk.cli.audit_text": HEAVY - WEB - {"altair", "dagster", "sqlalchemy"},
+    "herijk.cli.audit_text": HEAVY - WEB - {"altair", "dagster"},
     "pipeline.method.definition": set(),
     "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
-    "warehouse.queries.audit": HEAVY - WEB - {"altair", "dagster", "sqlalchemy", READING},
-    "warehouse.editions.compare": {"dataframely", "numpy", "polars", "scipy"},
+    "warehouse.queries.audit": HEAVY - WEB - {"altair", "dagster", READING},
+    "warehouse.editions.compare": DECLARED | {"numpy", "polars", "scipy"},
     # Columns of later, which an old edition lacks, are read from their declaration.
-    "warehouse.editions.lineage": {"dataframely", "numpy", "polars"},
-    "assets.rebuild": HEAVY - WEB - {"altair", "dagster", "sqlalchemy"},
+    "warehouse.editions.lineage": DECLARED | {"numpy", "polars"},
+    "assets.rebuild": HEAVY - WEB - {"altair", "dagster"},
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}
 

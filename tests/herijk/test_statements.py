@@ -13,7 +13,7 @@ from dashboards.site.pages import shared_pages
 from dashboards.site.render import Edition
 from dashboards.speech import Speech
 from dashboards.statements import Change, Number, Statement
-from dashboards.statements.rebuild import headlines, judged, mail
+from dashboards.statements.rebuild import LastRun, headlines, judged, mail
 from tests.conftest import METHODS
 from warehouse.queries.answers import line_changes
 from warehouse.queries.change_report import ChangeReport
@@ -80,10 +80,11 @@ def surfaces(built, herijk, papers):
         boat_type = most_of(views.table("compared_tows"), "boat_type")
         changed = line_changes(views).filter(change="changed").head(3).to_dicts()
     news = ChangeReport(
-        first=False, tows=[{"what": "new"}], seasons_gone=[], methods=[], set_aside=[],
+        first=False, tows=[{"what": "new"}], seasons_gone=[], editions=[], methods=[], set_aside=[],
         factors=[{}], lines=changed,
         judged={"method": DRAFT, "accepted": 1, "flagged": 1, "rejected": 0},
     )  # fmt: skip
+    run = LastRun("2026-11-20T03:00:00+01:00", "changed", "", "2026-11-20T03:00:00+01:00")
     commands = {
         "audit-boat": ("audit", line["fsn_no"], "--edition", DRAFT),
         "audit-type": ("audit", boat_type),
@@ -115,7 +116,7 @@ def surfaces(built, herijk, papers):
             for form in ((), ("--json",)):
                 text = herijk(*command, *form, "--data", built.store.root)[1]
                 texts["".join((name, *form))] = text
-        texts["mail"] = "\n".join(mail(news, (), simulated=True))
+        texts["mail"] = "\n".join(mail(news, (), simulated=True, run=run))
         texts["rebuild"] = "\n".join(
             one(Speech("en")) for one in [*headlines(news, ()), judged(news)]
         )

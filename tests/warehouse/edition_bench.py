@@ -12,11 +12,9 @@ import polars as pl
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.definition import Method, shipped_method
-from warehouse.derive.graph import ARCHIVE, METHOD
-from warehouse.derive.inputs import Scope
+from tests.tables import make_tables
 from warehouse.editions.compare import compare
 from warehouse.editions.publish import Terms, publish
-from warehouse.intake.seasons import bring_in
 from warehouse.store.editions import read_edition
 from warehouse.store.store import Store
 
@@ -56,12 +54,8 @@ class EditionBench:
         return Store(self.data)
 
     def rebuild(self, methods: tuple[Method, ...] = tuple(map(shipped_method, METHODS))) -> None:
-        """Everything that a rebuild does up to the curves."""
-        store = self.store
-        bring_in(store, self.archive)
-        ARCHIVE.make(Scope(store, (), today=DAY))
-        for method in methods:
-            METHOD.make(Scope(store, [method]))
+        """Everything that a rebuild does up to the registers."""
+        make_tables(self.store, self.archive, methods, DAY)
 
     def publish(
         self,
@@ -79,7 +73,7 @@ class EditionBench:
 
     def change_samples(self, tow_id: str, change: Callable[[str], str]) -> str:
         """Changes the text of a tow's samples (plain CSV); gives their path."""
-        listed = self.store.read_all("season_tows").filter(tow_id=tow_id)
+        listed = self.store.read("listed_tows").filter(tow_id=tow_id)
         path: str = listed["samples_path"].item()
         file = self.archive / path
         file.write_bytes(change(file.read_bytes().decode("utf-8")).encode("utf-8"))

@@ -12,8 +12,7 @@ from pipeline.tables.views import VIEWS
 from pipeline.uncertainty.ensemble import MEMBERS
 from tests.assets.test_machine_faults import mounted
 from tests.conftest import METHODS, Workbench
-from warehouse.derive.database import build_database
-from warehouse.derive.inputs import LAKE_ONLY
+from warehouse.derive.database import LAKE_ONLY, build_database
 
 
 def test_no_number_of_a_table_is_none(built: Workbench):

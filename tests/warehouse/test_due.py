@@ -39,7 +39,7 @@ def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
         'reden = "scheef"\nwie = "SKC"\ndatum = 2014-05-01\n',
         encoding="utf-8",
     )
-    curves = bench.store.table_path("curves", METHOD)
+    curves = bench.store.table_path("curves")
     made = curves.stat().st_mtime_ns
     assert bench.rebuild().done.database
     assert curves.stat().st_mtime_ns == made  # of tows: neither concerns them

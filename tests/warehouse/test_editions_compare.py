@@ -14,9 +14,9 @@ from pipeline.method.definition import parse_method, shipped_method
 from pipeline.register.replay import RaceRules
 from pipeline.tables.keys import LINE
 from tests.warehouse.edition_bench import diff, terms
+from warehouse.derive.archive_tables import read_archive
 from warehouse.editions.compare import report, report_with_races
 from warehouse.editions.publish import publish_printed
-from warehouse.intake import seasons as intake
 from warehouse.store.decisions import FILE_NAME
 from warehouse.store.editions import read_edition
 
@@ -64,8 +64,8 @@ def new_code(monkeypatch):
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
-    monkeypatch.setattr("warehouse.derive.step.code_hash", lambda *_: "other")
-    monkeypatch.setattr("warehouse.editions.publish.code_version", lambda: "0.2.0+other")
+    for user in ("derive.registers", "editions.publish"):
+        monkeypatch.setattr(f"warehouse.{user}.code_version", lambda: "0.2.0+other")
 
 
 def test_between_methods_only_steps_are_causes_and_they_multiply(published):
@@ -177,7 +177,7 @@ def test_races_are_replayed_under_both(bench_of_editions):
     head = "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]"
     folder = empty_races(bench)
     (folder / "proefrace_2014.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
-    intake.index(bench.store, bench.archive)
+    read_archive(bench.store, bench.archive)
     replayed = report_with_races(bench.store, *both, RaceRules())
     assert len(replayed.races) == 6
     assert None not in [result["old_power_w"] for result in replayed.races]

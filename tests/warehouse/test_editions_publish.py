@@ -211,7 +211,7 @@ def test_a_name_that_cannot_be_one_is_refused(published, name):
 def test_tables_of_another_method_or_code_are_not_published(published, monkeypatch):
     with pytest.raises(MissingKnowledgeError, match="herijk rebuild"):
         published.publish("x", "rebased-2015")
-    monkeypatch.setattr("warehouse.derive.step.code_hash", lambda *_: "other")
+    monkeypatch.setattr("warehouse.editions.publish.code_version", lambda *_: "other")
     with pytest.raises(MissingKnowledgeError, match="not those of the archive and code of today"):
         published.publish("x", "rebased")
 

@@ -12,9 +12,8 @@ import warehouse.editions.verify
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import shipped_method
 from pipeline.tables.keys import LINE
-from tests.warehouse.edition_bench import terms
-from warehouse.derive.graph import METHOD
-from warehouse.derive.inputs import Scope
+from tests.tables import compute_tables
+from tests.warehouse.edition_bench import DAY, terms
 from warehouse.editions.lineage import lineage
 from warehouse.editions.publish import publish_printed
 from warehouse.editions.verify import chain_head, differences, verify
@@ -129,7 +128,9 @@ def test_editions_of_other_code_come_out_equal_where_their_numbers_do(
 ):
     bench_of_editions.publish("2014-1", "as-published")
     with monkeypatch.context() as then:
-        then.setattr("warehouse.editions.publish.code_version", lambda: "0.9.0+other")
+        for user in ("derive.registers", "editions.publish"):
+            then.setattr(f"warehouse.{user}.code_version", lambda: "0.9.0+other")
+        bench_of_editions.rebuild()
         bench_of_editions.publish("2014-2", "as-published")
     assert verify(bench_of_editions.store, afresh=False).findings == []
 
@@ -318,13 +319,13 @@ def test_forged_inputs_of_an_edition_are_named(published_copy):
 def test_an_edition_of_other_blocks_than_the_samples_give_comes_out_otherwise(bench_of_editions):
     store, tow = bench_of_editions.store, bench_of_editions.tow(2014)
     powers = {"force": 1, "log1_cw": 1, "log1_cw2": 2}
-    blocks = store.read("blocks", "2014")
+    blocks = store.read("blocks")
     forged = blocks.with_columns(
         pl.when(tow_id=tow["tow_id"]).then(pl.col(n) * 1.06**power).otherwise(n).alias(n)
         for n, power in powers.items()
     )
-    store.write("blocks", forged, store.made_from("blocks", "2014") or "", "2014")
-    METHOD.make(Scope(store, [shipped_method("as-published")]))
+    store.write("blocks", forged)
+    compute_tables(store, [shipped_method("as-published")], DAY)
     bench_of_editions.publish("2014-1")
     findings, wrong = found(bench_of_editions, True, kind="differs")
     assert wrong

@@ -12,11 +12,10 @@ import polars as pl
 import pytest
 
 from pipeline.method.definition import shipped_method
+from tests.tables import compute_tables
 from tests.warehouse.edition_bench import SMALL, EditionBench
+from warehouse.derive.archive_tables import read_archive
 from warehouse.derive.database import build_database
-from warehouse.derive.graph import ARCHIVE, METHOD
-from warehouse.derive.inputs import Scope
-from warehouse.intake.seasons import bring_in
 
 ROWS = 50 * SMALL.rate_hz
 DAYS = [dt.date(2026, 11, day) for day in (20, 21, 22)]
@@ -44,8 +43,7 @@ def spoil(bench: EditionBench, tow: str, change: Callable[[Lines], Lines]) -> st
 
 def read_again(bench: EditionBench, day: dt.date) -> pl.DataFrame:
     """Brings the archive into the lake as a rebuild of that day does; gives what is set aside."""
-    bring_in(bench.store, bench.archive)
-    ARCHIVE.make(Scope(bench.store, (), today=day))
+    read_archive(bench.store, bench.archive, day)
     return bench.store.read("quarantine")
 
 
@@ -67,7 +65,7 @@ def test_the_quarantine_says_what_each_fault_costs_and_tables_do_too(bench_of_ed
         ],
         key=str,
     )
-    METHOD.make(Scope(bench.store, [shipped_method("as-published")]))
+    compute_tables(bench.store, [shipped_method("as-published")], DAYS[0])
     points = bench.store.read("run_points", "as-published")
     lost_s = found.filter(tow_id="2009-002")["lost_s"].item()
     assert points.filter(tow_id="2009-002")["lost_s"].max() == pytest.approx(lost_s)

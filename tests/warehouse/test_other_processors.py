@@ -26,16 +26,13 @@ WORLD = WorldSettings(seasons=(2009, 2014, 2017), tows_per_season=10, rate_hz=10
 EVERYTHING = """
 import dataclasses, json, shutil, sys
 from pathlib import Path
+from tests.conftest import quickly
 from tests.warehouse.edition_bench import METHODS, EditionBench
-from pipeline.method.definition import shipped_method
-from warehouse.derive.graph import STEPS
 from warehouse.editions.verify import verify
 bench = EditionBench(Path(sys.argv[1]), Path(sys.argv[2]))
-methods = [shipped_method(name) for name in METHODS]
-bench.rebuild(methods)
-for step in STEPS:
-    for scope in step.stale(bench.store, methods):
-        step.make(scope)
+with quickly(bench.store, left_out=["site"]):
+    import assets.rebuild
+    assets.rebuild.rebuild(bench.archive, bench.data, METHODS)
 """
 PUBLISH = """
 bench.publish("2014-1", "as-published")

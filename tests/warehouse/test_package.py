@@ -7,15 +7,13 @@ import polars as pl
 import pytest
 
 from pipeline.tables.schemas import ABOUT, TABLES
-from tests.conftest import METHODS, Workbench
-from warehouse.derive.inputs import LAKE_ONLY, PER_METHOD
+from tests.conftest import Workbench
+from warehouse.derive.database import LAKE_ONLY
 from warehouse.store.files import file_sha256
 from warehouse.store.package import package_is_whole, write_package
 from warehouse.store.store import write_parquet
 
-ONCE = {*TABLES} - {*PER_METHOD}
-EACH = {*PER_METHOD} - {*LAKE_ONLY}
-NAMES = sorted([*ONCE, *(f"{name}.{method}" for name in EACH for method in METHODS)])
+NAMES = sorted({*TABLES} - {*LAKE_ONLY})
 MEASURED = {"simulated": "false", "code_version": "1"}
 OWNED = {"publisher": "The federation", "licence": "https://example.org/licence"}
 
@@ -35,7 +33,7 @@ def test_the_folder_is_a_data_package(folder: Path):
 
     package = frictionless.Package(str(folder / "datapackage.json"))
     misread = frictionless.Checklist(skip_errors=["type-error", "constraint-error"])
-    for name in ("boats", f"curves.{METHODS[0]}", "register"):
+    for name in ("boats", "curves", "register"):
         report = package.get_resource(name).validate(misread)
         assert report.valid, report.flatten(["type", "message"])
     assert sorted(resource.name for resource in package.resources) == NAMES

@@ -33,7 +33,7 @@ class Archive(EditionBench):
     """An archive, and what is doubted in it."""
 
     def season(self, season: int) -> list[str]:
-        listed = self.store.read_all("season_tows").filter(season=season)
+        listed = self.store.read("listed_tows").filter(season=season)
         tows: list[str] = listed["tow_id"].to_list()
         return tows
 

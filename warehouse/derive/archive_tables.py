@@ -1,21 +1,26 @@
 """The tables about the archive: boats, tows with their runs, and everything that is set aside."""
 
 import datetime as dt
+from pathlib import Path
 from typing import Final
 
+import duckdb
 import polars as pl
 
-from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.errors import MissingKnowledgeError, NoTowsYetError
+from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
+from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from pipeline.messages import say
 from pipeline.recompute.facts import with_boat_types
 from pipeline.tables.lake import Faults
-from warehouse.archive.faults import OF_A_HEADER, Fault, fault_frame
+from pipeline.tables.schemas import TABLES, conform
+from warehouse.archive.faults import OF_A_HEADER, fault_frame
 from warehouse.archive.list_rules import outside_run
-from warehouse.derive.inputs import Blocks
 from warehouse.derive.plausible import gross_faults, judge, with_doubts
 from warehouse.derive.same_samples import CONTENT, same_samples
-from warehouse.store.unforeseen import UNFORESEEN, sentence
+from warehouse.intake import lake
+from warehouse.intake import seasons as intake
+from warehouse.store.database import open_database
+from warehouse.store.store import Store
 
 SAMPLES_MISSING: Final = "samples_missing"
 """Reason code of a listed tow whose file of samples is not there."""
@@ -27,9 +32,8 @@ def archive_tables(
     listed_windows: pl.DataFrame,
     season_tows: pl.DataFrame,
     season_runs: pl.DataFrame,
-    season_index: pl.DataFrame,
-    blocks: Blocks,
-    failed_tows: pl.DataFrame,
+    index: pl.DataFrame,
+    blocks: pl.DataFrame,
     quarantine_before: pl.DataFrame,
     has_earlier_tows: bool,
     today: dt.date,
@@ -42,9 +46,8 @@ def archive_tables(
         MissingKnowledgeError: no tow is sound for another reason, or where an earlier rebuild had
             some. A disk that is not mounted must not empty the register.
     """
-    index = _with_failed(season_index, season_tows, failed_tows)
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
-    contents = blocks.columns("tow_id", "run", "second", *CONTENT)
+    contents = blocks.select("tow_id", "run", "second", *CONTENT)
     contents = contents.join(sound, on="tow_id", how="semi", maintain_order="left")
     present = contents.group_by("tow_id", "run", maintain_order=True).agg(
         seconds=pl.col("second").max() + 1
@@ -52,7 +55,7 @@ def archive_tables(
     listed = _with_what_was_read(season_tows.join(sound, on="tow_id", how="semi"), index)
     runs_read = season_runs.join(present, on=["tow_id", "run"], how="semi")
     tows, contradicted = judged_tows(
-        with_boat_types(listed, listed_boats), blocks.of_runs(runs_read), contents
+        with_boat_types(listed, listed_boats), stack_blocks(blocks, runs_read), contents
     )
     sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
     windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
@@ -69,7 +72,7 @@ def archive_tables(
         ).with_columns(pl.col("runs_set_aside").fill_null(0)),
         "tow_runs": _with_lost_seconds(runs, losses),
         "hand_windows": windows.join(beyond, on=["path", "line"], how="anti"),
-        "quarantine": _dated(set_aside, quarantine_before, today),
+        "quarantine": add_first_seen(set_aside, quarantine_before, today),
     }
     if tables["tows"].is_empty():
         reason = _explain_no_tows(tables["quarantine"])
@@ -79,14 +82,56 @@ def archive_tables(
     return tables
 
 
-def _with_failed(index: pl.DataFrame, listed: pl.DataFrame, failed: pl.DataFrame) -> pl.DataFrame:
-    """The index with the fault of the tows that make Herijk itself fail."""
-    mine = failed.join(listed, on="tow_id", maintain_order="left")
-    told = mine.select("samples_path", "tow_id", "told").iter_rows()
-    faults = [Fault(path, tow, None, UNFORESEEN, sentence(tow, why)) for path, tow, why in told]
-    of_today = fault_frame(faults)
-    others = index.join(of_today, on="tow_id", how="anti", maintain_order="left")
-    return pl.concat([others, of_today], how="diagonal")
+def read_archive(store: Store, root: Path, today: dt.date | None = None) -> None:
+    """Make the tables about an archive in this process, without Dagster.
+
+    Used by who looks at an archive beside a rebuild, such as a first assessment. All tows that can
+    be read count as sound: whether they can be computed is not tried.
+
+    Args:
+        store: the data folder to write them in.
+        root: the archive.
+        today: day that is noted where a fault is seen for the first time; that of the clock if
+            left out.
+    """
+    tables = intake.index(store, root)
+    tows = tables["listed_tows"].sort("season", "tow_id")
+    runs = tables["listed_runs"]
+    seasons = tows.partition_by("season", maintain_order=True)
+    samples = pl.concat([intake.read_tows(store, root, runs, own) for own in seasons])
+    lake.keep_only(store, samples)
+    blocks = lake.all_blocks(store, samples)
+    made = archive_tables(
+        list_faults=tables["list_faults"],
+        listed_boats=tables["listed_boats"],
+        listed_windows=tables["listed_windows"],
+        season_tows=tows,
+        season_runs=runs.sort("tow_id", "run"),
+        index=samples.drop("season"),
+        blocks=blocks,
+        quarantine_before=read_earlier(store, "quarantine"),
+        has_earlier_tows=False,
+        today=today or dt.date.today(),
+    )
+    tables |= {"samples": samples, "blocks": blocks}
+    for name, frame in tables.items():
+        store.write(name, frame)
+    for name, frame in made.items():
+        store.write(name, conform(name, frame))
+
+
+def read_earlier(store: Store, table: str) -> pl.DataFrame:
+    """Return a table as the last rebuild left it, from the database where the lake lost it.
+
+    Empty where there was no rebuild.
+    """
+    if store.made_from(table) is not None:
+        return store.read(table)
+    try:
+        with open_database(store.database) as db:
+            return pl.DataFrame(db.table(table).pl())
+    except (HerijkError, duckdb.Error):  # not made yet, or damaged too
+        return TABLES[table].create_empty()
 
 
 def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
@@ -186,7 +231,7 @@ def _explain_no_tows(set_aside: pl.DataFrame) -> str:
     )
 
 
-def _dated(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.DataFrame:
+def add_first_seen(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.DataFrame:
     """Faults with what each costs and the day on which it was first seen, today for new ones.
 
     A fault that does not say what it costs has cost a tow, a row of a list or a file.

@@ -12,7 +12,7 @@ import duckdb
 import polars as pl
 
 from pipeline.tables.declare import dy
-from pipeline.tables.schemas import ABOUT, STUDY, TABLES, ordered
+from pipeline.tables.schemas import ABOUT, STUDY, TABLES
 from pipeline.tables.views import VIEWS
 from warehouse.store.code import code_version
 from warehouse.store.files import file_sha256, written_beside
@@ -21,6 +21,11 @@ from warehouse.store.store import Store, fingerprint
 
 DATABASE_TABLE: Final = "warehouse_database"
 """The tables in the file, and its hash."""
+
+LAKE_ONLY: Final = ("ensemble",)
+"""Tables that are not in the database: 200 rows per tow would make up most of it."""
+
+IN_DATABASE: Final = tuple(name for name in TABLES if name not in LAKE_ONLY)
 
 STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.1 reads the file; the newest form would shut out programs of last year."""
@@ -47,16 +52,21 @@ MEANINGS: Final = {
 """What the file says of its tables and their columns."""
 
 
+def describe_contents() -> str:
+    """Return all that the file says of its tables, columns and views, as one text."""
+    return str((MEANINGS, VIEWS))
+
+
 def warehouse_database(
-    all_tables: dict[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
+    tables: dict[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
 ) -> pl.DataFrame:
     """All tables in one DuckDB file, swapped in whole; then those of the lake are described."""
-    tables = {name: ordered(name, all_tables.pop(name)) for name in tuple(all_tables)}
     tables["about"] = _about(about_archive)
     tables["contents"] = _contents(tables)
     build_database(store.database, tables)
     about = dict(tables["about"].rows())
-    write_package(store.table_folder, _files(store, tables), about, _sources(tables))
+    files = {store.table_path(name): TABLES[name] for name in TABLES.keys() & tables.keys()}
+    write_package(store.table_folder, files, about, _sources(tables))
     sha256 = pl.lit(file_sha256(store.database)).alias("sha256")
     return tables["contents"].select("table", "rows", sha256)
 
@@ -122,14 +132,6 @@ def _quoted(text: str) -> str:
     return "'" + text.replace("'", "''") + "'"
 
 
-def _files(store: Store, tables: Mapping[str, pl.DataFrame]) -> dict[Path, type[dy.Schema]]:
-    """The files of the lake with the tables; of those with a file per method, the applied ones."""
-    known = TABLES.keys() & tables.keys()
-    methods = [None, *tables["methods"]["method"]]
-    paths = {store.table_path(name, method): TABLES[name] for name in known for method in methods}
-    return {path: schema for path, schema in paths.items() if path.exists()}
-
-
 def _about(about_archive: pl.DataFrame) -> pl.DataFrame:
     archive = about_archive.row(0, named=True)
     about = {
@@ -163,7 +165,7 @@ def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 
 def is_whole(store: Store) -> bool:
-    """Whether the files are there as they were made; they may have been damaged since."""
+    """Return whether database and data package are there, byte for byte as they were made."""
     made = store.read(DATABASE_TABLE)["sha256"][0]
     left = left_wal(store.database).exists()  # a reader would replay it
     whole = store.database.exists() and not left and made == file_sha256(store.database)

@@ -11,20 +11,22 @@ from pydantic import TypeAdapter
 
 from pipeline.method.definition import Method
 from pipeline.recompute.facts import samples_files
-from pipeline.register import due
+from pipeline.recompute.results import Recomputed
+from pipeline.register import due, replay
 from pipeline.register.changes import register_changes, steps_of_lines
 from pipeline.register.register import (
     CURVE_COLUMNS,
     LINE,
+    as_ruled,
     draft_name,
     draft_register,
     lines_of_all_days,
     reference_day,
 )
-from pipeline.tables.editions import Editions
 from pipeline.tables.keys import SIZES
-from pipeline.tables.register import RegisterChanges
+from pipeline.tables.register import RaceChanges, RegisterChanges
 from pipeline.tables.schemas import TABLES, conform
+from pipeline.uncertainty.ensemble import tow_ensemble
 from warehouse.store import decisions as decided
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
@@ -34,9 +36,10 @@ from warehouse.store.editions import (
     edition_names,
     edition_path,
     read_edition,
-    read_manifest,
 )
 from warehouse.store.store import Store
+
+EDITIONS = ("from_edition", "to_edition")
 
 
 def register_tables(
@@ -69,15 +72,37 @@ def register_tables(
         "register_history": pl.concat(histories),
         "register_changes": pl.concat(changes) if changes else RegisterChanges.create_empty(),
         "lineage": lineage_rows(register, tows, hashes, code_version()),
-        "editions": Editions.create_empty(),
     }
     with_editions = {
         name: pl.concat([conform(name, frame), published[name]]) for name, frame in made.items()
     }
-    return with_editions | {
-        "methods": _methods(methods),
-        "due_list": due_of_lines(lines, boats, listed_races, as_of),
+    return with_editions | {"due_list": due_of_lines(lines, boats, listed_races, as_of)}
+
+
+def race_changes(
+    register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
+) -> pl.DataFrame:
+    """All races in the archive under both editions of every pair that is compared."""
+    pairs = register_changes.select(EDITIONS).unique().sort(EDITIONS)
+    replayed = {
+        edition: replay.replay(
+            register_history.filter(edition=edition), listed_races, replay.RaceRules()
+        )
+        for edition in pairs.unpivot()["value"].unique()
     }
+    frames = [
+        replay.race_changes(replayed[old], replayed[new]).with_columns(
+            from_edition=pl.lit(old), to_edition=pl.lit(new)
+        )
+        for old, new in pairs.iter_rows()
+    ]
+    return pl.concat(frames) if frames else RaceChanges.create_empty()
+
+
+def members_of(method: Method, made: Recomputed) -> pl.DataFrame:
+    """Equally likely numbers of every tow: rows of the table `ensemble`."""
+    ruled = as_ruled(made.curves, method.validity)
+    return tow_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
 
 
 def due_of_lines(
@@ -121,19 +146,7 @@ def _history(
     return history_rows(lines, draft_name(method.name), method.name)
 
 
-def _methods(methods: Sequence[Method]) -> pl.DataFrame:
-    facts = ("title", "title_en", "interval", "content_hash", "definition")
-    return pl.DataFrame(
-        [{"method": m.name} | {name: getattr(m, name) for name in facts} for m in methods]
-    )
-
-
 # Published editions
-
-
-def published_made_from(store: Store) -> dict[str, str]:
-    """The seals of all editions: what the rows of `published_tables` are made from."""
-    return {name: read_manifest(store.editions / name).seal for name in edition_names(store)}
 
 
 def published_tables(store: Store) -> dict[str, pl.DataFrame]:

@@ -5,15 +5,14 @@ from typing import Final
 
 import polars as pl
 
+from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.method.definition import Method
-from pipeline.recompute.facts import with_hand_windows
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register.register import STUDIED_METHOD
 from pipeline.studies.ladder import ladder
 from pipeline.studies.options import option_curves, option_effects, tick_effects
 from pipeline.tables.declare import dy
 from pipeline.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
-from warehouse.derive.inputs import Blocks
 
 FIRST_PUBLISHED: Final = "as-published-2014"
 """Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
@@ -32,14 +31,11 @@ def study_tables(
     method: Method,
     first_method: Method,
     tows: pl.DataFrame,
-    tow_runs: pl.DataFrame,
-    hand_windows: pl.DataFrame,
-    blocks: Blocks,
+    runs: RunBlocks,
     tow_instruments: pl.DataFrame,
     run_cache: RunCache,
 ) -> dict[str, pl.DataFrame]:
     """The ladder from the first method to this one, and the studies of its options."""
-    runs = blocks.of_runs(with_hand_windows(tow_runs, hand_windows))
     known, own = (tows, runs), pl.lit(method.name).alias("method")
     links = tow_instruments.filter(method=method.name)
     effects, ticked, ladders = [], [], []

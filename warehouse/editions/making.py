@@ -31,8 +31,7 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import Register
 from pipeline.tables.schemas import conform
-from warehouse.derive.graph import members_of
-from warehouse.derive.registers import decisions_of
+from warehouse.derive.registers import decisions_of, members_of
 from warehouse.editions import notes, sheets
 from warehouse.editions.compare import compare
 from warehouse.editions.inputs import INPUTS_HASH, JUDGED, tables_of_today

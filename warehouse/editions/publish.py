@@ -22,8 +22,6 @@ from pipeline.register.register import (
     unmeasured_tows,
 )
 from pipeline.tables.row import Row
-from warehouse.derive.graph import METHOD as METHOD_STEP
-from warehouse.derive.inputs import Scope
 from warehouse.editions.inputs import REGISTER, input_files, listed_inputs
 from warehouse.editions.making import (
     as_printed,
@@ -84,7 +82,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
         MissingKnowledgeError: the tables are not up to date, a name or decision cannot be used.
     """
     _check_terms(store, terms)
-    if store.made_from("tows") is None or METHOD_STEP.is_stale(Scope(store, [method], method)):
+    if not _is_of_today(store, method):
         raise MissingKnowledgeError(
             "the tables of method {} are not those of the archive and code of today; "
             "run: herijk rebuild --archive DIR --data {} --method {}",
@@ -94,6 +92,14 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
         )
     edition = as_decided(store, method, terms, carry)
     return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
+
+
+def _is_of_today(store: Store, method: Method) -> bool:
+    """Whether the tables are made with this method and with the code of today."""
+    if store.made_from("tows") is None:
+        return False
+    with_code = (method.name, method.content_hash, code_version())
+    return with_code in store.read("lineage").select("method", "method_hash", "code_version").rows()
 
 
 def as_decided(

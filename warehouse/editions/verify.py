@@ -22,13 +22,11 @@ from pipeline.messages import say
 from pipeline.register.register import LINE
 from pipeline.tables.schemas import TABLES
 from warehouse.archive import FileHashes
-from warehouse.derive.graph import ARCHIVE
-from warehouse.derive.inputs import Scope
+from warehouse.derive.archive_tables import read_archive
 from warehouse.editions import sheets
 from warehouse.editions.compare import parts_of
 from warehouse.editions.inputs import LIST, NOT_INPUT, SAMPLES, input_files, same_tows
 from warehouse.editions.making import made_again, sheets_and_texts
-from warehouse.intake import seasons as intake
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.editions import (
     METHOD,
@@ -278,8 +276,7 @@ def _read_again(store: Store, archive: Path | None) -> Iterator[Store]:
         again.editions.symlink_to(store.editions.resolve())
         if (store.root / DECISIONS).exists():
             shutil.copy(store.root / DECISIONS, again.root)
-        intake.bring_in(again, archive)
-        ARCHIVE.make(Scope(again, ()))
+        read_archive(again, archive)
         yield again
 
 

@@ -8,6 +8,7 @@ files look like is known to `warehouse.archive`, and which sums there are to
 """
 
 import dataclasses
+import json
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
@@ -16,23 +17,25 @@ from typing import Final
 import numpy as np
 import polars as pl
 
+from pipeline.blocks.run_blocks import BLOCK_SCHEMA
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import DefectiveInputError, UnavailableError
-from pipeline.tables.frames import dtypes, frame_of
+from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import SeasonIndex
 from pipeline.tables.row import Row
-from warehouse.archive import (
-    Fault,
-    FileHashes,
-    SeasonProfile,
-    fault_from,
-    judge_samples,
-    read_tow_samples,
-)
-from warehouse.archive.samples import steps_of
+from warehouse.archive import Fault, FileHashes, SeasonProfile, fault_from
+from warehouse.intake.reading import read_samples
 from warehouse.store.code import ADDING, READING, code_hash
-from warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
+from warehouse.store.store import (
+    DamagedFileError,
+    Store,
+    count_rows,
+    fingerprint,
+    metadata_of,
+    read_parquet,
+    write_parquet,
+)
 from warehouse.store.unforeseen import (
     UNFORESEEN,
     in_short,
@@ -50,27 +53,18 @@ LAKE_FORM: Final = {
 }
 """How samples and blocks are packed: measured in docs/decisions.md."""
 
-SAMPLE_FACTS: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
-"""What the index says of the samples of a tow that can be used."""
-
-Tow = Row
+FACTS_KEY: Final = "herijk.facts"
+"""In the footer of samples: what the index says of a tow that can be used."""
 
 
-def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonProfile) -> str:
-    """What the samples and blocks of a season are made from."""
-    season_runs = runs.filter(pl.col("tow_id").is_in(tows["tow_id"].implode()))
-    rows = [tows.write_json(), season_runs.sort("tow_id", "run").write_json()]
-    return fingerprint(rows, dataclasses.asdict(profile), code_hash(*READING, *ADDING))
-
-
-def read_season(
+def read_tows(
     store: Store,
     root: Path,
     tows: pl.DataFrame,
     runs: pl.DataFrame,
     profile: SeasonProfile,
 ) -> pl.DataFrame:
-    """Brings the samples and blocks of a season's tows into the lake.
+    """Bring the samples and blocks of tows of a season into the lake.
 
     Args:
         store: the data folder.
@@ -80,36 +74,37 @@ def read_season(
         profile: how that season's files are written.
 
     Returns:
-        The season's index, `SeasonIndex`, sorted by tow.
+        Their rows of `SeasonIndex`, sorted by tow.
     """
-    before = _known_tows(store, profile.season)
     hashes = FileHashes.load(store.file_hashes)
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
-    def read(tow: Tow) -> Row:
-        listed_runs = runs_of[tow["tow_id"],]
-        key = _samples_key(tow, listed_runs, profile)
-        known = before.get(key)
-        if known is not None and known["reason_code"] is not None:
-            row = known
-        else:
-            row = _bring_in(store, root, tow, listed_runs, profile, key, hashes, known)
-        return row | {"tow_id": tow["tow_id"]}
+    def read(tow: Row) -> Row:
+        return _bring_in(store, root, tow, runs_of[tow["tow_id"],], profile, hashes)
 
     workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
     with ThreadPoolExecutor(workers) as pool:
         rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
-    index = frame_of(SeasonIndex, rows)
-    keep_only(store, profile.season, index)
-    return index
+    return frame_of(SeasonIndex, rows)
 
 
-def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFrame:
-    """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
-    sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
-    frames = [read_parquet(store.blocks_path(season, key)) for key in sound["blocks_key"]]
+def all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
+    """Blocks of all sound tows, with `tow_id`, sorted by season, tow, run and second.
+
+    Args:
+        store: the data folder.
+        index: rows of `SeasonIndex` with `season`.
+
+    Raises:
+        DamagedFileError: samples and blocks of a tow were removed; they are read again.
+    """
+    sound = index.filter(pl.col("blocks_key").is_not_null()).sort("season", "tow_id")
+    paths = [store.blocks_path(*tow) for tow in sound.select("season", "blocks_key").rows()]
+    if not all(path.exists() for path in paths):
+        raise DamagedFileError(store.table_path("samples"))
+    frames = [read_parquet(path) for path in paths]
     if not frames:
-        return pl.DataFrame(schema={"tow_id": pl.String()})
+        return pl.DataFrame(schema=BLOCK_SCHEMA)
     tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
     return pl.concat(frames).insert_column(0, sound["tow_id"].gather(tow))
 
@@ -117,35 +112,29 @@ def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFram
 def _bring_in(
     store: Store,
     root: Path,
-    tow: Tow,
+    tow: Row,
     runs: pl.DataFrame,
     profile: SeasonProfile,
-    key: str,
     hashes: FileHashes,
-    known: Row | None,
 ) -> Row:
-    """Index row of a tow after its samples and blocks are in the lake, or with its fault.
+    """Bring the samples and blocks of a tow into the lake; return its row of `SeasonIndex`.
 
-    Its samples are read again also where only the facts about them (in `known`) are lost.
+    A tow whose file of samples is there is not read again: the footer says what it lost. Of a tow
+    that cannot be used, the row has the fault.
     """
-    facts = None if known is None else {name: known[name] for name in SAMPLE_FACTS}
-    row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
-    path = store.samples_path(profile.season, key)
-    blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDING))
+    samples_key, blocks_key = name_files(tow, runs, profile)
+    row = dict.fromkeys(SeasonIndex.column_names())
+    row |= {"tow_id": tow["tow_id"], "samples_key": samples_key}
+    path = store.samples_path(profile.season, samples_key)
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
         samples = None
-        if facts is None or not path.exists():
-            whole, place = read_tow_samples(root, tow, profile)
-            samples, faults = judge_samples(whole, place, tow, runs)
-            facts = {
-                "losses": [fault.as_row() for fault in faults],
-                "wind_read": samples["wind_speed_m_s"].null_count() == 0,
-                **steps_of(samples),
-            }
+        stored = metadata_of(path, FACTS_KEY)
+        facts = None if stored is None else json.loads(stored)
+        if facts is None:
+            samples, facts = read_samples(root, tow, runs, profile)
             _check_unchanged(root, tow, hashes)
-            named = samples.select(pl.lit(tow["tow_id"]).alias("tow_id"), pl.all())
-            write_parquet(named, path, form=LAKE_FORM)
+            write_parquet(samples, path, {FACTS_KEY: json.dumps(facts)}, LAKE_FORM)
         if not blocks_path.exists():
             if samples is None:
                 samples = read_parquet(path, list(SAMPLE_SCHEMA), use_threads=False)
@@ -170,7 +159,7 @@ class ArchiveChangedError(UnavailableError):
     """A file of the archive changed between looking through the archive and reading it."""
 
 
-def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
+def _check_unchanged(root: Path, tow: Row, hashes: FileHashes) -> None:
     """Samples are named by the hash of their file, so they must be that file's.
 
     A file with the size and time it had when it was hashed is not read once more.
@@ -187,32 +176,85 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
             )
 
 
-def _known_tows(store: Store, season: int) -> dict[str, Row]:
-    """What was found of the season's tows at its last reading, by samples key."""
-    if str(season) not in store.partitions("season_index"):
-        return {}
-    index = store.read("season_index", str(season))
-    if index.schema != dtypes(SeasonIndex):
-        return {}
-    return {row["samples_key"]: row for row in index.iter_rows(named=True)}
+def name_files(tow: Row, runs: pl.DataFrame, profile: SeasonProfile) -> tuple[str, str]:
+    """Return the names (keys) of the samples and the blocks of a tow.
 
-
-def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
-    names = (
+    Samples are named by the contents of their files, what the lists say of them, how they are read
+    and the code that reads; blocks by their samples and the code that adds them up.
+    """
+    facts = (
         *("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s"),
         *("samples_runs", "second_runs", "run_windows"),
     )
-    facts = [tow[n] for n in names], runs.sort("run").rows()
-    return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READING))
+    samples_key = fingerprint(
+        [tow[name] for name in facts],
+        runs.sort("run").rows(),
+        dataclasses.asdict(profile),
+        code_hash(*READING),
+    )
+    blocks_key = fingerprint(samples_key, tow["sample_rate_hz"], code_hash(*ADDING))
+    return samples_key, blocks_key
 
 
-def keep_only(store: Store, season: int, index: pl.DataFrame) -> None:
-    """Removes samples and blocks of a season that its index does not name (any more)."""
-    kept = {
-        *(store.samples_path(season, k) for k in index["samples_key"].drop_nulls()),
-        *(store.blocks_path(season, k) for k in index["blocks_key"].drop_nulls()),
-    }
-    for folder in (store.samples_path(season, "").parent, store.blocks_path(season, "").parent):
-        for file in folder.glob("[!.]*.parquet"):
-            if file not in kept:
+def is_up_to_date(
+    store: Store,
+    index: pl.DataFrame,
+    tows: pl.DataFrame,
+    runs: pl.DataFrame,
+    profile: SeasonProfile,
+) -> bool:
+    """Return whether rows of `samples` are those that reading tows again would give.
+
+    Args:
+        store: the data folder.
+        index: rows of `samples`.
+        tows: listed tows of one season.
+        runs: listed runs, perhaps also of other tows.
+        profile: how files of that season are written.
+    """
+    known = dict(index.select("tow_id", pl.struct("samples_key", "blocks_key")).iter_rows())
+    runs_of = dict(runs.join(tows, on="tow_id", how="semi").partition_by("tow_id", as_dict=True))
+    for tow in tows.iter_rows(named=True):
+        row = known.get(tow["tow_id"])
+        samples_key, blocks_key = name_files(tow, runs_of[tow["tow_id"],], profile)
+        if row is None or row["samples_key"] != samples_key:
+            return False
+        if row["blocks_key"] not in (None, blocks_key):  # None: the tow cannot be used
+            return False
+    return has_files(store, index)
+
+
+def has_all_files(store: Store) -> bool:
+    """Return whether the samples and blocks that the table `samples` names are there."""
+    return has_files(store, store.read("samples"))
+
+
+def has_files(store: Store, index: pl.DataFrame) -> bool:
+    """Return whether the samples and blocks of tows are there.
+
+    Args:
+        store: the data folder.
+        index: rows of `samples`.
+    """
+    return all(path.exists() for path in list_files(store, index))
+
+
+def list_files(store: Store, index: pl.DataFrame) -> set[Path]:
+    """Return the paths of the samples and blocks of tows that can be used."""
+    sound = index.filter(pl.col("blocks_key").is_not_null())
+    paths = set()
+    for season, samples_key, blocks_key in sound.select(
+        "season", "samples_key", "blocks_key"
+    ).iter_rows():
+        paths.add(store.samples_path(season, samples_key))
+        paths.add(store.blocks_path(season, blocks_key))
+    return paths
+
+
+def keep_only(store: Store, index: pl.DataFrame) -> None:
+    """Remove samples and blocks that no row of `samples` names."""
+    named = list_files(store, index)
+    for kind in ("samples", "blocks"):
+        for file in (store.lake / kind).glob("season=*/[!.]*.parquet"):
+            if file not in named:
                 file.unlink()

@@ -269,5 +269,5 @@ def _members(views: Views, edition: str) -> pl.DataFrame:
     if not edition.startswith(DRAFT):
         return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())
     method = edition.removeprefix(DRAFT)
-    is_there = views.store.made_from("ensemble", method) is not None
+    is_there = views.store.made_from("ensemble") is not None
     return views.store.read("ensemble", method) if is_there else pl.DataFrame()

@@ -24,13 +24,17 @@ from pipeline.assessment.first_assessment import (
     get_runs_to_redo,
     get_verdict,
 )
+from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.channels import OUT, RUN_SECONDS, SECOND_FILE_OFFSET
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGE
 from pipeline.method.definition import Method
+from pipeline.recompute.facts import with_boats
+from pipeline.recompute.recompute import recompute
 from pipeline.tables.keys import LINE
 from pipeline.tables.row import Row
-from warehouse.derive.graph import ARCHIVE, METHOD
+from pipeline.tables.schemas import TABLES, conform
+from warehouse.derive.archive_tables import read_archive
 from warehouse.intake import seasons as intake
 from warehouse.store.store import Store
 
@@ -93,15 +97,14 @@ def assess(store: Store, archive: Path, tow_id: str, method: Method) -> Assessme
             shutil.copytree(
                 store.root.resolve(), copy.root, copy_function=os.symlink, ignore=LEFT_BEHIND
             )
-        intake.index(copy, archive)
-        listed = copy.read("listed_tows").filter(tow_id=tow_id)
-        if listed.is_empty():
+        read_archive(copy, archive)
+        if copy.read("listed_tows").filter(tow_id=tow_id).is_empty():
             raise _not_usable(tow_id, copy.read("list_faults"))
-        season = listed["season"][0]
-        intake.read_season(copy, archive, season)
-        for step in (ARCHIVE, METHOD):
-            for scope in step.scopes(copy, [method]):
-                step.make(scope)
+        runs = stack_blocks(intake.all_blocks(copy), intake.runs_with_windows(copy))
+        made = recompute(method, with_boats(copy.read("tows"), copy.read("boats")), runs)
+        for name, frame in vars(made).items():
+            if name in TABLES:
+                copy.write(name, conform(name, frame))
         return _assessment(copy, tow_id, method.name)
 
 

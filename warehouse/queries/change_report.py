@@ -25,7 +25,16 @@ from warehouse.store.editions import MEASURED
 from warehouse.store.files import folder_written_beside
 from warehouse.store.store import DamagedFileError, Store, read_parquet, write_parquet
 
-NEEDED: Final = ("about", "tows", "tow_runs", "quarantine", "log_factors", "methods", "register")
+NEEDED: Final = (
+    "about",
+    "tows",
+    "tow_runs",
+    "quarantine",
+    "log_factors",
+    "methods",
+    "editions",
+    "register",
+)
 FAULT: Final = ("path", "tow_id", "line", "reason_code", "message")
 FACTOR: Final = ("method", "season")
 FILES: Final = ("samples_sha256", "second_sha256")
@@ -46,6 +55,7 @@ class ChangeReport:
         tows: `tow_id`, `fsn_no`, `season`, `what`: new, samples (its files changed), list (its row
             in a list changed) or gone.
         seasons_gone: seasons that had tows, and have none now.
+        editions: `edition` and `what`: new, or gone; none in a first report.
         methods: `method` and `what`: new, or gone; none in a first report.
         set_aside: new faults (`what` is new) and those that are gone (mended).
         factors: log factors that moved: `method`, `season`, `old_factor`, `new_factor`, `ratio`.
@@ -58,6 +68,7 @@ class ChangeReport:
     first: bool
     tows: list[Row]
     seasons_gone: list[int]
+    editions: list[Row]
     methods: list[Row]
     set_aside: list[Row]
     factors: list[Row]
@@ -67,7 +78,7 @@ class ChangeReport:
     @property
     def nothing(self) -> bool:
         """Whether nothing changed."""
-        changes = (self.tows, self.methods, self.set_aside, self.factors, self.lines)
+        changes = (self.tows, self.editions, self.methods, self.set_aside, self.factors, self.lines)
         return not self.first and not any(changes)
 
     @property
@@ -123,8 +134,9 @@ def _today(store: Store) -> Tables:
         "tows": with_boat_types(tables["tows"], tables["boats"]),
         "tow_runs": with_hand_windows(tables["tow_runs"], tables["hand_windows"]),
         "quarantine": store.read("quarantine", columns=FAULT),
-        "log_factors": store.read_all("log_factors", tables["methods"]["method"]),
+        "log_factors": store.read("log_factors"),
         "methods": tables["methods"],
+        "editions": store.read("editions", columns=["edition"]),
         "register": store.read("register").filter(is_draft),
     }
 
@@ -136,11 +148,13 @@ def _between(store: Store, was_state: object, now_state: object) -> ChangeReport
     was = now if was_state == now_state else _reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
     methods = _came_and_went(before["methods"], now["methods"], ("method",), "gone")
+    editions = _came_and_went(before["editions"], now["editions"], ("edition",), "gone")
     faults = _came_and_went(before["quarantine"], now["quarantine"], FAULT, "mended")
     return ChangeReport(
         first=was is None,
         tows=_tows(before, now).to_dicts(),
         seasons_gone=sorted({*before["tows"]["season"]} - {*now["tows"]["season"]}),
+        editions=[] if was is None else editions.to_dicts(),
         methods=[] if was is None else methods.to_dicts(),
         set_aside=faults.to_dicts(),
         factors=_factors(before["log_factors"], now["log_factors"]).to_dicts(),

@@ -13,14 +13,13 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.consistency.homogeneity import type_homogeneity
-from pipeline.consistency.observed import Observed, of_trusted
+from pipeline.consistency.observed import Observed, observe_trusted, of_trusted
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
 from pipeline.method.definition import Method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register.register import draft_name, draft_register, reference_day
-from warehouse.derive.inputs import observe_trusted
 from warehouse.intake.seasons import run_blocks, typed_tows
 from warehouse.store.store import Store, no_warehouse
 

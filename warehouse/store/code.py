@@ -13,14 +13,14 @@ from typing import Final
 
 HASH_LENGTH: Final = 12
 
-READING: Final = ("warehouse.archive", "warehouse.intake")
-"""The archive's lists and files are read with these."""
+READING: Final = ("warehouse.archive", "warehouse.intake.reading")
+"""Samples are read with these: a changed byte in them reads all samples again."""
 
 ADDING: Final = ("pipeline.blocks",)
-"""Samples are added up with these."""
+"""Samples are added up to blocks with these."""
 
 COMPUTING: Final = ("pipeline", "warehouse.archive", "warehouse.derive")
-"""All that follows from lists, samples and blocks is computed with these."""
+"""All tables that follow from lists, samples and blocks are computed with these."""
 
 
 @cache
@@ -43,6 +43,7 @@ def code_version() -> str:
 
 
 _ROOT: Final = Path(__file__).parents[2]
+_CODE: Final = (".py", ".html", ".css", ".js", ".mo", ".md")
 _DECLARED: Final = ("tables",)
 """Rooms of `pipeline` that compute nothing: declared types are in fingerprints."""
 
@@ -55,4 +56,5 @@ def _modules(package: str) -> list[Path]:
     file = Path(spec.origin)
     if not spec.submodule_search_locations:
         return [file]
-    return [f for f in file.parent.rglob("*.py") if f.parent.name not in _DECLARED]
+    files = (f for f in file.parent.rglob("*.*") if f.suffix in _CODE)
+    return [f for f in files if f.parent.name not in _DECLARED]

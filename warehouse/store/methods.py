@@ -130,9 +130,14 @@ def methods_to_apply(store: Store, listed: Sequence[str], asked: Sequence[str] =
     """
     if listed and not asked:
         return list(listed)
-    wanted = {*(asked or shipped_methods()), *store.partitions("curves")}
+    wanted = {*(asked or shipped_methods()), *_held(store)}
     in_order = dict.fromkeys((*listed, *KnownMethods.of(store).names))
     return [name for name in in_order if name in wanted]
+
+
+def _held(store: Store) -> list[str]:
+    """Methods of which the data folder holds tables."""
+    return [] if store.made_from("methods") is None else store.read("methods")["method"].to_list()
 
 
 def text_of_file(file: Path) -> str:

@@ -8,7 +8,7 @@ table means is in `tables.schemas`; the database that readers use is `warehouse.
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,11 +20,12 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.messages import say
-from warehouse.store.files import file_sha256, written_beside
+from warehouse.store.files import written_beside
 from warehouse.store.machine_faults import is_machine_fault
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
 CONTENTS_KEY: Final = "herijk.contents"
+FAILED_KEY: Final = "herijk.failed"
 
 
 def fingerprint(*parts: object) -> str:
@@ -85,49 +86,50 @@ class Store:
         """The tables."""
         return self.lake / "tables"
 
-    def table_path(self, table: str, partition: str | None = None) -> Path:
-        """A table, or one partition of it."""
-        if partition is None:
-            return self.table_folder / f"{table}.parquet"
-        return self.table_folder / table / f"{partition}.parquet"
+    def table_path(self, table: str) -> Path:
+        """A table."""
+        return self.table_folder / f"{table}.parquet"
 
-    def partitions(self, table: str) -> list[str]:
-        """The partitions of a table that have been written, sorted."""
-        folder = self.table_folder / table
-        return sorted(f.stem for f in folder.glob("[!.]*.parquet"))
-
-    def write(
-        self, table: str, frame: pl.DataFrame, made_from: str, partition: str | None = None
-    ) -> None:
-        """Writes a table or partition with the fingerprint of what it was made from."""
-        write_parquet(frame, self.table_path(table, partition), {FINGERPRINT_KEY: made_from})
+    def write(self, table: str, frame: pl.DataFrame, made_from: str = "", failed: str = "") -> None:
+        """Writes a table with the fingerprint of what it was made from."""
+        about = {FINGERPRINT_KEY: made_from, CONTENTS_KEY: contents_of(table, frame)}
+        about |= {FAILED_KEY: failed} if failed else {}
+        write_parquet(frame, self.table_path(table), about)
 
     def read(
-        self, table: str, partition: str | None = None, columns: Sequence[str] | None = None
+        self, table: str, method: str | None = None, columns: Sequence[str] | None = None
     ) -> pl.DataFrame:
-        """A table or partition as written, or some of its columns."""
-        return read_parquet(self.table_path(table, partition), columns)
+        """A table as written, or its rows of one method, or some of its columns."""
+        asked = columns if method is None or columns is None else [*{"method", *columns}]
+        frame = read_parquet(self.table_path(table), asked)
+        if method is None:
+            return frame
+        own = frame.filter(pl.col("method") == method)
+        return own if columns is None else own.select(columns)
 
-    def read_all(self, table: str, partitions: Iterable[str] | None = None) -> pl.DataFrame:
-        """Partitions of a table, one below the other: the given ones, or all."""
-        chosen = self.partitions(table) if partitions is None else partitions
-        return pl.concat([self.read(table, p) for p in chosen])
-
-    def made_from(self, table: str, partition: str | None = None) -> str | None:
+    def made_from(self, table: str) -> str | None:
         """Fingerprint of what a table was made from; None if it is not there or is damaged."""
-        return metadata_of(self.table_path(table, partition), FINGERPRINT_KEY)
+        return metadata_of(self.table_path(table), FINGERPRINT_KEY)
 
-    def contents(self, table: str, partition: str | None = None) -> str | None:
+    def contents(self, table: str) -> str | None:
         """Hash of what is in a table: equal for equal tables, whatever they were made from."""
-        return metadata_of(self.table_path(table, partition), CONTENTS_KEY)
+        return metadata_of(self.table_path(table), CONTENTS_KEY)
 
-    def count_rows(self, table: str, partition: str | None = None) -> int:
-        """Rows of a table or partition; raises as `read_parquet`."""
-        return count_rows(self.table_path(table, partition))
+    def failed(self, table: str) -> str | None:
+        """The traceback of a table whose rows are missing because our code failed."""
+        return metadata_of(self.table_path(table), FAILED_KEY)
 
-    def remove(self, table: str, partition: str) -> None:
-        """Removes a partition whose season or method is no more."""
-        self.table_path(table, partition).unlink(missing_ok=True)
+    def count_rows(self, table: str) -> int:
+        """Rows of a table; raises as `read_parquet`."""
+        return count_rows(self.table_path(table))
+
+
+def contents_of(name: str, frame: pl.DataFrame) -> str:
+    """A hash of what a table says; where an archive lies says nothing about it."""
+    told = frame.drop("root") if name == "about_archive" else frame
+    hashed = hashlib.sha256(str(told.schema).encode())
+    hashed.update(told.write_ipc(None, compat_level=pl.CompatLevel.oldest()).getbuffer())
+    return hashed.hexdigest()
 
 
 def archive_root(store: Store) -> Path | None:
@@ -247,8 +249,7 @@ def write_parquet(
     ):
         writer.write_table(tight)
         if metadata is not None:
-            hashed = fingerprint(str(frame.schema), file_sha256(target))  # all but the footer
-            writer.add_key_value_metadata(metadata | {CONTENTS_KEY: hashed})
+            writer.add_key_value_metadata(metadata)
 
 
 def _table_form(schema: pa.Schema) -> dict[str, object]:

@@ -12,30 +12,16 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Final
 
-import polars as pl
-
 from pipeline.errors import BrokenPromiseError, HerijkError
 from pipeline.messages import Sentence, say
-from pipeline.tables.lake import FailedTows
-from warehouse.store.code import COMPUTING, code_hash
 from warehouse.store.files import written_beside
 from warehouse.store.machine_faults import is_machine_fault
-from warehouse.store.store import Store, fingerprint
 
 UNFORESEEN: Final = "unforeseen"
 """The reason code of a tow on which Herijk itself failed, and the folder of tracebacks."""
-FAILED_TOWS: Final = "failed_tows"
 Border = Callable[[str], AbstractContextManager[object]]
 """What stands round the work of one thing, given what that is."""
 _NOT_OURS: Final = (HerijkError, MemoryError, OSError, KeyboardInterrupt, SystemExit, GeneratorExit)
-
-
-class FailedTowsError(Exception):
-    """Tows that make Herijk fail, each by itself; the rest can be computed without them."""
-
-    def __init__(self, tows: tuple[str, ...], told: str, trace: str) -> None:
-        super().__init__(tows, told, trace)
-        self.tows, self.told, self.trace = tows, told, trace
 
 
 def is_unforeseen(error: BaseException) -> bool:
@@ -120,40 +106,6 @@ def documents(root: Path, command: str) -> Iterator[Border]:
 def forget(root: Path, what: str) -> None:
     """Removes what was kept of an earlier failure."""
     _file(root, what).unlink(missing_ok=True)
-
-
-def failures(root: Path) -> list[str]:
-    """What a rebuild could not make, beside tows, as `border` was told; sorted."""
-    return sorted(file.stem for file in (root / UNFORESEEN).glob("[!.]* *.txt"))
-
-
-def failed_tows(store: Store) -> pl.DataFrame:
-    """The tows that make this code fail on the lists of today: rows of `FailedTows`."""
-    if store.made_from(FAILED_TOWS) == _failed_with(store):
-        return store.read(FAILED_TOWS)
-    return pl.DataFrame(FailedTows.create_empty())
-
-
-def set_aside(store: Store, failed: FailedTowsError) -> None:
-    """Remembers tows that make Herijk fail.
-
-    Raises:
-        FailedTowsError: they were set aside already.
-    """
-    known = failed_tows(store)
-    new = sorted({*failed.tows} - {*known["tow_id"]})
-    if not new:
-        raise failed
-    for tow_id in new:
-        note(store.root, tow_id, failed.trace)
-    rows = known.vstack(pl.DataFrame({"tow_id": new}).with_columns(told=pl.lit(failed.told)))
-    store.write(FAILED_TOWS, rows.sort("tow_id"), _failed_with(store))
-
-
-def _failed_with(store: Store) -> str:
-    """What makes tows fail: the code, and all that the lists say, with the hashes of samples."""
-    listed = [store.contents("season_tows", season) for season in store.partitions("season_tows")]
-    return fingerprint(code_hash(*COMPUTING), listed)
 
 
 def _file(root: Path, what: str) -> Path:

@@ -1,0 +1,57 @@
+"""Draft registers beside the published ones, what changed between them, and what races show."""
+
+import dagster as dg
+import polars as pl
+
+from assets.lake import Folders, incremental, outs
+from assets.rules import read_methods
+from warehouse.derive import registers as derive
+
+
+@dg.multi_asset(
+    outs=outs("register", "register_history", "register_changes", "lineage", "due_list"),
+    can_subset=True,
+)
+@incremental()
+def registers(
+    folders: Folders,
+    methods: pl.DataFrame,
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    boats: pl.DataFrame,
+    listed_boats: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    decisions: pl.DataFrame,
+    correction_steps: pl.DataFrame,
+    published_register: pl.DataFrame,
+    published_register_history: pl.DataFrame,
+    published_register_changes: pl.DataFrame,
+    published_lineage: pl.DataFrame,
+) -> dict[str, pl.DataFrame]:
+    """A draft per method with its history, lineage and boats that are due, beside the editions."""
+    published = {
+        "register": published_register,
+        "register_history": published_register_history,
+        "register_changes": published_register_changes,
+        "lineage": published_lineage,
+    }
+    return derive.register_tables(
+        curves=curves,
+        tows=tows,
+        boats=boats,
+        listed_boats=listed_boats,
+        listed_races=listed_races,
+        decisions=decisions,
+        published=published,
+        correction_steps=correction_steps,
+        methods=read_methods(folders, methods),
+    )
+
+
+@dg.asset
+@incremental(may_fail=True)
+def race_changes(
+    register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
+) -> pl.DataFrame:
+    """All races in the archive under both editions of every pair that is compared."""
+    return derive.race_changes(register_changes, register_history, listed_races)

@@ -1,0 +1,71 @@
+"""What people decided: methods to apply, decisions about tows, and published editions."""
+
+from typing import Final
+
+import dagster as dg
+import polars as pl
+
+from assets.lake import Folders, incremental, outs
+from pipeline.method.definition import Method
+from warehouse.derive.registers import published_tables
+from warehouse.store.decisions import FILE_NAME, decision_table, read_decisions
+from warehouse.store.methods import KnownMethods
+
+FACTS: Final = ("title", "title_en", "interval", "content_hash", "definition")
+
+
+@dg.asset
+@incremental()
+def applied_methods(folders: Folders) -> pl.DataFrame:
+    """The methods to apply, in order: the others are compared with the first."""
+    rows = []
+    for method in folders.get_methods():
+        row = {"method": method.name, "rules": f"{method.validity} {method.interval}"}
+        for name in FACTS:
+            row[name] = getattr(method, name)
+        rows.append(row)
+    return pl.DataFrame(rows)
+
+
+def read_methods(folders: Folders, table: pl.DataFrame) -> list[Method]:
+    """Return the methods that the rows of a table name."""
+    known = KnownMethods.of(folders.store)
+    return [known.get(name) for name in table["method"]]
+
+
+@dg.asset
+@incremental()
+def methods(applied_methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
+    """The methods that made the tables, in order: those of which no code of ours failed."""
+    computed = applied_methods.join(curves, on="method", how="semi", maintain_order="left")
+    return computed.select("method", *FACTS)
+
+
+@dg.asset
+@incremental()
+def decisions(folders: Folders) -> pl.DataFrame:
+    """What people decided about tows, in `besluiten.toml`."""
+    return decision_table(read_decisions(folders.store.root / FILE_NAME))
+
+
+@dg.multi_asset(
+    outs=outs(
+        "editions",
+        "published_register",
+        "published_register_history",
+        "published_register_changes",
+        "published_lineage",
+    ),
+    can_subset=True,
+)
+@incremental()
+def published(folders: Folders) -> dict[str, pl.DataFrame]:
+    """The published editions: their tables as they lie in their folders."""
+    tables = published_tables(folders.store)
+    return {
+        "editions": tables["editions"],
+        "published_register": tables["register"],
+        "published_register_history": tables["register_history"],
+        "published_register_changes": tables["register_changes"],
+        "published_lineage": tables["lineage"],
+    }

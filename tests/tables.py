@@ -1,0 +1,63 @@
+"""Tables of an archive up to the registers, made without Dagster: what editions are made from."""
+
+import datetime as dt
+from collections.abc import Sequence
+from pathlib import Path
+
+import polars as pl
+
+from pipeline.method.definition import Method
+from pipeline.tables.schemas import TABLES, conform
+from warehouse.derive.archive_tables import add_first_seen, read_archive, read_earlier
+from warehouse.derive.recomputing import ArchiveRuns, recompute_archive
+from warehouse.derive.registers import published_tables, register_tables
+from warehouse.store.decisions import FILE_NAME, decision_table, read_decisions
+from warehouse.store.store import Store
+
+
+def make_tables(store: Store, archive: Path, methods: Sequence[Method], today: dt.date) -> None:
+    """Read the archive and compute curves and registers under some methods."""
+    read_archive(store, archive, today)
+    if methods:
+        compute_tables(store, methods, today)
+
+
+def compute_tables(store: Store, methods: Sequence[Method], today: dt.date) -> None:
+    """Compute curves and registers from the tables about the archive as they are in the lake."""
+    names = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
+    archive = ArchiveRuns(**{name: store.read(name) for name in names})
+    made = recompute_archive(methods, archive)
+    earlier = store.read("quarantine")
+    failed = conform("quarantine", add_first_seen(made.set_aside, earlier, today))
+    tables = made.tables | {
+        "tows": made.tows,
+        "tow_runs": made.tow_runs,
+        "quarantine": pl.concat([earlier, failed]),
+        "methods": pl.DataFrame([describe(method) for method in methods]),
+    }
+    for name, frame in tables.items():
+        store.write(name, conform(name, frame))
+    make_registers(store, methods)
+
+
+def make_registers(store: Store, methods: Sequence[Method]) -> None:
+    """Make the drafts and their lineage, beside the editions that are published."""
+    made = register_tables(
+        curves=store.read("curves"),
+        tows=store.read("tows"),
+        boats=store.read("boats"),
+        listed_boats=store.read("listed_boats"),
+        listed_races=store.read("listed_races"),
+        decisions=decision_table(read_decisions(store.root / FILE_NAME)),
+        published=published_tables(store),
+        correction_steps=read_earlier(store, "correction_steps"),
+        methods=methods,
+    )
+    for name, frame in made.items():
+        store.write(name, conform(name, frame))
+
+
+def describe(method: Method) -> dict[str, object]:
+    """Return a row of `methods`."""
+    columns = TABLES["methods"].column_names()
+    return {"method": method.name} | {n: getattr(method, n) for n in columns if n != "method"}
