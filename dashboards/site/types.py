@@ -17,6 +17,7 @@ from dashboards.site.parts import (
     Page,
     Section,
     Table,
+    as_paragraphs,
     methods_select,
     once_for_methods,
     types_select,
@@ -160,9 +161,8 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             Section(
                 "type_verdict",
                 sum_up_type(now),
-                headline=together(judge_type(now, outside.to_dicts(), names), " "),
+                prose=as_paragraphs(judge_type(now, outside.to_dicts(), names)),
             ),
-            _grid_section(views, methods, [boat_type], names),
             Section(
                 "type_charts",
                 say("B and Cw against weight and tow speed"),
@@ -181,6 +181,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                 say("A possible cause is something to look at, not proven."),
                 tables=[Table("type_outliers", outside, OUTSIDE_COLUMNS.replace("boat_type ", ""))],
             ),
+            _grid_section(views, methods, [boat_type], names),
             Section("type_tows", say("Its tows"), tables=[own_tows]),
         ]
         yield Page(
