@@ -86,6 +86,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
         for name in views.type_names()
     ]
     names = _name_boats(views)
+    judged = verdicts.filter(pl.col("spread_ratio").is_not_null())["boat_type"].unique().sort()
     sections = [
         Section(
             "types_verdicts",
@@ -93,7 +94,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
             say("By the newest tow of each boat and crew; every type has a page."),
             links=links,
         ),
-        _grid_section(views, methods, views.type_names(), names),
+        _grid_section(views, methods, judged.to_list(), names),
         Section(
             "types_charts",
             say("B and Cw per type"),
