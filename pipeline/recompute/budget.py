@@ -15,7 +15,8 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
-from pipeline.uncertainty.misfit import fit_parabolas, shrink_to_boats
+from pipeline.tables.keys import LINE
+from pipeline.uncertainty.misfit import fit_parabolas, shrink_to_lines
 from pipeline.uncertainty.propagation import Assumed, pool_scatter
 
 DECLARED: Final = 1.0
@@ -146,8 +147,8 @@ def _boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, Flo
         speed_ratios,
         c.plan.which,
     )
-    boat = (tows.frame["fsn_no"].rank("dense") - 1).to_numpy().astype(np.int64)
-    return shrink_to_boats(by_tow, boat)
+    line = tows.frame.select(pl.struct(*LINE).rank("dense") - 1).to_series()
+    return shrink_to_lines(by_tow, line.to_numpy().astype(np.int64))
 
 
 def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
