@@ -41,7 +41,7 @@ def assumed_beside(factors: SeasonFactors | None) -> Assumed:
     """Return what remains assumed beside what the season factors show."""
     if factors is None:
         return Assumed()
-    return Assumed().beside_repeats(factors.tow_sd, factors.calibration_sd)
+    return Assumed().beside_repeats(factors.tow_sd, factors.tow_zero_n, factors.calibration_sd)
 
 
 def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
@@ -125,6 +125,7 @@ def make_facts(
     r = (bend / (1.0 + bend) * ratio**2).clip(-1.0, MAX_R)
     return pl.concat(at_speeds).with_columns(
         speed_m_s=ratio * pl.col("declared_speed_m_s"),
+        force_n=cw * (ratio * pl.col("declared_speed_m_s")) ** 2,
         kappa=2.0 / (1.0 - r),
         misfit_ratio=(pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt(),
         air_ratio=pl.col("net_air_kg_m") / cw,
