@@ -345,6 +345,7 @@ CODES: Final[dict[str, Sentence]] = {
     "wind.averaging_s": say("wind averaged over 3 s"),
     "curve.b": say("B without cap"),
     "doubted": say("to be looked at first"),
+    "newer_tow_without_samples": say("the newest tow has no samples; an older one counts"),
     "rest": say("other"),
     "complete": say("95 % interval"),
     "runs_alone": say("spread of the runs alone: the log's error is not in it"),

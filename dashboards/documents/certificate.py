@@ -10,6 +10,7 @@ import segno
 
 from dashboards import drawn, labels
 from dashboards.addresses import boat_path
+from dashboards.columns import written
 from dashboards.documents import pdf
 from dashboards.speech import Speech, Text
 from dashboards.statements import EditionName, number, told
@@ -219,4 +220,7 @@ def _terms(line: Row, issuer: str, speech: Speech) -> list[tuple[str, str]]:
         (labels.column("decision"), line["decision"]),
         (labels.column("empty_thwart"), line["empty_thwart"] or labels.code("none")),
     ]
-    return [(speech.say(name), speech.words(value or NOT_KNOWN)) for name, value in rows]
+    terms = [(speech.say(name), speech.words(value or NOT_KNOWN)) for name, value in rows]
+    if line["flags"]:
+        terms.append((speech.say(labels.column("flags")), written("flags", line["flags"], speech)))
+    return terms

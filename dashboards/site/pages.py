@@ -65,13 +65,13 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
     table = Table(
         "register",
         lines,
-        "name fsn_no boat_type rowers crew_class empty_thwart tow_date valid_until status "
+        "name fsn_no boat_type rowers crew_class empty_thwart tow_date valid_until status flags "
         "declared_speed_m_s a_kg_m b_m_s cw_kg_m cw_lo_kg_m cw_hi_kg_m waterline_length_m "
         "beam_m bow_height_m weight_kg verification_code",
         follows=["edition"],
         search=True,
         cards="name fsn_no boat_type rowers crew_class cw_kg_m cw_lo_kg_m cw_hi_kg_m valid_until "
-        "status",
+        "status flags",
     )
     register = Section(
         "register",

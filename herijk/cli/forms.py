@@ -21,6 +21,7 @@ from warehouse.queries.assess import Assessment
 from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.registers import DueReport, RegisterReport
 from warehouse.queries.reports import LogErrorReport
+from warehouse.queries.years import YearsReport
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,7 @@ FORMS: Final[dict[str, Any]] = {
     "rebuild": Rebuilt,
     "register": RegisterReport,
     "register --due": DueReport,
+    "register --years": YearsReport,
     "seasons": LogErrorReport,
     "simulate": Simulated,
     "verify": Verification,

@@ -6,6 +6,7 @@ pair A, B with Cw = 1 of the old spreadsheet never comes back.
 """
 
 import datetime as dt
+from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
@@ -18,6 +19,8 @@ LINE: Final = (*CREW, "empty_thwart")
 (Sleepproef, R. Pot 2017, "Bemanning"); `NO_EMPTY_THWART` where all are manned."""
 
 NO_EMPTY_THWART: Final = ""
+TOW_DAY: Final = (*LINE, "tow_date")
+"""What tells tows apart in lists and in print, which have no number of a tow."""
 CURVE_COLUMNS: Final = (
     "tow_id",
     "tow_date",
@@ -33,6 +36,9 @@ CURVE_COLUMNS: Final = (
 CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 DOUBTED: Final = "doubted"
 """Status of a line whose tows the rest of the archive rules out."""
+
+NEWER_TOW_UNMEASURED: Final = "newer_tow_without_samples"
+"""Flag of a line that rests on an older tow, because the newest tow has no samples."""
 
 EXCLUDE, PREFER = "exclude", "prefer"
 DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
@@ -77,7 +83,7 @@ def draft_register(
     rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
 ) -> pl.DataFrame:
-    """One line per boat and crew under one method: the newest sound tow, valid or not.
+    """Return one line per boat and crew under one method: the newest sound tow, valid or not.
 
     Args:
         curves: rows of the warehouse's `curves` of one method.
@@ -93,21 +99,12 @@ def draft_register(
         rest of the archive rules its tows out; a person may look and prefer one. `excluded`: by
         decision, and there is no other tow.
     """
-    towed = _towed(as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
+    made_by_then = tows.filter(pl.col("tow_date") <= on_date)
+    towed = _towed(as_ruled(curves, rule), made_by_then)
     curved = towed.filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    chosen = (
-        _in_order(sound, rule, decisions)
-        .group_by(LINE, maintain_order=True)
-        .last()
-        .with_columns(
-            pl.when(pl.col("valid_until") >= on_date)
-            .then(pl.lit("valid"))
-            .otherwise(pl.lit("expired"))
-            .alias("status")
-        )
-        .select(*LINE, *CURVE_COLUMNS, "status")
-    )
+    history = lines_of_all_days(curves, made_by_then, rule, decisions)
+    chosen = lines_on_days(history, [on_date]).drop("as_of")
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(
         *LINE[:-1], pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
     )
@@ -131,20 +128,99 @@ def lines_of_all_days(
     rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
 ) -> pl.DataFrame:
-    """Every line that a register of one method had at some time.
-
-    In such an order that on any day the last one counts whose `tow_date` is not after it, as in
-    `draft_register`.
+    """Return every line that a register of one method had at some time.
 
     Args:
         curves, tows, rule, decisions: as for `draft_register`.
 
     Returns:
-        `LINE` and `CURVE_COLUMNS` of every tow that can count.
+        `LINE` and `CURVE_COLUMNS` of every tow that can count, in such an order that on any day the
+        last one counts whose `tow_date` is not after it.
     """
     curved = _towed(as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    return _in_order(sound, rule, decisions).select(*LINE, *CURVE_COLUMNS)
+    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
+    is_preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
+    until = valid_until(pl.col("tow_date"), rule).alias("valid_until")
+    ordered = allowed.sort(is_preferred, "tow_date", "tow_id").with_columns(until)
+    return ordered.select(*LINE, *CURVE_COLUMNS)
+
+
+def lines_on_days(
+    history: pl.DataFrame, days: Sequence[dt.date], key: Sequence[str] = LINE
+) -> pl.DataFrame:
+    """Return the lines that count on each of some days.
+
+    Args:
+        history: what a register had at some time, in the order of `lines_of_all_days`.
+        days: the days.
+        key: the columns that tell lines apart; with `edition`, those of several registers.
+
+    Returns:
+        The columns of `history`, with the day as `as_of`, and `status`: `valid` or `expired`.
+    """
+    days_of = pl.DataFrame({"as_of": days}, schema={"as_of": pl.Date})
+    begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= pl.col("as_of"))
+    is_expired = (pl.col("valid_until") < pl.col("as_of")).fill_null(False)
+    status = pl.when(is_expired).then(pl.lit("expired")).otherwise(pl.lit("valid"))
+    return (
+        history.join(days_of, how="cross", maintain_order="left")
+        .filter(begun)
+        .group_by("as_of", *key, maintain_order=True)
+        .last()
+        .with_columns(status.alias("status"))
+    )
+
+
+def tow_days(tows: pl.DataFrame) -> pl.DataFrame:
+    """Return the line and day of tows: columns `TOW_DAY`."""
+    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
+    return tows.select(*LINE[:-1], thwart, "tow_date")
+
+
+def unmeasured_tows(
+    listed: pl.DataFrame, printed: pl.DataFrame, tows: pl.DataFrame, day: dt.date
+) -> pl.DataFrame:
+    """Return the newest tow of each line, up to a day, that lists or print name without samples.
+
+    Args:
+        listed: rows of `listed_tows`, also those without samples.
+        printed: rows of `printed_registers`.
+        tows: rows of `tows`, all that have samples.
+        day: the day.
+
+    Returns:
+        Rows of `TOW_DAY`.
+    """
+    in_print = printed.filter("has_valid_curve").select(TOW_DAY)
+    named = pl.concat([tow_days(listed), in_print], how="vertical_relaxed")
+    unmeasured = named.filter(pl.col("tow_date") <= day).join(
+        tow_days(tows), on=TOW_DAY, how="anti"
+    )
+    return unmeasured.group_by(LINE, maintain_order=True).agg(pl.col("tow_date").max())
+
+
+def flag_unmeasured(
+    lines: pl.DataFrame, unmeasured: pl.DataFrame, decisions: pl.DataFrame
+) -> pl.DataFrame:
+    """Flag valid lines that rest on an older tow than the newest one, which has no samples.
+
+    Args:
+        lines: lines of a register.
+        unmeasured: rows of `unmeasured_tows`.
+        decisions: as for `draft_register`; a preferred tow counts whatever is newer.
+    """
+    newer = unmeasured.select(*LINE, unmeasured_on="tow_date")
+    joined = lines.join(newer, on=LINE, how="left", maintain_order="left")
+    preferred = _with_verdict(decisions, PREFER)["tow_id"].to_list()
+    is_older = (
+        (pl.col("status") == "valid")
+        & (pl.col("tow_date") < pl.col("unmeasured_on"))
+        & ~pl.col("tow_id").is_in(preferred).fill_null(False)
+    )
+    flags = pl.col("flags").fill_null([]).list.concat(pl.lit([NEWER_TOW_UNMEASURED]))
+    flagged = pl.when(is_older).then(flags).otherwise("flags")
+    return joined.with_columns(flagged.alias("flags")).drop("unmeasured_on")
 
 
 def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
@@ -152,15 +228,6 @@ def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
     return curves.join(
         tows.select("tow_id", "tow_date", thwart), on="tow_id", maintain_order="left"
-    )
-
-
-def _in_order(sound: pl.DataFrame, rule: RegisterRule, decisions: pl.DataFrame) -> pl.DataFrame:
-    """Tows that may count, with their last day; the one that takes precedence comes last."""
-    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
-    preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
-    return allowed.sort(preferred, "tow_date", "tow_id").with_columns(
-        valid_until(pl.col("tow_date"), rule).alias("valid_until")
     )
 
 

@@ -13,7 +13,15 @@ from pipeline.method.definition import (
     shipped_methods,
 )
 from pipeline.method.writing import method_text
-from pipeline.register.register import DECISION_SCHEMA, draft_register, lines_of_all_days
+from pipeline.register.register import (
+    DECISION_SCHEMA,
+    NEWER_TOW_UNMEASURED,
+    NO_DECISIONS,
+    draft_register,
+    flag_unmeasured,
+    lines_of_all_days,
+    unmeasured_tows,
+)
 
 ON = dt.date(2016, 6, 1)
 NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
@@ -132,3 +140,21 @@ def test_a_method_written_out_reads_back_as_itself(name):
     read = parse_method(method_text(method), "x.toml")
     for part in ("definition", "validity", "title", "title_en", "description", "description_en"):
         assert getattr(read, part) == getattr(method, part)
+
+
+def test_a_line_is_flagged_where_a_newer_tow_has_no_samples():
+    days = {"tow_date": pl.Date, "empty_thwart": pl.String}
+    crew = ("FSN1", 8, "H")
+    names = ["fsn_no", "rowers", "crew_class", "tow_date", "empty_thwart"]
+    tows = pl.DataFrame([(*crew, dt.date(2014, 3, 1), None)], names, orient="row")
+    tows = tows.cast(days)
+    listed = pl.concat([tows, tows.with_columns(tow_date=dt.date(2016, 3, 1))])
+    printed = tows.with_columns(empty_thwart=pl.lit(""), has_valid_curve=pl.lit(value=True))
+    unmeasured = unmeasured_tows(listed, printed, tows, ON)
+    assert unmeasured["tow_date"].to_list() == [dt.date(2016, 3, 1)]
+    assert unmeasured_tows(listed, printed, tows, dt.date(2016, 2, 1)).is_empty()
+    preferred = pl.DataFrame([("t2", "prefer")], DECISION_SCHEMA, orient="row")
+    for decisions, flags in ((NO_DECISIONS, [NEWER_TOW_UNMEASURED]), (preferred, [])):
+        lines = flag_unmeasured(register(), unmeasured, decisions)
+        assert lines.filter(tow_id="t2")["flags"].to_list() == [flags]
+        assert lines.filter(tow_id="t6")["flags"].to_list() == [[]]

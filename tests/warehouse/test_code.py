@@ -3,7 +3,7 @@
 import pytest
 
 from tests.architecture.repository import ROOT
-from warehouse.derive.graph import DATABASE, STEPS
+from warehouse.derive.graph import STEPS
 from warehouse.store import code
 
 USED = {"samples": code.READING, "blocks": code.ADDING} | {s.name: s.code for s in STEPS}
@@ -46,10 +46,6 @@ def test_what_computes_no_table_makes_none_stale(file):
 )
 def test_other_code_makes_stale_what_is_computed_with_it(file, not_stale):
     assert stale_after(file) == USED.keys() - not_stale
-
-
-def test_what_describes_the_tables_makes_the_database_alone_stale():
-    assert stale_after("warehouse/store/package.py") == {DATABASE.name}
 
 
 def test_the_hash_is_of_the_bytes(monkeypatch, tmp_path):

@@ -42,7 +42,6 @@ from warehouse.derive.registers import register_tables
 from warehouse.derive.step import Step
 from warehouse.derive.studies import study_tables
 from warehouse.intake import seasons as intake
-from warehouse.store.code import COMPUTING
 from warehouse.store.store import Store
 
 EDITIONS: Final = ("from_edition", "to_edition")
@@ -122,7 +121,6 @@ DATABASE: Final = Step(
     "database",
     database.warehouse_database,
     (database.DATABASE_TABLE,),
-    code=(*COMPUTING, "warehouse.store.package"),
     also=str((database.MEANINGS, VIEWS)),
     is_whole=database.is_whole,
 )

@@ -193,7 +193,8 @@ ORDER BY from_edition, to_edition, race_date, race, crew_class, new_rank NULLS L
 SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.empty_thwart,
        r.waterline_length_m, r.beam_m, r.bow_height_m, r.weight_kg, r.tow_date, r.valid_until,
        r.as_of, r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m,
-       r.cw_hi_kg_m, r.tow_id, r.method, r.verification_code
+       r.cw_hi_kg_m, r.tow_id, r.method, r.flags,
+       r.verification_code
 FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
 """,
     # Repeat tows with the boat's name.
