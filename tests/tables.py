@@ -48,6 +48,8 @@ def make_registers(store: Store, methods: Sequence[Method]) -> None:
         boats=store.read("boats"),
         listed_boats=store.read("listed_boats"),
         listed_races=store.read("listed_races"),
+        listed_tows=store.read("listed_tows"),
+        printed_registers=store.read("printed_registers"),
         decisions=decision_table(read_decisions(store.root / FILE_NAME)),
         published=published_tables(store),
         correction_steps=read_earlier(store, "correction_steps"),

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from warehouse.editions.verify import Finding, Verification
     from warehouse.queries.registers import DueReport, RegisterReport
     from warehouse.queries.reports import LogErrorReport
+    from warehouse.queries.years import YearsReport
 
 
 def _frame(rows: Sequence[Row]) -> pl.DataFrame:
@@ -45,6 +46,32 @@ def register(report: "RegisterReport") -> Iterator[Part]:
         rows=report.lines,
         columns=REGISTER,
         note=tell(edition.REGISTER),
+    )
+
+
+def years(report: "YearsReport") -> Iterator[Part]:
+    """What a method would have changed in the register of every year."""
+    yield marked(report.simulated)
+    yield Section(
+        tell("At the end of each season: the register under {} / as published", report.method),
+        rows=report.years,
+        columns="year lines changed median_ratio lowest_ratio highest_ratio exceeds_interval "
+        "rank_changed printed_lines printed_median_ratio printed_largest_ratio",
+        note=tell(
+            "Cw at the declared speed; the same rule of validity on both sides. Printed: that "
+            "year's printed register / the one that the method of that time gives."
+        ),
+    )
+    yield Section(
+        tell("Winners, by the register of that time and by this one:"),
+        rows=report.winners,
+        columns="race race_date crew_class old_winner new_winner winner_changed change_probability",
+        empty=tell("The archive holds no races."),
+    )
+    yield Section(
+        tell("Causes, with their factor on Cw:"),
+        rows=[row | {"cause": row["step"] or row["cause"]} for row in report.causes],
+        columns="year cause lines median_factor lowest_factor highest_factor",
     )
 
 
@@ -133,7 +160,7 @@ def published(report: "Published") -> Iterator[Part]:
             tell("Decision: {}", about.decision),
             tell("Seal, to be kept in the minutes: {}", about.seal),
             tell("Folder: {}", report.folder),
-            tell("  register.xlsx, register.csv        the register"),
+            tell("  register.csv                       the register"),
             tell("  bericht.md, notice.md              what changes and why, Dutch and English"),
         ],
         note=tell("It is never changed. To see that it stays so: herijk verify"),
@@ -177,7 +204,7 @@ def verify(report: "Verification") -> Iterator[Part]:
         return
     yield Section(
         rows=list(map(vars, report.editions)),
-        columns="edition kind lines made_again equal",
+        columns="edition kind lines equal",
         note=tell(
             "Made again: measured lines from the samples files of the archive, carried lines from "
             "the printed edition, printed lines from the register in the archive."

@@ -97,7 +97,7 @@ def draft_register(
     rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
 ) -> pl.DataFrame:
-    """One line per boat and crew under one method: the newest sound tow, valid or not.
+    """Return one line per boat and crew under one method: the newest sound tow, valid or not.
 
     Args:
         curves: rows of the warehouse's `curves` of one method.
@@ -113,21 +113,12 @@ def draft_register(
         rest of the archive rules its tows out; a person may look and prefer one. `excluded`: by
         decision, and there is no other tow.
     """
-    towed = _towed(as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
+    made_by_then = tows.filter(pl.col("tow_date") <= on_date)
+    towed = _towed(as_ruled(curves, rule), made_by_then)
     curved = towed.filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    chosen = (
-        _in_order(sound, rule, decisions)
-        .group_by(LINE, maintain_order=True)
-        .last()
-        .with_columns(
-            pl.when(pl.col("valid_until") >= on_date)
-            .then(pl.lit("valid"))
-            .otherwise(pl.lit("expired"))
-            .alias("status")
-        )
-        .select(*LINE, *CURVE_COLUMNS, "status")
-    )
+    history = lines_of_all_days(curves, made_by_then, rule, decisions)
+    chosen = lines_on_days(history, [on_date]).drop("as_of")
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(
         *LINE[:-1], pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
     )
@@ -151,20 +142,48 @@ def lines_of_all_days(
     rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
 ) -> pl.DataFrame:
-    """Every line that a register of one method had at some time.
-
-    In such an order that on any day the last one counts whose `tow_date` is not after it, as in
-    `draft_register`.
+    """Return every line that a register of one method had at some time.
 
     Args:
         curves, tows, rule, decisions: as for `draft_register`.
 
     Returns:
-        `LINE` and `CURVE_COLUMNS` of every tow that can count.
+        `LINE` and `CURVE_COLUMNS` of every tow that can count, in such an order that on any day the
+        last one counts whose `tow_date` is not after it.
     """
     curved = _towed(as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    return _in_order(sound, rule, decisions).select(*LINE, *CURVE_COLUMNS)
+    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
+    is_preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
+    until = valid_until(pl.col("tow_date"), rule).alias("valid_until")
+    ordered = allowed.sort(is_preferred, "tow_date", "tow_id").with_columns(until)
+    return ordered.select(*LINE, *CURVE_COLUMNS)
+
+
+def lines_on_days(
+    history: pl.DataFrame, days: Sequence[dt.date], key: Sequence[str] = LINE
+) -> pl.DataFrame:
+    """Return the lines that count on each of some days.
+
+    Args:
+        history: what a register had at some time, in the order of `lines_of_all_days`.
+        days: the days.
+        key: the columns that tell lines apart; with `edition`, those of several registers.
+
+    Returns:
+        The columns of `history`, with the day as `as_of`, and `status`: `valid` or `expired`.
+    """
+    days_of = pl.DataFrame({"as_of": days}, schema={"as_of": pl.Date})
+    begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= pl.col("as_of"))
+    is_expired = (pl.col("valid_until") < pl.col("as_of")).fill_null(False)
+    status = pl.when(is_expired).then(pl.lit("expired")).otherwise(pl.lit("valid"))
+    return (
+        history.join(days_of, how="cross", maintain_order="left")
+        .filter(begun)
+        .group_by("as_of", *key, maintain_order=True)
+        .last()
+        .with_columns(status.alias("status"))
+    )
 
 
 def tow_days(tows: pl.DataFrame) -> pl.DataFrame:
@@ -223,15 +242,6 @@ def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
     return curves.join(
         tows.select("tow_id", "tow_date", thwart), on="tow_id", maintain_order="left"
-    )
-
-
-def _in_order(sound: pl.DataFrame, rule: RegisterRule, decisions: pl.DataFrame) -> pl.DataFrame:
-    """Tows that may count, with their last day; the one that takes precedence comes last."""
-    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
-    preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
-    return allowed.sort(preferred, "tow_date", "tow_id").with_columns(
-        valid_until(pl.col("tow_date"), rule).alias("valid_until")
     )
 
 

@@ -20,8 +20,10 @@ from pipeline.register.register import (
     as_ruled,
     draft_name,
     draft_register,
+    flag_unmeasured,
     lines_of_all_days,
     reference_day,
+    unmeasured_tows,
 )
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import RaceChanges, RegisterChanges
@@ -48,6 +50,8 @@ def register_tables(
     boats: pl.DataFrame,
     listed_boats: pl.DataFrame,
     listed_races: pl.DataFrame,
+    listed_tows: pl.DataFrame,
+    printed_registers: pl.DataFrame,
     decisions: pl.DataFrame,
     published: Mapping[str, pl.DataFrame],
     correction_steps: pl.DataFrame,
@@ -60,11 +64,16 @@ def register_tables(
     """
     as_of, known = reference_day(tows, listed_races), (curves, tows, listed_boats, decisions)
     lines = {method.name: lines_on(method, *known, as_of) for method in methods}
-    drafts = [_draft(method, own, tows) for method, own in lines.items()]
+    unmeasured = unmeasured_tows(listed_tows, printed_registers, tows, as_of)
+    drafts = [
+        _draft(method, flag_unmeasured(own, unmeasured, decisions), tows)
+        for method, own in lines.items()
+    ]
     histories = [_history(method, curves, tows, decisions) for method in methods]
     register = pl.concat(drafts)
     ladders = correction_steps.filter(pl.col("position") > 0, from_method=methods[0].name)
-    parts = (steps_of_lines(d, ladders.filter(to_method=d["method"][0])) for d in drafts[1:])
+    first = drafts[0]
+    parts = (steps_of_lines(first, ladders.filter(to_method=d["method"][0])) for d in drafts[1:])
     changes = [register_changes(drafts[0], *both) for both in zip(drafts[1:], parts, strict=True)]
     hashes = {method.name: method.content_hash for method in methods}
     made = {

@@ -1,50 +1,85 @@
-"""Publishing: from the samples and lists of an archive to a frozen edition.
+"""Publishing: from the samples and lists of an archive to a frozen edition, and the same again.
 
-What an edition holds is made in `warehouse.editions.making`, how a folder appears whole or not at
-all in `warehouse.store.editions`. Only a person publishes, who gives the name, the day from which
-it counts, the decision and the day of publication.
+Only a person publishes, who gives the name, the day from which it counts, the decision and the day
+of publication. Which tow counts is decided in `pipeline.register.register` and, between measured
+and printed lines, in `warehouse.editions.printed`. Only samples, lists and blocks are read, no
+tables that a rebuild made of them; sheets and texts follow from the tables of the edition.
 """
 
 import datetime as dt
+import hashlib
+import io
+import json
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 import polars as pl
 
-from pipeline.errors import MissingKnowledgeError
+from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
+from pipeline.method.writing import method_text
+from pipeline.recompute.recompute import recompute
 from pipeline.register.register import (
     DOUBTED,
     LINE,
+    NEWER_TOW_UNMEASURED,
     draft_name,
+    draft_register,
+    flag_unmeasured,
     reference_day,
     unmeasured_tows,
 )
+from pipeline.tables.archive import Boats
+from pipeline.tables.frames import dtypes
+from pipeline.tables.keys import SIZES
+from pipeline.tables.register import Register
 from pipeline.tables.row import Row
-from warehouse.editions.inputs import REGISTER, input_files, listed_inputs
-from warehouse.editions.making import (
-    as_printed,
-    contents_of,
-    decisions_up_to,
-    recomputed,
-    with_changes,
+from pipeline.tables.schemas import conform
+from warehouse.derive.registers import decisions_of, members_of
+from warehouse.editions import notes, sheets
+from warehouse.editions import printed as prints
+from warehouse.editions.compare import compare
+from warehouse.editions.inputs import (
+    INPUTS_HASH,
+    JUDGED,
+    REGISTER,
+    input_files,
+    listed_inputs,
+    tables_of_today,
 )
-from warehouse.editions.notes import VERSION
-from warehouse.editions.printed import printed_path
-from warehouse.editions.verify import chain_head
+from warehouse.intake import seasons as intake
 from warehouse.store import decisions as decided
+from warehouse.store import editions as folder
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
+    MEASURED,
     Edition,
     Manifest,
+    chain_head,
     check_new_name,
     edition_names,
+    edition_path,
     read_edition,
     read_manifest,
     write_folder,
 )
 from warehouse.store.store import Store
+
+BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
+LINE_SCHEMA: Final = {
+    **{n: c.dtype for n, c in Register.columns().items() if n != sheets.CODE_FIELD.column},
+    **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
+    INPUTS_HASH: pl.String(),
+    "basis": pl.String(),
+}
+"""Columns of a line of an edition, but for its verification code."""
+
+NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
+"""Tables that a method makes of the tows, and that an edition keeps."""
 
 
 @dataclass(frozen=True)
@@ -65,14 +100,14 @@ class Terms:
 
 
 def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Path:
-    """Freezes the register of a method as an edition.
+    """Freeze the register of a method as an edition.
 
     Args:
         store: the data folder; its tables must be those of the archive and code of today.
         method: a method that the last rebuild applied.
         terms: what a person decided.
-        carry: a printed edition of which lines are taken over, re-based in closed form, for boats
-            and crews whose newest tow has no samples. Without it such lines are flagged.
+        carry: a printed edition of which lines are taken over, re-based in closed form, where the
+            newest tow of a boat and crew has no samples in the archive.
 
     Returns:
         The folder.
@@ -90,41 +125,32 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
             store.root,
             method.name,
         )
-    edition = as_decided(store, method, terms, carry)
+    edition = make_edition(store, _manifest(store, terms, method, carry), method)
     return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
 
 
 def _is_of_today(store: Store, method: Method) -> bool:
-    """Whether the tables are made with this method and with the code of today."""
+    """Return whether the tables are made with this method and with the code of today."""
     if store.made_from("tows") is None:
         return False
     with_code = (method.name, method.content_hash, code_version())
     return with_code in store.read("lineage").select("method", "method_hash", "code_version").rows()
 
 
-def as_decided(
-    store: Store,
-    method: Method,
-    terms: Terms,
-    carry: str | None = None,
-    counting: Collection[str] = ("valid",),
-) -> Edition:
-    """The edition that publishing would freeze; raises and takes arguments as `publish`.
+def publish_printed(store: Store, season: int, terms: Terms) -> Path:
+    """Freeze a register of the archive, as printed that year, as an edition.
 
-    Args:
-        counting: statuses of lines that have numbers.
+    Raises:
+        BrokenPromiseError: the name is taken, or the folder could not be written.
+        MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
+            of it cannot be read.
     """
-    decisions = decided.decision_table(decisions_up_to(store, terms.published_on))
-    _check_decided_tows(decisions, store.read("tows"))
-    manifest = _manifest(store, terms, method, carry)
-    crews = store.read("listed_boats")
-    unmeasured = unmeasured_tows(
-        store.read("listed_tows"),
-        store.read("printed_registers"),
-        store.read("tows"),
-        terms.valid_from,
-    )
-    return recomputed(store, manifest, method, decisions, crews, unmeasured, counting=counting)
+    _check_terms(store, terms)
+    path = prints.printed_path(store, season)
+    files = store.read("listed_files").filter(pl.col("path") == path)
+    files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
+    manifest = _manifest(store, terms, printed_in=season)
+    return _write(store, make_printed(store, manifest, path), files)
 
 
 def drafted(
@@ -133,7 +159,7 @@ def drafted(
     valid_from: dt.date | None = None,
     counting: Collection[str] = ("valid",),
 ) -> Edition:
-    """The draft of a method as an edition: what publishing it would freeze.
+    """Return the draft of a method as an edition: what publishing it would freeze.
 
     Args:
         store: the data folder.
@@ -144,26 +170,11 @@ def drafted(
     """
     day = valid_from or reference_day(store.read("tows"), store.read("listed_races"))
     terms = Terms(draft_name(method.name), day, "", dt.date.today())
-    return as_decided(store, method, terms, counting=counting)
-
-
-def publish_printed(store: Store, season: int, terms: Terms) -> Path:
-    """Freezes a register of the archive, as printed that year, as an edition.
-
-    Raises:
-        BrokenPromiseError: the name is taken, or the folder could not be written.
-        MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
-            of it cannot be read.
-    """
-    _check_terms(store, terms)
-    path = printed_path(store, season)
-    files = store.read("listed_files").filter(pl.col("path") == path)
-    files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
-    return _write(store, as_printed(store, _manifest(store, terms, None, None), path), files)
+    return make_edition(store, _manifest(store, terms, method), method, counting)
 
 
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
-    """The edition that counted last before a day; None if there is none."""
+    """Return the edition that counted last before a day; None if there is none."""
     known = [read_manifest(store.editions / name) for name in edition_names(store)]
     earlier = [m for m in known if (m.valid_from, m.published_on) <= (valid_from, published_on)]
     if not earlier:
@@ -189,14 +200,14 @@ class Published:
 
 
 def published(store: Store, folder: Path) -> Published:
-    """What there is to say about an edition that was just published."""
+    """Return what there is to say about an edition that was just published."""
     edition = read_edition(store, folder.name)
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
     return Published(edition.manifest, str(folder), dict(counts.rows()), lines_to_look_at(edition))
 
 
 def lines_to_look_at(edition: Edition) -> list[Row]:
-    """Lines with flags, and those left without numbers because their tows are doubted."""
+    """Return lines with flags, and those left without numbers because their tows are doubted."""
     to_look_at = (pl.col("flags").list.len() > 0) | (pl.col("status") == DOUBTED)
     lines = edition.register.filter(to_look_at)
     return lines.select(*LINE, "status", "tow_id", "flags").to_dicts()
@@ -210,18 +221,13 @@ def _check_terms(store: Store, terms: Terms) -> None:
         )
 
 
-def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
-    unknown = decisions.join(tows, on="tow_id", how="anti")["tow_id"].to_list()
-    if unknown:
-        raise MissingKnowledgeError(
-            "{} decides about {}, which is not a tow of the warehouse; mend the "
-            "sleep_id, or take the decision out",
-            decided.FILE_NAME,
-            ", ".join(unknown),
-        )
-
-
-def _manifest(store: Store, terms: Terms, method: Method | None, carry: str | None) -> Manifest:
+def _manifest(
+    store: Store,
+    terms: Terms,
+    method: Method | None = None,
+    carry: str | None = None,
+    printed_in: int | None = None,
+) -> Manifest:
     return Manifest(
         edition=terms.edition,
         kind="as_printed" if method is None else "recomputed",
@@ -234,12 +240,12 @@ def _manifest(store: Store, terms: Terms, method: Method | None, carry: str | No
         simulated=bool(store.read("about_archive")["simulated"][0]),
         carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
-        texts_version=VERSION,
+        printed_in=printed_in,
     )
 
 
 def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
-    """Writes an edition's folder as the next of the chain."""
+    """Write an edition's folder as the next of the chain."""
     compared = with_changes(store, edition)
 
     def contents() -> dict[str, bytes]:
@@ -247,6 +253,206 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
         number, seal = (0, None) if head is None else (head.number or 0, head.seal)
         place = {"number": number + 1, "after_seal": seal}
         manifest = edition.manifest.model_copy(update=place)
-        return contents_of(store, replace(compared, manifest=manifest), files)
+        return edition_files(store, replace(compared, manifest=manifest), files)
 
     return write_folder(store, edition.manifest.edition, contents)
+
+
+# The tables of an edition
+
+
+def make_edition(
+    store: Store, manifest: Manifest, method: Method, counting: Collection[str] = ("valid",)
+) -> Edition:
+    """Make the edition that a method gives of the archive as it is now.
+
+    Args:
+        store: the data folder.
+        manifest: its days, and the printed edition of which lines are carried over.
+        method: the method.
+        counting: statuses of lines that have numbers.
+
+    Raises:
+        MissingKnowledgeError: a decision is about a tow that is not in the warehouse.
+    """
+    decisions = decided.decision_table(decisions_up_to(store, manifest.published_on))
+    today = tables_of_today(store)
+    unknown = decisions.join(today["tows"], on="tow_id", how="anti")["tow_id"].to_list()
+    if unknown:
+        raise MissingKnowledgeError(
+            "{} decides about {}, which is not a tow of the warehouse; mend the "
+            "sleep_id, or take the decision out",
+            decided.FILE_NAME,
+            ", ".join(unknown),
+        )
+    crews = store.read("listed_boats")
+    printed = store.read("printed_registers")
+    listed = store.read("listed_tows")
+    unmeasured = unmeasured_tows(listed, printed, today["tows"], manifest.valid_from)
+    return _recompute(store, manifest, method, today, decisions, crews, unmeasured, counting)
+
+
+def make_printed(store: Store, manifest: Manifest, path: str) -> Edition:
+    """Make the edition that a printed register of the archive gives."""
+    lines = prints.printed_lines(store, path)
+    return Edition(manifest, {"register": _complete(store, lines, manifest, None)}, None)
+
+
+def make_again(store: Store, edition: Edition) -> Edition:
+    """Make a published edition again, by its own method, decisions and day.
+
+    Measured lines are computed from those of its tows that the warehouse still has, carried lines
+    re-based again from the printed edition, and a printed register read again. What other tows
+    said of a tow, and which tows had no samples, is taken as the edition has it.
+
+    Raises:
+        MissingKnowledgeError: there is no warehouse, or the archive is not there.
+        BrokenPromiseError: the printed edition that lines were carried over from is damaged, or
+            the list of what a printed one was made from.
+    """
+    if store.made_from("tows") is None:
+        raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
+    manifest = edition.manifest
+    if edition.method is None:
+        path = edition_path(store, manifest.edition)
+        files = sheets.read_inputs(path)
+        if files.is_empty():
+            raise BrokenPromiseError("{}/{} names no file", path.name, folder.INPUTS)
+        return with_changes(store, make_printed(store, manifest, files["path"][0]))
+    own = edition.tables["tows"]
+    judged = own.select("tow_id", *(name for name in JUDGED if name in own.columns))
+    tows, runs = (t.join(judged, on="tow_id", how="semi") for t in tables_of_today(store).values())
+    tows = tows.drop(JUDGED, strict=False).join(judged, on="tow_id", maintain_order="left")
+    is_flagged = pl.col("flags").list.contains(NEWER_TOW_UNMEASURED)
+    again = _recompute(
+        store,
+        manifest,
+        edition.method,
+        {"tows": tows, "tow_runs": runs},
+        decisions_of(store, edition),
+        crews=edition.register.filter(status="never_towed"),
+        unmeasured=edition.register.filter(is_flagged).select(*LINE, tow_date=manifest.valid_from),
+    )
+    return with_changes(store, again)
+
+
+def with_changes(store: Store, edition: Edition) -> Edition:
+    """Add the comparison with the edition before, where there is one."""
+    previous = _previous(store, edition)
+    if previous is None:
+        return edition
+    return replace(
+        edition, tables={**edition.tables, folder.CHANGES: compare(store, previous, edition)}
+    )
+
+
+def _previous(store: Store, edition: Edition) -> Edition | None:
+    previous = edition.manifest.previous
+    return None if previous is None else read_edition(store, previous)
+
+
+def _recompute(
+    store: Store,
+    manifest: Manifest,
+    method: Method,
+    inputs: dict[str, pl.DataFrame],
+    decisions: pl.DataFrame,
+    crews: pl.DataFrame,
+    unmeasured: pl.DataFrame,
+    counting: Collection[str] = ("valid",),
+) -> Edition:
+    """Compute all tables of an edition from tows and runs; `inputs` holds both tables."""
+    tows, runs = inputs["tows"], inputs["tow_runs"]
+    blocks = stack_blocks(intake.all_blocks(store), runs)
+    made = recompute(method, tows, blocks, with_bands=False)
+    draft = draft_register(
+        made.curves, tows, crews, manifest.valid_from, method.validity, decisions
+    )
+    counts = pl.col("status").is_in(list(counting))
+    lines = draft.join(
+        tows.select("tow_id", *SIZES, INPUTS_HASH), on="tow_id", how="left", maintain_order="left"
+    ).with_columns(
+        *(pl.when(counts).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
+        basis=pl.when(counts).then(pl.lit(MEASURED)),
+    )
+    if manifest.carried_from is not None:
+        printed = read_edition(store, manifest.carried_from)
+        lines = prints.carry_over(
+            lines, printed, made.log_factors, method, tows, manifest.valid_from
+        )
+    lines = flag_unmeasured(lines, unmeasured, decisions)
+    members = conform("ensemble", members_of(method, made))
+    tables = {
+        **inputs,
+        **{name: conform(name, getattr(made, name)) for name in MADE},
+        "ensemble": members.join(lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"),
+        "register": _complete(store, lines, manifest, method),
+    }
+    return Edition(manifest, tables, method)
+
+
+def _complete(
+    store: Store, lines: pl.DataFrame, manifest: Manifest, method: Method | None
+) -> pl.DataFrame:
+    """Add the facts of boats and the verification codes; check and sort."""
+    own = prints.PRINTED_METHOD if method is None else method.name
+    boats = store.read("boats").select("fsn_no", *BOAT_FACTS)
+    is_printed = pl.col("basis") == prints.NOT_REBASED
+    named = lines.join(boats, on="fsn_no", how="left", maintain_order="left").with_columns(
+        edition=pl.lit(manifest.edition),
+        method=pl.when(is_printed).then(pl.lit(prints.PRINTED_METHOD)).otherwise(pl.lit(own)),
+        as_of=pl.lit(manifest.valid_from),
+    )
+    missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
+    full = named.with_columns(missing).select(
+        pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items()
+    )
+    full = full.sort(LINE)
+    codes = sheets.verification_codes(full, None if method is None else method.content_hash)
+    coded = full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
+    conform("register", coded)
+    return coded
+
+
+# Files
+
+
+def sheet_files(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
+    """Write the sheets, method and decisions of an edition, by file name.
+
+    Args:
+        store: the data folder.
+        edition: the edition.
+        files: what it was made from, as `input_files` gives it.
+    """
+    contents = {
+        folder.CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
+        folder.INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
+    }
+    if edition.method is not None:
+        decisions = decisions_up_to(store, edition.manifest.published_on)
+        decided_then = json.dumps([d.model_dump(mode="json") for d in decisions], indent=1)
+        contents[folder.METHOD] = method_text(edition.method).encode("utf-8")
+        contents[folder.DECISIONS] = decided_then.encode("utf-8")
+    return contents
+
+
+def edition_files(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
+    """Write all files of an edition, last its manifest; arguments as for `sheet_files`."""
+    contents = sheet_files(store, edition, files)
+    for name, text in notes.texts(edition, _previous(store, edition)).items():
+        contents[name] = text.encode("utf-8")
+    for name, frame in edition.tables.items():
+        target = io.BytesIO()
+        frame.write_parquet(target, compression="zstd")
+        contents[name + folder.PARQUET] = target.getvalue()
+    hashes = {name: hashlib.sha256(c).hexdigest() for name, c in sorted(contents.items())}
+    sealed = edition.manifest.model_copy(update={"files": hashes}).sealed()
+    contents[folder.MANIFEST] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
+    return contents
+
+
+def decisions_up_to(store: Store, day: dt.date) -> tuple[decided.Decision, ...]:
+    """Return the decisions about tows taken up to a day."""
+    decisions = decided.read_decisions(store.root / decided.FILE_NAME)
+    return tuple(d for d in decisions if d.datum <= day)

@@ -1,4 +1,4 @@
-"""The register as people read it: CSV and XLSX with Dutch headers.
+"""The register as people read it: CSV with Dutch headers, for a spreadsheet.
 
 The cells of the CSV are the printed register: they are what the verification code of a line covers,
 together with the line's inputs and method. Nothing is computed here but text and hashes.
@@ -6,7 +6,6 @@ together with the line's inputs and method. Nothing is computed here but text an
 
 import base64
 import csv
-import datetime as dt
 import hashlib
 import io
 import json
@@ -16,22 +15,13 @@ from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
 import polars as pl
-import python_calamine
-import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from pipeline.register.register import NO_EMPTY_THWART
-from warehouse.store.editions import INPUTS, Manifest
+from warehouse.store.editions import INPUTS
 
-REGISTER_SHEET: Final = "register"
-A4: Final = 9
-"""The paper's number in a spreadsheet."""
 CODE_LENGTH: Final = 10
 FORMULA: Final = re.compile(r"(^|[;,\t\r\n])(\s*)([=+\-@])")
 """What a spreadsheet takes for a formula, also behind a separator that it splits a cell at."""
-
-TEXT_STAYS_TEXT: Final = dict.fromkeys(
-    ("strings_to_formulas", "strings_to_urls", "strings_to_numbers"), False
-)
 
 FieldType = Literal["string", "number", "integer", "date"]
 
@@ -150,80 +140,6 @@ def read_inputs(edition: Path) -> pl.DataFrame:
         if len(row) == len(names)
     ]
     return pl.DataFrame(rows[1:], schema=dict.fromkeys(names, pl.String()), orient="row")
-
-
-def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], manifest: Manifest) -> bytes:
-    """A sheet as XLSX, numbers as numbers and days as days, with what the edition is beside it."""
-    target = io.BytesIO()
-    words = _in_words(frame)
-    cells = words.select(
-        (pl.col(f.column).round(f.decimals) if f.type == "number" else pl.col(f.column)).alias(
-            f.header
-        )
-        for f in fields
-    )
-    with xlsxwriter.Workbook(target, {"in_memory": True, **TEXT_STAYS_TEXT}) as book:
-        created = dt.datetime.combine(manifest.published_on, dt.time())
-        book.set_properties({"title": f"Sloepenregister {manifest.edition}", "created": created})
-        sheet = cells.write_excel(
-            book,
-            REGISTER_SHEET,
-            column_formats={field.header: _number_format(field) for field in fields},
-            column_widths=_widths(frame, fields),
-            header_format={"text_wrap": True, "valign": "top"},
-            row_heights={0: 40},
-            freeze_panes=(1, 1),
-        ).get_worksheet_by_name(REGISTER_SHEET)
-        sheet.repeat_rows(0)
-        sheet.set_landscape()
-        sheet.set_paper(A4)
-        sheet.repeat_columns(0, 2)
-        sheet.fit_to_pages(2, 0)
-        about = pl.DataFrame(list(_about(manifest).items()), ["editie", "waarde"], orient="row")
-        about.write_excel(book, "editie", include_header=False, autofit=True)
-    return target.getvalue()
-
-
-def _widths(frame: pl.DataFrame, fields: Sequence[Field]) -> dict[Any, int]:
-    """Width of each column in pixels, by header: of its cells, and of the words of its header."""
-    cells = printed(frame, fields)
-    return {
-        name: 12 + 7 * max(7, *map(len, name.split()), *map(len, cells[name]))
-        for name in cells.columns
-    }
-
-
-def _number_format(field: Field) -> str:
-    if field.type == "number":
-        return "0." + "0" * field.decimals if field.decimals else "0"
-    return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
-
-
-def _about(manifest: Manifest) -> dict[str, str]:
-    """What an edition is, in words."""
-    return {
-        "editie": manifest.edition,
-        "geldt vanaf": manifest.valid_from.isoformat(),
-        "vastgesteld op": manifest.published_on.isoformat(),
-        "besluit": manifest.decision,
-        "methode": manifest.method or "zoals gedrukt",
-        "methode-hash": manifest.method_hash or "",
-        "programmaversie": manifest.code_version,
-        "gesimuleerd": "ja: geen metingen van de federatie" if manifest.simulated else "nee",
-    }
-
-
-def read_xlsx_cells(content: bytes) -> dict[str, list[list[Any]]]:
-    """The cells of all sheets, by the sheet's name.
-
-    Raises:
-        ValueError: this is no XLSX.
-    """
-    try:
-        book = python_calamine.load_workbook(io.BytesIO(content))
-        return {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
-    except python_calamine.CalamineError as error:
-        raise ValueError(f"no XLSX: {error}") from error
 
 
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:

@@ -27,7 +27,6 @@ from pipeline.messages import say
 from pipeline.method.definition import Method, parse_method
 from pipeline.register.register import with_empty_thwart
 from pipeline.tables.curves import Curves
-from pipeline.tables.declare import dy
 from pipeline.tables.register import Register
 from warehouse.store.files import TEMPORARY_PREFIX, folder_written_beside
 from warehouse.store.store import Store
@@ -42,13 +41,15 @@ PARQUET: Final = ".parquet"
 METHOD: Final = "method.toml"
 DECISIONS: Final = "decisions.json"
 CSV: Final = "register.csv"
-XLSX: Final = "register.xlsx"
 INPUTS: Final = "inputs.csv"
 NOTICE: Final = "bericht.md"
 NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
 MEASURED: Final = "measured"
 """The basis of a line that was computed from a tow."""
+
+LATER_COLUMNS: Final = {"register": Register, "curves": Curves}
+"""Tables that got more columns since the first editions."""
 
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,59}")
 _LOCK: Final = f"{TEMPORARY_PREFIX}lock"
@@ -65,6 +66,7 @@ class Manifest(BaseModel):
         carried_from: the printed edition of which lines were taken over, if any.
         previous: the edition that it is compared with.
         texts_version: in which words its texts are; None for the first.
+        printed_in: season in which a register was printed; None where it was not noted.
         number, after_seal: place in the chain of editions, from 1, and seal of the one published
             before; a number of None where there was no chain yet.
         files: SHA-256 of every other file.
@@ -85,6 +87,7 @@ class Manifest(BaseModel):
     carried_from: str | None
     previous: str | None
     texts_version: str | None = None
+    printed_in: int | None = None
     number: int | None = None
     after_seal: str | None = None
     files: dict[str, str] = {}
@@ -188,8 +191,25 @@ def read_manifest(path: Path) -> Manifest:
         ) from error
 
 
+def readable_manifests(store: Store) -> tuple[dict[str, Manifest], dict[str, BrokenPromiseError]]:
+    """Return the manifests of all editions by folder name, and the errors of damaged ones."""
+    manifests, errors = {}, {}
+    for name in edition_names(store):
+        try:
+            manifests[name] = read_manifest(store.editions / name)
+        except BrokenPromiseError as error:
+            errors[name] = error
+    return manifests, errors
+
+
+def chain_head(store: Store) -> Manifest | None:
+    """Return the edition published last; None before the first that is chained."""
+    chained = [m for m in readable_manifests(store)[0].values() if m.number is not None]
+    return max(chained, key=lambda manifest: manifest.number or 0, default=None)
+
+
 def read_edition(store: Store, edition: str) -> Edition:
-    """An edition with its tables.
+    """Read an edition with its tables; what was not yet said when it was published is empty.
 
     Raises:
         MissingKnowledgeError: there is none of that name, or its method is not understood by the
@@ -200,23 +220,13 @@ def read_edition(store: Store, edition: str) -> Edition:
     manifest = read_manifest(path)
     names = [name.removesuffix(PARQUET) for name in manifest.files if name.endswith(PARQUET)]
     tables = {name: read_table(path, name) for name in names}
-    for name in {"register", CHANGES} & tables.keys():
-        tables[name] = with_empty_thwart(tables[name])
-    for name, schema in {"register": Register, "curves": Curves}.items():
-        if name in tables:
-            tables[name] = _with_later_columns(schema, tables[name])
+    if CHANGES in tables:
+        tables[CHANGES] = with_empty_thwart(tables[CHANGES])
     method = None
     if manifest.kind == "recomputed":
         text = (path / METHOD).read_text(encoding="utf-8")
         method = parse_method(text, f"{edition}/{METHOD}", published=True)
     return Edition(manifest, tables, method)
-
-
-def _with_later_columns(schema: type[dy.Schema], frame: pl.DataFrame) -> pl.DataFrame:
-    """A table of an edition, with what was not yet said when it was published, empty."""
-    columns = schema.columns()
-    missing = [n for n, column in columns.items() if column.nullable and n not in frame.columns]
-    return frame.with_columns(pl.lit(None, columns[n].dtype).alias(n) for n in missing)
 
 
 def method_of_edition(store: Store, edition: str) -> Method:
@@ -237,19 +247,25 @@ def method_of_edition(store: Store, edition: str) -> Method:
 
 
 def read_table(path: Path, name: str) -> pl.DataFrame:
-    """A table of an edition.
+    """Read a table of an edition, with the columns that came later, empty.
 
     Raises:
         BrokenPromiseError: the file is missing or damaged.
     """
     try:
-        return pl.read_parquet((path / f"{name}{PARQUET}").read_bytes())
+        frame = pl.read_parquet((path / f"{name}{PARQUET}").read_bytes())
     except (OSError, pl.exceptions.PolarsError) as error:
         raise BrokenPromiseError(
             "edition {}: {}.parquet is missing or damaged; put the folder back from a copy",
             path.name,
             name,
         ) from error
+    if name not in LATER_COLUMNS:
+        return frame
+    frame = with_empty_thwart(frame) if name == "register" else frame
+    later = {n: c.dtype for n, c in LATER_COLUMNS[name].columns().items() if c.nullable}
+    missing = [pl.lit(None, t).alias(n) for n, t in later.items() if n not in frame.columns]
+    return frame.with_columns(missing)
 
 
 def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str, bytes]]) -> Path:
