@@ -50,6 +50,7 @@ def make_registers(store: Store, methods: Sequence[Method]) -> None:
         listed_races=store.read("listed_races"),
         listed_tows=store.read("listed_tows"),
         printed_registers=store.read("printed_registers"),
+        log_factors=store.read("log_factors"),
         decisions=decision_table(read_decisions(store.root / FILE_NAME)),
         published=published_tables(store),
         correction_steps=read_earlier(store, "correction_steps"),

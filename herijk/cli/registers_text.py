@@ -65,7 +65,8 @@ def years(report: "YearsReport") -> Iterator[Part]:
     yield Section(
         tell("Winners, by the register of that time and by this one:"),
         rows=report.winners,
-        columns="race race_date crew_class old_winner new_winner winner_changed change_probability",
+        columns="race race_date crew_class published_winner winner winner_changed "
+        "change_probability",
         empty=tell("The archive holds no races."),
     )
     yield Section(

@@ -32,8 +32,23 @@ CURVE_COLUMNS: Final = (
     "cw_lo_kg_m",
     "cw_hi_kg_m",
     "flags",
+    "basis",
 )
+CARRIED_COLUMNS: Final = (
+    "tow_date",
+    "valid_until",
+    "declared_speed_m_s",
+    "a_kg_m",
+    "b_m_s",
+    "cw_kg_m",
+    "basis",
+)
+"""What a printed line says, of those."""
+
 CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+MEASURED: Final = "measured"
+"""The basis of a line that was computed from a tow."""
+
 DOUBTED: Final = "doubted"
 """Status of a line whose tows the rest of the archive rules out."""
 
@@ -96,6 +111,7 @@ def draft_register(
     on_date: dt.date,
     rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
+    carried: pl.DataFrame | None = None,
 ) -> pl.DataFrame:
     """Return one line per boat and crew under one method: the newest sound tow, valid or not.
 
@@ -106,6 +122,7 @@ def draft_register(
         on_date: the day on which validity is judged; later tows do not exist yet.
         rule: how long a tow counts, and which of its estimates.
         decisions: `tow_id` and `verdict`: a tow to `exclude`, or to `prefer` over newer ones.
+        carried: printed lines of tows without samples (`pipeline.register.printed.carried_lines`).
 
     Returns:
         Rows of the table `register`, `as_of` that day. Their status is `valid`, `expired`,
@@ -117,7 +134,7 @@ def draft_register(
     towed = _towed(as_ruled(curves, rule), made_by_then)
     curved = towed.filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    history = lines_of_all_days(curves, made_by_then, rule, decisions)
+    history = lines_of_all_days(curves, made_by_then, rule, decisions, carried)
     chosen = lines_on_days(history, [on_date]).drop("as_of")
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(
         *LINE[:-1], pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
@@ -126,7 +143,10 @@ def draft_register(
         (sound.join(chosen, on=LINE, how="anti"), "excluded"),
         (curved.join(sound, on=LINE, how="anti"), DOUBTED),
         (towed.join(curved, on=LINE, how="anti"), "rejected"),
-        (crews.join(towed, on="fsn_no", how="anti"), "never_towed"),
+        (
+            crews.join(towed, on="fsn_no", how="anti").join(chosen, on="fsn_no", how="anti"),
+            "never_towed",
+        ),
     ]
     lines = [
         frame.select(LINE).unique().with_columns(pl.lit(status).alias("status"))
@@ -141,11 +161,12 @@ def lines_of_all_days(
     tows: pl.DataFrame,
     rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
+    carried: pl.DataFrame | None = None,
 ) -> pl.DataFrame:
     """Return every line that a register of one method had at some time.
 
     Args:
-        curves, tows, rule, decisions: as for `draft_register`.
+        curves, tows, rule, decisions, carried: as for `draft_register`.
 
     Returns:
         `LINE` and `CURVE_COLUMNS` of every tow that can count, in such an order that on any day the
@@ -156,7 +177,13 @@ def lines_of_all_days(
     allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
     is_preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
     until = valid_until(pl.col("tow_date"), rule).alias("valid_until")
-    ordered = allowed.sort(is_preferred, "tow_date", "tow_id").with_columns(until)
+    lines = allowed.with_columns(until, basis=pl.lit(MEASURED), is_preferred=is_preferred)
+    if carried is not None:
+        printed = carried.select(*LINE, *CARRIED_COLUMNS)
+        lines = pl.concat([lines, printed], how="diagonal_relaxed")
+    ordered = lines.sort(
+        pl.col("is_preferred").fill_null(value=False), "tow_date", "tow_id", maintain_order=True
+    )
     return ordered.select(*LINE, *CURVE_COLUMNS)
 
 

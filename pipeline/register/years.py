@@ -1,4 +1,4 @@
-"""The register of every past year: as it was published, and as a method would have had it.
+"""The register of every past year: as it was published, and as each method would have had it.
 
 Newer tows supersede older ones, so the register of today says nothing about the errors of earlier
 seasons. Here the lines that counted at the end of each season are compared, by the same rule of
@@ -8,110 +8,150 @@ time.
 
 import datetime as dt
 from collections.abc import Sequence
-from typing import Final
 
 import polars as pl
 
+from pipeline.method.definition import Method, method_in_force
 from pipeline.register.changes import compare_lines, steps_of_lines
 from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name, lines_on_days
 from pipeline.register.replay import RaceRules, replay, winner_changes
+from pipeline.tables.register import RegisterYears, YearWinners
 
-FIRST_PUBLISHED: Final = "as-published-2014"
-PUBLISHED: Final = "as-published"
-RECOMPUTED_IN: Final = 2015
-"""The tows of 2014 were recomputed early in 2015: registers before that have them as they first
-came out (presentation R. Pot, 24 January 2015)."""
+KEY = ("edition", "method", *LINE)
 
 
-def method_in_force(year: int) -> str:
-    """Return the name of the method by which the register of a year was published."""
-    return FIRST_PUBLISHED if year < RECOMPUTED_IN else PUBLISHED
-
-
-def registers_of_years(history: pl.DataFrame, years: Sequence[int]) -> pl.DataFrame:
-    """Return the valid lines of every method at the end of each season.
+def register_years(
+    history: pl.DataFrame,
+    correction_steps: pl.DataFrame,
+    methods: Sequence[Method],
+    seasons: Sequence[int],
+) -> pl.DataFrame:
+    """Compare the register at the end of each season as published with that of each method.
 
     Args:
-        history: rows of the table `register_history`, of drafts.
-        years: the seasons.
+        history: rows of the table `register_history`.
+        correction_steps: the table of that name.
+        methods: the methods that were applied; the steps of the others begin at the first.
+        seasons: the seasons.
+
+    Returns:
+        Rows of the table `register_years`: of each season and method the valid lines, beside those
+        of the method by which that season's register was published.
+    """
+    registers = registers_of_years(history, methods, seasons)
+    own_facts = registers.select("year", "method", *LINE, "tow_date", "valid_until", "basis")
+    compared: list[pl.DataFrame] = [RegisterYears.create_empty()]
+    for season in seasons:
+        published = published_method(season, methods)
+        before = registers.filter(year=season, method=published.name)
+        for method in methods:
+            after = registers.filter(year=season, method=method.name)
+            if before.is_empty() and after.is_empty():
+                continue
+            steps = steps_between(
+                correction_steps, published.name, method.name, by_way_of=methods[0].name
+            )
+            lines = compare_lines(before, after, steps_of_lines(before, steps))
+            named = lines.with_columns(
+                year=pl.lit(season, pl.Int32),
+                method=pl.lit(method.name),
+                published_method=pl.lit(published.name),
+            ).join(own_facts, on=["year", "method", *LINE], how="left", maintain_order="left")
+            renamed = named.rename(_published_and_own)
+            compared.append(renamed.select(RegisterYears.column_names()))
+    return pl.concat(compared)
+
+
+def registers_of_years(
+    history: pl.DataFrame, methods: Sequence[Method], seasons: Sequence[int]
+) -> pl.DataFrame:
+    """Return the valid lines of the draft of every method at the end of each season.
+
+    Args:
+        history: rows of the table `register_history`.
+        methods: the methods.
+        seasons: the seasons.
 
     Returns:
         `year`, `edition`, `method`, `LINE` and `CURVE_COLUMNS`.
     """
-    key = ("edition", "method", *LINE)
-    days = [dt.date(year, 12, 31) for year in years]
-    lines = lines_on_days(history.sort(*key, "position"), days, key).filter(status="valid")
+    drafts = [draft_name(method.name) for method in methods]
+    lines = history.filter(pl.col("edition").is_in(drafts)).sort(*KEY, "position")
+    days = [dt.date(season, 12, 31) for season in seasons]
+    valid = lines_on_days(lines, days, KEY).filter(status="valid")
     year = pl.col("as_of").dt.year().alias("year")
-    return lines.select(year, *key, *CURVE_COLUMNS).sort("year", *key)
+    return valid.select(year, *KEY, *CURVE_COLUMNS).sort("year", *KEY)
 
 
-def steps_from_print(correction_steps: pl.DataFrame, year: int, method: str) -> pl.DataFrame:
-    """Return the steps from the method in force in a year to another, one row per tow and step.
+def published_method(season: int, methods: Sequence[Method]) -> Method:
+    """Return the method by which a season's register was published; the first if none says so."""
+    return method_in_force(season, methods) or methods[0]
+
+
+def steps_between(
+    correction_steps: pl.DataFrame, start: str, end: str, by_way_of: str
+) -> pl.DataFrame:
+    """Return the steps from one method to another, by way of the first method of the rebuild.
 
     Args:
-        correction_steps: the table of that name, of all methods.
-        year: the season of the register.
-        method: the method that the steps lead to.
+        correction_steps: the table of that name.
+        start, end: names of methods.
+        by_way_of: name of the method from which, or to which, the table has steps.
+
+    Returns:
+        `tow_id`, `position`, `step` and `factor`: the factors of both legs multiplied.
     """
-    legs = correction_steps.filter(from_method=PUBLISHED, to_method=method)
-    if method_in_force(year) == FIRST_PUBLISHED:
-        first_leg = correction_steps.filter(from_method=FIRST_PUBLISHED, to_method=PUBLISHED)
-        legs = pl.concat([first_leg, legs])
+    legs = [(start, by_way_of), (by_way_of, end)]
+    steps = [correction_steps.filter(from_method=one, to_method=other) for one, other in legs]
     return (
-        legs.filter(pl.col("position") > 0)
+        pl.concat(steps)
+        .filter(pl.col("position") > 0)
         .group_by("tow_id", "position", "step", maintain_order=True)
         .agg(pl.col("factor").product())
     )
 
 
-def compare_years(
-    registers: pl.DataFrame, correction_steps: pl.DataFrame, method: str
+def year_winners(
+    history: pl.DataFrame,
+    results: pl.DataFrame,
+    members: pl.DataFrame,
+    methods: Sequence[Method],
 ) -> pl.DataFrame:
-    """Compare the register of every year as published with that of a method, line by line.
+    """Return who won every race by the register of its time, and who would have by each method.
 
     Args:
-        registers: rows of `registers_of_years`.
-        correction_steps: the table of that name.
-        method: name of the method.
-
-    Returns:
-        The columns of `pipeline.register.changes.compare_lines`, with `year`.
-    """
-    known = set(registers["method"])
-    compared = []
-    for year in registers["year"].unique().sort():
-        published = method_in_force(year)
-        if published not in known:
-            published = PUBLISHED
-        old = registers.filter(year=year, method=published)
-        new = registers.filter(year=year, method=method)
-        parts = steps_of_lines(old, steps_from_print(correction_steps, year, method))
-        lines = compare_lines(old, new, parts)
-        compared.append(lines.select(pl.lit(year, pl.Int32).alias("year"), pl.all()))
-    return pl.concat(compared)
-
-
-def winners_of_years(
-    history: pl.DataFrame, results: pl.DataFrame, members: pl.DataFrame, method: str
-) -> pl.DataFrame:
-    """Return who won every race by the register of its time, and who would have by a method.
-
-    Args:
-        history: rows of the table `register_history`, of drafts.
+        history: rows of the table `register_history`.
         results: rows of `listed_races`.
-        members: the ensemble of the method; may be empty.
-        method: name of the method.
+        members: rows of the table `ensemble`.
+        methods: the methods that were applied.
 
     Returns:
-        The columns of `pipeline.register.replay.winner_changes`, with `year`.
+        Rows of the table `year_winners`.
     """
-    known = set(history["method"])
-    after = history.filter(edition=draft_name(method))
-    winners = []
-    for (year,), of_year in results.group_by(pl.col("race_date").dt.year(), maintain_order=True):
-        published = method_in_force(int(str(year)))
-        before = history.filter(method=published if published in known else PUBLISHED)
-        replayed = [replay(lines, of_year, RaceRules()) for lines in (before, after)]
-        changes = winner_changes(replayed[0], replayed[1], members)
-        winners.append(changes.select(pl.lit(year, pl.Int32).alias("year"), pl.all()))
-    return pl.concat(winners) if winners else pl.DataFrame()
+    year = pl.col("race_date").dt.year()
+    seasons = results["race_date"].dt.year().unique().sort().to_list()
+    replayed = {}
+    for method in methods:
+        lines = history.filter(edition=draft_name(method.name))
+        replayed[method.name] = replay(lines, results, RaceRules())
+    published = {season: published_method(season, methods).name for season in seasons}
+    found: list[pl.DataFrame] = [YearWinners.create_empty()]
+    if seasons:
+        before = pl.concat(
+            [replayed[name].filter(year == season) for season, name in published.items()]
+        )
+        for method in methods:
+            own_members = members.filter(method=method.name)
+            changes = winner_changes(before, replayed[method.name], own_members)
+            named = changes.rename(_published_and_own, strict=False).with_columns(
+                year=year,
+                method=pl.lit(method.name),
+                published_method=year.replace_strict(published, return_dtype=pl.String),
+            )
+            found.append(named.select(YearWinners.column_names()))
+    return pl.concat(found)
+
+
+def _published_and_own(name: str) -> str:
+    """Return the name of a column in the tables of years."""
+    return name.replace("old_", "published_", 1).removeprefix("new_")

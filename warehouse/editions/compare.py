@@ -15,7 +15,7 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.curve import cw
-from pipeline.method.definition import RUNS_ALONE
+from pipeline.method.definition import RUNS_ALONE, method_in_force
 from pipeline.races.power import curve_of_lines
 from pipeline.register.changes import (
     NO_FACTOR,
@@ -25,15 +25,16 @@ from pipeline.register.changes import (
     largest_first,
     steps_of_lines,
 )
-from pipeline.register.register import LINE, NO_EMPTY_THWART, TOW_DAY
+from pipeline.register.printed import rebase_printed
+from pipeline.register.register import LINE, MEASURED, NO_EMPTY_THWART, TOW_DAY
 from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.registers import lines_in_time
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today
-from warehouse.editions.printed import method_in_print, rebase_printed
-from warehouse.store.editions import CHANGES, MEASURED, Edition
+from warehouse.store.editions import CHANGES, Edition
+from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
 LADDER: Final = ("tow_id", "position", "step", "factor", "cw_kg_m")
@@ -111,7 +112,12 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return NO_LADDER
     from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
 
-    start = old.method or method_in_print(old.manifest.printed_in or old.manifest.valid_from.year)
+    printed_in = old.manifest.printed_in or old.manifest.valid_from.year
+    known = KnownMethods.of(store)
+    methods = [known.get(name) for name in known.names]
+    start = old.method or method_in_force(printed_in, methods)
+    if start is None:
+        return NO_LADDER
     blocks = stack_blocks(intake.all_blocks(store), runs)
     before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
     is_known = after is not None and (before is not None or old.method is None)

@@ -14,9 +14,9 @@ import polars as pl
 
 from pipeline.messages import DECIMALS
 from pipeline.method.definition import COMPLETE
+from pipeline.register.printed import NOT_REBASED, REBASED
 from pipeline.register.register import NEWER_TOW_UNMEASURED
 from warehouse.editions.compare import report
-from warehouse.editions.printed import NOT_REBASED, REBASED
 from warehouse.store.editions import CHANGES, NOTICE, NOTICE_EN, Edition
 
 TEMPLATES: Final = Path(__file__).parent / "templates"

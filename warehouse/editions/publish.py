@@ -22,10 +22,12 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
 from pipeline.method.writing import method_text
 from pipeline.recompute.recompute import recompute
+from pipeline.register.printed import NOT_REBASED, carried_lines
 from pipeline.register.register import (
     DOUBTED,
     LINE,
     NEWER_TOW_UNMEASURED,
+    TOW_DAY,
     draft_name,
     draft_register,
     flag_unmeasured,
@@ -55,7 +57,6 @@ from warehouse.store import decisions as decided
 from warehouse.store import editions as folder
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
-    MEASURED,
     Edition,
     Manifest,
     chain_head,
@@ -365,21 +366,28 @@ def _recompute(
     tows, runs = inputs["tows"], inputs["tow_runs"]
     blocks = stack_blocks(intake.all_blocks(store), runs)
     made = recompute(method, tows, blocks, with_bands=False)
+    carried = _carried_lines(store, manifest, method, made.log_factors, tows)
     draft = draft_register(
-        made.curves, tows, crews, manifest.valid_from, method.validity, decisions
+        made.curves, tows, crews, manifest.valid_from, method.validity, decisions, carried
     )
     counts = pl.col("status").is_in(list(counting))
-    lines = draft.join(
-        tows.select("tow_id", *SIZES, INPUTS_HASH), on="tow_id", how="left", maintain_order="left"
-    ).with_columns(
-        *(pl.when(counts).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
-        basis=pl.when(counts).then(pl.lit(MEASURED)),
-    )
-    if manifest.carried_from is not None:
-        printed = read_edition(store, manifest.carried_from)
-        lines = prints.carry_over(
-            lines, printed, made.log_factors, method, tows, manifest.valid_from
+    own_hash = carried.select(*TOW_DAY, printed_sha256=INPUTS_HASH)
+    lines = (
+        draft.join(
+            tows.select("tow_id", *SIZES, INPUTS_HASH),
+            on="tow_id",
+            how="left",
+            maintain_order="left",
         )
+        .join(own_hash, on=TOW_DAY, how="left", maintain_order="left")
+        .with_columns(
+            pl.coalesce(INPUTS_HASH, "printed_sha256").alias(INPUTS_HASH),
+            *(
+                pl.when(counts).then(pl.col(name)).alias(name)
+                for name in (*NUMBERS, "flags", "basis")
+            ),
+        )
+    )
     lines = flag_unmeasured(lines, unmeasured, decisions)
     members = conform("ensemble", members_of(method, made))
     tables = {
@@ -391,13 +399,32 @@ def _recompute(
     return Edition(manifest, tables, method)
 
 
+def _carried_lines(
+    store: Store, manifest: Manifest, method: Method, log_factors: pl.DataFrame, tows: pl.DataFrame
+) -> pl.DataFrame:
+    """Return the lines of the printed edition that is carried over; none where none is.
+
+    Raises:
+        MissingKnowledgeError: the edition is not a printed one.
+    """
+    if manifest.carried_from is None:
+        return pl.DataFrame(schema={**LINE_SCHEMA})
+    printed = read_edition(store, manifest.carried_from)
+    if printed.manifest.kind != "as_printed":
+        raise MissingKnowledgeError(
+            "edition {} was recomputed; only lines of an edition as printed can be carried over",
+            printed.manifest.edition,
+        )
+    return carried_lines(printed.register, log_factors, method, tows)
+
+
 def _complete(
     store: Store, lines: pl.DataFrame, manifest: Manifest, method: Method | None
 ) -> pl.DataFrame:
     """Add the facts of boats and the verification codes; check and sort."""
     own = prints.PRINTED_METHOD if method is None else method.name
     boats = store.read("boats").select("fsn_no", *BOAT_FACTS)
-    is_printed = pl.col("basis") == prints.NOT_REBASED
+    is_printed = pl.col("basis") == NOT_REBASED
     named = lines.join(boats, on="fsn_no", how="left", maintain_order="left").with_columns(
         edition=pl.lit(manifest.edition),
         method=pl.when(is_printed).then(pl.lit(prints.PRINTED_METHOD)).otherwise(pl.lit(own)),

@@ -45,9 +45,6 @@ INPUTS: Final = "inputs.csv"
 NOTICE: Final = "bericht.md"
 NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
-MEASURED: Final = "measured"
-"""The basis of a line that was computed from a tow."""
-
 LATER_COLUMNS: Final = {"register": Register, "curves": Curves}
 """Tables that got more columns since the first editions."""
 
