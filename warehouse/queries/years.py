@@ -46,7 +46,7 @@ def years_report(store: Store, method: str | None = None) -> YearsReport:
     with Views(store) as views:
         chosen = method or default_method(views.table("methods")["method"].to_list())
         lines = views.ask("register_years").filter(method=chosen)
-        winners = views.table("year_winners").filter(method=chosen)
+        winners = views.ask("year_winners").filter(method=chosen)
         printed = views.store.read("printed_registers")
         simulated = views.simulated(draft_name(chosen))
     if lines.is_empty():
