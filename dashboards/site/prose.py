@@ -23,7 +23,7 @@ from dashboards.statements.slides import Slide, slides
 from pipeline.messages import Sentence, say
 from pipeline.register.register import STUDIED_METHOD, default_method
 from warehouse.queries.views import Views
-from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, edition_names, edition_path
+from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_names, edition_path
 from warehouse.store.store import Store
 
 TITLES: Final = {
@@ -147,7 +147,7 @@ def _under(slide: Slide, speech: Speech) -> str:
 
 
 DOWNLOADS: Final = "downloads"
-SHEETS: Final = (CSV,)
+SHEETS: Final = (CSV, XLSX)
 NOTICES: Final = {"nl": NOTICE, "en": NOTICE_EN}
 PAPERS: Final = {"bericht.pdf": "nl", "notice.pdf": "en"}
 """The notice as it is made for paper, and its language."""

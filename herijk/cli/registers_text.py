@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
+from dashboards import labels
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
 from herijk.cli.render import Part, Section, codes, marked, prose, speech
@@ -71,7 +72,7 @@ def years(report: "YearsReport") -> Iterator[Part]:
     )
     yield Section(
         tell("Causes, with their factor on Cw:"),
-        rows=[row | {"cause": row["step"] or row["cause"]} for row in report.causes],
+        rows=[row | {"cause": tell(labels.cause(row))} for row in report.causes],
         columns="year cause lines median_factor lowest_factor highest_factor",
     )
 
@@ -161,7 +162,7 @@ def published(report: "Published") -> Iterator[Part]:
             tell("Decision: {}", about.decision),
             tell("Seal, to be kept in the minutes: {}", about.seal),
             tell("Folder: {}", report.folder),
-            tell("  register.csv                       the register"),
+            tell("  register.xlsx, register.csv        the register"),
             tell("  bericht.md, notice.md              what changes and why, Dutch and English"),
         ],
         note=tell("It is never changed. To see that it stays so: herijk verify"),
@@ -230,6 +231,11 @@ def verify(report: "Verification") -> Iterator[Part]:
             ],
         )
     yield _verdict(report.findings)
+    if report.is_without_head:
+        yield tell(
+            "Without the head from the minutes nobody can see whether the last edition was "
+            "removed: herijk verify --head SEAL"
+        )
 
 
 def _verdict(findings: "list[Finding]") -> str:

@@ -34,7 +34,7 @@ TABLES = (
 )
 FILES = {
     "register.csv",
-    "inputs.csv",
+    "register.xlsx",
     "manifest.json",
     "method.toml",
     "decisions.json",

@@ -61,11 +61,11 @@ def test_a_damaged_description_does_not_stop_the_others(published_copy):
 
 
 @FILES_ALONE
-def test_an_added_file_is_a_notice(published_copy):
+def test_an_added_file_is_found(published_copy):
     (folder(published_copy) / "~lock.register.xlsx#").write_text("x", encoding="utf-8")
-    findings, wrong = found(published_copy, kind="notice")
-    assert not wrong
-    assert findings[0].where == "~lock.register.xlsx#"
+    findings, wrong = found(published_copy, kind="altered")
+    assert wrong
+    assert [finding.where for finding in findings] == ["~lock.register.xlsx#"]
 
 
 @FILES_ALONE
@@ -228,7 +228,6 @@ TABLES = {
     "log_factors": {"factor": pl.col("factor") * 1.001},
 }
 TEXTS = {
-    "inputs.csv": (";meetdata;", ";lijst;"),
     "decisions.json": ("[]", "[ ]"),
     "register.csv": ("controlecode\r\n", "controlecode \r\n"),
 }

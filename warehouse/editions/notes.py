@@ -12,10 +12,12 @@ from typing import Final
 import jinja2
 import polars as pl
 
-from pipeline.messages import DECIMALS
+from pipeline.messages import DECIMALS, spoken
 from pipeline.method.definition import COMPLETE
 from pipeline.register.printed import NOT_REBASED, REBASED
 from pipeline.register.register import NEWER_TOW_UNMEASURED
+from pipeline.register.words import name_cause
+from pipeline.tables.row import Row
 from warehouse.editions.compare import report
 from warehouse.store.editions import CHANGES, NOTICE, NOTICE_EN, Edition
 
@@ -71,11 +73,15 @@ def _environment(language: str) -> jinja2.Environment:
 
         return format_date(value, "d MMMM y", locale=language)
 
+    def cause(found: Row) -> str:
+        return str(spoken(name_cause(found["cause"], found["step"]), language))
+
     environment.filters |= {
         "number": number,
         "per_cent": per_cent,
         "seconds": lambda value: "-" if value is None else f"{value:+.0f} s",
         "day": day,
+        "cause": cause,
         "cell": lambda text: text.replace("|", r"\|").replace("\n", " "),
     }
     return environment

@@ -10,7 +10,7 @@ import datetime as dt
 import hashlib
 import io
 import json
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -47,9 +47,8 @@ from warehouse.editions.compare import compare
 from warehouse.editions.inputs import (
     INPUTS_HASH,
     JUDGED,
-    REGISTER,
-    input_files,
-    listed_inputs,
+    list_files,
+    list_sources,
     tables_of_today,
 )
 from warehouse.intake import seasons as intake
@@ -126,8 +125,8 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
             store.root,
             method.name,
         )
-    edition = make_edition(store, _manifest(store, terms, method, carry), method)
-    return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
+    manifest = _manifest(store, terms, list_files(store), method, carry)
+    return _write(store, make_edition(store, manifest, method))
 
 
 def _is_of_today(store: Store, method: Method) -> bool:
@@ -148,10 +147,10 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Path:
     """
     _check_terms(store, terms)
     path = prints.printed_path(store, season)
-    files = store.read("listed_files").filter(pl.col("path") == path)
-    files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
-    manifest = _manifest(store, terms, printed_in=season)
-    return _write(store, make_printed(store, manifest, path), files)
+    listed = store.read("listed_files").filter(pl.col("path") == path)
+    sources = dict(listed.select("path", "sha256").rows())
+    manifest = _manifest(store, terms, sources, printed_in=season)
+    return _write(store, make_printed(store, manifest, path))
 
 
 def drafted(
@@ -171,7 +170,8 @@ def drafted(
     """
     day = valid_from or reference_day(store.read("tows"), store.read("listed_races"))
     terms = Terms(draft_name(method.name), day, "", dt.date.today())
-    return make_edition(store, _manifest(store, terms, method), method, counting)
+    manifest = _manifest(store, terms, list_files(store), method)
+    return make_edition(store, manifest, method, counting)
 
 
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
@@ -225,6 +225,7 @@ def _check_terms(store: Store, terms: Terms) -> None:
 def _manifest(
     store: Store,
     terms: Terms,
+    sources: Mapping[str, str],
     method: Method | None = None,
     carry: str | None = None,
     printed_in: int | None = None,
@@ -242,10 +243,11 @@ def _manifest(
         carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
         printed_in=printed_in,
+        sources=dict(sources),
     )
 
 
-def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
+def _write(store: Store, edition: Edition) -> Path:
     """Write an edition's folder as the next of the chain."""
     compared = with_changes(store, edition)
 
@@ -254,7 +256,7 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
         number, seal = (0, None) if head is None else (head.number or 0, head.seal)
         place = {"number": number + 1, "after_seal": seal}
         manifest = edition.manifest.model_copy(update=place)
-        return edition_files(store, replace(compared, manifest=manifest), files)
+        return edition_files(store, replace(compared, manifest=manifest))
 
     return write_folder(store, edition.manifest.edition, contents)
 
@@ -316,10 +318,10 @@ def make_again(store: Store, edition: Edition) -> Edition:
     manifest = edition.manifest
     if edition.method is None:
         path = edition_path(store, manifest.edition)
-        files = sheets.read_inputs(path)
-        if files.is_empty():
-            raise BrokenPromiseError("{}/{} names no file", path.name, folder.INPUTS)
-        return with_changes(store, make_printed(store, manifest, files["path"][0]))
+        registers = list(list_sources(path, manifest))
+        if len(registers) != 1:
+            raise BrokenPromiseError("{} does not say which printed register it is", path.name)
+        return with_changes(store, make_printed(store, manifest, registers[0]))
     own = edition.tables["tows"]
     judged = own.select("tow_id", *(name for name in JUDGED if name in own.columns))
     tows, runs = (t.join(judged, on="tow_id", how="semi") for t in tables_of_today(store).values())
@@ -444,17 +446,11 @@ def _complete(
 # Files
 
 
-def sheet_files(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
-    """Write the sheets, method and decisions of an edition, by file name.
-
-    Args:
-        store: the data folder.
-        edition: the edition.
-        files: what it was made from, as `input_files` gives it.
-    """
+def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
+    """Write the sheets, method and decisions of an edition, by file name."""
     contents = {
         folder.CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
-        folder.INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
+        folder.XLSX: sheets.write_workbook(edition.register, sheets.SHEET_FIELDS),
     }
     if edition.method is not None:
         decisions = decisions_up_to(store, edition.manifest.published_on)
@@ -464,9 +460,9 @@ def sheet_files(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str
     return contents
 
 
-def edition_files(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
-    """Write all files of an edition, last its manifest; arguments as for `sheet_files`."""
-    contents = sheet_files(store, edition, files)
+def edition_files(store: Store, edition: Edition) -> dict[str, bytes]:
+    """Write all files of an edition, last its manifest."""
+    contents = sheet_files(store, edition)
     for name, text in notes.texts(edition, _previous(store, edition)).items():
         contents[name] = text.encode("utf-8")
     for name, frame in edition.tables.items():

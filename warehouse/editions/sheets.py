@@ -1,4 +1,4 @@
-"""The register as people read it: CSV with Dutch headers, for a spreadsheet.
+"""The register as people read it: CSV and XLSX with Dutch headers, for a spreadsheet.
 
 The cells of the CSV are the printed register: they are what the verification code of a line covers,
 together with the line's inputs and method. Nothing is computed here but text and hashes.
@@ -6,22 +6,30 @@ together with the line's inputs and method. Nothing is computed here but text an
 
 import base64
 import csv
+import datetime as dt
 import hashlib
 import io
 import json
 import re
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
 import polars as pl
+import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from pipeline.register.register import NO_EMPTY_THWART
-from warehouse.store.editions import INPUTS
+from warehouse.archive.workbooks import read_workbook
 
 CODE_LENGTH: Final = 10
 FORMULA: Final = re.compile(r"(^|[;,\t\r\n])(\s*)([=+\-@])")
 """What a spreadsheet takes for a formula, also behind a separator that it splits a cell at."""
+
+TEXT_STAYS_TEXT: Final = dict.fromkeys(
+    ("strings_to_formulas", "strings_to_urls", "strings_to_numbers"), False
+)
+SHEET: Final = "register"
+OLDER_SECOND_SHEET: Final = "editie"
+"""What workbooks up to version 1.0.0 have besides."""
 
 FieldType = Literal["string", "number", "integer", "date"]
 
@@ -88,8 +96,6 @@ CODE_FIELD: Final = Field("controlecode", "verification_code")
 SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 """The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
 
-INPUT_FIELDS: Final = (Field("bestand", "path"), Field("soort", "kind"), Field("sha256", "sha256"))
-
 
 def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     """The cells of a sheet as they are printed, by header."""
@@ -126,20 +132,75 @@ def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
     return text.getvalue().encode("utf-8-sig")
 
 
-def read_inputs(edition: Path) -> pl.DataFrame:
-    """What an edition was made from: `path`, `kind` and `sha256` of each file.
+def write_workbook(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
+    """Write a sheet as XLSX: numbers as numbers, days as days, and no text as a formula."""
+    target = io.BytesIO()
+    formats: dict[Any, str] = {field.header: _number_format(field) for field in fields}
+    with xlsxwriter.Workbook(target, {"in_memory": True, **TEXT_STAYS_TEXT}) as book:
+        _cells(frame, fields).write_excel(
+            book, SHEET, column_formats=formats, autofit=True, freeze_panes=(1, 1)
+        )
+    return target.getvalue()
 
-    A row of another width was changed, which is found where the files themselves are looked at.
+
+def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]) -> bool:
+    """Return whether a workbook shows a sheet as `write_workbook` writes it, and nothing else.
+
+    Compared are the cells with their number formats; hidden rows, columns and sheets show nothing.
     """
-    path, names = edition / INPUTS, [field.column for field in INPUT_FIELDS]
-    content = path.read_bytes() if path.exists() else b""
-    text = content.decode("utf-8-sig", errors="replace")
-    rows = [
-        row
-        for row in csv.reader(io.StringIO(text, newline=""), delimiter=";")
-        if len(row) == len(names)
+    import openpyxl  # type: ignore[import-untyped]  # noqa: PLC0415 - a tenth of a second
+
+    try:
+        read_workbook(workbook)  # refuses what would unpack to more than a list needs
+        book = openpyxl.load_workbook(io.BytesIO(workbook))
+    except Exception:
+        return False
+    if book.sheetnames not in ([SHEET], [SHEET, OLDER_SECOND_SHEET]):
+        return False
+    sheet = book[SHEET]
+    shapes = [*sheet.row_dimensions.values(), *sheet.column_dimensions.values()]
+    sizes = [getattr(shape, "height", None) for shape in shapes]
+    sizes += [getattr(shape, "width", None) for shape in shapes]
+    is_hidden = any(shape.hidden for shape in shapes) or 0 in sizes
+    if is_hidden or sheet.sheet_state != "visible" or sheet.conditional_formatting:
+        return False
+    cells = _cells(frame, fields)
+    formats = [_number_format(field) for field in fields]
+    shown = [tuple(cell.value for cell in row) for row in sheet.iter_rows()]
+    expected = [tuple(cells.columns), *(tuple(map(_as_read, row)) for row in cells.rows())]
+    formatted = [
+        [cell.number_format for cell in row if cell.value is not None]
+        for row in sheet.iter_rows(min_row=2)
     ]
-    return pl.DataFrame(rows[1:], schema=dict.fromkeys(names, pl.String()), orient="row")
+    formats_of_cells = [
+        [name for name, value in zip(formats, row, strict=True) if value not in (None, "")]
+        for row in cells.rows()
+    ]
+    return shown == expected and formatted == formats_of_cells
+
+
+def _cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
+    """Return the values of the cells of a workbook, by header."""
+    words = _in_words(frame)
+    cells = []
+    for field in fields:
+        value = pl.col(field.column)
+        rounded = value.round(field.decimals) if field.type == "number" else value
+        cells.append(rounded.alias(field.header))
+    return words.select(cells)
+
+
+def _as_read(value: object) -> object:
+    """Return a value as a workbook gives it back: a day with a time, no empty text."""
+    if isinstance(value, dt.date):
+        return dt.datetime.combine(value, dt.time())
+    return None if value == "" else value
+
+
+def _number_format(field: Field) -> str:
+    if field.type == "number":
+        return "0." + "0" * field.decimals if field.decimals else "0"
+    return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
 
 
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:

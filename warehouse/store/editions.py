@@ -12,6 +12,7 @@ import hashlib
 import json
 import re
 import shutil
+import stat
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -41,7 +42,7 @@ PARQUET: Final = ".parquet"
 METHOD: Final = "method.toml"
 DECISIONS: Final = "decisions.json"
 CSV: Final = "register.csv"
-INPUTS: Final = "inputs.csv"
+XLSX: Final = "register.xlsx"
 NOTICE: Final = "bericht.md"
 NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
@@ -64,6 +65,8 @@ class Manifest(BaseModel):
         previous: the edition that it is compared with.
         texts_version: in which words its texts are; None for the first.
         printed_in: season in which a register was printed; None where it was not noted.
+        sources: SHA-256 of the lists, or of the printed register, by path in the archive. The
+            samples of a tow are in the table `tows`.
         number, after_seal: place in the chain of editions, from 1, and seal of the one published
             before; a number of None where there was no chain yet.
         files: SHA-256 of every other file.
@@ -85,6 +88,7 @@ class Manifest(BaseModel):
     previous: str | None
     texts_version: str | None = None
     printed_in: int | None = None
+    sources: dict[str, str] = {}
     number: int | None = None
     after_seal: str | None = None
     files: dict[str, str] = {}
@@ -125,8 +129,32 @@ class Edition:
 
 
 def edition_names(store: Store) -> list[str]:
-    """The published editions, sorted, without any that is still being written."""
-    return sorted(f.name for f in store.editions.glob("[!.]*") if f.is_dir())
+    """Return the published editions, sorted, without any that is still being written.
+
+    An empty folder is none.
+    """
+    folders = [path for path in store.editions.glob("[!.]*") if path.is_dir()]
+    return sorted(path.name for path in folders if any(path.iterdir()))
+
+
+def stray_names(store: Store) -> list[str]:
+    """Return what lies among the editions and is none: files, and empty folders."""
+    names = {path.name for path in store.editions.glob("[!.]*")}
+    return sorted(names - {*edition_names(store)})
+
+
+def is_plain_file(path: Path) -> bool:
+    """Return whether a path is a file of its own: no folder, pipe or link, also no hard link."""
+    try:
+        status = path.lstat()
+    except OSError:
+        return False
+    return stat.S_ISREG(status.st_mode) and status.st_nlink == 1
+
+
+def is_edition_name(name: str) -> bool:
+    """Return whether an edition can have a name: letters, digits, `.`, `_` and `-` of ASCII."""
+    return _NAME.fullmatch(name) is not None and not name.startswith("concept-")
 
 
 def edition_path(store: Store, edition: str) -> Path:
@@ -148,7 +176,7 @@ def check_new_name(store: Store, edition: str) -> None:
         BrokenPromiseError: the name is taken.
         MissingKnowledgeError: it cannot be the name of a folder everywhere, or is a draft's.
     """
-    if not _NAME.fullmatch(edition) or edition.startswith("concept-"):
+    if not is_edition_name(edition):
         raise MissingKnowledgeError(
             "{!r} cannot name an edition: use letters, digits, '.', '_' and '-', "
             "begin with a letter or digit, and not with 'concept-', which marks "
@@ -177,6 +205,8 @@ def read_manifest(path: Path) -> Manifest:
     """
     file = manifest_path(path)
     try:
+        if not file.is_file():  # to read a pipe would wait for ever
+            raise FileNotFoundError(file.name)
         return Manifest.model_validate_json(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, ValidationError) as error:
         reason = str(error).splitlines()[0]
@@ -186,6 +216,19 @@ def read_manifest(path: Path) -> Manifest:
             file.name,
             reason,
         ) from error
+
+
+def has_doubled_key(content: bytes) -> bool:
+    """Return whether JSON says something twice: the seal covers what is said last, and alone."""
+    is_doubled = False
+
+    def count_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
+        nonlocal is_doubled
+        is_doubled |= len(dict(pairs)) < len(pairs)
+        return dict(pairs)
+
+    json.loads(content, object_pairs_hook=count_keys)
+    return is_doubled
 
 
 def readable_manifests(store: Store) -> tuple[dict[str, Manifest], dict[str, BrokenPromiseError]]:
