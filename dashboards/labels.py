@@ -200,6 +200,7 @@ COLUMNS: Final[dict[str, Sentence]] = {
     "published_winner": say("Winner then"),
     "winner": say("Winner by the method"),
     "year": say("Year"),
+    "changed": say("Changed lines"),
     "rank_changed": say("Other speed rank"),
     "printed_lines": say("Lines in print"),
     "printed_median_ratio": say("Print: median ratio"),
