@@ -13,8 +13,9 @@ from pipeline.messages import ngettext, say, tell
 from pipeline.tables.row import Row
 
 if TYPE_CHECKING:
+    from warehouse.editions.integrity import Finding
     from warehouse.editions.publish import Published
-    from warehouse.editions.verify import Finding, Verification
+    from warehouse.editions.verify import Verification
     from warehouse.queries.registers import DueReport, RegisterReport
     from warehouse.queries.reports import LogErrorReport
     from warehouse.queries.years import YearsReport

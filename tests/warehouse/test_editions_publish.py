@@ -19,7 +19,8 @@ from tests.warehouse.edition_bench import diff, terms
 from warehouse.derive.registers import published_tables
 from warehouse.editions import publish as publish_module
 from warehouse.editions import sheets
-from warehouse.editions.publish import MADE, lines_to_look_at, publish_printed
+from warehouse.editions.making import MADE
+from warehouse.editions.publish import lines_to_look_at, publish_printed
 from warehouse.editions.verify import verify
 from warehouse.store.decisions import FILE_NAME
 from warehouse.store.editions import (
