@@ -34,10 +34,6 @@ ABOUT: Final = {
     "years": YEARS,
     "words": (say("Glossary"), say("What the words and signs mean.")),
     "quality": (say("Quality"), say("Tows set aside, flags, and counts of the rebuild.")),
-    "slides": (
-        say("Presentation 2015"),
-        say("What the presentation of 24 January 2015 asked, answered before and after."),
-    ),
 }
 """The same of the pages that `About` leads to."""
 
