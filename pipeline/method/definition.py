@@ -148,10 +148,15 @@ class Wind(_Options):
 class RunPoint(_Options):
     """How the samples of a window become one point."""
 
-    estimator: Literal["mean_of_ratios", "ratio_of_means"] = _option(
+    estimator: Literal["mean_of_ratios", "ratio_of_means", "ratio_of_robust_means"] = _option(
         "decided",
         say("S2017"),
-        but={"ratio_of_means": Basis("proposed", say("this project: a noisy log; appendix 3"))},
+        but={
+            "ratio_of_means": Basis("proposed", say("this project: a noisy log; appendix 3")),
+            "ratio_of_robust_means": Basis(
+                "proposed", say("this project: a noisy log, steering; appendix 3")
+            ),
+        },
     )
     inertia: Literal["none", "end_speeds"] = _option(
         "proposed", say("this project; appendix 6"), "none"

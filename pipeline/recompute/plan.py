@@ -59,9 +59,10 @@ class Plan:
     def windows(self) -> dict[str, Any]:
         """Windows of the runs, and means over them, as `RunCache.of` gives them."""
         rule, averaging = self.of_runs("window.rule"), self.of_runs("wind.averaging_s")
-        asked = sorted({*zip(rule.tolist(), averaging.tolist(), strict=True)})
-        first, *others = [self.cache.of(self.tows, *one) for one in asked or [("all", 0)]]
-        here = [(rule == r) & (averaging == s) for r, s in asked[1:]]
+        robust = self.of_runs("run_point.estimator") == "ratio_of_robust_means"
+        asked = sorted({*zip(rule.tolist(), averaging.tolist(), robust.tolist(), strict=True)})
+        first, *others = [self.cache.of(self.tows, *one) for one in asked or [("all", 0, False)]]
+        here = [(rule == r) & (averaging == s) & (robust == h) for r, s, h in asked[1:]]
         return {
             name: np.select(here, [other[name] for other in others], values) if here else values
             for name, values in first.items()

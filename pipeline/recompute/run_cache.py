@@ -21,14 +21,14 @@ class RunCache:
         self._windows: dict[tuple[object, ...], Windows] = {}
         self._means: dict[tuple[object, ...], dict[str, Any]] = {}
 
-    def of(self, tows: Tows, rule: str, averaging_s: int) -> dict[str, Any]:
+    def of(self, tows: Tows, rule: str, averaging_s: int, is_robust: bool) -> dict[str, Any]:
         """What `Windows.of_runs` and `window_means` give of every run, (runs,) each."""
         key = tuple(tows.frame["tow_id"]), rule
         if key not in self._windows:
             choose = whole_runs if rule == "all" else steady_windows
             self._windows[key] = choose(tows.blocks)
         windows = self._windows[key]
-        if (*key, averaging_s) not in self._means:
-            means = window_means(tows.blocks, windows, averaging_s)
-            self._means[*key, averaging_s] = windows.of_runs | means
-        return self._means[*key, averaging_s]
+        if (*key, averaging_s, is_robust) not in self._means:
+            means = window_means(tows.blocks, windows, averaging_s, is_robust)
+            self._means[*key, averaging_s, is_robust] = windows.of_runs | means
+        return self._means[*key, averaging_s, is_robust]

@@ -184,7 +184,7 @@ class _Runs:
     def of(cls, blocks: RunBlocks) -> "_Runs":
         present = blocks.inside
         speed, force, wind = (blocks.block_means(name) for name in ("log1_v", "force", "wind_v"))
-        force_median, force_sd = _robust(force, present)
+        force_median, force_sd = median_and_sd(force, present)
         force_floor = np.maximum(FORCE_SD_FLOOR * np.abs(force_median), 1e-9)
         force_sd = np.maximum(force_sd, force_floor)
         centred = speed - speed.mean(axis=1, keepdims=True)
@@ -233,13 +233,13 @@ def _wind_change(blocks: RunBlocks, present: BoolArray) -> FloatArray:
     squares = np.zeros(present.shape)
     for component in ("wind_x", "wind_y"):
         wind = blocks.block_means(component)
-        median, sd = _robust(wind, present)
+        median, sd = median_and_sd(wind, present)
         squares += ((wind - median) / np.maximum(sd, WIND_SD_FLOOR_M_S)) ** 2
     return np.sqrt(squares)
 
 
-def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Median and robust standard deviation of each row, shape (runs, 1); 0 for an empty row."""
+def median_and_sd(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Return median and robust standard deviation of each row, (runs, 1); 0 for an empty row."""
     empty = ~present.any(axis=1, keepdims=True)
     filled = np.where(present, values, np.where(empty, 0.0, np.nan))
     median = np.nanmedian(filled, axis=1, keepdims=True)
