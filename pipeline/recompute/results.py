@@ -123,7 +123,7 @@ def _run_points(c: Computed) -> pl.DataFrame:
     has_window = windows["exists"]
     on_curve = curve.cw(c.curves.a_kg_m[tow], c.curves.s_s2_m2[tow], c.speed_m_s)
     log1 = np.where(has_window, means.speed_m_s, 1.0)
-    has_limits = c.plan.of_runs("window.rule") != "all"
+    has_limits = c.plan.run_options.run.is_trimmed
     wind, log2 = (c.tows.measured(channel)[tow] for channel in ("wind", "log2"))
     log2_ratio = means.log2_m_s / log1
     log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
@@ -136,9 +136,9 @@ def _run_points(c: Computed) -> pl.DataFrame:
         "inertia_cw_kg_m": c.by_true_speed(means.inertia_kg_m),
         "air_cw_kg_m": c.air_kg_m,
         "still_air_cw_kg_m": c.still_air_kg_m,
-        "temperature_cw_kg_m": c.temperature_kg_m,
-        "wind_coefficient_ahead": c.air.ahead,
-        "wind_coefficient_behind": c.air.behind,
+        "temperature_cw_kg_m": c.temperature.change_kg_m,
+        "wind_coefficient_ahead": c.air.drag.ahead,
+        "wind_coefficient_behind": c.air.drag.behind,
         "cw_kg_m": c.cw_kg_m,
         "cw_sd": c.by_true_speed(means.sd_kg_m),
         "cw_seconds_sd_kg_m": c.by_true_speed(means.seconds_sd_kg_m),
@@ -171,7 +171,7 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     safe_cw = np.where(sound, cw, 1.0)
     residual = np.sqrt(c.curves.rss_kg2_m2 / np.maximum(c.curves.n_points - 2, 1)) / safe_cw
     # A cap is the method's choice, and coefficients searched run by run leave no scatter.
-    own_b = ~c.curves.b_capped & (c.plan.option("wind.coefficients") != "per_run")
+    own_b = ~c.curves.b_capped & (c.options.wind.coefficients != "per_run")
     numbers = {
         "a_kg_m": c.curves.a_kg_m,
         "cw_kg_m": cw,
@@ -187,9 +187,7 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     ).with_columns(
         *(_column(name, values, sound) for name, values in numbers.items()),
         _column("b_m_s", c.curves.b_m_s, sound & c.curves.b_determined),
-        _column(
-            "calibration_factor", c.calibration_factor, c.plan.option("calibration.rule") != "none"
-        ),
+        _column("calibration_factor", c.calibration_factor, c.options.speed.is_calibrated),
         pl.Series("b_capped", c.curves.b_capped),
         pl.Series("runs_used", c.tows.count(c.used), pl.Int8),
     )
@@ -212,7 +210,9 @@ def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
 
     A tow's own factor is in `run_points.speed_factor`.
     """
-    ln_factor = np.where(c.calibrated, np.log(c.known_factor * c.calibration_factor), np.nan)
+    ln_factor = np.where(
+        c.speed.is_calibrated, np.log(c.speed.log_factor * c.calibration_factor), np.nan
+    )
     season, which = c.tows.of_tow("season"), c.plan.which
     rows: list[tuple[int, *Factor]] = []
     for year in c.tows.frame["season"].unique().sort():
