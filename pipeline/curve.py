@@ -164,7 +164,7 @@ def cw(a_kg_m: ArrayLike, s_s2_m2: ArrayLike, speed_m_s: ArrayLike) -> FloatArra
 
 
 def s_of_b(b_m_s: ArrayLike) -> FloatArray:
-    """Gives s = 1/B^2 [s2/m2] of a B [m/s]; 0 for an infinite B."""
+    """Return s = 1/B^2 [s2/m2] of a B [m/s]; 0 for an infinite B."""
     b = np.asarray(b_m_s, dtype=np.float64)
     return 1.0 / (b * b)
 
@@ -186,7 +186,7 @@ def to_c0_q(
 def from_c0_q(
     c0_kg_m: ArrayLike, q: ArrayLike, reference_speed_m_s: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """A [kg/m] and s [s2/m2] from C0 and q > -1 at the reference speed; inverse of `to_c0_q`."""
+    """Return A [kg/m] and s [s2/m2] from C0 and q > -1 at a speed; inverse of `to_c0_q`."""
     c0, ratio = np.asarray(c0_kg_m, dtype=np.float64), np.asarray(q, dtype=np.float64)
     v0 = np.asarray(reference_speed_m_s, dtype=np.float64)
     return c0 / (1.0 + ratio), ratio / (1.0 + ratio) / (v0 * v0)
@@ -195,7 +195,7 @@ def from_c0_q(
 def rebase(
     a_kg_m: ArrayLike, b_m_s: ArrayLike, log_factor: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """A [kg/m] and B [m/s] of a curve whose every speed has to be multiplied by the log factor.
+    """Return A [kg/m] and B [m/s] of a curve after its speeds are multiplied by the log factor.
 
     A pure scale error of the log maps hyperbolas onto hyperbolas: A / y^2 and B y, with A B^2
     unchanged. Exact as long as no wind correction depends on the speed. An infinite B stays so.

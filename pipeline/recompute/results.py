@@ -79,7 +79,7 @@ def as_tables(
     estimated: SeasonFactors | None,
     with_bands: bool,
 ) -> Recomputed:
-    """The tables of a method; tows are assessed when all curves are there."""
+    """Make the tables of a method; tows are assessed when all curves are there."""
     name = pl.lit(method.name).alias("method")
 
     def named(frame: pl.DataFrame) -> pl.DataFrame:
@@ -206,7 +206,7 @@ def _curve_points(facts: pl.DataFrame, bounds: pl.DataFrame) -> pl.DataFrame:
 
 
 def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
-    """The factor of each season, its interval and source; of tows that have GPS, if any have.
+    """Return factor, interval and source of each season; of tows that have GPS, if any have.
 
     A tow's own factor is in `run_points.speed_factor`.
     """
@@ -230,7 +230,7 @@ Factor = tuple[float, float | None, float | None, str]
 
 
 def _of_season(steps: Steps, season: int, estimated: SeasonFactors | None) -> Factor:
-    """The factor where tows are not calibrated on GPS: estimated, prescribed or none."""
+    """Return the factor where tows are not calibrated on GPS: estimated, prescribed or none."""
     is_asked = estimated is not None and steps.speed.correction == "estimated"
     if estimated is not None and is_asked and (known := estimated.of_season(season)) is not None:
         return known
@@ -241,7 +241,7 @@ def _of_season(steps: Steps, season: int, estimated: SeasonFactors | None) -> Fa
 
 
 def _mean_factor(ln_factor: FloatArray) -> Factor:
-    """The mean of tows that are calibrated on GPS, with a t interval; NaN are not."""
+    """Return the mean of tows that are calibrated on GPS, with a t interval; NaN are not."""
     known = ln_factor[np.isfinite(ln_factor)]
     if not (n := len(known)):
         return 1.0, None, None, "none"
@@ -254,7 +254,7 @@ def _mean_factor(ln_factor: FloatArray) -> Factor:
 
 
 def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
-    """The tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
+    """Return the tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
     schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
     if estimated is None:
         return {name: pl.DataFrame(schema=schema) for name, schema in schemas.items()}
@@ -268,14 +268,14 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
 
 
 def _diagnosis(estimated: SeasonFactors | None, c: Computed) -> pl.DataFrame:
-    """What is wrong with the instruments of each season; no rows without an estimate."""
+    """Return what is wrong with the instruments of each season; no rows without an estimate."""
     joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
     both = pl.concat([joint, diagnose_anemometers(c)])
     return both.sort("season", "part", "instrument")
 
 
 def _column(name: str, values: ArrayLike, known: BoolArray | bool) -> pl.Series:
-    """A column of numbers, null where nothing is known or the number is infinite."""
+    """Return a column of numbers, null where nothing is known or the number is infinite."""
     numbers = np.asarray(values, dtype=np.float64)
     sound = known & np.isfinite(numbers)
     column = pl.Series(name, np.where(sound, numbers, 0.0))

@@ -62,12 +62,12 @@ class RunMeans:
     wind_angle_deg: FloatArray
 
     def with_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
-        """These means for a load cell that reads true force x factor + zero, shape (runs,)."""
+        """Return these means for a load cell that reads true force x factor + zero, shape (runs,)."""
         zero = zero_n / _or_one(self.speed_m_s) ** 2
         return replace(self, gross_kg_m=(self.gross_kg_m - zero) / factor)
 
     def with_wind(self, scale: FloatArray) -> "RunMeans":
-        """These means for an anemometer that reads the wind x scale, shape (runs,)."""
+        """Return these means for an anemometer that reads the wind x scale, shape (runs,)."""
         return replace(self, air=self.air.times(scale**-2.0))
 
 
@@ -188,5 +188,5 @@ def wetted_surface_m2(mass_kg: FloatArray, waterline_length_m: FloatArray) -> Fl
 
 
 def _or_one(values: FloatArray) -> FloatArray:
-    """The values, with 1 in place of 0, for a quotient that is not used there."""
+    """Return the values, with 1 in place of 0, for a quotient that is not used there."""
     return np.where(values > 0, values, 1.0)

@@ -382,7 +382,7 @@ def _collect_cells(
                 cell = ""
             if key not in numbers:
                 cell = cell.removeprefix(TYPED_AS_TEXT)
-            meaning = words.get(fold_word(cell), cell)
+            meaning = words.get(fold_word(cell), cell) if words else cell
             found[key].append(None if meaning.casefold() in _NOTHING else meaning)
         found["line"].append(line)
         found["is_open"].append(is_open)
