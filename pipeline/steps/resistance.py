@@ -24,7 +24,7 @@ from pipeline.steps.wind import (
     mean_angle_deg,
     with_averaged_wind,
 )
-from pipeline.steps.window import END_SECONDS, Windows, median_and_sd
+from pipeline.steps.window import END_SECONDS, Windows, robust_moments
 
 ADDED_MASS_RATIO: Final = 0.08
 """Water that is accelerated with the boat, as a share of its mass (inferred; method-details, 6)."""
@@ -71,12 +71,12 @@ class RunMeans:
     wind_angle_deg: FloatArray
 
     def with_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
-        """These means for a load cell that reads true force x factor + zero, shape (runs,)."""
+        """Return these means for a load cell that reads true force x factor + zero, (runs,)."""
         zero = zero_n / _or_one(self.speed_m_s) ** 2
         return replace(self, gross_kg_m=(self.gross_kg_m - zero) / factor)
 
     def with_wind(self, scale: FloatArray) -> "RunMeans":
-        """These means for an anemometer that reads the wind x scale, shape (runs,)."""
+        """Return these means for an anemometer that reads the wind x scale, shape (runs,)."""
         return replace(self, air=self.air.times(scale**-2.0))
 
 
@@ -116,7 +116,7 @@ def weigh_seconds(blocks: RunBlocks, window: BoolArray) -> FloatArray:
     """
     is_measured = window & (blocks.n > 0)
     per_second = blocks["log1_cw"] / np.maximum(blocks.n, 1.0)
-    centre, sd = median_and_sd(per_second, is_measured)
+    centre, sd = robust_moments(per_second, is_measured)
     sd = np.maximum(sd, MIN_SECONDS_SD_RATIO * np.abs(centre))
     weight = is_measured.astype(np.float64)
     for _ in range(HUBER_ITERATIONS):
@@ -235,5 +235,5 @@ def wetted_surface_m2(mass_kg: FloatArray, waterline_length_m: FloatArray) -> Fl
 
 
 def _or_one(values: FloatArray) -> FloatArray:
-    """The values, with 1 in place of 0, for a quotient that is not used there."""
+    """Return the values, with 1 in place of 0, for a quotient that is not used there."""
     return np.where(values > 0, values, 1.0)
