@@ -98,11 +98,12 @@ def window_means(
     sums = WindowSums(averaged, windows.mask)
     weighted = set(SUM_NAMES) - SCATTER_SUMS if is_robust else set()
     means = {name: sums.mean(name) for name in SUM_NAMES if name not in weighted}
+    weight = (windows.mask & (blocks.n > 0)).astype(np.float64)
     if is_robust:
         weight = weigh_seconds(blocks, windows.mask)
         samples = np.maximum((weight * blocks.n).sum(axis=1), MIN_WEIGHT)
         means |= {name: (weight * averaged[name]).sum(axis=1) / samples for name in weighted}
-    return means | {"seconds_sd": _sd_of_seconds(blocks, windows.mask)}
+    return means | {"seconds_sd": _sd_of_seconds(blocks, windows.mask, weight)}
 
 
 def weigh_seconds(blocks: RunBlocks, window: BoolArray) -> FloatArray:
@@ -126,13 +127,20 @@ def weigh_seconds(blocks: RunBlocks, window: BoolArray) -> FloatArray:
     return np.asarray(weight)
 
 
-def _sd_of_seconds(blocks: RunBlocks, window: BoolArray) -> FloatArray:
-    """Return the standard deviation of the means of F / v^2 per second of each window."""
-    measured = window & (blocks.n > 0)
-    count = np.maximum(measured.sum(axis=1), 1)
-    per_second = np.where(measured, blocks["log1_cw"] / np.maximum(blocks.n, 1.0), 0.0)
-    mean = per_second.sum(axis=1) / count
-    deviation = np.where(measured, per_second - mean[:, None], 0.0)
+def _sd_of_seconds(blocks: RunBlocks, window: BoolArray, weight: FloatArray) -> FloatArray:
+    """Return the standard deviation of the means of F / v² per second of each window, (runs,).
+
+    With Huber's weights it is that of the winsorised seconds, whose mean the run point is: one
+    steering peak does not make a run that swings.
+
+    Args:
+        weight: of each second, (runs, seconds).
+    """
+    total = np.maximum(weight.sum(axis=1), MIN_WEIGHT)
+    count = np.maximum((window & (blocks.n > 0)).sum(axis=1), 1)
+    per_second = blocks["log1_cw"] / np.maximum(blocks.n, 1.0)
+    mean = (weight * per_second).sum(axis=1) / total
+    deviation = weight * (per_second - mean[:, None])
     return np.asarray(np.sqrt((deviation**2).sum(axis=1) / count))
 
 

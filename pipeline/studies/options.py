@@ -71,7 +71,8 @@ def option_effects(
     Returns:
         Sorted rows per tow and option that can matter to it: `tow_id`, `option` and
         `cw_effect_ratio` (second value / first value, mean over all combinations of the others). A
-        tow that one of the combinations leaves without a curve has no rows.
+        tow that one of the combinations leaves without a curve has no rows, nor has one whose log
+        is estimated: another option would also move the factor of its season.
     """
     plan = Plan.from_method(method, tows, blocks, cache)
     can = pl.Series(plan.options.speed.correction == "prescribed")
@@ -83,7 +84,11 @@ def option_effects(
         for flags, one in _combinations(capped, crossed, links)
         for of_b in (one.curves, one.free)
     ]
-    whole = _whole(pl.concat(frames), ["tow_id"], len(names))
+    is_estimated = pl.Series(plan.options.speed.correction == "estimated")
+    own_log = plan.tows.frame["tow_id"].filter(~is_estimated)
+    whole = _whole(pl.concat(frames), ["tow_id"], len(names)).filter(
+        pl.col("tow_id").is_in(own_log.implode())
+    )
     prescribed = plan.tows.frame["tow_id"].filter(can)
     effects = [
         _effect(whole.filter(pl.col("tow_id").is_in(prescribed.implode()) | (name != FACTOR)), name)
