@@ -62,7 +62,7 @@ class RunMeans:
     wind_angle_deg: FloatArray
 
     def with_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
-        """Return these means for a load cell that reads true force x factor + zero, shape (runs,)."""
+        """Return these means for a load cell that reads true force x factor + zero."""
         zero = zero_n / _or_one(self.speed_m_s) ** 2
         return replace(self, gross_kg_m=(self.gross_kg_m - zero) / factor)
 
