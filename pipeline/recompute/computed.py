@@ -89,9 +89,9 @@ class Computed:
         instruments: what was estimated of each tow's instruments, a row per tow, as
             `season_factors.instruments_of` gives it; null where nothing was.
         speed: correction of the log.
-        reasons: why a run does not count, empty where it does, shape (runs,).
         temperature: correction to the reference temperature.
         air: correction for wind.
+        reasons: why a run does not count, empty where it does, shape (runs,).
     """
 
     plan: Plan
@@ -99,9 +99,9 @@ class Computed:
     means: RunMeans
     instruments: pl.DataFrame
     speed: SpeedCorrection
-    reasons: StrArray
     temperature: TemperatureCorrection
     air: AirCorrection
+    reasons: StrArray
 
     @property
     def tows(self) -> Tows:

@@ -1,10 +1,10 @@
 """Recompute: every tow under one method, from blocks to curves.
 
-`evaluate` calls the steps in the order of the method's text: steady window, means, speed
-correction, runs that count, calibration, temperature, wind, curve. Each step's formulas are in its
-own module of `pipeline.steps`, and the tables are filled in `pipeline.recompute.results`. What is
-searched over the whole archive is found first and applied after. Nothing here knows a season: the
-method says what holds when.
+`evaluate` calls the steps in the order of the method's text (docs/method.md): window, mean, speed,
+temperature, wind and runs; the curve follows from them. Each step's formulas are in its own module
+of `pipeline.steps`, and the tables are filled in `pipeline.recompute.results`. What is searched
+over the whole archive is found first and applied after. Nothing here knows a season: the method
+says what holds when.
 """
 
 from dataclasses import replace
@@ -100,8 +100,7 @@ def evaluate(plan: Plan, instruments: pl.DataFrame | None = None) -> Computed:
     known_instruments = instruments_of(plan, instruments)
     windows = plan.average_windows()
     means = average_runs(plan, windows, known_instruments)
-    reasons = select_runs(plan, windows["exists"], means.speed_m_s)
-    speed, reasons = correct_speed(plan, windows["exists"], means, known_instruments, reasons)
+    speed, is_determined = correct_speed(plan, windows["exists"], means, known_instruments)
     true_speed = means.speed_m_s * speed.log_factor[plan.tows.tow] * speed.gps_factor
     computed = Computed(
         plan=plan,
@@ -109,9 +108,9 @@ def evaluate(plan: Plan, instruments: pl.DataFrame | None = None) -> Computed:
         means=means,
         instruments=known_instruments,
         speed=speed,
-        reasons=reasons,
         temperature=correct_temperature(plan, true_speed),
         air=prescribe_air(plan),
+        reasons=select_runs(plan, windows["exists"], means.speed_m_s, is_determined),
     )
     computed = correct_anemometers(computed)
     computed = search_drag_per_run(computed)
@@ -144,29 +143,16 @@ def average_runs(plan: Plan, windows: dict[str, Any], instruments: pl.DataFrame)
     )
 
 
-def select_runs(plan: Plan, has_window: BoolArray, log_m_s: FloatArray) -> StrArray:
-    """Return why each run does not count, before calibration; empty where it does."""
-    is_selected = plan.tows.selected
-    highest_ratio = plan.run_options.run.highest_target_ratio
-    is_too_fast = above_target(plan.tows, log_m_s, is_selected & has_window, highest_ratio)
-    return np.select(
-        [~is_selected, ~has_window, is_too_fast],
-        [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET],
-        "",
-    )
-
-
 def correct_speed(
-    plan: Plan,
-    has_window: BoolArray,
-    means: RunMeans,
-    instruments: pl.DataFrame,
-    reasons: StrArray,
-) -> tuple[SpeedCorrection, StrArray]:
+    plan: Plan, has_window: BoolArray, means: RunMeans, instruments: pl.DataFrame
+) -> tuple[SpeedCorrection, BoolArray]:
     """Correct the log's known error, then calibrate it on dGPS where the method asks.
 
+    Calibration is over all runs that are to be used, also those that are too fast to count: their
+    speeds are measured as well as any.
+
     Returns:
-        The correction, and the reasons with the runs that cannot be calibrated.
+        The correction, and for which runs it is determined, shape (runs,).
     """
     tows, options = plan.tows, plan.options.speed
     factor = log_factor(
@@ -175,18 +161,41 @@ def correct_speed(
         tow_list_ratio=tows.of_tow("speed_correction_ratio"),
         estimated_factor=instruments["factor"].cast(pl.Float64).to_numpy(),
     )
-    is_used = reasons == ""
+    is_measured = tows.selected & has_window
     corrected_log = means.speed_m_s * factor[tows.tow]
     is_steady = has_window & (corrected_log > 0)
-    of_files, is_known = gps_factor_of_files(tows, means.gps_m_s, corrected_log, is_used, is_steady)
+    of_files, is_known = gps_factor_of_files(
+        tows, means.gps_m_s, corrected_log, is_measured, is_steady
+    )
     needs_gps = options.is_calibrated[tows.tow]
     is_determined = is_known.ravel()[tows.file] | ~needs_gps
     correction = SpeedCorrection(
         log_factor=factor,
         gps_factor=np.where(needs_gps, of_files.ravel()[tows.file], 1.0),
-        is_calibrated=tows.any(is_determined & is_used) & options.is_calibrated,
+        is_calibrated=tows.any(is_determined & is_measured) & options.is_calibrated,
     )
-    return correction, np.where(is_used & ~is_determined, NOT_CALIBRATED, reasons)
+    return correction, is_determined
+
+
+def select_runs(
+    plan: Plan, has_window: BoolArray, log_m_s: FloatArray, is_determined: BoolArray
+) -> StrArray:
+    """Return why each run does not count; empty where it does.
+
+    Args:
+        plan: the tows and their steps.
+        has_window: runs with a window, shape (runs,).
+        log_m_s: mean speed of each run by its log, shape (runs,).
+        is_determined: runs whose speed correction is determined, shape (runs,).
+    """
+    is_selected = plan.tows.selected
+    highest_ratio = plan.run_options.run.highest_target_ratio
+    is_too_fast = above_target(plan.tows, log_m_s, is_selected & has_window, highest_ratio)
+    return np.select(
+        [~is_selected, ~has_window, is_too_fast, ~is_determined],
+        [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET, NOT_CALIBRATED],
+        "",
+    )
 
 
 def correct_temperature(plan: Plan, speed_m_s: FloatArray) -> TemperatureCorrection:

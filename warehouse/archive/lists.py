@@ -57,8 +57,9 @@ _NO: Final = ("nee", "0")
 _BOAT: Final = r"^(?i:fsn)?[\s._-]*([0-9]{1,6}[a-zA-Z]?)$"
 _RUN: Final = r"^[bB]?([1-9][0-9]?)$"
 _TIME: Final = r"^([0-9]{1,2}):([0-5]?[0-9]):([0-5]?[0-9])$"
-_ISO_DATE: Final = r"^([0-9]{4}-[0-9]{1,2}-[0-9]{1,2})$"
-_DUTCH_DATE: Final = r"^([0-9]{1,2}-[0-9]{1,2}-[0-9]{4})$"
+_ISO_DATE: Final = r"^([0-9]{4}-[0-9]{1,2}-[0-9]{1,2})([T ][0-9]{1,2}:[0-9]{2}(:[0-9]{2})?)?$"
+_DUTCH_DATE: Final = r"^([0-9]{1,2}-[0-9]{1,2}-[0-9]{4})( [0-9]{1,2}:[0-9]{2}(:[0-9]{2})?)?$"
+"""A time behind a date, as programs export it, is not read."""
 _SPREADSHEET_ERROR: Final = r"^#(N/[AB]|[A-Z]+(/0)?[!?])$"
 """As #N/A or #REF!, and as Dutch spreadsheets say it: #N/B, #VERW!"""
 _FORMULA: Final = r"^="
@@ -254,9 +255,17 @@ def _check_known(
     others = list_unknown_headers(table.header, places)
     unknown = [header for header in others if fold(header) not in profiles.ignore]
     for index, header in enumerate(table.header):
-        is_filled = any(row[index].strip() for _, row, _ in table.rows if index < len(row))
-        if not fold(header) and is_filled:
-            unknown.append(f"({index + 1})")
+        if fold(header):
+            continue
+        for line, row, _ in table.rows:
+            cell = row[index].strip() if index < len(row) else ""
+            if cell:
+                text = say(
+                    "Column {number} has no header, and holds '{cell}' on line {line}: give it a "
+                    "header, or empty it."
+                )
+                said = say(text, number=index + 1, cell=shorten(cell), line=line)
+                raise DefectiveHeaderError("unknown_column", said, table.line)
     if unknown:
         text = say(
             "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or "
@@ -265,7 +274,7 @@ def _check_known(
         names = ", ".join(f"'{shorten(header)}'" for header in unknown)
         free = ", ".join(column.header for column in columns if column.key not in places) or "-"
         said = say(text, names=names, free=free)
-        ask = [_ask_header(header) for header in unknown if header[:1] != "("]
+        ask = [_ask_header(header) for header in unknown]
         raise DefectiveHeaderError("unknown_column", said, table.line, ask)
 
 

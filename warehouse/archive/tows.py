@@ -217,8 +217,8 @@ def _add_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
     parts = _count_parts(rows.frame.filter(is_missing).select("season", "name"), samples)
     rows.frame = rows.frame.join(parts, on=["season", "name"], how="left", maintain_order="left")
     text = say(
-        "there is no file '{name}' in meetdata_{season}/, but {parts} that begin so, as '{part}'. "
-        "If each run has a file, say so and how these are named, under [[profile]] in "
+        "there is no file '{name}' in meetdata_{season}/, but {parts} with that in their name, as "
+        "'{part}'. If each run has a file, say so and how these are named, under [[profile]] in "
         'archief.toml: runs = "file", run_files = "{{meetfile}} run {{run}}".'
     )
     heading = '[[profile]]\nseasons = "{season}"\n'
@@ -239,11 +239,11 @@ def _add_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
 
 
 def _count_parts(missing: pl.DataFrame, samples: pl.DataFrame) -> pl.DataFrame:
-    """Return how many files begin with a name that no file has, and the first of them."""
+    """Return how many files have a missing name within theirs, and the first of them."""
     found = []
     for season, name in missing.unique(maintain_order=True).iter_rows():
         names = samples.filter(season=season)["name"]
-        parts = names.filter(names.str.starts_with(name)).sort()
+        parts = names.filter(names.str.contains(name, literal=True)).sort()
         if len(parts) >= FEWEST_RUNS:
             found.append((season, name, len(parts), parts[0]))
     schema = {"season": pl.Int32, "name": pl.String, "parts": pl.Int64, "part": pl.String}

@@ -322,7 +322,7 @@ def test_an_ambiguous_number_says_how_to_write_it(archive: Archive) -> None:
 def test_files_that_can_be_runs_are_asked_about(archive: Archive, good_scan: Scan) -> None:
     write_run_files(archive, NAME + "_run0{run}.csv")
     _, sentence, ask = only_cause_of_code(archive, "samples_missing")
-    assert "6 that begin so" in sentence
+    assert "6 with that in their name" in sentence
     assert [line.split("\n")[-1] for line in ask] == ['runs = "?"', 'run_files = "?"']
     declare(archive, OF_2014, 'runs = "file"', 'run_files = "{meetfile}_run{run:02}"')
     scan = archive.scan()

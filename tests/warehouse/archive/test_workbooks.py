@@ -172,6 +172,13 @@ def test_a_hidden_row_is_not_read_and_named(archive: Archive) -> None:
     assert sorted(scan.good) == ["2014-001", "2014-003"]
 
 
+def test_a_cell_beside_the_table_is_named_with_its_line(archive: Archive) -> None:
+    change(archive, put(6, 26, "let op"))
+    (fault,) = faults_of(archive.scan())
+    assert fault.reason_code == "unknown_column"
+    assert "Column 26 has no header, and holds 'let op' on line 6" in fault.message
+
+
 def test_a_hidden_column_stops_its_list_where_it_holds_something(
     archive: Archive, good_scan: Scan
 ) -> None:
