@@ -10,6 +10,7 @@ from typing import Final
 
 from pipeline.assessment.checks import CHECKS
 from pipeline.messages import Sentence, pgettext, say, tell
+from pipeline.register.words import CAUSES, STEPS, name_cause
 from pipeline.tables.row import Row
 
 _PLAIN_COLUMNS: Final = (
@@ -208,6 +209,17 @@ COLUMNS: Final[dict[str, Sentence]] = {
     "median_factor": say("Median"),
     "lowest_factor": say("Lowest"),
     "highest_factor": say("Highest"),
+    "published_cw_kg_m": say("Cw as pub\u00adlished [kg/m]"),
+    "published_rank": say("Speed rank as pub\u00adlished"),
+    "rank": say("Speed rank"),
+    "published_winner": say("Winner then"),
+    "winner": say("Winner by the method"),
+    "year": say("Year"),
+    "changed": say("Changed lines"),
+    "rank_changed": say("Other speed rank"),
+    "printed_lines": say("Lines in print"),
+    "printed_median_ratio": say("Print: median ratio"),
+    "printed_largest_ratio": say("Print: largest ratio"),
     "winner_changed": say("Another wins"),
     "change_probability": say("Chance that another wins"),
     "old_a_kg_m": say("A old [kg/m]"),
@@ -274,10 +286,8 @@ CODES: Final[dict[str, Sentence]] = {
     "list": say("list changed"),
     "warn": say("WARNING"),
     "error": say("ERROR"),
-    "tow": say("another tow counts"),
-    "other_input": say("other tows changed"),
-    "code_or_other_input": say("code or other tows"),
-    "unseparated": say("method and input"),
+    "tow": CAUSES["tow"],
+    **STEPS,
     "editions_can_be_made_again": say("editions are what they were and can be made again"),
     "every_tow_has_a_curve_row": say(
         "every tow has a row among the curves, even one without a curve"
@@ -307,8 +317,6 @@ CODES: Final[dict[str, Sentence]] = {
     "not determined": say("not determined"),
     "not settled": say("not settled"),
     "gps": say("GPS"),
-    "run_point": say("averaging of each run"),
-    "unrecorded": say("what nobody recorded"),
     "boat_season": say("boat in season"),
     "fleet": say("all boats"),
     "within_type": say("within a type"),
@@ -334,7 +342,6 @@ CODES: Final[dict[str, Sentence]] = {
     "few_pairs": say("fewer than six pairs"),
     "no_scatter": say("runs without scatter"),
     "not_settled": say("the search did not settle"),
-    "reproduction": say("from print to recomputed as published"),
     "lost_seconds": say("seconds"),
     "lost_run": say("run"),
     "lost_tow": pgettext("what is lost", "tow"),
@@ -441,8 +448,14 @@ def candidate(name: str) -> Sentence:
 
 
 def cause(found: Row) -> Sentence:
-    """What a change comes from: a step of the method by its name, or another cause."""
-    return code(found.get("step") or found["cause"])
+    """Return what a change comes from: a step of the method by its name, or another cause.
+
+    Args:
+        found: `cause` and, where it is the method, `step`; small causes together are `rest`.
+    """
+    if found["cause"] == "rest":
+        return code("rest")
+    return name_cause(found["cause"], found.get("step"))
 
 
 def method(name: str) -> Sentence:

@@ -10,7 +10,7 @@ errors a curve is described by C0 = Cw(v0) and q = r / (1 - r) with r = s v0^2, 
 independent: Cw(v) = C0 / (1 - q ((v/v0)^2 - 1)).
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple, Self
 
 import numpy as np
@@ -164,7 +164,7 @@ def cw(a_kg_m: ArrayLike, s_s2_m2: ArrayLike, speed_m_s: ArrayLike) -> FloatArra
 
 
 def s_of_b(b_m_s: ArrayLike) -> FloatArray:
-    """Gives s = 1/B^2 [s2/m2] of a B [m/s]; 0 for an infinite B."""
+    """Return s = 1/B^2 [s2/m2] of a B [m/s]; 0 for an infinite B."""
     b = np.asarray(b_m_s, dtype=np.float64)
     return 1.0 / (b * b)
 
@@ -186,7 +186,7 @@ def to_c0_q(
 def from_c0_q(
     c0_kg_m: ArrayLike, q: ArrayLike, reference_speed_m_s: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """A [kg/m] and s [s2/m2] from C0 and q > -1 at the reference speed; inverse of `to_c0_q`."""
+    """Return A [kg/m] and s [s2/m2] from C0 and q > -1 at a speed; inverse of `to_c0_q`."""
     c0, ratio = np.asarray(c0_kg_m, dtype=np.float64), np.asarray(q, dtype=np.float64)
     v0 = np.asarray(reference_speed_m_s, dtype=np.float64)
     return c0 / (1.0 + ratio), ratio / (1.0 + ratio) / (v0 * v0)
@@ -195,7 +195,7 @@ def from_c0_q(
 def rebase(
     a_kg_m: ArrayLike, b_m_s: ArrayLike, log_factor: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """A [kg/m] and B [m/s] of a curve whose every speed has to be multiplied by the log factor.
+    """Return A [kg/m] and B [m/s] of a curve after its speeds are multiplied by the log factor.
 
     A pure scale error of the log maps hyperbolas onto hyperbolas: A / y^2 and B y, with A B^2
     unchanged. Exact as long as no wind correction depends on the speed. An infinite B stays so.
@@ -208,31 +208,40 @@ def rebase(
 
 
 def fit(points: Points) -> Curves:
-    """Least squares in Cw through the used points, for all curves at once.
+    """Fit hyperbolas by least squares in Cw through the used points, all curves at once.
 
     Variable projection (Golub & Pereyra 1973): for a given bend the height is linear, so only the
     bend is searched, by damped Gauss-Newton steps. The bend is taken as q at the root mean square
     speed: the same minimum as in s, but with height and bend nearly independent. A curve's result
     does not depend on which others are in the batch. `converged` says where there is none.
     """
-    curves = _flat(points)
+    curves = _fit_flat(points)
     for start in range(0, len(curves.a_kg_m), CHUNK_FITS):
-        u, c, w = _arrange(points, slice(start, start + CHUNK_FITS))
-        n = _sum(w)
-        u_mean = _sum(u) / np.maximum(n, 1.0)
-        z = w * (u / np.where(u_mean > 0, u_mean, 1.0) - 1.0)
-        solvable = np.flatnonzero((n >= 2) & (_sum(z * z) > n * MIN_SPREAD**2))
+        chunk = _Columns.from_points(points, slice(start, start + CHUNK_FITS))
+        n_points = _sum(chunk.weight)
+        mean_square_speed = _sum(chunk.speed_squared) / np.maximum(n_points, 1.0)
+        scale = np.where(mean_square_speed > 0, mean_square_speed, 1.0)
+        z = chunk.weight * (chunk.speed_squared / scale - 1.0)
+        has_two_speeds = _sum(z * z) > n_points * MIN_SPREAD**2
+        solvable = np.flatnonzero((n_points >= 2) & has_two_speeds)
         if not solvable.size:
             continue
-        found, q, c0, rss = _search(*(x.take(solvable, axis=1) for x in (z, c, w)))
-        rows = start + solvable[found]
-        curves.a_kg_m[rows], curves.s_s2_m2[rows] = from_c0_q(c0, q, np.sqrt(u_mean[rows - start]))
-        curves.rss_kg2_m2[rows], curves.converged[rows] = rss, True
+        found = _search_bend(
+            z.take(solvable, axis=1),
+            chunk.cw.take(solvable, axis=1),
+            chunk.weight.take(solvable, axis=1),
+        )
+        in_chunk = solvable[found.fits]
+        rows = start + in_chunk
+        pivot_speed = np.sqrt(mean_square_speed[in_chunk])
+        curves.a_kg_m[rows], curves.s_s2_m2[rows] = from_c0_q(found.c0, found.q, pivot_speed)
+        curves.rss_kg2_m2[rows] = found.rss
+        curves.converged[rows] = True
     return curves
 
 
 def fit_given_b(points: Points, b_m_s: ArrayLike) -> Curves:
-    """Least squares for A alone, with B given per curve.
+    """Fit A alone by least squares, with B given per curve.
 
     Args:
         points: run points of n_fits curves.
@@ -244,7 +253,7 @@ def fit_given_b(points: Points, b_m_s: ArrayLike) -> Curves:
 
 
 def fit_capped(points: Points, free: Curves, b_cap_m_s: ArrayLike) -> Curves:
-    """Least squares with B at most its cap; A is fitted again where the cap works.
+    """Fit with B at most its cap; A is fitted again where the cap works.
 
     A missing B (s <= 0) counts as infinitely large and is capped too: the cap used by the
     federation is three times hull speed (presentation of 24 January 2015).
@@ -255,143 +264,220 @@ def fit_capped(points: Points, free: Curves, b_cap_m_s: ArrayLike) -> Curves:
         b_cap_m_s: (n_fits,) or one for all; infinite caps only at the flat curve.
     """
     s_min = np.broadcast_to(s_of_b(b_cap_m_s), free.s_s2_m2.shape)
-    too_flat = free.converged & (free.s_s2_m2 < s_min)
+    is_too_flat = free.converged & (free.s_s2_m2 < s_min)
     capped = _fit_given_s(points, s_min)
-    made = chosen(too_flat, capped, free)
-    return replace(made, b_capped=too_flat & capped.converged)
+    curves = chosen(is_too_flat, capped, free)
+    return replace(curves, b_capped=is_too_flat & capped.converged)
 
 
 def chosen(where: BoolArray, one: Curves, other: Curves) -> Curves:
-    """The chosen curves of the one, and those of the other elsewhere."""
+    """Return the curves of `one` where chosen, and those of `other` elsewhere."""
     return Curves(
-        *(
-            np.where(where, getattr(one, field.name), getattr(other, field.name))
-            for field in fields(Curves)
-        )
+        a_kg_m=np.where(where, one.a_kg_m, other.a_kg_m),
+        s_s2_m2=np.where(where, one.s_s2_m2, other.s_s2_m2),
+        rss_kg2_m2=np.where(where, one.rss_kg2_m2, other.rss_kg2_m2),
+        n_points=np.where(where, one.n_points, other.n_points),
+        converged=np.where(where, one.converged, other.converged),
+        b_capped=np.where(where, one.b_capped, other.b_capped),
     )
 
 
-def _flat(points: Points) -> Curves:
-    """Flat curves through the means, marked as not converged: what is left without a fit."""
-    c = np.where(points.used, points.cw_kg_m, 0.0)
-    n = points.used.sum(axis=1)
-    mean = c.sum(axis=1) / np.maximum(n, 1)
-    residual = np.where(points.used, c - mean[:, None], 0.0)
+def _fit_flat(points: Points) -> Curves:
+    """Return flat curves through the means, not converged: what is left without a fit."""
+    cw_used = np.where(points.used, points.cw_kg_m, 0.0)
+    n_points = points.used.sum(axis=1)
+    mean = cw_used.sum(axis=1) / np.maximum(n_points, 1)
+    residual = np.where(points.used, cw_used - mean[:, None], 0.0)
     return Curves(
         a_kg_m=mean,
         s_s2_m2=np.zeros_like(mean),
         rss_kg2_m2=(residual * residual).sum(axis=1),
-        n_points=n,
+        n_points=n_points,
         converged=np.zeros(mean.shape, bool),
         b_capped=np.zeros(mean.shape, bool),
     )
 
 
 def _fit_given_s(points: Points, s: FloatArray) -> Curves:
-    flat = _flat(points)
-    rss, a, valid = _profile(_arrange(points), s)
-    valid &= flat.n_points > 0
-    return chosen(valid, replace(flat, a_kg_m=a, s_s2_m2=s, rss_kg2_m2=rss, converged=valid), flat)
+    """Return curves with s given; flat and not converged where s leaves a used speed beyond B."""
+    flat = _fit_flat(points)
+    profile = _Columns.from_points(points).profile(s)
+    is_valid = profile.is_below_b & (flat.n_points > 0)
+    given = replace(
+        flat,
+        a_kg_m=profile.a_kg_m,
+        s_s2_m2=s,
+        rss_kg2_m2=profile.rss_kg2_m2,
+        converged=is_valid,
+    )
+    return chosen(is_valid, given, flat)
 
 
-def _arrange(points: Points, rows: slice = slice(None)) -> tuple[FloatArray, ...]:
-    """v^2 and Cw, 0 where not used, and 1 where used, turned to (n_points, n_fits).
+class _Profile(NamedTuple):
+    """Fits of the height alone, at given s, (n_fits,)."""
+
+    rss_kg2_m2: FloatArray
+    a_kg_m: FloatArray
+    is_below_b: BoolArray
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Points turned to (n_points, n_fits), 0 where not used.
 
     Sums over points then run along whole rows: fast, and always in the same order.
+
+    Attributes:
+        speed_squared: v^2; cw: Cw; weight: 1 where used.
     """
-    used = points.used[rows]
-    v, c = (np.where(used, x[rows], 0.0) for x in (points.speed_m_s, points.cw_kg_m))
-    u, c, w = (np.ascontiguousarray(x.T, dtype=np.float64) for x in (v * v, c, used))
-    return u, c, w
 
+    speed_squared: FloatArray
+    cw: FloatArray
+    weight: FloatArray
 
-def _profile(
-    arranged: tuple[FloatArray, ...], s: FloatArray
-) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Residual sum of squares and best A for a given s, and whether s leaves all points below B."""
-    u, c, w = arranged
-    denominator = 1.0 - s * u
-    below_b = denominator > 0
-    g = w / np.where(below_b, denominator, 1.0)
-    gg = _sum(g * g)
-    a = _sum(g * c) / np.where(gg > 0, gg, 1.0)
-    residual = c - a * g
-    return _sum(residual * residual), a, np.asarray(below_b.all(axis=0))
+    @classmethod
+    def from_points(cls, points: Points, rows: slice = slice(None)) -> Self:
+        """Turn the points of some fits."""
+        used = points.used[rows]
+        speed = np.where(used, points.speed_m_s[rows], 0.0)
+        cw_used = np.where(used, points.cw_kg_m[rows], 0.0)
+        return cls(
+            speed_squared=np.ascontiguousarray((speed * speed).T, dtype=np.float64),
+            cw=np.ascontiguousarray(cw_used.T, dtype=np.float64),
+            weight=np.ascontiguousarray(used.T, dtype=np.float64),
+        )
+
+    def profile(self, s: FloatArray) -> _Profile:
+        """Fit the best A for a given s, and say whether s leaves all points below B."""
+        denominator = 1.0 - s * self.speed_squared
+        below_b = denominator > 0
+        shape = self.weight / np.where(below_b, denominator, 1.0)
+        norm = _sum(shape * shape)
+        a = _sum(shape * self.cw) / np.where(norm > 0, norm, 1.0)
+        residual = self.cw - a * shape
+        return _Profile(_sum(residual * residual), a, np.asarray(below_b.all(axis=0)))
 
 
 class _State(NamedTuple):
-    """Where a search has come to: bend, best height there, and the undamped next step."""
+    """Where a search has come to, (open fits,).
+
+    Attributes:
+        q, c0, rss: bend, best height there, and residual sum of squares.
+        step: the undamped next step of q.
+        movement: length of that step in the space of the fitted points, kg/m.
+    """
 
     q: FloatArray
     c0: FloatArray
     rss: FloatArray
     step: FloatArray
-    movement: FloatArray  # length of that step in the space of the fitted points, kg/m
+    movement: FloatArray
+
+    def take(self, rows: BoolArray) -> "_State":
+        """Return the state of some fits."""
+        return _State(
+            self.q[rows], self.c0[rows], self.rss[rows], self.step[rows], self.movement[rows]
+        )
+
+    def where(self, rows: BoolArray, other: "_State") -> "_State":
+        """Return this state at some fits, and another elsewhere."""
+        return _State(
+            q=np.where(rows, self.q, other.q),
+            c0=np.where(rows, self.c0, other.c0),
+            rss=np.where(rows, self.rss, other.rss),
+            step=np.where(rows, self.step, other.step),
+            movement=np.where(rows, self.movement, other.movement),
+        )
 
 
-def _search(
-    z: FloatArray, c: FloatArray, w: FloatArray
-) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """Minimise over q; z = (v/v_pivot)^2 - 1, Cw and weights (1 or 0) are (n_points, n_fits).
+class _Found(NamedTuple):
+    """Fits that came to rest, with their bend, height and residual sum of squares."""
+
+    fits: IntArray
+    q: FloatArray
+    c0: FloatArray
+    rss: FloatArray
+
+
+def _search_bend(z: FloatArray, cw_used: FloatArray, weight: FloatArray) -> _Found:
+    """Minimise the sum of squares over q.
 
     The bend stays between q = -1 (A infinite, s = -infinity) and the q that puts B on the fastest
     point: a step goes at most half way to either, and is halved until the sum of squares falls.
 
-    Returns:
-        The fits that came to rest, with their q, C0 and residual sum of squares.
+    Args:
+        z: (v / v_pivot)^2 - 1, 0 where not used, (n_points, n_fits).
+        cw_used, weight: Cw, and 1, of used points, likewise.
     """
-    upper, cc = 1.0 / z.max(axis=0), _sum(c * c)
-    open_fits, damping = np.arange(z.shape[1]), np.ones(z.shape[1])
-    state = _evaluate(np.clip(_start(z, c), -0.9, 0.9 * upper), z, c, w)
-    found: list[tuple[IntArray, FloatArray, FloatArray, FloatArray]] = []
+    found = _Found(np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty(0))
+    open_fits = np.arange(z.shape[1])
+    damping = np.ones(z.shape[1])
+    upper = 1.0 / z.max(axis=0)
+    size = _sum(cw_used * cw_used)
+    state = _evaluate(np.clip(_guess_bend(z, cw_used), -0.9, 0.9 * upper), z, cw_used, weight)
     for _ in range(MAX_ITERATIONS):
-        done = state.movement <= TOLERANCE * np.sqrt(cc)
+        done = state.movement <= TOLERANCE * np.sqrt(size)
         if done.any():
-            found.append((open_fits[done], state.q[done], state.c0[done], state.rss[done]))
-            open_fits = open_fits[~done]
-            damping, upper, cc = (x[~done] for x in (damping, upper, cc))
-            z, c, w = (x[:, ~done] for x in (z, c, w))
-            state = _State(*(x[~done] for x in state))
+            found = _Found(
+                fits=np.concatenate([found.fits, open_fits[done]]),
+                q=np.concatenate([found.q, state.q[done]]),
+                c0=np.concatenate([found.c0, state.c0[done]]),
+                rss=np.concatenate([found.rss, state.rss[done]]),
+            )
+            left = ~done
+            open_fits, damping, upper, size = (
+                open_fits[left], damping[left], upper[left], size[left],
+            )  # fmt: skip
+            z, cw_used, weight = z[:, left], cw_used[:, left], weight[:, left]
+            state = state.take(left)
             if not open_fits.size:
                 break
-        trial_q = np.maximum(state.q + damping * state.step, 0.5 * (state.q - 1.0))
-        trial = _evaluate(np.minimum(trial_q, 0.5 * (state.q + upper)), z, c, w)
+        at_least, at_most = 0.5 * (state.q - 1.0), 0.5 * (state.q + upper)
+        q = np.minimum(np.maximum(state.q + damping * state.step, at_least), at_most)
+        trial = _evaluate(q, z, cw_used, weight)
         # The slack lets the last steps pass, whose gain is below the rounding of the sum.
-        better = trial.rss <= state.rss + TOLERANCE * cc
-        damping = np.where(better, 1.0, 0.5 * damping)
-        state = _State(*(np.where(better, new, old) for new, old in zip(trial, state, strict=True)))
-    none = np.empty(0)
-    rows, q, c0, rss = zip((np.empty(0, np.int64), none, none, none), *found, strict=True)
-    return np.concatenate(rows), np.concatenate(q), np.concatenate(c0), np.concatenate(rss)
+        is_better = trial.rss <= state.rss + TOLERANCE * size
+        damping = np.where(is_better, 1.0, 0.5 * damping)
+        state = trial.where(is_better, state)
+    return found
 
 
-def _start(z: FloatArray, c: FloatArray) -> FloatArray:
-    """Bend of the straight line 1/Cw = (1 - q z) / C0, weighted with Cw^4 to act as a fit in Cw."""
-    c3 = c * c * c
-    c4 = c3 * c
-    weight = _sum(c4)
-    z_mean = _sum(c4 * z) / weight
+def _guess_bend(z: FloatArray, cw_used: FloatArray) -> FloatArray:
+    """Return the bend of the straight line 1/Cw = (1 - q z) / C0.
+
+    Weighted with Cw^4 it acts as a fit in Cw.
+    """
+    cubed = cw_used * cw_used * cw_used
+    weight = cubed * cw_used
+    total = _sum(weight)
+    z_mean = _sum(weight * z) / total
     dz = z - z_mean
-    slope = _sum(c3 * dz) / _sum(c4 * dz * dz)
-    intercept = _sum(c3) / weight - slope * z_mean
+    slope = _sum(cubed * dz) / _sum(weight * dz * dz)
+    intercept = _sum(cubed) / total - slope * z_mean
     return np.where(intercept > 0, -slope / np.where(intercept > 0, intercept, 1.0), 0.0)
 
 
-def _evaluate(q: FloatArray, z: FloatArray, c: FloatArray, w: FloatArray) -> _State:
+def _evaluate(q: FloatArray, z: FloatArray, cw_used: FloatArray, weight: FloatArray) -> _State:
     """Project out the height at bend q and take the Gauss-Newton step of what remains."""
-    g = w / (1.0 - q * z)
-    gg = _sum(g * g)
-    c0 = _sum(g * c) / gg
-    residual = c - c0 * g
-    tangent = z * g * g
-    tangent -= g * (_sum(g * tangent) / gg)
-    tt = _sum(tangent * tangent)
-    tr = _sum(tangent * residual)
-    return _State(q, c0, _sum(residual * residual), tr / (c0 * tt), np.abs(tr) / np.sqrt(tt))
+    shape = weight / (1.0 - q * z)
+    norm = _sum(shape * shape)
+    c0 = _sum(shape * cw_used) / norm
+    residual = cw_used - c0 * shape
+    tangent = z * shape * shape
+    tangent -= shape * (_sum(shape * tangent) / norm)
+    tangent_norm = _sum(tangent * tangent)
+    along = _sum(tangent * residual)
+    return _State(
+        q=q,
+        c0=c0,
+        rss=_sum(residual * residual),
+        step=along / (c0 * tangent_norm),
+        movement=np.abs(along) / np.sqrt(tangent_norm),
+    )
 
 
 def _sum(x: FloatArray) -> FloatArray:
-    """Sum over points (axis 0), one after the other: the same to the bit in any batch.
+    """Return sums over points (axis 0), one after the other: the same to the bit in any batch.
 
     NumPy adds rows one after the other, but the numbers of a single column in pairs.
     """
@@ -421,13 +507,18 @@ def covariance(
         speed_m_s: v0, that of C0 and q, (n_fits,) or one for all; usually the declared speed.
     """
     v0 = np.broadcast_to(np.asarray(speed_m_s, dtype=np.float64), curves.a_kg_m.shape)[:, None]
-    a, s, v = curves.a_kg_m[:, None], curves.s_s2_m2[:, None], points.speed_m_s
-    c0, c = cw(a, s, v0), cw(a, s, np.where(points.used, v, 0.0))
-    valid = points.used & np.isfinite(c0) & np.isfinite(c) & (c0 > 0)
-    # Cw(v) / C0 = 1 / (1 - q x), x = (v/v0)^2 - 1.
-    height = np.where(valid, c, 0.0) / np.where(valid, c0, 1.0)
-    bend = np.where(valid, c0, 0.0) * height**2 * (np.where(valid, v / v0, 1.0) ** 2 - 1.0)
-    hh, hb, bb = ((x * y).sum(axis=1) for x, y in ((height, height), (height, bend), (bend, bend)))
+    a, s = curves.a_kg_m[:, None], curves.s_s2_m2[:, None]
+    speed = points.speed_m_s
+    c0 = cw(a, s, v0)
+    fitted = cw(a, s, np.where(points.used, speed, 0.0))
+    valid = points.used & np.isfinite(c0) & np.isfinite(fitted) & (c0 > 0)
+    # Cw(v) / C0 = 1 / (1 - q x), x = (v/v0)^2 - 1: slopes of a point by C0 and by q.
+    height = np.where(valid, fitted, 0.0) / np.where(valid, c0, 1.0)
+    x = np.where(valid, speed / v0, 1.0) ** 2 - 1.0
+    bend = np.where(valid, c0, 0.0) * height**2 * x
+    hh = (height * height).sum(axis=1)
+    hb = (height * bend).sum(axis=1)
+    bb = (bend * bend).sum(axis=1)
     determinant = hh * bb - hb * hb
     known = curves.converged & (scatter.dof > 0) & (determinant > 0)
     unit = np.where(known, scatter.variance_kg2_m2 / np.where(known, determinant, 1.0), 0.0)
@@ -473,10 +564,10 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter) -> Interval:
     fastest = np.where(points.used, points.speed_m_s, 0.0).max(axis=1, initial=0.0)
     s_edge = np.where(fastest > 0, 1.0 / np.where(fastest > 0, fastest, 1.0) ** 2, np.inf)
     best = np.where(curves.converged, curves.s_s2_m2, 0.0)
-    arranged = _arrange(points)
-    s_hi = _last_below(arranged, best, np.where(known, s_edge, best), limit)
+    columns = _Columns.from_points(points)
+    s_hi = _find_last_below(columns, best, np.where(known, s_edge, best), limit)
     s_hi = np.where(known, s_hi, s_edge)
-    s_lo = _last_below(arranged, best, np.minimum(best, 0.0), limit)
+    s_lo = _find_last_below(columns, best, np.minimum(best, 0.0), limit)
     b_lo = np.where(fastest > 0, _b_of_s(s_hi), 0.0)
     return Interval(b_lo, np.where(known, _b_of_s(s_lo), np.inf))
 
@@ -491,19 +582,20 @@ def _t_quantile(dof: ArrayLike) -> FloatArray:
     return t_quantile(np.maximum(dof, 1.0))
 
 
-def _last_below(
-    arranged: tuple[FloatArray, ...], inside: FloatArray, outside: FloatArray, limit: FloatArray
+def _find_last_below(
+    columns: _Columns, inside: FloatArray, outside: FloatArray, limit: FloatArray
 ) -> FloatArray:
-    """The s farthest from `inside` towards `outside` with RSS(s) <= limit, by bisection.
+    """Find the s farthest from `inside` towards `outside` with RSS(s) <= limit, by bisection.
 
     `outside` itself is the answer where its RSS is still below the limit.
     """
-    rss, _, valid = _profile(arranged, outside)
-    reaches = valid & (rss <= limit)
+    at_end = columns.profile(outside)
+    reaches_end = at_end.is_below_b & (at_end.rss_kg2_m2 <= limit)
     near, far = inside, outside
     for _ in range(BISECTIONS):
         middle = 0.5 * (near + far)
-        rss, _, valid = _profile(arranged, middle)
-        below = valid & (rss <= limit)
-        near, far = np.where(below, middle, near), np.where(below, far, middle)
-    return np.where(reaches, outside, near)
+        at_middle = columns.profile(middle)
+        is_below = at_middle.is_below_b & (at_middle.rss_kg2_m2 <= limit)
+        near = np.where(is_below, middle, near)
+        far = np.where(is_below, far, middle)
+    return np.where(reaches_end, outside, near)

@@ -19,6 +19,7 @@ from dashboards.site.parts import (
 from dashboards.site.prose import audit_guide, edition_pages, guide_links, method_pages
 from dashboards.site.start import ABOUT, MENU, RELATIVE, season_change, start_page
 from dashboards.site.types import type_pages, types_page
+from dashboards.site.years import years_page
 from dashboards.speech import Headline
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
@@ -42,6 +43,7 @@ def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Itera
         "of types": lambda: type_pages(views, methods),
         "seasons": lambda: [_seasons(views, methods)],
         "changes": lambda: [_changes(views, methods, changes())],
+        "years": lambda: [years_page(views, methods)],
         "races": lambda: _races(views, methods),
         "about": lambda: [_about()],
         "quality": lambda: [_quality(views, methods)],

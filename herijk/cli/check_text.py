@@ -126,7 +126,10 @@ def archive_text(report: CheckReport) -> list[str]:
 
 
 def _cause(cause: CauseReport) -> str:
-    lines = [f"{cause.number} x {cause.reason_code}: {cause.sentence}"]
+    lines = [
+        f"{cause.number} x {cause.reason_code}: {cause.sentence}",
+        f"    {tell('What to do: {}', cause.remedy)}",
+    ]
     if cause.tows:
         lines.append(f"    {tell('Tows that this costs: {}', cause.tows)}")
     if len(cause.cells) > 1:

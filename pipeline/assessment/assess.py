@@ -14,8 +14,9 @@ from typing import Final
 import numpy as np
 import polars as pl
 
-from pipeline.assessment.checks import CHECK, CHECKS, CODES, Check
+from pipeline.assessment.checks import CHECK, CHECKS, CODES, WAYS_LIMIT, Check
 from pipeline.choice import SAME_SHARE
+from pipeline.quantiles import MAD_TO_SD
 from pipeline.season_log.diagnosis import CANNOT_BE_TOLD, FAULT
 from pipeline.season_log.observation_model import FLEET
 from pipeline.tables.keys import LINE, SIZES
@@ -40,6 +41,10 @@ none of 990 sound seasons of 90 simulated archives is marked, and all 36 with lo
 MIN_LN_SPEED_SQUARES: Final = 0.004
 """Least sum of squares of ln speed, about the mean of a direction, over the runs of a tow."""
 
+MIN_WAYS_SD: Final = 3.0
+"""Robust standard deviations, over all tows of a method, from which chance does not explain that
+out and back differ."""
+
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 LISTED: Final = {"waterline_length_m": "listed_length_m", "beam_m": "listed_beam_m"}
 
@@ -59,10 +64,11 @@ def assess(
         weight not known, season after its last) has no row.
     """
     boats = _add_boats(curves, tows)
+    runs = _summarize_runs(curves, run_points)
     facts = [
         _compare_with_papers(tows),
         curves.drop(set(curves.columns) & set(tows.columns) - {"tow_id"}),
-        _summarize_runs(curves, run_points),
+        runs,
         _doubt_seasons(curves, tows, diagnosis),
         _estimate_log_slopes(curves, run_points),
         _compare_with_previous(boats, curves, diagnosis),
@@ -71,7 +77,23 @@ def assess(
         _compare_with_type(boats, curves, diagnosis),
     ]
     return apply_checks(
-        reduce(_join_by_tow, facts, tows).with_columns(by_half_a_step=HALF_STEP_RATIO)
+        reduce(_join_by_tow, facts, tows).with_columns(by_half_a_step=HALF_STEP_RATIO),
+        _widen_limit_of_ways(runs),
+    )
+
+
+def _widen_limit_of_ways(runs: pl.DataFrame) -> tuple[Check, ...]:
+    """Return the checks, with a limit of `out_and_back_differ` that chance hardly exceeds.
+
+    Gusts that outlast a run make out and back differ in all tows of an archive; a tow stands out
+    from `MIN_WAYS_SD` robust standard deviations of all of them on.
+    """
+    difference = (pl.col("out_over_back") - 1.0).abs().median().fill_null(0.0)
+    spread = MAD_TO_SD * float(runs.select(difference).item())
+    limit = max(WAYS_LIMIT, MIN_WAYS_SD * spread)
+    return tuple(
+        c._replace(lowest=-limit, highest=limit) if c.code == "out_and_back_differ" else c
+        for c in CHECKS
     )
 
 
@@ -100,7 +122,7 @@ def apply_checks(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.Dat
         .filter(pl.col("method").is_not_null())
         .unpivot(index=index, variable_name="check", value_name="observed")
         .filter(x.is_finite())
-        .join(_list_limits(), on=["check", "crew_class"], maintain_order="left")
+        .join(_list_limits(checks), on=["check", "crew_class"], maintain_order="left")
         .filter(pl.col("season") <= pl.col("last_season").fill_null(pl.col("season")))
         .select(
             "method",
@@ -119,10 +141,10 @@ def _measure(check: Check) -> pl.Expr:
     return pl.sql_expr(check.measured).cast(pl.Float64).alias(check.code)
 
 
-def _list_limits() -> pl.DataFrame:
+def _list_limits(checks: Sequence[Check]) -> pl.DataFrame:
     rows = [
         (c.code, crew_class, *c.limits(crew_class), c.unit, c.severity, c.last_season)
-        for c in CHECKS
+        for c in checks
         for crew_class in ("H", "D")
     ]
     names = ("check", "crew_class", "lowest", "highest", "unit", "severity", "last_season")

@@ -45,7 +45,7 @@ UNKNOWN_VARIANCE: Final = 1e6
 
 def correct_anemometers(c: Computed) -> Computed:
     """Return the tows with their wind as it was, where their steps ask to estimate its scale."""
-    is_asked = c.plan.option("wind.anemometer") == "estimated"
+    is_asked = c.options.wind.estimates_anemometer
     if not is_asked.any():
         return c
     scales = estimate_scales(_wind_ratios(c).filter(is_asked))
@@ -55,7 +55,8 @@ def correct_anemometers(c: Computed) -> Computed:
     ln_scale = np.where(is_asked, tows["ln_scale"].to_numpy(), 0.0)
     sd = np.where(is_asked, tows["sd"].to_numpy(), np.nan)
     means = c.means.with_wind(np.exp(ln_scale)[c.tows.tow])
-    return replace(c, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
+    air = replace(c.air, anemometer_ln_scale=ln_scale, anemometer_ln_sd=sd)
+    return replace(c, means=means, air=air)
 
 
 def _wind_ratios(c: Computed) -> pl.DataFrame:
@@ -158,7 +159,9 @@ def diagnose_anemometers(c: Computed) -> pl.DataFrame:
     is_alarm = distance.abs() >= ALARM_SD
     return (
         c.tows.frame.select(
-            "season", estimate=pl.Series(c.wind_ln_scale), sd=pl.Series(c.wind_ln_sd)
+            "season",
+            estimate=pl.Series(c.air.anemometer_ln_scale),
+            sd=pl.Series(c.air.anemometer_ln_sd),
         )
         .filter(sd.is_finite())
         .group_by("season", maintain_order=True)

@@ -15,7 +15,8 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
-from pipeline.uncertainty.misfit import fit_parabolas, shrink_to_boats
+from pipeline.tables.keys import LINE
+from pipeline.uncertainty.misfit import fit_parabolas, shrink_to_lines
 from pipeline.uncertainty.propagation import Assumed, pool_scatter
 
 DECLARED: Final = 1.0
@@ -40,7 +41,7 @@ def assumed_beside(factors: SeasonFactors | None) -> Assumed:
     """Return what remains assumed beside what the season factors show."""
     if factors is None:
         return Assumed()
-    return Assumed().beside_repeats(factors.tow_sd, factors.calibration_sd)
+    return Assumed().beside_repeats(factors.tow_sd, factors.tow_zero_n, factors.calibration_sd)
 
 
 def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
@@ -51,7 +52,7 @@ def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     if not pooled:
         return curve.own_scatter(c.free)
     residual, is_used, on_curve = _residuals(c)
-    sd_ratio, dof = pool_scatter(residual, is_used, c.of_season)
+    sd_ratio, dof = pool_scatter(residual, is_used, c.season_group)
     is_known = np.isfinite(sd_ratio) & is_used.any(axis=1)
     mean_cw = np.where(is_used, on_curve, 0.0).sum(axis=1) / np.maximum(is_used.sum(axis=1), 1)
     variance = (np.where(is_known, sd_ratio, 0.0) * mean_cw) ** 2
@@ -76,15 +77,15 @@ def files_log_sd(c: Computed) -> FloatArray:
     residual, is_used, _ = _residuals(c)
     is_second = c.tows.by_tow(c.tows.in_second_file.astype(np.float64)) > 0
     in_first, in_second = is_used & ~is_second, is_used & is_second
-    is_combined = in_first.any(axis=1) & in_second.any(axis=1) & ~c.calibrated
+    is_combined = in_first.any(axis=1) & in_second.any(axis=1) & ~c.speed.is_calibrated
     first_mean = (residual * in_first).sum(axis=1) / np.maximum(in_first.sum(axis=1), 1)
     second_mean = (residual * in_second).sum(axis=1) / np.maximum(in_second.sum(axis=1), 1)
     r = np.clip(c.free.s_s2_m2 * c.tows.of_tow("declared_speed_m_s") ** 2, -1.0, MAX_R)
     kappa = 2.0 / (1.0 - r)
     ln_log_difference = np.where(is_combined, (second_mean - first_mean) / kappa, 0.0)
-    combined_tows = np.maximum(np.bincount(c.of_season, is_combined), 1)
-    mean_square = np.bincount(c.of_season, ln_log_difference**2) / combined_tows
-    return np.where(is_combined, 0.5 * np.sqrt(mean_square[c.of_season]), 0.0)
+    combined_tows = np.maximum(np.bincount(c.season_group, is_combined), 1)
+    mean_square = np.bincount(c.season_group, ln_log_difference**2) / combined_tows
+    return np.where(is_combined, 0.5 * np.sqrt(mean_square[c.season_group]), 0.0)
 
 
 def make_facts(
@@ -124,6 +125,7 @@ def make_facts(
     r = (bend / (1.0 + bend) * ratio**2).clip(-1.0, MAX_R)
     return pl.concat(at_speeds).with_columns(
         speed_m_s=ratio * pl.col("declared_speed_m_s"),
+        force_n=cw * (ratio * pl.col("declared_speed_m_s")) ** 2,
         kappa=2.0 / (1.0 - r),
         misfit_ratio=(pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt(),
         air_ratio=pl.col("net_air_kg_m") / cw,
@@ -146,8 +148,8 @@ def _boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, Flo
         speed_ratios,
         c.plan.which,
     )
-    boat = (tows.frame["fsn_no"].rank("dense") - 1).to_numpy().astype(np.int64)
-    return shrink_to_boats(by_tow, boat)
+    line = tows.frame.select(pl.struct(*LINE).rank("dense") - 1).to_series()
+    return shrink_to_lines(by_tow, line.to_numpy().astype(np.int64))
 
 
 def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
@@ -171,19 +173,17 @@ def _facts_at_any_speed(
     if factors is not None:
         usual_bend = _median_bends(c)
         log_sd = np.hypot(factors.tow_log_sd_of(tows.of_tow("season")), files_log_sd(c))
-        tow_log_sd = np.where(c.calibrated, 0.0, log_sd)
+        tow_log_sd = np.where(c.speed.is_calibrated, 0.0, log_sd)
     bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual_bend)
 
     # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
     # taken off, and only what is put back for still air has it.
-    by_archive = c.plan.of_runs("wind.coefficients") == "archive"
+    by_archive = c.plan.run_options.wind.coefficients == "archive"
     net_air = np.where(by_archive, 0.0, c.air_kg_m) - c.still_air_kg_m
     # A larger coefficient takes more off as felt and puts more back for still air.
-    still_per_unit = c.still_air_kg_m / np.maximum(c.air.still, 1e-9)
+    still_per_unit = c.still_air_kg_m / np.maximum(c.air.drag.still, 1e-9)
     felt_per_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
-    coefficient_sd = np.where(
-        np.isfinite(c.coefficient_sd), c.coefficient_sd, Assumed().wind_coefficient
-    )
+    coefficient_sd = np.where(np.isfinite(c.air.drag_sd), c.air.drag_sd, Assumed().wind_coefficient)
     return tows.frame.select(
         "tow_id",
         "season",
@@ -191,7 +191,7 @@ def _facts_at_any_speed(
         part="log1_part",
         random_dof=pl.Series(scatter.dof),
         bend=pl.Series(bend),
-        calibrated=pl.Series(c.calibrated),
+        calibrated=pl.Series(c.speed.is_calibrated),
         askew_ratio=pl.Series(c.estimated("askew_ratio")).fill_nan(None),
         log_sd=pl.Series(np.where(has_log, c.estimated("ln_sd"), 0.0)),
         log_dof=pl.Series(np.where(has_log, c.estimated("dof"), np.inf)),
@@ -199,14 +199,14 @@ def _facts_at_any_speed(
         net_air_kg_m=pl.Series(tows.mean(net_air, c.used)),
         air_per_coefficient_kg_m=pl.Series(tows.mean(still_per_unit - felt_per_unit, c.used)),
         still_air_kg_m=pl.Series(tows.mean(c.still_air_kg_m, c.used)),
-        wind_ln_sd=pl.Series(c.wind_ln_sd).fill_nan(None),
+        wind_ln_sd=pl.Series(c.air.anemometer_ln_sd).fill_nan(None),
         wind_measured=pl.Series(tows.measured("wind")),
         wind_coefficient=pl.Series(coefficient_sd),
-        unmeasured_wind=pl.Series(c.expected_wind_sd),
-        temperature_known=pl.Series(c.temperature_known),
+        unmeasured_wind=pl.Series(c.air.unrecorded_sd),
+        temperature_known=pl.Series(c.temperature.is_known),
         water_off_c=pl.Series(c.water_off_c),
         mass_ln_sd=pl.col("mass_ln_sd").fill_null(0.0),
-        water_change_kg_m=pl.Series(tows.mean(c.temperature_kg_m, c.used)),
+        water_change_kg_m=pl.Series(tows.mean(c.temperature.change_kg_m, c.used)),
         force_sd=FORCE_SD,
     )
 

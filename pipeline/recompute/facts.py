@@ -87,7 +87,7 @@ def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame
 
 
 def samples_files(tows: pl.DataFrame) -> pl.DataFrame:
-    """The samples files of tows: `tow_id`, `path` and `sha256`, one or two rows per tow."""
+    """Return the samples files of tows: `tow_id`, `path` and `sha256`, one or two rows per tow."""
     first = tows.select("tow_id", path="samples_path", sha256="samples_sha256")
     second = tows.select("tow_id", path="second_path", sha256="second_sha256").drop_nulls()
     return pl.concat([first, second])

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -12,6 +13,7 @@ from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.blocks.tows import Tows
 from pipeline.method.definition import Calibration, Method, Steps
 from pipeline.recompute.facts import with_expected_mass, with_expected_water
+from pipeline.recompute.options import StepOptions
 from pipeline.recompute.run_cache import RunCache
 
 
@@ -20,9 +22,10 @@ class Plan:
     """Tows with the steps that each follows.
 
     Attributes:
+        tows: the tows.
         steps: those that some tow follows, in the order of seasons, of a season with GPS first.
         which: (tows,) place of a tow's steps: tows that share them are alike in how they scatter.
-        cache: what was found before of the same tows; added to.
+        cache: windows and means that were found before of the same tows; added to.
     """
 
     tows: Tows
@@ -31,58 +34,66 @@ class Plan:
     cache: RunCache
 
     @classmethod
-    def of(
+    def from_method(
         cls,
         method: Method,
         tows: pl.DataFrame,
         blocks: RunBlocks,
         cache: RunCache | None = None,
     ) -> Self:
-        """All tows under a method.
+        """Plan all tows under a method.
 
         Raises:
             MissingKnowledgeError: the method says nothing about a season of `tows`.
         """
         known = Tows.of(with_expected_water(tows), blocks)
         known = replace(known, frame=with_expected_mass(known.frame))
-        season, has_gps = known.frame["season"].to_list(), known.has_gps.tolist()
-        groups: dict[tuple[Steps, Steps], int] = {}
-        place = {}
-        for year, gps in sorted({*zip(season, has_gps, strict=True)}, key=lambda s: (s[0], -s[1])):
-            steps = method.for_season(year)
+        seasons = known.frame["season"].to_list()
+        has_gps = known.has_gps.tolist()
+        of_tows = list(zip(seasons, has_gps, strict=True))
+        place_of_group: dict[tuple[Steps, Steps], int] = {}
+        place: dict[tuple[int, bool], int] = {}
+        for season, gps in sorted(set(of_tows), key=lambda one: (one[0], not one[1])):
+            steps = method.for_season(season)
             own = steps if gps else without_gps(steps)
-            place[year, gps] = groups.setdefault((steps, own), len(groups))
-        which = [place[one] for one in zip(season, has_gps, strict=True)]
-        own_steps = tuple(own for _, own in groups)
-        return cls(known, own_steps, np.array(which, dtype=np.int64), cache or RunCache())
+            place[season, gps] = place_of_group.setdefault((steps, own), len(place_of_group))
+        return cls(
+            tows=known,
+            steps=tuple(own for _, own in place_of_group),
+            which=np.array([place[one] for one in of_tows], dtype=np.int64),
+            cache=cache or RunCache(),
+        )
 
-    def windows(self) -> dict[str, Any]:
-        """Windows of the runs, and means over them, as `RunCache.of` gives them."""
-        rule, averaging = self.of_runs("window.rule"), self.of_runs("wind.averaging_s")
-        asked = sorted({*zip(rule.tolist(), averaging.tolist(), strict=True)})
-        first, *others = [self.cache.of(self.tows, *one) for one in asked or [("all", 0)]]
-        here = [(rule == r) & (averaging == s) for r, s in asked[1:]]
-        return {
-            name: np.select(here, [other[name] for other in others], values) if here else values
-            for name, values in first.items()
-        }
+    @cached_property
+    def options(self) -> StepOptions:
+        """The options of each tow."""
+        return StepOptions.from_steps(self.steps, self.which)
 
-    def option(self, name: str) -> Any:
-        """An option of each tow's steps, such as `speed.correction`, shape (tows,)."""
-        step, option = name.split(".")
-        return np.array([getattr(getattr(s, step), option) for s in self.steps])[self.which]
+    @cached_property
+    def run_options(self) -> StepOptions:
+        """The options of each run: those of its tow."""
+        return self.options.take(self.tows.tow)
 
-    def of_runs(self, name: str) -> Any:
-        """The same of each run's tow, shape (runs,)."""
-        return self.option(name)[self.tows.tow]
+    def average_windows(self) -> dict[str, Any]:
+        """Return windows of the runs, and means over them, as `RunCache.average` gives them."""
+        is_trimmed = self.run_options.run.is_trimmed
+        is_robust = self.run_options.run.is_robust
+        averaging_s = self.run_options.wind.averaging_s
+        found: dict[str, Any] = {}
+        of_runs = zip(is_trimmed.tolist(), averaging_s.tolist(), is_robust.tolist(), strict=True)
+        for trimmed, seconds, robust in sorted(set(of_runs)) or [(False, 0, False)]:
+            own = self.cache.average(self.tows, trimmed, seconds, robust)
+            rows = (is_trimmed == trimmed) & (averaging_s == seconds) & (is_robust == robust)
+            found = {name: np.where(rows, own[name], found.get(name, own[name])) for name in own}
+        return found
 
-    def changed(self, change: Callable[[Steps], Steps]) -> Self:
-        """The same tows with other steps."""
-        return replace(self, steps=tuple(map(change, self.steps)))
+    def with_steps(self, change: Callable[[Steps], Steps]) -> Self:
+        """Return a plan of the same tows with changed steps."""
+        return replace(self, steps=tuple(change(steps) for steps in self.steps))
 
 
 def without_gps(steps: Steps) -> Steps:
-    """The steps of a tow that has no GPS, where the method says what it then gets."""
+    """Return the steps of a tow that has no GPS, where the method says what it then gets."""
     if not steps.estimates_without_gps:
         return steps
     speed = steps.speed.model_copy(update={"correction": "estimated"})
@@ -91,7 +102,7 @@ def without_gps(steps: Steps) -> Steps:
 
 
 def without_factor(steps: Steps) -> Steps:
-    """The steps from which log factors are estimated: with the log as it reads."""
+    """Return the steps from which log factors are estimated: with the log as it reads."""
     if steps.speed.correction != "estimated":
         return steps
     speed = steps.speed.model_copy(update={"correction": "none"})

@@ -1,13 +1,14 @@
 """Recompute: every tow under one method, from blocks to curves.
 
-Here the steps are put in their order; each step's formulas are in its own module and the tables
-are filled in `pipeline.recompute.results`. The order is: steady window, means, speed correction,
-runs that count, calibration, corrections of the coefficient, wind coefficients, curve. What is
-searched over the whole archive is found first and applied after. Nothing here knows a season: the
-method says what holds when.
+`evaluate` calls the steps in the order of the method's text (docs/method.md): window, mean, speed,
+temperature, wind and runs; the curve follows from them. Each step's formulas are in its own module
+of `pipeline.steps`, and the tables are filled in `pipeline.recompute.results`. What is searched
+over the whole archive is found first and applied after. Nothing here knows a season: the method
+says what holds when.
 """
 
 from dataclasses import replace
+from typing import Any, Final
 
 import numpy as np
 import polars as pl
@@ -17,7 +18,13 @@ from pipeline.arrays import BoolArray, FloatArray, StrArray
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.method.definition import Method
 from pipeline.recompute.anemometer import correct_anemometers
-from pipeline.recompute.computed import Coefficients, Computed
+from pipeline.recompute.computed import (
+    AirCorrection,
+    Computed,
+    Drag,
+    SpeedCorrection,
+    TemperatureCorrection,
+)
 from pipeline.recompute.plan import Plan, without_factor
 from pipeline.recompute.results import Recomputed, as_tables
 from pipeline.recompute.run_cache import RunCache
@@ -25,19 +32,24 @@ from pipeline.recompute.season_factors import find_season_factors, instruments_o
 from pipeline.run_reasons import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_CALIBRATED, NOT_SELECTED
 from pipeline.season_log import SeasonFactors
 from pipeline.steps.calibration import gps_factor_of_files
-from pipeline.steps.resistance import accelerated_mass_kg, run_means, temperature_change_kg_m
+from pipeline.steps.resistance import (
+    RunMeans,
+    accelerated_mass_kg,
+    run_means,
+    temperature_change_kg_m,
+)
 from pipeline.steps.speed import log_factor
 from pipeline.steps.target import above_target
 from pipeline.steps.wind import nearest_coefficients
 from pipeline.uncertainty.propagation import Assumed
 
-PER_RUN_ITERATIONS = 4
+PER_RUN_ITERATIONS: Final = 4
 """The old tool printed "4 iteraties" (presentation 2015, screens of Razende Snol)."""
 
+ARCHIVE_GRID: Final = np.linspace(0.0, 1.2, 13)
+"""Drag coefficients at which the misfit of the whole archive is computed."""
 
-ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
-
-FEWEST_WINDS = 10
+MIN_MEASURED_WINDS: Final = 10
 """Tows with an anemometer from which those without learn (inferred)."""
 
 
@@ -48,7 +60,7 @@ def recompute(
     cache: RunCache | None = None,
     with_bands: bool = True,
 ) -> Recomputed:
-    """Run points, curves, log factors and assessments of all tows under a method.
+    """Make the tables of all tows under a method.
 
     Args:
         tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
@@ -60,175 +72,274 @@ def recompute(
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
-    plan = Plan.of(method, tows, blocks, cache)
-    estimated = season_factors(plan) if method.estimates_logs else None
+    plan = Plan.from_method(method, tows, blocks, cache)
+    estimated = estimate_season_factors(plan) if method.estimates_logs else None
     computed = evaluate(plan, None if estimated is None else estimated.tows)
     return as_tables(method, computed, estimated, with_bands)
 
 
-def season_factors(plan: Plan) -> SeasonFactors | None:
-    """The log factors that the given steps ask to estimate, and how far tows scatter.
+def estimate_season_factors(plan: Plan) -> SeasonFactors | None:
+    """Estimate the log factors that the steps ask for, and how far tows scatter.
 
-    None if not a single tow has a curve from which to estimate.
+    Returns:
+        None if not a single tow has a curve from which to estimate.
     """
-    as_read = evaluate(plan.changed(without_factor))
+    as_read = evaluate(plan.with_steps(without_factor))
     if not (np.isfinite(as_read.cw_at_declared) & as_read.tows.trusted).any():
         return None
     return find_season_factors(as_read)
 
 
 def evaluate(plan: Plan, instruments: pl.DataFrame | None = None) -> Computed:
-    """What the given steps make of the tows.
+    """Compute the tows, step by step.
 
     Args:
-        plan: what is searched over the archive is searched over its tows.
+        plan: the tows and their steps; what is searched over the archive is searched over these.
         instruments: rows of the table `tow_instruments`, for steps that ask for an estimate.
     """
-    read = _prepare(plan, instruments_of(plan, instruments))
-    return _with_expected_wind(_with_coefficients(correct_anemometers(read)))
+    known_instruments = instruments_of(plan, instruments)
+    windows = plan.average_windows()
+    means = average_runs(plan, windows, known_instruments)
+    speed, is_determined = correct_speed(plan, windows["exists"], means, known_instruments)
+    true_speed = means.speed_m_s * speed.log_factor[plan.tows.tow] * speed.gps_factor
+    computed = Computed(
+        plan=plan,
+        windows=windows,
+        means=means,
+        instruments=known_instruments,
+        speed=speed,
+        temperature=correct_temperature(plan, true_speed),
+        air=prescribe_air(plan),
+        reasons=select_runs(plan, windows["exists"], means.speed_m_s, is_determined),
+    )
+    computed = correct_anemometers(computed)
+    computed = search_drag_per_run(computed)
+    computed = apply_archive_drag(computed)
+    return expect_unrecorded_wind(computed)
 
 
-def _with_expected_wind(c: Computed) -> Computed:
-    """The wind that tows without an anemometer must have had, by those with one, where it is asked.
+# The steps up to the wind
 
-    Wind along the course adds more on one way than it takes off on the other, so that a tow whose
-    wind nobody measured comes out too high.
+
+def average_runs(plan: Plan, windows: dict[str, Any], instruments: pl.DataFrame) -> RunMeans:
+    """Average each run over its window, with the load cell as it is known to read.
+
+    Args:
+        windows: as `Plan.average_windows` gives them.
+        instruments: rows of `instruments_of`.
     """
-    asked = c.expects_unrecorded
-    known = c.wind_ratio()[asked]
-    known = known[np.isfinite(known)]
-    if len(known) < FEWEST_WINDS:
-        return c
-    sd = np.where(asked, known.std(ddof=1), c.expected_wind_sd)
-    return replace(c, expected_wind=np.where(asked, known.mean(), 0.0), expected_wind_sd=sd)
-
-
-def _prepare(plan: Plan, instruments: pl.DataFrame) -> Computed:
-    """All that does not depend on the wind coefficients; these are fixed for now."""
-    tows, windows = plan.tows, plan.windows()
+    options = plan.run_options
     means = run_means(
-        tows,
+        plan.tows,
         windows,
-        plan.of_runs("run_point.estimator") == "mean_of_ratios",
-        plan.of_runs("wind.model") == "oblique",
-        accelerated_mass_kg(tows) * (plan.of_runs("run_point.inertia") != "none"),
+        of_ratios=options.run.uses_mean_of_ratios,
+        oblique=options.wind.is_oblique,
+        accelerated_kg=accelerated_mass_kg(plan.tows) * options.run.corrects_inertia,
     )
-    scale, zero_n = (
-        instruments[name].to_numpy()[tows.tow] for name in ("force_factor", "force_zero_n")
-    )
-    ratio = plan.of_runs("force.ratio")
-    means = means.with_force(ratio * scale, ratio * zero_n)
-    known = log_factor(
-        plan.option("speed.correction"),
-        plan.option("speed.factor"),
-        tows.of_tow("speed_correction_ratio"),
-        instruments["factor"].cast(pl.Float64).to_numpy(),
-    )
-    reasons = _reasons(plan, windows["exists"], means.speed_m_s)
-    used, by_gps = reasons == "", plan.option("calibration.rule") != "none"
-    log = means.speed_m_s * known[tows.tow]
-    y, found = gps_factor_of_files(tows, means.gps_m_s, log, used, windows["exists"] & (log > 0))
-    determined = found.ravel()[tows.file] | ~by_gps[tows.tow]
-    y = np.where(by_gps[tows.tow], y.ravel()[tows.file], 1.0)
-    corrected = plan.option("temperature.rule") != "none"
-    expected = plan.option("unrecorded.rule") == "expected"
-    temperature = temperature_change_kg_m(tows, corrected, expected, log * y)
-    ahead, behind = (plan.of_runs(f"wind.{way}") for way in ("ahead", "behind"))
-    nothing = np.full(tows.size, np.nan)
-    return Computed(
-        plan,
-        windows,
-        means,
-        known,
-        y,
-        tows.any(determined & used) & by_gps,
-        instruments,
-        np.where(used & ~determined, NOT_CALIBRATED, reasons),
-        *temperature,
-        Coefficients(ahead, behind, still=ahead),
-        coefficient_sd=nothing,
-        wind_ln_scale=np.zeros(tows.size),
-        wind_ln_sd=nothing,
-        expected_wind=np.zeros(tows.size),
-        expected_wind_sd=np.full(tows.size, Assumed().unmeasured_wind),
+    force_factor = instruments["force_factor"].to_numpy()[plan.tows.tow]
+    force_zero_n = instruments["force_zero_n"].to_numpy()[plan.tows.tow]
+    return means.with_force(
+        options.run.force_ratio * force_factor, options.run.force_ratio * force_zero_n
     )
 
 
-def _reasons(plan: Plan, has_window: BoolArray, log_m_s: FloatArray) -> StrArray:
-    """Why a run does not count, before calibration; empty where it does."""
-    selected, highest = plan.tows.selected, plan.of_runs("runs.highest_target_ratio")
-    too_fast = above_target(plan.tows, log_m_s, selected & has_window, highest)
+def correct_speed(
+    plan: Plan, has_window: BoolArray, means: RunMeans, instruments: pl.DataFrame
+) -> tuple[SpeedCorrection, BoolArray]:
+    """Correct the log's known error, then calibrate it on dGPS where the method asks.
+
+    Calibration is over all runs that are to be used, also those that are too fast to count: their
+    speeds are measured as well as any.
+
+    Returns:
+        The correction, and for which runs it is determined, shape (runs,).
+    """
+    tows, options = plan.tows, plan.options.speed
+    factor = log_factor(
+        options.correction,
+        options.factor,
+        tow_list_ratio=tows.of_tow("speed_correction_ratio"),
+        estimated_factor=instruments["factor"].cast(pl.Float64).to_numpy(),
+    )
+    is_measured = tows.selected & has_window
+    corrected_log = means.speed_m_s * factor[tows.tow]
+    is_steady = has_window & (corrected_log > 0)
+    of_files, is_known = gps_factor_of_files(
+        tows, means.gps_m_s, corrected_log, is_measured, is_steady
+    )
+    needs_gps = options.is_calibrated[tows.tow]
+    is_determined = is_known.ravel()[tows.file] | ~needs_gps
+    correction = SpeedCorrection(
+        log_factor=factor,
+        gps_factor=np.where(needs_gps, of_files.ravel()[tows.file], 1.0),
+        is_calibrated=tows.any(is_determined & is_measured) & options.is_calibrated,
+    )
+    return correction, is_determined
+
+
+def select_runs(
+    plan: Plan, has_window: BoolArray, log_m_s: FloatArray, is_determined: BoolArray
+) -> StrArray:
+    """Return why each run does not count; empty where it does.
+
+    Args:
+        plan: the tows and their steps.
+        has_window: runs with a window, shape (runs,).
+        log_m_s: mean speed of each run by its log, shape (runs,).
+        is_determined: runs whose speed correction is determined, shape (runs,).
+    """
+    is_selected = plan.tows.selected
+    highest_ratio = plan.run_options.run.highest_target_ratio
+    is_too_fast = above_target(plan.tows, log_m_s, is_selected & has_window, highest_ratio)
     return np.select(
-        [~selected, ~has_window, too_fast], [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET], ""
+        [~is_selected, ~has_window, is_too_fast, ~is_determined],
+        [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET, NOT_CALIBRATED],
+        "",
     )
 
 
-def _with_coefficients(c: Computed) -> Computed:
-    """The tows with the drag coefficients that their steps ask for."""
-    rule = c.plan.option("wind.coefficients")
-    if (per_run := (rule == "per_run")[c.tows.tow]).any():
-        pairs = zip(_best_per_run(c), c.air, strict=True)
-        c = replace(c, air=Coefficients(*(np.where(per_run, *pair) for pair in pairs)))
-    asked = rule == "archive"
-    if asked.any() and (shared := _archive_coefficient(c, asked)) is not None:
-        value, sd = shared
-        air = (np.where(asked[c.tows.tow], value, fixed) for fixed in c.air)
-        c = replace(c, air=Coefficients(*air), coefficient_sd=np.where(asked, sd, np.nan))
-    return c
+def correct_temperature(plan: Plan, speed_m_s: FloatArray) -> TemperatureCorrection:
+    """Bring Cw to the reference temperature, where the method asks."""
+    change_kg_m, is_known = temperature_change_kg_m(
+        plan.tows,
+        plan.options.corrects_temperature,
+        plan.options.expects_unrecorded,
+        speed_m_s,
+    )
+    return TemperatureCorrection(change_kg_m, is_known)
 
 
-def _best_per_run(computed: Computed) -> Coefficients:
-    """Coefficients searched run by run so that each point comes nearest to the curve.
+def prescribe_air(plan: Plan) -> AirCorrection:
+    """Return the air correction with the coefficients that the method prescribes."""
+    wind = plan.run_options.wind
+    not_estimated = np.full(plan.tows.size, np.nan)
+    return AirCorrection(
+        drag=Drag(ahead=wind.ahead, behind=wind.behind, still=wind.ahead),
+        drag_sd=not_estimated,
+        anemometer_ln_scale=np.zeros(plan.tows.size),
+        anemometer_ln_sd=not_estimated,
+        unrecorded_ratio=np.zeros(plan.tows.size),
+        unrecorded_sd=np.full(plan.tows.size, Assumed().unmeasured_wind),
+    )
+
+
+# Wind
+
+
+def search_drag_per_run(computed: Computed) -> Computed:
+    """Search the coefficients run by run, so that each point comes nearest to the curve.
 
     The old rule: fit, move every run as near to the curve as its wind allows, fit again. The
     still-air part keeps its fixed coefficient (inferred).
     """
-    air, tow = computed.air, computed.tows.tow
+    is_searched = (computed.options.wind.coefficients == "per_run")[computed.tows.tow]
+    if not is_searched.any():
+        return computed
+    prescribed, tow = computed.air.drag, computed.tows.tow
+    drag = prescribed
     for _ in range(PER_RUN_ITERATIONS):
-        cw = computed.cw_of(air)
-        curves = curve.fit(computed.points_of(cw))
+        cw = computed.cw_with(drag)
+        curves = curve.fit(computed.points_with(cw))
         on_curve = curve.cw(curves.a_kg_m[tow], curves.s_s2_m2[tow], computed.speed_m_s)
-        fits = curves.converged[tow] & np.isfinite(on_curve)
-        excess = cw + computed.air_of(air) - np.where(fits, on_curve, cw)
-        searched = nearest_coefficients(computed.means.air, excess * computed.speed_factor**2)
-        ahead, behind = (np.where(fits, *pair) for pair in zip(searched, air, strict=False))
-        air = Coefficients(ahead, behind, air.still)
-    return air
+        has_curve = curves.converged[tow] & np.isfinite(on_curve)
+        wanted_air = cw + computed.air_with(drag) - np.where(has_curve, on_curve, cw)
+        ahead, behind = nearest_coefficients(
+            computed.means.air, wanted_air * computed.speed_factor**2
+        )
+        drag = Drag(
+            ahead=np.where(has_curve, ahead, drag.ahead),
+            behind=np.where(has_curve, behind, drag.behind),
+            still=drag.still,
+        )
+    chosen = Drag(
+        ahead=np.where(is_searched, drag.ahead, prescribed.ahead),
+        behind=np.where(is_searched, drag.behind, prescribed.behind),
+        still=prescribed.still,
+    )
+    return replace(computed, air=replace(computed.air, drag=chosen))
 
 
-def _misfits(c: Computed, grid: FloatArray) -> FloatArray:
-    """Residuals' squares / Cw^2, (coefficients, tows); infinite without a curve of all points."""
-    alike = (np.full(len(c.tows.tow), value) for value in grid)
-    points = [c.points_of(c.cw_of(Coefficients(one, one, one))) for one in alike]
-    stacked = zip(*((p.speed_m_s, p.cw_kg_m, p.used) for p in points), strict=True)
-    curves = curve.fit(curve.Points(*map(np.concatenate, stacked)))
-    scale = curves.cw_at(np.tile(c.tows.of_tow("declared_speed_m_s"), len(grid)))
-    runs = np.tile(c.tows.count(c.in_fit), len(grid))
-    sound = curves.converged & np.isfinite(scale) & (curves.n_points == runs)
-    misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, np.inf)
-    return misfit.reshape(len(grid), -1)
+def apply_archive_drag(computed: Computed) -> Computed:
+    """Use one coefficient for the whole archive, where the method asks and tows determine it."""
+    uses_archive = computed.options.wind.coefficients == "archive"
+    estimate = estimate_archive_drag(computed, uses_archive) if uses_archive.any() else None
+    if estimate is None:  # not asked for, or no tow with every curve
+        return computed
+    value, sd = estimate
+    by_run = uses_archive[computed.tows.tow]
+    drag = Drag(
+        ahead=np.where(by_run, value, computed.air.drag.ahead),
+        behind=np.where(by_run, value, computed.air.drag.behind),
+        still=np.where(by_run, value, computed.air.drag.still),
+    )
+    drag_sd = np.where(uses_archive, sd, np.nan)
+    return replace(computed, air=replace(computed.air, drag=drag, drag_sd=drag_sd))
 
 
-def _archive_coefficient(c: Computed, asked: BoolArray) -> tuple[float, float] | None:
-    """One coefficient for the whole archive, and its standard deviation; None without tows.
-
-    It has the least misfit of all tows together.
+def estimate_archive_drag(
+    computed: Computed, uses_archive: BoolArray
+) -> tuple[float, float] | None:
+    """Estimate the coefficient with the least misfit of all tows together.
 
     Out and back feel different wind, so a wrong coefficient drives their points apart. Tows that
     one of the coefficients leaves without a curve take no part, so that every sum is of the same
-    tows. The misfit is a parabola in the coefficient, near its minimum. The
-    standard deviation is the sandwich over tows (Huber 1967): what is odd about one tow is shared
-    by its runs.
+    tows. Near its minimum the misfit is a parabola in the coefficient. The standard deviation is
+    the sandwich over tows (Huber 1967): what is odd about one tow is shared by its runs.
+
+    Returns:
+        The coefficient and its standard deviation; None without tows.
     """
-    each = _misfits(c, ARCHIVE_GRID)[:, asked & c.tows.trusted]
-    if not (each := each[:, np.isfinite(each).all(axis=0)]).size:
+    misfit = compute_misfits(computed, ARCHIVE_GRID)[:, uses_archive & computed.tows.trusted]
+    misfit = misfit[:, np.isfinite(misfit).all(axis=0)]
+    if not misfit.size:
         return None
-    best = int(np.clip(each.sum(axis=1).argmin(), 1, len(ARCHIVE_GRID) - 2))
-    below, here, above = each[best - 1 : best + 2]
-    bends = below - 2.0 * here + above
-    if (bend := bends.sum()) <= 0:
+    best = int(np.clip(misfit.sum(axis=1).argmin(), 1, len(ARCHIVE_GRID) - 2))
+    below, here, above = misfit[best - 1 : best + 2]
+    curvature = below - 2.0 * here + above
+    if curvature.sum() <= 0:
         return float(ARCHIVE_GRID[best]), Assumed().wind_coefficient
-    step, shift = ARCHIVE_GRID[1] - ARCHIVE_GRID[0], 0.5 * (below - above).sum() / bend
-    slopes = 0.5 * (above - below) + bends * shift
+    step = ARCHIVE_GRID[1] - ARCHIVE_GRID[0]
+    shift = 0.5 * (below - above).sum() / curvature.sum()
+    slopes = 0.5 * (above - below) + curvature * shift
     value = np.clip(ARCHIVE_GRID[best] + step * shift, ARCHIVE_GRID[0], ARCHIVE_GRID[-1])
-    return float(value), float(step * np.sqrt((slopes**2).sum()) / bend)
+    return float(value), float(step * np.sqrt((slopes**2).sum()) / curvature.sum())
+
+
+def compute_misfits(computed: Computed, coefficients: FloatArray) -> FloatArray:
+    """Return residual squares / Cw^2 of each tow for drag coefficients, (coefficients, tows).
+
+    Infinite without a curve through all points. All curves are fitted in one batch.
+    """
+    batches = []
+    for value in coefficients:
+        drag = np.full(len(computed.tows.tow), value)
+        batches.append(computed.points_with(computed.cw_with(Drag(drag, drag, drag))))
+    points = curve.Points(
+        speed_m_s=np.concatenate([batch.speed_m_s for batch in batches]),
+        cw_kg_m=np.concatenate([batch.cw_kg_m for batch in batches]),
+        used=np.concatenate([batch.used for batch in batches]),
+    )
+    curves = curve.fit(points)
+    declared = np.tile(computed.tows.of_tow("declared_speed_m_s"), len(coefficients))
+    runs = np.tile(computed.tows.count(computed.in_fit), len(coefficients))
+    cw = curves.cw_at(declared)
+    is_sound = curves.converged & np.isfinite(cw) & (curves.n_points == runs)
+    misfit = np.where(is_sound, curves.rss_kg2_m2 / np.where(is_sound, cw, 1.0) ** 2, np.inf)
+    return misfit.reshape(len(coefficients), -1)
+
+
+def expect_unrecorded_wind(computed: Computed) -> Computed:
+    """Give tows without an anemometer the wind that those with one had, where the method asks.
+
+    Wind along the course adds more on one way than it takes off on the other, so that a tow whose
+    wind nobody measured comes out too high.
+    """
+    is_expected = computed.options.expects_unrecorded
+    measured = computed.wind_ratio()[is_expected]
+    measured = measured[np.isfinite(measured)]
+    if len(measured) < MIN_MEASURED_WINDS:
+        return computed
+    ratio = np.where(is_expected, measured.mean(), 0.0)
+    sd = np.where(is_expected, measured.std(ddof=1), computed.air.unrecorded_sd)
+    air = replace(computed.air, unrecorded_ratio=ratio, unrecorded_sd=sd)
+    return replace(computed, air=air)

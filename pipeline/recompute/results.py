@@ -79,7 +79,7 @@ def as_tables(
     estimated: SeasonFactors | None,
     with_bands: bool,
 ) -> Recomputed:
-    """The tables of a method; tows are assessed when all curves are there."""
+    """Make the tables of a method; tows are assessed when all curves are there."""
     name = pl.lit(method.name).alias("method")
 
     def named(frame: pl.DataFrame) -> pl.DataFrame:
@@ -123,7 +123,7 @@ def _run_points(c: Computed) -> pl.DataFrame:
     has_window = windows["exists"]
     on_curve = curve.cw(c.curves.a_kg_m[tow], c.curves.s_s2_m2[tow], c.speed_m_s)
     log1 = np.where(has_window, means.speed_m_s, 1.0)
-    has_limits = c.plan.of_runs("window.rule") != "all"
+    has_limits = c.plan.run_options.run.is_trimmed
     wind, log2 = (c.tows.measured(channel)[tow] for channel in ("wind", "log2"))
     log2_ratio = means.log2_m_s / log1
     log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
@@ -136,9 +136,9 @@ def _run_points(c: Computed) -> pl.DataFrame:
         "inertia_cw_kg_m": c.by_true_speed(means.inertia_kg_m),
         "air_cw_kg_m": c.air_kg_m,
         "still_air_cw_kg_m": c.still_air_kg_m,
-        "temperature_cw_kg_m": c.temperature_kg_m,
-        "wind_coefficient_ahead": c.air.ahead,
-        "wind_coefficient_behind": c.air.behind,
+        "temperature_cw_kg_m": c.temperature.change_kg_m,
+        "wind_coefficient_ahead": c.air.drag.ahead,
+        "wind_coefficient_behind": c.air.drag.behind,
         "cw_kg_m": c.cw_kg_m,
         "cw_sd": c.by_true_speed(means.sd_kg_m),
         "cw_seconds_sd_kg_m": c.by_true_speed(means.seconds_sd_kg_m),
@@ -171,7 +171,7 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     safe_cw = np.where(sound, cw, 1.0)
     residual = np.sqrt(c.curves.rss_kg2_m2 / np.maximum(c.curves.n_points - 2, 1)) / safe_cw
     # A cap is the method's choice, and coefficients searched run by run leave no scatter.
-    own_b = ~c.curves.b_capped & (c.plan.option("wind.coefficients") != "per_run")
+    own_b = ~c.curves.b_capped & (c.options.wind.coefficients != "per_run")
     numbers = {
         "a_kg_m": c.curves.a_kg_m,
         "cw_kg_m": cw,
@@ -187,9 +187,7 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     ).with_columns(
         *(_column(name, values, sound) for name, values in numbers.items()),
         _column("b_m_s", c.curves.b_m_s, sound & c.curves.b_determined),
-        _column(
-            "calibration_factor", c.calibration_factor, c.plan.option("calibration.rule") != "none"
-        ),
+        _column("calibration_factor", c.calibration_factor, c.options.speed.is_calibrated),
         pl.Series("b_capped", c.curves.b_capped),
         pl.Series("runs_used", c.tows.count(c.used), pl.Int8),
     )
@@ -208,11 +206,13 @@ def _curve_points(facts: pl.DataFrame, bounds: pl.DataFrame) -> pl.DataFrame:
 
 
 def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
-    """The factor of each season, its interval and source; of tows that have GPS, if any have.
+    """Return factor, interval and source of each season; of tows that have GPS, if any have.
 
     A tow's own factor is in `run_points.speed_factor`.
     """
-    ln_factor = np.where(c.calibrated, np.log(c.known_factor * c.calibration_factor), np.nan)
+    ln_factor = np.where(
+        c.speed.is_calibrated, np.log(c.speed.log_factor * c.calibration_factor), np.nan
+    )
     season, which = c.tows.of_tow("season"), c.plan.which
     rows: list[tuple[int, *Factor]] = []
     for year in c.tows.frame["season"].unique().sort():
@@ -230,7 +230,7 @@ Factor = tuple[float, float | None, float | None, str]
 
 
 def _of_season(steps: Steps, season: int, estimated: SeasonFactors | None) -> Factor:
-    """The factor where tows are not calibrated on GPS: estimated, prescribed or none."""
+    """Return the factor where tows are not calibrated on GPS: estimated, prescribed or none."""
     is_asked = estimated is not None and steps.speed.correction == "estimated"
     if estimated is not None and is_asked and (known := estimated.of_season(season)) is not None:
         return known
@@ -241,7 +241,7 @@ def _of_season(steps: Steps, season: int, estimated: SeasonFactors | None) -> Fa
 
 
 def _mean_factor(ln_factor: FloatArray) -> Factor:
-    """The mean of tows that are calibrated on GPS, with a t interval; NaN are not."""
+    """Return the mean of tows that are calibrated on GPS, with a t interval; NaN are not."""
     known = ln_factor[np.isfinite(ln_factor)]
     if not (n := len(known)):
         return 1.0, None, None, "none"
@@ -254,7 +254,7 @@ def _mean_factor(ln_factor: FloatArray) -> Factor:
 
 
 def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
-    """The tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
+    """Return the tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
     schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
     if estimated is None:
         return {name: pl.DataFrame(schema=schema) for name, schema in schemas.items()}
@@ -268,14 +268,14 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
 
 
 def _diagnosis(estimated: SeasonFactors | None, c: Computed) -> pl.DataFrame:
-    """What is wrong with the instruments of each season; no rows without an estimate."""
+    """Return what is wrong with the instruments of each season; no rows without an estimate."""
     joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
     both = pl.concat([joint, diagnose_anemometers(c)])
     return both.sort("season", "part", "instrument")
 
 
 def _column(name: str, values: ArrayLike, known: BoolArray | bool) -> pl.Series:
-    """A column of numbers, null where nothing is known or the number is infinite."""
+    """Return a column of numbers, null where nothing is known or the number is infinite."""
     numbers = np.asarray(values, dtype=np.float64)
     sound = known & np.isfinite(numbers)
     column = pl.Series(name, np.where(sound, numbers, 0.0))

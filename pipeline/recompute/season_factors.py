@@ -78,7 +78,7 @@ def instruments_of(plan: Plan, rows: pl.DataFrame | None) -> pl.DataFrame:
     # A tow that takes no part in the estimate had the instruments of its season all the same.
     of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
     filled = joined.with_columns(of_season.fill_null(of_season.mean().over("season", "log1_part")))
-    asked = pl.Series(plan.option("speed.correction") == "estimated")
+    asked = pl.Series(plan.options.speed.correction == "estimated")
     return filled.with_columns(
         pl.when(asked).then("factor").alias("factor"),
         pl.col("force_factor").fill_null(1.0),
@@ -115,7 +115,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     ln_cw_by_log = 2.0 + 2.0 * q
     q_by_log = 2.0 * q * (1.0 + q)
     still_air = tows.mean(c.still_air_kg_m, c.used)
-    wind_sd = np.where(tows.measured("wind"), 0.0, still_air * c.expected_wind_sd) / cw
+    wind_sd = np.where(tows.measured("wind"), 0.0, still_air * c.air.unrecorded_sd) / cw
     point_variance = np.where(has_errors, errors.c0_variance_kg2_m2 / cw**2, 1.0)
     ln_cw_sd = np.sqrt(point_variance + (ln_cw_by_log * log_sd) ** 2 + wind_sd**2)
     q_sd = np.hypot(np.where(has_errors, np.sqrt(errors.q_variance), 1.0), q_by_log * log_sd)
@@ -124,18 +124,18 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
 
     # A doubted tow says nothing of boats and logs; the others say what its Cw should have been.
     is_trusted = tows.trusted
-    is_calibrated = c.calibrated & is_trusted
-    is_anchored = c.plan.option("calibration.rule") == "gps_per_tow"
+    is_calibrated = c.speed.is_calibrated & is_trusted
+    is_anchored = c.options.speed.is_calibrated
     gps_ln_ratio, gps_sd, has_gps = _gps_ratio(c)
     is_plain_gps = has_gps & ~is_anchored & is_trusted
-    y = np.where(c.calibrated, c.calibration_factor, 1.0)
+    y = np.where(c.speed.is_calibrated, c.calibration_factor, 1.0)
     numbers = {
         "ln_cw": np.where(is_sound, np.log(cw), np.nan),
         "ln_cw_sd": np.where(is_trusted, ln_cw_sd, UNOBSERVED_SD),
         "q": q,
         "q_sd": np.where(is_trusted, q_sd, UNOBSERVED_SD),
         "ln_cw_q_cov": np.where(is_trusted, covariance, 0.0),
-        "own_calibration_ln": np.where(is_calibrated, np.log(c.known_factor * y), np.nan),
+        "own_calibration_ln": np.where(is_calibrated, np.log(c.speed.log_factor * y), np.nan),
         "gps_ln_ratio": np.where(is_plain_gps, gps_ln_ratio, np.nan),
         "gps_sd": np.where(is_plain_gps, np.hypot(gps_sd, log_sd), np.nan),
         "reference_ratio": declared / true_speed,
@@ -148,7 +148,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
         pl.col("tow_date").dt.ordinal_day().cast(pl.Float64).alias("day"),
         pl.col("log1_part").alias("part"),
         pl.Series("anchored", is_anchored),
-        pl.Series("temperature_known", c.temperature_known),
+        pl.Series("temperature_known", c.temperature.is_known),
         pl.Series("water_off_c", c.water_off_c),
         FORCE_SD.alias("force_sd"),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),

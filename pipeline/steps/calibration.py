@@ -49,7 +49,7 @@ def gps_factor(
     used: BoolArray,
     tows: int,
 ) -> tuple[FloatArray, BoolArray]:
-    """The factor y of every tow, and whether it could be determined (runs both ways).
+    """Return the factor y of every tow, and whether it could be determined (runs both ways).
 
     Arguments as in `mean_over_both_ways`, with the run means of ground speed, NaN without a fix,
     and of log speed. Undetermined factors are given as 1 and must not be used.
@@ -64,7 +64,7 @@ def gps_factor(
 def gps_factor_of_files(
     tows: Tows, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray, steady: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """The factor y of every file of a tow, and whether it could be determined.
+    """Return the factor y of every file of a tow, and whether it could be determined.
 
     "Log1 bij elke sleep calibreren aan dGPS" (presentation 2015): the files of a combined tow are
     two tows, each with a log of its own. A file whose used runs all go one way is calibrated over

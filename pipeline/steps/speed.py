@@ -23,7 +23,7 @@ def log_factor(
     tow_list_ratio: FloatArray,
     estimated_factor: FloatArray,
 ) -> FloatArray:
-    """True speed / log speed for each tow.
+    """Return true speed / log speed for each tow.
 
     Args:
         correction, factor: options of the method, of each tow or of all.

@@ -16,7 +16,7 @@ from pipeline.blocks.tows import Tows
 def above_target(
     tows: Tows, log_m_s: FloatArray, runs: BoolArray, highest_ratio: FloatArray | float
 ) -> BoolArray:
-    """Runs faster than `highest_ratio` of the declared speed, on the scale of the tow's own runs.
+    """Return which runs are faster than `highest_ratio` of the declared speed, on their scale.
 
     The scale is the median of speed / intended speed over the tow's runs (of two in the middle the
     lower, as the runs towed too fast are the high ones): a factor on all speeds drops out. Of

@@ -37,11 +37,11 @@ class AirParts:
     side: FloatArray
 
     def total(self, ahead: FloatArray, behind: FloatArray, side: FloatArray | float) -> FloatArray:
-        """The air part for given coefficients, shape (runs,), kg/m."""
+        """Return the air part for given coefficients, shape (runs,), kg/m."""
         return ahead * self.ahead + behind * self.behind + side * self.side
 
     def times(self, factor: FloatArray) -> "AirParts":
-        """These parts times a factor of each run, shape (runs,)."""
+        """Return these parts times a factor of each run, shape (runs,)."""
         return AirParts(self.ahead * factor, self.behind * factor, self.side * factor)
 
 
@@ -99,7 +99,7 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
 
 
 def with_averaged_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
-    """The same blocks with the sums of their air terms as `averaged_terms` gives them."""
+    """Return the blocks with the sums of their air terms as `averaged_terms` gives them."""
     terms = averaged_terms(blocks, averaging_s)
 
     def made(name: str) -> FloatArray:
@@ -123,7 +123,7 @@ def _centred_sum(values: FloatArray, width: int) -> FloatArray:
 
 
 def nearest_coefficients(air: AirParts, excess_kg_m: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The coefficients within `PER_RUN_BOUNDS` that bring each run nearest to a given value.
+    """Return coefficients within `PER_RUN_BOUNDS` that bring each run nearest to a value.
 
     The wind that is felt most is searched first, the other takes what is left.
 

@@ -10,8 +10,7 @@ its limit, the window says. A window that a person gave goes before the one that
 """
 
 from dataclasses import dataclass
-from itertools import compress
-from typing import Any, Final
+from typing import Any, Final, Self
 
 import numpy as np
 import scipy
@@ -21,18 +20,18 @@ from pipeline.blocks.run_blocks import RunBlocks, WindowSums
 from pipeline.method.constants import FORCE_ENDS_RATIO, SHORTEST_WINDOW_S, SPEED_ENDS_M_S
 from pipeline.quantiles import MAD_TO_SD
 
-WORTH_DECIMALS: Final = 6
-"""Windows whose worth is equal to the microsecond are equals: the same faults in another order of
+SCORE_DECIMALS: Final = 6
+"""Windows whose scores are equal to the microsecond are equals: the same faults in another order of
 summing cost the same."""
 
 END_SECONDS: Final = 5
 """Length of the two ends that are compared, s (docs/method-details.md, 2)."""
 
-BLOCK_PRICE_S: Final = 10.0
+FAULT_COST_S: Final = 10.0
 """What a peak or gust inside a window costs, in seconds of its length, for each block and each
 limit's worth over the limit."""
 
-NOT_WITHIN_S: Final = 1e3
+OVER_LIMIT_COST_S: Final = 1e3
 """What force or wind that differs beyond its limit costs for each limit's worth: more than any
 length, so that every window within the limits goes before, and else the one that exceeds them
 least."""
@@ -40,14 +39,14 @@ least."""
 WIND_ENDS_M_S: Final = 1.0
 """Allowed difference of the wind between the ends (inferred; S2017: "about equal")."""
 
-LEAST_RAMP_M_S: Final = 0.08
+MIN_RAMP_M_S: Final = 0.08
 """Smallest ramp of the speed that is cut (inferred; the text says 0.1 m/s)."""
 
 PEAK_SD: Final = 3.0
 GUST_SD: Final = 2.4
 """A peak of the force and a gust, in robust standard deviations (inferred)."""
 
-LONGEST_RAMP_S: Final = 12
+MAX_RAMP_S: Final = 12
 RAMP_MARGIN_S: Final = 5
 """Cut beyond the end of the straight line that is fitted to a ramp, whose tail it misses."""
 
@@ -111,225 +110,291 @@ class Windows:
 
 
 def whole_runs(blocks: RunBlocks) -> Windows:
-    """Windows that hold all of every run; runs without any block have none."""
-    return _windows(blocks, blocks.inside, ("",) * len(blocks.n))
+    """Return windows that hold all of every run; runs without any block have none."""
+    return describe_windows(blocks, blocks.inside, ("",) * len(blocks.n))
 
 
 def steady_windows(blocks: RunBlocks) -> Windows:
-    """The steady part of every run, or the window that a person gave; some runs have none."""
-    present, judged = blocks.inside, _Runs.of(blocks)
-    start, length = _search(present, judged)
+    """Return the steady part of every run, or the window a person gave; some runs have none."""
+    faults = Faults.from_blocks(blocks)
+    start, length = find_best_windows(blocks.inside, faults, Ends.from_blocks(blocks))
     second = np.arange(blocks.seconds)
     mask = (second >= start[:, None]) & (second < (start + length)[:, None])
-    searched = _windows(blocks, mask, tuple(_reasons(present, mask, judged)))
-    return _given_by_hand(blocks, searched)
+    reasons = explain_cuts(blocks.inside, mask, faults)
+    return apply_hand_windows(blocks, describe_windows(blocks, mask, reasons))
 
 
-def _given_by_hand(blocks: RunBlocks, searched: Windows) -> Windows:
-    """The windows given by hand, which must be as long as any other, else the searched ones."""
+def apply_hand_windows(blocks: RunBlocks, found: Windows) -> Windows:
+    """Return the windows given by hand, which must be as long as any other, else those found."""
     if not set(HAND_COLUMNS.values()) <= set(blocks.runs.columns):
-        return searched
-    hand_start, hand_end, hand_reason = (blocks.runs[c] for c in HAND_COLUMNS.values())
-    given = hand_start.is_not_null().to_numpy()
-    start, end = (bound.fill_null(0).to_numpy()[:, None] for bound in (hand_start, hand_end))
+        return found
+    hand_start = blocks.runs[HAND_COLUMNS["start_s"]]
+    hand_end = blocks.runs[HAND_COLUMNS["end_s"]]
+    hand_reason = blocks.runs[HAND_COLUMNS["reason"]]
+    is_given = hand_start.is_not_null().to_numpy()
+    start = hand_start.fill_null(0).to_numpy()[:, None]
+    end = hand_end.fill_null(0).to_numpy()[:, None]
     second = np.arange(blocks.seconds)
     inside = (second >= start) & (second < end) & blocks.inside
-    long_enough = inside.sum(axis=1, keepdims=True) >= SHORTEST_WINDOW_S
+    is_long_enough = inside.sum(axis=1, keepdims=True) >= SHORTEST_WINDOW_S
     reasons = tuple(
-        f"{BY_HAND}: {why}" if hand else reason
-        for hand, why, reason in zip(given, hand_reason, searched.reasons, strict=True)
+        f"{BY_HAND}: {given_reason}" if given else found_reason
+        for given, given_reason, found_reason in zip(
+            is_given, hand_reason, found.reasons, strict=True
+        )
     )
-    mask = np.where(given[:, None], inside & long_enough, searched.mask)
-    return _windows(blocks, mask, reasons)
+    mask = np.where(is_given[:, None], inside & is_long_enough, found.mask)
+    return describe_windows(blocks, mask, reasons)
 
 
-def _windows(blocks: RunBlocks, mask: BoolArray, reasons: tuple[str, ...]) -> Windows:
+def describe_windows(blocks: RunBlocks, mask: BoolArray, reasons: tuple[str, ...]) -> Windows:
+    """Measure how far the two ends of each window differ.
+
+    Args:
+        mask: blocks inside the window, shape (runs, seconds).
+        reasons: why the rest was cut, one text per run.
+    """
     length = mask.sum(axis=1)
     start = np.where(length > 0, mask.argmax(axis=1), 0)
+    end = start + length
     second = np.arange(blocks.seconds)
-    first = mask & (second < (start + END_SECONDS)[:, None])
-    last = mask & (second >= (start + length - END_SECONDS)[:, None])
-    ends = [WindowSums(blocks, end) for end in (first, last)]
-    speed, force, wind = (
-        ends[1].mean(name) - ends[0].mean(name) for name in ("log1_v", "force", "wind_v")
-    )
+    first = WindowSums(blocks, mask & (second < (start + END_SECONDS)[:, None]))
+    last = WindowSums(blocks, mask & (second >= (end - END_SECONDS)[:, None]))
     mean_force = np.abs(WindowSums(blocks, mask).mean("force"))
-    force /= np.where(mean_force > 0, mean_force, 1.0)
-    return Windows(mask, start, start + length, length > 0, reasons, speed, force, wind)
+    force_rise = last.mean("force") - first.mean("force")
+    return Windows(
+        mask=mask,
+        start_s=start,
+        end_s=end,
+        exists=length > 0,
+        reasons=reasons,
+        speed_rise_m_s=last.mean("log1_v") - first.mean("log1_v"),
+        force_rise_ratio=force_rise / np.where(mean_force > 0, mean_force, 1.0),
+        wind_rise_m_s=last.mean("wind_v") - first.mean("wind_v"),
+    )
+
+
+# The search
 
 
 @dataclass(frozen=True)
-class _Runs:
-    """What windows are judged by, per block, shape (runs, seconds).
+class Faults:
+    """What is wrong in each block, shape (runs, seconds).
 
     Attributes:
-        ramp: at the start or the end, where the speed still rises or falls.
-        force_peak, gust: relative to their limits; over 1 is a fault.
-        speed, speed_time: running sums of the speed less its mean, and of that times the second.
-        speed_ends, force_ends, wind_ends: mean of `END_SECONDS` from every second on.
-        force_median: of each run, shape (runs, 1).
+        is_ramp: at the start or the end, where the speed still rises or falls.
+        force_peak, gust: size relative to its limit; over 1 is a fault.
     """
 
-    ramp: BoolArray
+    is_ramp: BoolArray
     force_peak: FloatArray
     gust: FloatArray
+
+    @classmethod
+    def from_blocks(cls, blocks: RunBlocks) -> Self:
+        """Find the faults of every run."""
+        force = blocks.block_means("force")
+        median, sd = robust_moments(force, blocks.inside)
+        sd_floor = np.maximum(FORCE_SD_FLOOR * np.abs(median), 1e-9)
+        force_peak = np.abs(force - median) / (PEAK_SD * np.maximum(sd, sd_floor))
+        return cls(
+            is_ramp=find_ramps(blocks.block_means("log1_v"), blocks.inside),
+            force_peak=widen(force_peak),
+            gust=widen(measure_wind_change(blocks) / GUST_SD),
+        )
+
+    @property
+    def cost_s(self) -> FloatArray:
+        """Seconds that each block costs a window that holds it, shape (runs, seconds)."""
+        peak_excess = np.maximum(self.force_peak - 1.0, 0.0)
+        gust_excess = np.maximum(self.gust - 1.0, 0.0)
+        return FAULT_COST_S * np.asarray(peak_excess + gust_excess, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Running sums from which the ends of any window are compared, shape (runs, seconds).
+
+    Attributes:
+        speed, speed_time: sums up to each second of the speed less its mean, and of that times the
+            second; one column more.
+        speed_ends, force_ends, wind_ends: means over `END_SECONDS` from every second on.
+        force_limit: allowed difference of the force between the ends, shape (runs, 1).
+    """
+
     speed: FloatArray
     speed_time: FloatArray
     speed_ends: FloatArray
     force_ends: FloatArray
     wind_ends: FloatArray
-    force_median: FloatArray
+    force_limit: FloatArray
 
     @classmethod
-    def of(cls, blocks: RunBlocks) -> "_Runs":
-        present = blocks.inside
-        speed, force, wind = (blocks.block_means(name) for name in ("log1_v", "force", "wind_v"))
-        force_median, force_sd = _robust(force, present)
-        force_floor = np.maximum(FORCE_SD_FLOOR * np.abs(force_median), 1e-9)
-        force_sd = np.maximum(force_sd, force_floor)
+    def from_blocks(cls, blocks: RunBlocks) -> Self:
+        """Sum the blocks of every run."""
+        speed = blocks.block_means("log1_v")
+        force = blocks.block_means("force")
+        wind = blocks.block_means("wind_v")
+        force_median, _ = robust_moments(force, blocks.inside)
         centred = speed - speed.mean(axis=1, keepdims=True)
-        speed_ends, force_ends, wind_ends = (
-            _span(_running_sum(v), END_SECONDS) / END_SECONDS for v in (speed, force, wind)
-        )
         return cls(
-            _ramps(speed, present),
-            _widened(np.abs(force - force_median) / (PEAK_SD * force_sd)),
-            _widened(_wind_change(blocks, present) / GUST_SD),
-            _running_sum(centred),
-            _running_sum(centred * np.arange(blocks.seconds, dtype=np.float64)),
-            speed_ends,
-            force_ends,
-            wind_ends,
-            force_median,
+            speed=running_sum(centred),
+            speed_time=running_sum(centred * np.arange(blocks.seconds, dtype=np.float64)),
+            speed_ends=span_sum(running_sum(speed), END_SECONDS) / END_SECONDS,
+            force_ends=span_sum(running_sum(force), END_SECONDS) / END_SECONDS,
+            wind_ends=span_sum(running_sum(wind), END_SECONDS) / END_SECONDS,
+            force_limit=np.maximum(FORCE_ENDS_RATIO * np.abs(force_median), 1e-9),
         )
 
-    def price_s(self) -> FloatArray:
-        """What each block costs a window that holds it, shape (runs, seconds)."""
-        excess = np.maximum(self.force_peak - 1.0, 0.0) + np.maximum(self.gust - 1.0, 0.0)
-        return BLOCK_PRICE_S * np.asarray(excess, dtype=np.float64)
+    def compare(self, size: int) -> tuple[FloatArray, FloatArray]:
+        """Compare the ends of all windows of a size with their limits; over 1 exceeds one.
 
-    def unsteadiness(self, size: int) -> tuple[FloatArray, FloatArray]:
-        """How far speed, and the worse of force and wind, are from their limits (1).
-
-        For every window of a size. Of the speed both the rise of a straight line and the difference
-        of its ends count.
+        Returns:
+            For speed, the larger of the difference between the ends and the rise of a straight
+            line; and for force and wind, the larger of both. Shape (runs, windows) each.
         """
-        drift = np.abs(self._slope(size)) * size / SPEED_ENDS_M_S
-        speed = np.abs(_ends_difference(self.speed_ends, size)) / SPEED_ENDS_M_S
-        force_limit = FORCE_ENDS_RATIO * np.abs(self.force_median)
-        force = np.abs(_ends_difference(self.force_ends, size)) / np.maximum(force_limit, 1e-9)
-        wind = np.abs(_ends_difference(self.wind_ends, size)) / WIND_ENDS_M_S
+        drift = np.abs(self._speed_slope(size)) * size / SPEED_ENDS_M_S
+        speed = np.abs(ends_difference(self.speed_ends, size)) / SPEED_ENDS_M_S
+        force = np.abs(ends_difference(self.force_ends, size)) / self.force_limit
+        wind = np.abs(ends_difference(self.wind_ends, size)) / WIND_ENDS_M_S
         return np.maximum(drift, speed), np.maximum(force, wind)
 
-    def _slope(self, size: int) -> FloatArray:
-        """Slope of the least-squares line through the speed of every span, per block."""
-        sum_v, sum_tv = _span(self.speed, size), _span(self.speed_time, size)
-        mean_time = np.arange(sum_v.shape[1]) + (size - 1) / 2
-        return np.asarray((sum_tv - mean_time * sum_v) / (size * (size**2 - 1) / 12))
+    def _speed_slope(self, size: int) -> FloatArray:
+        """Return the least-squares slope of the speed over every window of a size, per block."""
+        sum_speed = span_sum(self.speed, size)
+        sum_speed_time = span_sum(self.speed_time, size)
+        mean_time = np.arange(sum_speed.shape[1]) + (size - 1) / 2
+        time_squares = size * (size**2 - 1) / 12
+        return np.asarray((sum_speed_time - mean_time * sum_speed) / time_squares)
 
 
-def _wind_change(blocks: RunBlocks, present: BoolArray) -> FloatArray:
-    """Distance of each block's wind vector from the run's median one, in robust deviations."""
-    squares = np.zeros(present.shape)
+def find_best_windows(
+    is_present: BoolArray, faults: Faults, ends: Ends
+) -> tuple[IntArray, IntArray]:
+    """Find the best window of every run among all windows, longest first.
+
+    Best is the longest, less what the faults inside it and its ends cost; of equals, the first and
+    longest. A window with a ramp in it, or whose speed changes beyond its limit, never counts.
+
+    Args:
+        is_present: blocks that the run has, shape (runs, seconds).
+
+    Returns:
+        Start and length in seconds, shape (runs,); length 0 where no window is good enough.
+    """
+    n_runs, n_seconds = is_present.shape
+    best_start = np.zeros(n_runs, np.int64)
+    best_length = np.zeros(n_runs, np.int64)
+    best_score = np.full(n_runs, -np.inf)
+    usable = running_sum((is_present & ~faults.is_ramp).astype(np.float64))
+    cost_s = running_sum(faults.cost_s)
+    for size in range(n_seconds, SHORTEST_WINDOW_S - 1, -1):
+        speed_excess, other_excess = ends.compare(size)
+        over_limit_cost_s = np.where(other_excess > 1.0, OVER_LIMIT_COST_S * other_excess, 0.0)
+        score = size - span_sum(cost_s, size) - over_limit_cost_s
+        is_allowed = (span_sum(usable, size) == size) & (speed_excess <= 1.0)
+        score = np.where(is_allowed, np.round(score, SCORE_DECIMALS), -np.inf)
+        start = score.argmax(axis=1)
+        highest = np.take_along_axis(score, start[:, None], 1)[:, 0]
+        is_better = highest > best_score
+        best_start = np.where(is_better, start, best_start)
+        best_length = np.where(is_better, size, best_length)
+        best_score = np.maximum(highest, best_score)
+    return best_start, best_length
+
+
+def explain_cuts(is_present: BoolArray, mask: BoolArray, faults: Faults) -> tuple[str, ...]:
+    """Return what was wrong in the part that was cut, as codes joined by commas, per run."""
+    is_cut = is_present & ~mask
+    faulty = (faults.is_ramp, faults.force_peak > 1.0, faults.gust > 1.0)
+    explained = np.stack([(is_cut & fault).any(axis=1) for fault in faulty], axis=1)
+    is_unexplained = is_cut.any(axis=1) & ~explained.any(axis=1)
+    applies = np.column_stack([explained, is_unexplained])
+    return tuple(
+        ",".join(code for code, cut in zip(CUT_REASONS, row, strict=True) if cut)
+        for row in applies.tolist()
+    )
+
+
+# Faults
+
+
+def find_ramps(speed: FloatArray, is_present: BoolArray) -> BoolArray:
+    """Return blocks at the start and the end of a run in which the speed still rises or falls."""
+    length = is_present.sum(axis=1)
+    second = np.arange(speed.shape[1])
+    from_end = np.clip(length[:, None] - 1 - second, 0, None)
+    backwards = np.take_along_axis(speed, from_end, axis=1)
+    ramp_at_start = measure_ramp(speed, is_present)[:, None]
+    ramp_at_end = measure_ramp(backwards, is_present)[:, None]
+    return np.asarray((second < ramp_at_start) | (second >= length[:, None] - ramp_at_end))
+
+
+def measure_ramp(speed: FloatArray, is_present: BoolArray) -> IntArray:
+    """Return the length of the ramp with which each run begins, in blocks; 0 without one.
+
+    By least squares: a straight line up (or down) to second p, level from there, for every p up to
+    `MAX_RAMP_S`; the best p, if the line spans at least `MIN_RAMP_M_S`.
+    """
+    count = np.maximum(is_present.sum(axis=1), 1)
+    mean = np.where(is_present, speed, 0.0).sum(axis=1) / count
+    centred = np.where(is_present, speed - mean[:, None], 0.0)
+    second = np.arange(speed.shape[1])
+    best_gain, best_length, best_span = np.zeros((3, len(speed)))
+    for p in range(1, MAX_RAMP_S + 1):
+        line = np.where(is_present, np.clip(p - second, 0, None), 0.0)
+        line_mean = line.sum(axis=1, keepdims=True) / count[:, None]
+        line = np.where(is_present, line - line_mean, 0.0)
+        norm = np.maximum((line * line).sum(axis=1), 1e-12)
+        product = (line * centred).sum(axis=1)
+        gain = product**2 / norm
+        is_better = gain > best_gain
+        best_gain = np.where(is_better, gain, best_gain)
+        best_length = np.where(is_better, p, best_length)
+        best_span = np.where(is_better, np.abs(product) / norm * p, best_span)
+    is_ramp = best_span >= MIN_RAMP_M_S
+    return np.where(is_ramp, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
+
+
+def measure_wind_change(blocks: RunBlocks) -> FloatArray:
+    """Return the distance of each block's wind vector from the run's median, in robust sd."""
+    squares = np.zeros(blocks.inside.shape)
     for component in ("wind_x", "wind_y"):
         wind = blocks.block_means(component)
-        median, sd = _robust(wind, present)
+        median, sd = robust_moments(wind, blocks.inside)
         squares += ((wind - median) / np.maximum(sd, WIND_SD_FLOOR_M_S)) ** 2
     return np.sqrt(squares)
 
 
-def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Median and robust standard deviation of each row, shape (runs, 1); 0 for an empty row."""
-    empty = ~present.any(axis=1, keepdims=True)
-    filled = np.where(present, values, np.where(empty, 0.0, np.nan))
+def robust_moments(values: FloatArray, is_present: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Return median and robust sd of each row, shape (runs, 1); 0 for an empty row."""
+    is_empty = ~is_present.any(axis=1, keepdims=True)
+    filled = np.where(is_present, values, np.where(is_empty, 0.0, np.nan))
     median = np.nanmedian(filled, axis=1, keepdims=True)
     return median, MAD_TO_SD * np.nanmedian(np.abs(filled - median), axis=1, keepdims=True)
 
 
-def _widened(values: FloatArray) -> FloatArray:
-    """The largest value among each block and its neighbours within `PEAK_MARGIN_S`."""
+def widen(values: FloatArray) -> FloatArray:
+    """Return the largest value among each block and its neighbours within `PEAK_MARGIN_S`."""
     return np.asarray(
         scipy.ndimage.maximum_filter1d(values, 2 * PEAK_MARGIN_S + 1, axis=1, mode="nearest")
     )
 
 
-def _ramps(speed: FloatArray, present: BoolArray) -> BoolArray:
-    """Blocks at the start and the end of a run in which the speed still rises or falls."""
-    length = present.sum(axis=1)
-    second = np.arange(speed.shape[1])
-    from_end = np.clip(length[:, None] - 1 - second, 0, None)
-    backwards = np.take_along_axis(speed, from_end, axis=1)
-    at_start, at_end = (_ramp_length(v, present)[:, None] for v in (speed, backwards))
-    return np.asarray((second < at_start) | (second >= length[:, None] - at_end))
+# Sums over windows
 
 
-def _ramp_length(speed: FloatArray, present: BoolArray) -> IntArray:
-    """Length of the ramp with which each run begins, 0 where there is none, in blocks.
-
-    Fitted by least squares: a straight line up (or down) to second p, level from there, for every
-    p up to `LONGEST_RAMP_S`; the best p, if the line spans at least `LEAST_RAMP_M_S`.
-    """
-    count = np.maximum(present.sum(axis=1), 1)
-    mean = np.where(present, speed, 0.0).sum(axis=1) / count
-    centred = np.where(present, speed - mean[:, None], 0.0)
-    second = np.arange(speed.shape[1])
-    best_gain, best_length, best_span = np.zeros((3, len(speed)))
-    for p in range(1, LONGEST_RAMP_S + 1):
-        line = np.where(present, np.clip(p - second, 0, None), 0.0)
-        line = np.where(present, line - line.sum(axis=1, keepdims=True) / count[:, None], 0.0)
-        norm, product = (line * line).sum(axis=1), (line * centred).sum(axis=1)
-        gain = product**2 / np.maximum(norm, 1e-12)
-        span = np.abs(product) / np.maximum(norm, 1e-12) * p
-        better = gain > best_gain
-        best_gain = np.where(better, gain, best_gain)
-        best_length, best_span = np.where(better, p, best_length), np.where(better, span, best_span)
-    return np.where(best_span >= LEAST_RAMP_M_S, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
-
-
-def _search(present: BoolArray, judged: _Runs) -> tuple[IntArray, IntArray]:
-    """Start and length of the best window of every run; length 0 where none is good enough.
-
-    Best is the longest, less what the faults inside it cost; of equals, the first and longest.
-    """
-    runs, seconds = present.shape
-    start, length = np.zeros(runs, np.int64), np.zeros(runs, np.int64)
-    value = np.full(runs, -np.inf)
-    good = _running_sum((present & ~judged.ramp).astype(np.float64))
-    price = _running_sum(judged.price_s())
-    for size in range(seconds, SHORTEST_WINDOW_S - 1, -1):
-        speed, ends = judged.unsteadiness(size)
-        worth = size - _span(price, size) - np.where(ends > 1.0, NOT_WITHIN_S * ends, 0.0)
-        accepted = (_span(good, size) == size) & (speed <= 1.0)
-        worth = np.where(accepted, np.round(worth, WORTH_DECIMALS), -np.inf)
-        best = worth.argmax(axis=1)
-        highest = np.take_along_axis(worth, best[:, None], 1)[:, 0]
-        better = highest > value
-        start, length = np.where(better, best, start), np.where(better, size, length)
-        value = np.maximum(highest, value)
-    return start, length
-
-
-def _running_sum(values: FloatArray) -> FloatArray:
-    """Sum of each row up to every place, beginning with 0: one column more than `values`."""
+def running_sum(values: FloatArray) -> FloatArray:
+    """Return sums of each row up to every place, beginning with 0: one column more."""
     return np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
 
 
-def _span(running: FloatArray, size: int) -> FloatArray:
-    """Sums over every span of `size` blocks from a running sum."""
+def span_sum(running: FloatArray, size: int) -> FloatArray:
+    """Return sums over every span of `size` blocks, from a running sum."""
     return np.asarray(running[:, size:] - running[:, :-size])
 
 
-def _ends_difference(ends: FloatArray, size: int) -> FloatArray:
-    """Mean of the last minus mean of the first `END_SECONDS` of every span of `size` blocks."""
-    starts = ends.shape[1] - size + END_SECONDS
-    return np.asarray(ends[:, size - END_SECONDS :][:, :starts] - ends[:, :starts])
-
-
-def _reasons(present: BoolArray, mask: BoolArray, judged: _Runs) -> list[str]:
-    """What was wrong in the part that was cut, as codes joined by commas."""
-    cut = present & ~mask
-    seen = (judged.ramp, judged.force_peak > 1.0, judged.gust > 1.0)
-    explained = [(cut & fault).any(axis=1) for fault in seen]
-    rest = cut.any(axis=1) & ~np.any(explained, axis=0)
-    rows = np.stack([*explained, rest], axis=1).tolist()
-    return [",".join(compress(CUT_REASONS, row)) for row in rows]
+def ends_difference(ends: FloatArray, size: int) -> FloatArray:
+    """Return the mean of the last less that of the first `END_SECONDS` of every span."""
+    n_spans = ends.shape[1] - size + END_SECONDS
+    return np.asarray(ends[:, size - END_SECONDS :][:, :n_spans] - ends[:, :n_spans])

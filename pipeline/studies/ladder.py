@@ -15,7 +15,7 @@ from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.method.definition import Method
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
-from pipeline.recompute.recompute import evaluate, season_factors
+from pipeline.recompute.recompute import estimate_season_factors, evaluate
 from pipeline.recompute.run_cache import RunCache
 
 STEP_ORDER: Final = (
@@ -60,7 +60,9 @@ def ladder(
         step; 1 at the start) and `cw_kg_m` (after it). The factors of a tow multiply to its total.
     """
     cache = cache or RunCache()
-    old, new = (Plan.of(method, tows, blocks, cache) for method in (from_method, to_method))
+    old, new = (
+        Plan.from_method(method, tows, blocks, cache) for method in (from_method, to_method)
+    )
     of_old, of_new = links or (_instruments(plan) for plan in (old, new))
     rungs: list[Computed] = []
     for count in range(len(STEP_ORDER) + 1):
@@ -74,7 +76,7 @@ def ladder(
 
 def _instruments(plan: Plan) -> pl.DataFrame | None:
     asked = any(steps.speed.correction == "estimated" for steps in plan.steps)
-    estimated = season_factors(plan) if asked else None
+    estimated = estimate_season_factors(plan) if asked else None
     return None if estimated is None else estimated.tows
 
 

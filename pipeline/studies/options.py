@@ -29,7 +29,7 @@ B: Final = "curve.b"
 
 CHOICES: Final[dict[str, tuple[object, object]]] = {
     FACTOR: (1.06, 1 / 0.94),
-    "run_point.estimator": ("mean_of_ratios", "ratio_of_means"),
+    "run_point.estimator": ("mean_of_ratios", "ratio_of_robust_means"),
     "wind.coefficients": ("fixed", "archive"),
     "wind.averaging_s": (0, 3),
     B: ("capped", "free"),
@@ -71,19 +71,24 @@ def option_effects(
     Returns:
         Sorted rows per tow and option that can matter to it: `tow_id`, `option` and
         `cw_effect_ratio` (second value / first value, mean over all combinations of the others). A
-        tow that one of the combinations leaves without a curve has no rows.
+        tow that one of the combinations leaves without a curve has no rows, nor has one whose log
+        is estimated: another option would also move the factor of its season.
     """
-    plan = Plan.of(method, tows, blocks, cache)
-    can = pl.Series(plan.option("speed.correction") == "prescribed")
+    plan = Plan.from_method(method, tows, blocks, cache)
+    can = pl.Series(plan.options.speed.correction == "prescribed")
     names = [name for name in CHOICES if name != FACTOR or can.any()]
     crossed = {name: (name, CHOICES[name]) for name in names if name != B}
-    capped = plan.changed(lambda steps: chosen(steps, {B: "capped"}))
+    capped = plan.with_steps(lambda steps: chosen(steps, {B: "capped"}))
     frames = [
         _curves(one, of_b).with_columns(_flags(flags | {B: of_b is one.free}))
         for flags, one in _combinations(capped, crossed, links)
         for of_b in (one.curves, one.free)
     ]
-    whole = _whole(pl.concat(frames), ["tow_id"], len(names))
+    is_estimated = pl.Series(plan.options.speed.correction == "estimated")
+    own_log = plan.tows.frame["tow_id"].filter(~is_estimated)
+    whole = _whole(pl.concat(frames), ["tow_id"], len(names)).filter(
+        pl.col("tow_id").is_in(own_log.implode())
+    )
     prescribed = plan.tows.frame["tow_id"].filter(can)
     effects = [
         _effect(whole.filter(pl.col("tow_id").is_in(prescribed.implode()) | (name != FACTOR)), name)
@@ -105,7 +110,7 @@ def option_curves(
         `a_kg_m, b_m_s` (null where resistance does not rise) and `cw_kg_m` at the declared speed;
         combinations that give no curve are left out.
     """
-    plan = Plan.of(method, tows, blocks, cache)
+    plan = Plan.from_method(method, tows, blocks, cache)
     crossed = {name: choice for name, choice in TICKS.items() if name != B_FROM_LENGTH}
     frames = [
         _curves(one, of_b)
@@ -183,7 +188,7 @@ def _combinations(
     for corner in itertools.product((False, True), repeat=len(crossed)):
         flags = dict(zip(crossed, corner, strict=True))
         values = {crossed[name][0]: crossed[name][1][on] for name, on in flags.items()}
-        yield flags, evaluate(plan.changed(partial(chosen, values=values)), links)
+        yield flags, evaluate(plan.with_steps(partial(chosen, values=values)), links)
 
 
 def _from_length(computed: Computed) -> curve.Curves:

@@ -5,7 +5,7 @@ These tables are not in the database and no other program relies on them.
 
 from pipeline.tables import column
 from pipeline.tables.archive import LOST, Boats, HandWindows
-from pipeline.tables.bases import Fault, RunList, TowFacts
+from pipeline.tables.bases import Fault, PerRun, RunList, TowFacts
 from pipeline.tables.declare import dy
 
 
@@ -56,6 +56,16 @@ class ListedWindows(HandWindows):
     run = column.run()
     path = column.text("list of windows, relative to the archive")
     line = dy.Int64(description="line in it", min=2)
+
+
+class WrittenWindows(PerRun):
+    """Windows as a list has them: within a run, or of the runs within a recording."""
+
+    tow_id = column.tow_id()
+    run = column.run()
+    start_s = column.number("s", "start of the window", min=0, max=86_400)
+    end_s = column.number("s", "end of the window", min=0, max=86_400)
+    reason = column.text("why, in the person's words", nullable=True)
 
 
 class ListedFiles(dy.Schema):

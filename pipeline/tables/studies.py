@@ -34,7 +34,11 @@ _STUDY = "judgement: what could be chosen either way; tool: what the tool of 201
 
 
 class OptionEffects(PerMethod):
-    """How much choices matter, on top of a method: of judgement, and those of the tool of 2015."""
+    """How much choices matter, on top of a method: of judgement, and those of the tool of 2015.
+
+    Choices of judgement have no rows for a tow whose log is estimated: there, another option would
+    also move the factor of the season.
+    """
 
     study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
     tow_id = column.tow_id(primary_key=True)

@@ -10,6 +10,7 @@ from dashboards.speech import Speech
 from dashboards.statements.tow import statements
 from pipeline.method.definition import shipped_method
 from tests.conftest import METHODS, SMALL
+from tests.warehouse.archive.conftest import TOWS, small_archive
 from warehouse.queries.assess import assess
 from warehouse.store.files import file_sha256
 
@@ -212,3 +213,12 @@ def test_a_force_a_fifth_too_high_is_noticed_at_a_first_tow(bench):
     found = assess(bench.store, bench.archive, tow_id, shipped_method(METHOD))
     assert "unlike_its_type" in {row["finding"] for row in found.first_assessment}
     assert found.verdict != "good"
+
+
+def test_where_no_tow_can_be_used_the_cause_is_said(tmp_path, herijk):
+    archive = small_archive(tmp_path)
+    tows = archive / TOWS
+    tows.write_text(tows.read_text().replace(";20;", ";19.531;"))
+    folders = ("--archive", archive, "--data", tmp_path / "data")
+    code, _, err = herijk("assess", "2014-001", *folders)
+    assert (code, "no tow can be used" in err, "ambiguous_number" in err) == (1, True, True)

@@ -163,8 +163,9 @@ def test_settings_are_understood():
     for page in PAGES:
         for text in blocks(page, "toml"):
             tomllib.loads(text)
-    for text in blocks("docs/archive.md", "toml"):
-        parse_profiles(text)
+    for page in ("docs/archive.md", "docs/nl/archive.md"):
+        for text in blocks(page, "toml"):
+            parse_profiles(text)
     (settings,) = blocks("docs/operations.md", "toml")
     Settings.model_validate(tomllib.loads(settings))
 

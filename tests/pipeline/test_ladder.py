@@ -59,5 +59,14 @@ def test_the_effect_of_a_choice_is_that_of_choosing_it(world, effects):
     assert old["cw_effect_ratio"].log().is_between(-5 * step, -2 * step).all()
 
 
+def test_a_tow_whose_log_is_estimated_has_no_effects(world):
+    """Another option also moves the factor of its season, which stays that of the method here."""
+    rebased = shipped_method("rebased")
+    links = recompute(rebased, world.tows, world.blocks).tow_instruments
+    effects = option_effects(rebased, world.tows, world.blocks, links, RunCache())
+    calibrated = world.tows.filter(season=2016)["tow_id"]
+    assert set(effects["tow_id"]) == set(calibrated)
+
+
 def test_every_choice_has_its_effect(effects):
     assert set(effects["option"]) == set(CHOICES)

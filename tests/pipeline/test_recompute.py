@@ -119,7 +119,7 @@ def test_rebased_2015_equals_a_computation_sample_by_sample(rebased, season):
         both_ways = {1, 2, 3} & used.keys() and {4, 5, 6} & used.keys()
         if not both_ways:
             continue
-        factor = known * oracle_calibration(used, season)
+        factor = known * oracle_calibration(windows, season)
         expected = {run: oracle_run(rows, tow, factor) for run, rows in used.items()}
         for p in points:
             for name, value in expected.get(p["run"], {}).items():
@@ -220,6 +220,21 @@ def test_runs_out_and_back_stay_or_go_together(measured, out, dropped):
     everything = np.ones(len(batch.tow), dtype=bool)
     too_fast = above_target(batch, intended * np.where(top, towed, 1.0), everything, 1.15)
     assert np.array_equal(too_fast, top & dropped)
+
+
+def test_calibration_is_over_all_runs_also_those_too_fast_to_count(measured):
+    calibration = '{ rule = "gps_per_tow" }'
+    whole, cut = (
+        recompute(
+            method(calibration=calibration, runs=f"{{ highest_target_ratio = {ratio} }}"),
+            measured.tows,
+            measured.blocks,
+        ).curves.filter(season=2015)
+        for ratio in (1.5, 1.05)
+    )
+    assert (cut["runs_used"] < whole["runs_used"]).all()
+    factors = cut["calibration_factor"].to_list()
+    assert factors == pytest.approx(whole["calibration_factor"].to_list(), rel=1e-12)
 
 
 def test_without_gps_nothing_is_calibrated_and_the_tow_says_so(measured):

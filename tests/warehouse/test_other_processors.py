@@ -95,6 +95,6 @@ def test_an_edition_of_another_processor_is_as_it_was_published(here_and_there):
     _, _, report = here_and_there
     assert report["findings"] == []
     assert [one["equal"] for one in report["editions"]] == [
-        one["made_again"] for one in report["editions"]
+        one["lines"] for one in report["editions"]
     ]
     assert len(report["editions"]) == 2

@@ -15,11 +15,12 @@ import polars as pl
 from pipeline.messages import innermost, say, spoken
 from pipeline.tables.row import Row
 from warehouse.archive.faults import OF_A_HEADER, Fault, fault_from
-from warehouse.archive.files import PARTS, SAMPLES, files_of
+from warehouse.archive.files import PARTS, SAMPLES, list_files
 from warehouse.archive.index import ArchiveIndex, index_archive
 from warehouse.archive.list_rules import read_published_registers, read_races
 from warehouse.archive.plausibility import judge_samples
 from warehouse.archive.profile import read_profiles
+from warehouse.archive.remedies import REMEDIES
 from warehouse.archive.samples import check_header, read_tow_samples
 
 SHOWN: Final = 3
@@ -45,6 +46,7 @@ class CauseReport:
         number: of places.
         tows: tows that cannot be used because of it, as far as is known before a rebuild.
         sentence: of the first of them.
+        remedy: what to do.
         cells: what the cells say that have it.
         places: the first of them.
         ask: lines of `archief.toml` that would settle it, with `?` for the answer, each below the
@@ -55,6 +57,7 @@ class CauseReport:
     number: int
     tows: int
     sentence: str
+    remedy: str
     cells: list[str]
     places: list[Place]
     ask: list[str]
@@ -90,13 +93,13 @@ def check_archive(root: Path, language: str = "en") -> CheckReport:
     of_headers = list(_faults_in_headers(root, index))
     wrong = {fault.path for fault in of_headers}
     faults += [*of_headers, *_faults_in_samples(root, index, wrong)]
-    names_of = {tow["tow_id"]: _names(tow) for tow in index.tows.iter_rows(named=True)}
+    names_of = {tow["tow_id"]: _name_tow(tow) for tow in index.tows.iter_rows(named=True)}
     costly = {fault.tow_id or fault.path for fault in faults if fault.lost is None}
     sound = [tow_id for tow_id, names in names_of.items() if costly.isdisjoint(names)]
-    return CheckReport(str(root), len(sound), _causes(faults, names_of, language))
+    return CheckReport(str(root), len(sound), _group_causes(faults, names_of, language))
 
 
-def _names(tow: Row) -> set[str]:
+def _name_tow(tow: Row) -> set[str]:
     """Return the id and the files of a tow."""
     paths = [path for path in (tow["samples_path"], tow["second_path"]) if path]
     return {tow["tow_id"], *(part for path in paths for part in path.split(PARTS))}
@@ -120,7 +123,7 @@ def _faults_in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
         for path in index.tows.filter(pl.col(numbers).is_not_null())[name]
         for part in path.split(PARTS)
     }
-    for file in files_of(root):
+    for file in list_files(root):
         if file.kind != SAMPLES or not file.inside or file.path in not_listed:
             continue
         profile = index.profiles.for_season(file.season)
@@ -136,21 +139,21 @@ def _faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iter
     """Read the first tow of each season whose header is good."""
     done = set()
     for tow in index.tows.iter_rows(named=True):
-        if tow["season"] in done or not wrong.isdisjoint(_names(tow)):
+        if tow["season"] in done or not wrong.isdisjoint(_name_tow(tow)):
             continue
         done.add(tow["season"])
         try:
             profile = index.profiles.for_season(tow["season"])
-            samples, place = read_tow_samples(root, tow, profile)
+            samples, place, defects = read_tow_samples(root, tow, profile)
             planned = index.runs.filter(tow_id=tow["tow_id"])["run"]
             if not {*samples["run"].unique()} <= {*planned}:
-                yield _not_planned(tow, samples, planned)
-            yield from judge_samples(samples, place, tow, index.runs).faults
+                yield _unplanned_fault(tow, samples, planned)
+            yield from judge_samples(samples, place, tow, index.runs, defects).faults
         except BaseException as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
 
 
-def _not_planned(tow: Row, samples: pl.DataFrame, planned: pl.Series) -> Fault:
+def _unplanned_fault(tow: Row, samples: pl.DataFrame, planned: pl.Series) -> Fault:
     """Return the fault of other runs in a file than are planned."""
     said = say(
         "Runs {present} are in the file and runs {planned} are planned. Give the targets and "
@@ -166,18 +169,18 @@ def _not_planned(tow: Row, samples: pl.DataFrame, planned: pl.Series) -> Fault:
     return Fault(path, None, None, "run_not_planned", said, ask=lines)
 
 
-def _causes(
+def _group_causes(
     faults: Iterable[Fault], names_of: dict[str, set[str]], language: str
 ) -> list[CauseReport]:
     """Return the faults by cause, those that cost most tows first."""
     by_cause: dict[tuple[str, str], list[Fault]] = {}
     for fault in dict.fromkeys(faults):
         by_cause.setdefault((fault.reason_code, fault.cause), []).append(fault)
-    reports = [_report(same, names_of, language) for same in by_cause.values()]
+    reports = [_report_cause(same, names_of, language) for same in by_cause.values()]
     return sorted(reports, key=lambda report: (-report.tows, -report.number))
 
 
-def _report(faults: list[Fault], names_of: dict[str, set[str]], language: str) -> CauseReport:
+def _report_cause(faults: list[Fault], names_of: dict[str, set[str]], language: str) -> CauseReport:
     said = [innermost(fault.message) for fault in faults]
     cells = dict.fromkeys(getattr(sentence, "values", {}).get("cell") for sentence in said)
     return CauseReport(
@@ -185,6 +188,7 @@ def _report(faults: list[Fault], names_of: dict[str, set[str]], language: str) -
         number=len(faults),
         tows=_count_tows(faults, names_of),
         sentence=spoken(said[0], language),
+        remedy=spoken(REMEDIES[faults[0].reason_code], language),
         cells=[str(cell) for cell in cells if cell is not None],
         places=[Place(f.path, f.line, f.tow_id) for f in faults[:SHOWN]],
         ask=[*dict.fromkeys(line for fault in faults for line in fault.ask)],

@@ -40,35 +40,36 @@ CLOCK: Final = Scale(0.0)
 """Stands for a time of day, which is read as text."""
 UNITS: Final[Mapping[str, Mapping[str, Scale]]] = {
     "speed": {
-        "m/s": Scale(), "dm/s": Scale(1, 10), "cm/s": Scale(1, 100), "mm/s": Scale(1, 1000),
+        "m/s": SI, "dm/s": Scale(1, 10), "cm/s": Scale(1, 100), "mm/s": Scale(1, 1000),
         "km/h": Scale(1, 3.6), "km/u": Scale(1, 3.6), "kn": Scale(1852, 3600),
         "kt": Scale(1852, 3600), "mph": Scale(0.44704), "ft/s": Scale(0.3048),
     },
     "force": {
-        "n": Scale(), "dan": Scale(10), "hn": Scale(100), "kn": Scale(1000),
+        "N": SI, "daN": Scale(10), "hN": Scale(100), "kN": Scale(1000),
         "kgf": Scale(9.80665), "kg": Scale(9.80665), "kp": Scale(9.80665),
         "lbf": Scale(4.4482216152605),
     },
     "angle": {
-        "gra": Scale(), "deg": Scale(), "graden": Scale(), "degrees": Scale(), "°": Scale(),
+        "gra": SI, "deg": SI, "graden": SI, "degrees": SI, "°": SI,
         "rad": Scale(180, 3.141592653589793), "gon": Scale(9, 10),
     },
     "length": {
-        "m": Scale(), "dm": Scale(1, 10), "cm": Scale(1, 100), "mm": Scale(1, 1000),
+        "m": SI, "dm": Scale(1, 10), "cm": Scale(1, 100), "mm": Scale(1, 1000),
         "km": Scale(1000), "nmi": Scale(1852), "ft": Scale(0.3048),
     },
-    "mass": {"kg": Scale(), "g": Scale(1, 1000), "t": Scale(1000), "lb": Scale(0.45359237)},
-    "temperature": {"c": Scale(), "°c": Scale()},
+    "mass": {"kg": SI, "g": Scale(1, 1000), "t": Scale(1000), "lb": Scale(0.45359237)},
+    "temperature": {"C": SI, "°C": SI},
     "ratio": {"%": Scale(1, 100)},
-    "rate": {"hz": Scale()},
-    "power": {"w": Scale(), "kw": Scale(1000)},
+    "rate": {"Hz": SI, "kHz": Scale(1000)},
+    "power": {"W": SI, "kW": Scale(1000)},
+    "duration": {"s": SI, "ms": Scale(1, 1000), "min": Scale(60)},
     "time": {
-        "s": Scale(), "ms": Scale(1, 1000), "clock": CLOCK, "days": Scale(86400),
+        "s": SI, "ms": Scale(1, 1000), "min": Scale(60), "clock": CLOCK, "days": Scale(86400),
         "epoch_ms": Scale(1, 1000),
     },
     "none": {},
 }  # fmt: skip
-"""Per dimension the units that people write, in lower case; the SI unit comes first."""
+"""Per dimension the units that people write; the SI unit comes first."""
 
 
 class DefectiveHeaderError(DefectiveInputError):
@@ -111,17 +112,16 @@ class Column:
 
     @property
     def named(self) -> str:
-        """Name and unit as they are in a header."""
+        """The name and unit as they are in a header."""
         return f"{self.header} [{self.unit}]" if self.unit else self.header
 
     def scale(self, unit: str | None) -> Scale | None:
         """Return the scale of a unit as written; None where this column cannot have it."""
-        known = UNITS[self.dimension]
         if unit is None and not self.unit:
             return Scale()
-        scale = known.get(_fold_unit(self.unit if unit is None else unit))
+        scale = find_unit(self.dimension, self.unit if unit is None else unit)
         if scale is None and self.is_unit_declared:
-            scale = known.get(_fold_unit(self.unit))
+            scale = find_unit(self.dimension, self.unit)
         return Scale(-scale.times, scale.divided_by) if scale and self.reversed else scale
 
 
@@ -135,36 +135,47 @@ class FoundColumn:
     unit: str = ""
 
     def to_si(self, number: pl.Expr) -> pl.Expr:
-        """A number of this column in its SI unit."""
+        """Return a number of this column in its SI unit."""
         return (
             number if self.scale == Scale() else number * self.scale.times / self.scale.divided_by
         )
+
+
+def find_unit(dimension: str, unit: str) -> Scale | None:
+    """Return the scale of a unit, written in any case and with any blanks; None if unknown."""
+    return _FOLDED_UNITS[dimension].get(_fold_unit(unit))
 
 
 def _fold_unit(unit: str) -> str:
     return "".join(unit.casefold().split())
 
 
+_FOLDED_UNITS: Final = {
+    dimension: {_fold_unit(unit): scale for unit, scale in units.items()}
+    for dimension, units in UNITS.items()
+}
+
+
 @lru_cache(100_000)
 def fold(text: str) -> str:
-    """A header for comparing: its letters and digits, without case and accents."""
+    """Return a header for comparing: its letters and digits, without case and accents."""
     plain = unicodedata.normalize("NFKD", text).casefold()
     return "".join(letter for letter in plain if letter.isalnum())
 
 
 @lru_cache(100_000)
 def fold_word(text: str) -> str:
-    """A value or a file name for comparing: without case; blanks inside count once."""
+    """Return a value or a file name for comparing: without case; blanks inside count once."""
     return " ".join(unicodedata.normalize("NFC", text).casefold().split())
 
 
 def shorten(text: str) -> str:
-    """The text, cut to a length that fits in a sentence."""
+    """Return the text, cut to a length that fits in a sentence."""
     return text[:LONGEST_QUOTE] + ("..." if len(text) > LONGEST_QUOTE else "")
 
 
 def decode(data: bytes) -> str:
-    """The text of a file in UTF-8 or UTF-16 (with its mark), or else Windows-1252.
+    """Return the text of a file in UTF-8 or UTF-16 (with its mark), or else Windows-1252.
 
     Raises:
         DefectiveInputError: `unreadable_file` for anything else, and for an empty file.
@@ -185,7 +196,7 @@ def decode(data: bytes) -> str:
 
 
 def split_line(line: str, delimiter: str) -> list[str]:
-    """The fields of one line, quotes taken off.
+    """Return the fields of one line, quotes taken off.
 
     Raises:
         DefectiveInputError: a quotation mark is not closed, or in mid-field.
@@ -200,7 +211,7 @@ def split_line(line: str, delimiter: str) -> list[str]:
 
 
 def split_header(cell: str) -> tuple[str, str | None]:
-    """The folded name in a header cell, and its unit as written where it has one.
+    """Return the folded name in a header cell, and its unit as written where it has one.
 
     Square brackets hold a unit; round ones only where it is one that anybody knows.
     """
@@ -208,7 +219,7 @@ def split_header(cell: str) -> tuple[str, str | None]:
     if match is None:
         return fold(cell), None
     unit = match[2].strip()
-    is_known = any(unit.casefold() in units for units in UNITS.values())
+    is_known = any(find_unit(dimension, unit) is not None for dimension in UNITS)
     return (fold(match[1] + match[3]), unit) if is_known or "[" in cell else (fold(cell), None)
 
 
@@ -218,7 +229,7 @@ def find_header(lines: Sequence[str], columns: Iterable[Column]) -> tuple[int, s
     best = 0, 0, ";"
     for place, line in enumerate(lines[:HEADER_WITHIN]):
         delimiter = max(DELIMITERS, key=line.count)
-        score = score_of(line.split(delimiter), wanted) if len(line) < 20_000 else 0
+        score = count_names(line.split(delimiter), wanted) if len(line) < 20_000 else 0
         best = max(best, (score, -place, delimiter))
     if best[0] == 0:  # nothing is known in any: what is wrong is told of the first
         filled = next((line for line in lines if line.strip()), "")
@@ -226,7 +237,7 @@ def find_header(lines: Sequence[str], columns: Iterable[Column]) -> tuple[int, s
     return -best[1], best[2]
 
 
-def score_of(header: Iterable[str], columns: Iterable[Column]) -> int:
+def count_names(header: Iterable[str], columns: Iterable[Column]) -> int:
     """How many cells of a row are names of columns."""
     names = {fold(name) for column in columns for name in (column.header, *column.also)}
     return len({split_header(cell.strip('"'))[0] for cell in header} & names)
@@ -336,7 +347,7 @@ def _explain_column(
     return _Problem("unknown_unit", said, [f"columns.{column.key}" for column in free])
 
 
-def unknown_headers(header: Sequence[str], found: Mapping[str, FoundColumn]) -> list[str]:
-    """The headers of no column that was found; empty ones do not count."""
+def list_unknown_headers(header: Sequence[str], found: Mapping[str, FoundColumn]) -> list[str]:
+    """Return the headers of no column that was found; empty ones do not count."""
     taken = {column.index for column in found.values()}
     return [cell.strip() for i, cell in enumerate(header) if i not in taken and fold(cell)]

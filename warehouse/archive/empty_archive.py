@@ -18,17 +18,31 @@ README: Final = """\
    van dezelfde sloep is een tweede rij met hetzelfde `fsn_nr`.
 2. Vul per seizoen een sleeplijst in: kopieer `sleeplijsten/sleeplijst_2025.xlsx` en zet het jaar in
    de naam. Een rij per sleepproef. `meetfile` is de naam van het bestand met metingen.
-3. Zet de metingen in `meetdata_<jaar>/`: tekst (CSV, TXT) of Parquet, een bestand per sleepproef,
-   met een kolom `run`.
+3. Zet de metingen in `meetdata_<jaar>/`, een bestand per sleepproef (CSV, TXT of Parquet), met de
+   kolommen
+
+       run; log1 [m/s]; log2 [m/s]; gps [m/s]; kracht [N]; wind [m/s]; wind [gra]
+
+   Is het bij u anders? Zeg dat dan een keer per reeks seizoenen in `archief.toml`:
+
+   - elke run een eigen bestand: `runs = "file"`, en in `run_files` hoe die bestanden heten;
+   - alle runs in een opname: `runs = "windows"`, en begin en eind van elke run in
+     `sleeplijsten/vensters_<jaar>.csv`;
+   - een instrument niet aan boord: `absent = ["wind"]` (of "log2", "gps");
+   - een trage gps, met lege cellen ertussen: `hold = ["gps"]`;
+   - een kolom die anders heet: `columns = { log1 = "Snelheid A" }`; een eenheid die niet in de kop
+     staat: `units = { force = "kgf" }`.
+
+   Bestanden van LabVIEW (.lvm) worden niet gelezen: exporteer ze als .tdms of CSV.
 4. Kijk wat er nog mis is, zonder iets te veranderen:
 
        herijk check MAP
 
-   Wat in een lijst anders heet, noemt u in `archief.toml`.
+   Wat Herijk niet kent, vraagt het bij naam, met de regel voor `archief.toml`. Het raadt nooit.
 5. Reken alles uit: `herijk rebuild --archive MAP`.
 
 De rijen met VOORBEELD in de lijsten zijn een voorbeeld: haal ze weg. Wat niet
-kan kloppen weigeren ze bij het invullen.
+kan kloppen weigeren ze bij het invullen. Alles staat op de bladzijde docs/nl/archive.md van Herijk.
 """
 PROFILE: Final = """\
 # Wat in dit archief anders is dan gewoon. Alles mag weg; haal de # weg van wat u nodig hebt.
@@ -49,6 +63,7 @@ PROFILE: Final = """\
 # seasons = "2025"
 # columns = { log1 = "Snelheid A" }    # kop in de metingen
 # absent = ["wind"]                    # wat niet gemeten is: wind, log2, gps
+# runs = "file"                        # elke run een bestand; "windows": alle runs in een opname
 # sample_rate_hz = 500
 
 # [[plan]]
@@ -71,7 +86,7 @@ _CHOICES: Final = {"crew_class": ["H", "D"], "altered": ["ja", "nee"]}
 
 
 def write_templates(root: Path) -> None:
-    """Makes an empty archive.
+    """Make an empty archive.
 
     Raises:
         MissingKnowledgeError: there is something in the folder already.
@@ -87,7 +102,7 @@ def write_templates(root: Path) -> None:
 
 
 def _write_list(path: Path, kind: ListKind, example: dict[str, object]) -> None:
-    """Writes a spreadsheet with a header, an example, and a check on each column with limits."""
+    """Write a spreadsheet with a header, an example, and a check on each column with limits."""
     import xlsxwriter  # type: ignore[import-untyped]  # noqa: PLC0415 - only here
 
     with xlsxwriter.Workbook(str(path)) as book:
@@ -104,7 +119,7 @@ def _write_list(path: Path, kind: ListKind, example: dict[str, object]) -> None:
 
 
 def _rule(column: Column, table: type[dy.Schema]) -> dict[str, object] | None:
-    """What a spreadsheet holds a column against: the limits that its table declares."""
+    """Return the rule of a spreadsheet for a column: the limits that its table declares."""
     if column.key in _CHOICES:
         return {"validate": "list", "source": _CHOICES[column.key]}
     declared = table.columns().get(column.key)

@@ -1,6 +1,6 @@
 """What is wrong with the archive: the record of one fault.
 
-A reason code is stable: it is in the quarantine table, and `docs/archive.md` says what it means.
+A reason code is stable: it is in the table `quarantine`, and `remedies` says what to do about it.
 Detecting a fault belongs to the module that reads the thing.
 """
 
@@ -57,7 +57,7 @@ class Fault:
         return cause_of(self.message)
 
     def as_row(self) -> Row:
-        """The fault as a row of `Faults`: only here it is worded in Dutch too."""
+        """Return the fault as a row of `Faults`: only here it is worded in Dutch too."""
         words = {"cause": self.cause, "message_nl": spoken(self.message, "nl")}
         facts = [fact.name for fact in fields(Fault) if fact.name != "ask"]
         return {name: getattr(self, name) for name in facts} | words
@@ -90,13 +90,13 @@ def fault_frame(faults: Iterable[Fault]) -> dy.DataFrame[Faults]:
     return frame_of(Faults, [fault.as_row() for fault in faults])
 
 
-def at_line(line: int, what: str) -> Sentence:
-    """A sentence with the line that it is about."""
+def say_at_line(line: int, what: str) -> Sentence:
+    """Return a sentence with the line that it is about."""
     return say("Line {line}: {what}", line=line, what=what)
 
 
 def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fault:
-    """The fault an error stands for; `path` serves where the error knows none itself.
+    """Return the fault an error stands for; `path` serves where the error knows none itself.
 
     Raises:
         BaseException: the error, where it is neither about the input nor a fault of Herijk.

@@ -70,40 +70,41 @@ class ArchiveFile:
     inside: bool
 
 
-def files_of(root: Path) -> list[ArchiveFile]:
-    """The files of an archive, and the folders in it that nobody reads, by their path.
+def list_files(root: Path) -> list[ArchiveFile]:
+    """Return the files of an archive, and the folders that nobody reads, by their path.
 
     Lists are `<folder>/<name>_<jaar>`; samples are `meetdata_<jaar>/<meetfile>`.
     """
     list_folders = {kind.folder for kind in LIST_KINDS}
     found = []
-    for entry in _entries(root):
+    for entry in _list_entries(root):
         is_read = entry.is_dir() and (
             entry.name in list_folders or _SAMPLES_FOLDER.fullmatch(entry.name)
         )
-        found += [_archive_file(root, file) for file in (_entries(entry) if is_read else [entry])]
+        own = _list_entries(entry) if is_read else [entry]
+        found += [_describe_file(root, file) for file in own]
     return sorted(found, key=lambda file: file.path)
 
 
-def _entries(folder: Path) -> list[Path]:
+def _list_entries(folder: Path) -> list[Path]:
     return [entry for entry in folder.iterdir() if not _NOT_OURS.fullmatch(entry.name)]
 
 
-def _archive_file(root: Path, entry: Path) -> ArchiveFile:
+def _describe_file(root: Path, entry: Path) -> ArchiveFile:
     path = entry.relative_to(root).as_posix()
     text = os.fsencode(path).decode(errors="replace")
-    kind, season = _kind(root, entry) if text == path else ("", 0)  # or bytes that are no text
+    kind, season = _find_kind(root, entry) if text == path else ("", 0)  # or bytes that are no text
     return ArchiveFile(text, entry, kind, season, _is_inside(root, entry))
 
 
-def _kind(root: Path, entry: Path) -> tuple[ListKind | str, int]:
-    """The kind of an entry and its season; empty and 0 where nobody reads it."""
+def _find_kind(root: Path, entry: Path) -> tuple[ListKind | str, int]:
+    """Return the kind of an entry and its season; empty and 0 where nobody reads it."""
     if entry.parent == root:
         return (PROFILE_FILE if entry.name == PROFILE_FILE else ""), 0
     if entry.is_dir():
         return "", 0
     if samples := _SAMPLES_FOLDER.fullmatch(entry.parent.name):
-        return (SAMPLES if sample_suffix(entry.name) else ""), int(samples[1])
+        return (SAMPLES if find_sample_suffix(entry.name) else ""), int(samples[1])
     for kind in LIST_KINDS if entry.suffix.lower() in LIST_SUFFIXES else ():
         match = re.fullmatch(kind.pattern, entry.stem, re.IGNORECASE)
         if match and kind.folder == entry.parent.name:
@@ -118,14 +119,14 @@ def _is_inside(root: Path, full: Path) -> bool:
         return False
 
 
-def outside_archive(relative: str) -> DefectiveFileError:
-    """The error for a path that leaves the archive."""
+def outside_archive_error(relative: str) -> DefectiveFileError:
+    """Return the error for a path that leaves the archive."""
     said = say("'{path}' leads outside the archive, where nothing is read.", path=relative)
     return DefectiveFileError("path_outside_archive", said, None, relative)
 
 
-def path_inside(root: Path, relative: str) -> Path:
-    """The full path of a file of the archive.
+def resolve_inside(root: Path, relative: str) -> Path:
+    """Return the full path of a file of the archive.
 
     Raises:
         DefectiveInputError: `path_outside_archive`, or `samples_missing`.
@@ -135,23 +136,23 @@ def path_inside(root: Path, relative: str) -> Path:
         said = say("'{name}' is not there any more.", name=relative)
         raise DefectiveFileError("samples_missing", said, None, relative)
     if not _is_inside(root, full):
-        raise outside_archive(relative)
+        raise outside_archive_error(relative)
     return full
 
 
-def sample_suffix(name: str) -> str:
-    """The suffix of a samples file, in lower case; empty for any other file."""
+def find_sample_suffix(name: str) -> str:
+    """Return the suffix of a samples file, in lower case; empty for any other file."""
     return next((suffix for suffix in SAMPLE_SUFFIXES if name.lower().endswith(suffix)), "")
 
 
-def match_key(name: str) -> str:
-    """The name of a samples file for comparing: without case, blanks counted once, or suffix."""
+def fold_file_name(name: str) -> str:
+    """Return the name of a samples file for comparing: without case, double blanks and suffix."""
     folded = fold_word(name)
-    return folded.removesuffix(sample_suffix(folded)).strip()
+    return folded.removesuffix(find_sample_suffix(folded)).strip()
 
 
 def read_bytes(path: Path, most: int = MAX_BYTES, start_only: bool = False) -> bytes:
-    """The content of a file, unpacked when it is `.gz` or `.zst`; at most so much of it.
+    """Return the content of a file, unpacked when it is `.gz` or `.zst`; at most so much of it.
 
     Raises:
         DefectiveInputError: `unreadable_file`, or `too_large` unless only its start is wanted.
@@ -216,7 +217,7 @@ Hashes = dict[str, tuple[str, int]]
 def hash_files(
     files: Iterable[ArchiveFile], hash_file: Callable[[Path], str]
 ) -> tuple[Hashes, list[DefectiveFileError]]:
-    """The hashes of the files that are read, and the errors of those that cannot be."""
+    """Return the hashes of the files that are read, and the errors of those that cannot be."""
     known: Hashes = {}
     errors = []
     for file in files:
@@ -244,7 +245,7 @@ class FileHashes:
 
     @classmethod
     def load(cls, path: Path) -> "FileHashes":
-        """The cache saved at `path`; an empty one when it is absent or damaged."""
+        """Return the cache saved at `path`; an empty one when it is absent or damaged."""
         try:
             stored = json.loads(path.read_text(encoding="utf-8"))
             return cls({str(k): (int(v[0]), int(v[1]), str(v[2])) for k, v in stored.items()})
@@ -252,7 +253,7 @@ class FileHashes:
             return cls()
 
     def save(self, path: Path) -> None:
-        """Writes the cache to `path` in one step: a reader sees the old one or the new one."""
+        """Write the cache to `path` in one step: a reader sees the old one or the new one."""
         with written_beside(path) as beside:
             beside.write_text(json.dumps(self.entries, indent=0, sort_keys=True), encoding="utf-8")
 

@@ -17,10 +17,10 @@ from warehouse.archive.faults import Fault, fault_from
 from warehouse.archive.files import (
     SAMPLES,
     ArchiveFile,
-    files_of,
+    fold_file_name,
     hash_files,
-    match_key,
-    outside_archive,
+    list_files,
+    outside_archive_error,
 )
 from warehouse.archive.kinds import BOATS, FORCE_CHECKS, LAMPS, TOWS
 from warehouse.archive.list_rules import (
@@ -34,7 +34,7 @@ from warehouse.archive.list_rules import (
 )
 from warehouse.archive.lists import read_lists
 from warehouse.archive.profile import PROFILE_FILE, Profiles, read_profiles
-from warehouse.archive.tows import check_tows, run_file_names, runs_of, samples_by_name
+from warehouse.archive.tows import check_tows, index_samples, name_run_files, plan_runs
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
 TOWS_FILE: Final = "sleeplijsten/sleeplijst_<jaar>.csv"
@@ -67,7 +67,7 @@ class ArchiveIndex:
 def index_archive(
     root: Path, hash_file: Callable[[Path], str], profiles: Profiles | None = None
 ) -> ArchiveIndex:
-    """Reads the lists of an archive and finds the files of every tow; samples are only hashed.
+    """Read the lists of an archive and find the files of every tow; samples are only hashed.
 
     Args:
         root: folder of the archive.
@@ -84,7 +84,7 @@ def index_archive(
             *(root, BOATS_FILE),
         )
     profiles = profiles or read_profiles(root)
-    files = files_of(root)
+    files = list_files(root)
     _check_lists_are_there(root, files)
     hashes, unread = hash_files(files, hash_file)
     boats = read_boats(files, profiles)
@@ -96,18 +96,18 @@ def index_archive(
     burned, of_lamps = read_within_border(
         LAMPS, files, lambda own: read_lamps(own, profiles, listed["tow_id"])
     )
-    samples = samples_by_name(files, hashes)
+    samples = index_samples(files, hashes)
     window_rows = read_window_lists(files, profiles, listed.select("season", "tow_id"))
     recordings = find_recordings(window_rows, profiles)
     selections = check_tows(rows, samples, boats, profiles, checks, burned, recordings)
     tows = rows.as_table(ListedTows)
-    runs = runs_of(tows, selections, profiles)
+    runs = plan_runs(tows, selections, profiles)
     windows = check_hand_windows(window_rows, runs)
 
     faults = [*boats.faults, *rows.faults, *of_checks, *of_lamps, *window_rows.faults]
-    faults += _not_read(files, profiles)
-    faults += _not_listed(files, listed, rows.unread, profiles)
-    faults += [] if rows.unread else _without_effect(profiles, listed)
+    faults += _find_unread_files(files, profiles)
+    faults += _find_unlisted_samples(files, listed, rows.unread, profiles)
+    faults += [] if rows.unread else _find_idle_settings(profiles, listed)
     told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
     faults += [fault_from(error, error.path) for error in unread if error.path not in told]
     return ArchiveIndex(
@@ -133,8 +133,8 @@ def _check_lists_are_there(root: Path, files: Iterable[ArchiveFile]) -> None:
         raise MissingKnowledgeError("The archive at {} cannot be read: {}", root, said)
 
 
-def _not_read(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:
-    """What lies in the archive and is not read."""
+def _find_unread_files(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:
+    """Return what lies in the archive and is not read."""
     text = say(
         "'{path}' is not read: it has another name than the archive's files. Rename it, or put it "
         "under ignore in archief.toml."
@@ -146,35 +146,35 @@ def _not_read(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:
     ]
 
 
-def _not_listed(
+def _find_unlisted_samples(
     files: Iterable[ArchiveFile],
     listed: pl.DataFrame,
     unread_lists: set[str],
     profiles: Profiles,
 ) -> list[Fault]:
-    """The samples that no row names, in seasons whose list could be read."""
+    """Return the samples that no row names, in seasons whose list could be read."""
     unread_seasons = {file.season for file in files if file.path in unread_lists}
     named = set()
     for tow_id, season, *cells in listed.select(
         "tow_id", "season", "file", "second_file"
     ).iter_rows():
-        plan, profile = profiles.plan_of(tow_id or "", season), profiles.for_season(season)
+        plan, profile = profiles.find_plan(tow_id or "", season), profiles.for_season(season)
         for cell in filter(None, cells):
-            named |= {match_key(cell), *run_file_names(cell, profile, plan).values()}
+            named |= {fold_file_name(cell), *name_run_files(cell, profile, plan).values()}
     message = say("No row of a tow list names this file.")
     return [
         Fault(file.path, None, None, "samples_not_listed", message)
         if file.inside
-        else fault_from(outside_archive(file.path), file.path)
+        else fault_from(outside_archive_error(file.path), file.path)
         for file in files
         if file.kind == SAMPLES
-        and match_key(file.full_path.name) not in named
+        and fold_file_name(file.full_path.name) not in named
         and file.season not in unread_seasons
     ]
 
 
-def _without_effect(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]:
-    """What `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
+def _find_idle_settings(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]:
+    """Return what `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
     days, seasons, tows = (set(listed[key]) for key in ("tow_date", "season", "tow_id"))
 
     def has_none(first: int, last: int) -> bool:

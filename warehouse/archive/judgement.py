@@ -77,7 +77,7 @@ class Run:
         return {key: _median(values[::10]) for key, values in self.channels.items()}
 
     def typical(self, channel: str) -> tuple[float, float, float]:
-        """The median, the lowest and the highest value of a channel."""
+        """Return the median, the lowest and the highest value of a channel."""
         values = self.channels[channel]
         return self.medians[channel], np.fmin.reduce(values), np.fmax.reduce(values)
 
@@ -87,7 +87,7 @@ class Run:
         return float(np.count_nonzero(values[1:] != values[:-1])) * self.rate_hz / len(values)
 
     def second_means(self, values: Array) -> NDArray[np.float64]:
-        """The mean of every whole second of a channel, NaN where one of its samples is left out."""
+        """Return the mean of every whole second of a channel; NaN where a sample is left out."""
         rate = round(self.rate_hz)
         seconds = values[: len(values) // rate * rate].reshape(-1, rate)
         return np.asarray(seconds.mean(axis=1, dtype=np.float64))
@@ -155,24 +155,28 @@ class Judgement:
         self.faults.append(Fault(path, tow_id, line, reason_code, message, lost, run, lost_s))
 
     def lost(self, reason_code: str, message: Sentence, row: int = HEADER) -> DefectiveFileError:
-        """The error for a tow that is lost whole."""
+        """Return the error for a tow that is lost whole."""
         path, line = self.place(row)
         return DefectiveFileError(reason_code, message, line, path)
 
     def check_left(self) -> None:
-        """Raises where half of the runs or more are lost, for the first reason: so is the tow."""
+        """Raise where half of the runs or more are lost, for the first reason: so is the tow."""
         if 2 * len(self.runs) > self.wanted:
             return
         first = next(fault for fault in self.faults if fault.lost == "run")
         raise DefectiveFileError(first.reason_code, first.message, first.line, first.path)
 
 
-def stretches(changes: BoolArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """First rows and lengths of stretches, given whether each sample differs from that before."""
+def find_stretches(changes: BoolArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return first rows and lengths of stretches of one value.
+
+    Args:
+        changes: whether each sample but the first differs from that before; shape (samples - 1,).
+    """
     starts = np.concatenate(([0], np.flatnonzero(changes) + 1))
     return starts, np.diff(starts, append=len(changes) + 1)
 
 
-def what_it_holds(value: float) -> Sentence:
-    """What a sentence says of a value."""
+def describe_value(value: float) -> Sentence:
+    """Return what a sentence says of a value."""
     return say("holds {:.6g}", value) if np.isfinite(value) else say("holds no ordinary number")

@@ -10,8 +10,8 @@ from pipeline.tables.lake import (
     ListedLamps,
     ListedRaces,
     ListedTows,
-    ListedWindows,
     PrintedLines,
+    WrittenWindows,
 )
 from warehouse.archive.columns import Column
 
@@ -43,7 +43,7 @@ class ListKind:
     spare: frozenset[str] = frozenset()
 
     def header(self, key: str) -> str:
-        """What the header calls a column, with its unit."""
+        """Return what the header calls a column, with its unit."""
         return next(column.named for column in self.columns if column.key == key)
 
 
@@ -66,8 +66,8 @@ _BOAT: Final = Column("fsn_no", "fsn_nr")
 _CREW: Final = (Column("rowers", "roeiers"), Column("crew_class", "klasse"))
 _TOW_RUN: Final = (Column("tow_id", "sleep_id"), Column("run", "run"))
 _SECONDS: Final = (
-    Column("start_s", "van", "time", "s"),
-    Column("end_s", "tot", "time", "s"),
+    Column("start_s", "van", "duration", "s"),
+    Column("end_s", "tot", "duration", "s"),
 )
 _SPEED: Final = Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s")
 _THWART: Final = Column("empty_thwart", "lege doft", required=False)
@@ -129,8 +129,8 @@ WINDOWS: Final = ListKind(
     "sleeplijsten",
     "vensters_([0-9]{4})",
     "bad_window_row",
-    ListedWindows,
-    (*_TOW_RUN, *_SECONDS, Column("reason", "reden")),
+    WrittenWindows,
+    (*_TOW_RUN, *_SECONDS, Column("reason", "reden", required=False)),
 )
 FORCE_CHECKS: Final = ListKind(
     "sleeplijsten",

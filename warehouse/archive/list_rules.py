@@ -15,10 +15,10 @@ from pipeline.messages import say
 from pipeline.register.register import NO_EMPTY_THWART
 from pipeline.tables.bases import TowFacts
 from pipeline.tables.frames import limits
-from pipeline.tables.lake import ListedBoats
+from pipeline.tables.lake import ListedBoats, ListedWindows
 from warehouse.archive.columns import fold_word
-from warehouse.archive.faults import Fault, at_line, fault_from
-from warehouse.archive.files import ArchiveFile, files_of
+from warehouse.archive.faults import Fault, fault_from, say_at_line
+from warehouse.archive.files import ArchiveFile, list_files
 from warehouse.archive.kinds import (
     BOATS,
     FORCE_CHECKS,
@@ -52,6 +52,7 @@ CW_AS_PRINTED: Final = 0.01
 """By how much a printed Cw may differ from its A and B, beside what rounding does: an intermediate
 result was sometimes rounded too."""
 _CURVE: Final = ("a_kg_m", "b_m_s", "cw_kg_m")
+_SPEED_KEY: Final = "declared_speed_m_s"
 _Read = tuple[pl.DataFrame, list[Fault]]
 
 
@@ -72,7 +73,7 @@ class Boats:
 
 
 def read_boats(files: Iterable[ArchiveFile], profiles: Profiles) -> Boats:
-    """Reads all boat lists. Rows that contradict each other cost the boat."""
+    """Read all boat lists. Rows that contradict each other cost the boat."""
     rows = read_lists(files, BOATS, profiles)
     text = say(
         "boat {boat} is listed twice and the rows differ in '{column}': {one} here, {other} on "
@@ -177,13 +178,21 @@ def check_hand_windows(rows: Rows, runs: pl.DataFrame) -> pl.DataFrame:
     """Return the windows given by hand (`ListedWindows`) for runs of tows that are not set aside.
 
     Two windows for one run cost both, as nobody can know which is right. How long a run is, is only
-    known when its samples are read: `outside_run`.
+    known when its samples are read: `find_windows_outside_run`.
 
     Args:
         rows: as `read_window_lists` gives them, without those of recordings.
         runs: `tow_id` and `run` of those that are not set aside.
     """
     tow, run = pl.col("tow_id"), pl.col("run")
+    rows.drop(pl.col("reason").is_null(), say("column 'reden' is empty."))
+    _, most = limits(ListedWindows, "end_s")
+    start, end = pl.col("start_s"), pl.col("end_s")
+    is_in_run = (start % 1 == 0) & (end % 1 == 0) & (end <= most)
+    text = say(
+        "'van' is {start:g} s and 'tot' {end:g} s; in a run these are whole seconds, up to {most}."
+    )
+    rows.drop(~is_in_run, text, start=start, end=end, most=most)
     rows.frame = rows.frame.filter(tow.is_in(runs["tow_id"].implode()))
     planned = runs.select(pl.struct("tow_id", "run")).to_series().implode()
     is_unplanned = ~pl.struct("tow_id", "run").is_in(planned)
@@ -192,18 +201,18 @@ def check_hand_windows(rows: Rows, runs: pl.DataFrame) -> pl.DataFrame:
     text = say("run {run} of tow {tow} has more than one window; none of them counts.")
     is_twice = pl.struct("tow_id", "run").is_duplicated()
     rows.drop(is_twice, text, "window_given_twice", run=run, tow=tow)
-    return rows.as_table(WINDOWS.table)
+    return rows.as_table(ListedWindows)
 
 
 def _drop_out_of_order(rows: Rows) -> None:
-    """Sets aside windows, and times that a lamp burned, that do not end after they begin."""
+    """Set aside windows, and times that a lamp burned, that do not end after they begin."""
     start, end = pl.col("start_s"), pl.col("end_s")
-    text = say("'van' is {start} s and 'tot' {end} s; a window ends after it begins.")
+    text = say("'van' is {start:g} s and 'tot' {end:g} s; a window ends after it begins.")
     rows.drop(start >= end, text, start=start, end=end)
 
 
-def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
-    """A fault for each window that ends after its run.
+def find_windows_outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
+    """Return a fault for each window that ends after its run.
 
     Args:
         windows: rows of `ListedWindows`.
@@ -216,7 +225,7 @@ def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
     )
     facts = pl.struct("run", "seconds", tow="tow_id", end="end_s")
     return [
-        Fault(path, None, line, "window_outside_run", at_line(line, say(text, **of)))
+        Fault(path, None, line, "window_outside_run", say_at_line(line, say(text, **of)))
         for path, line, of in beyond.select("path", "line", facts).iter_rows()
     ]
 
@@ -235,7 +244,7 @@ def read_within_border(
 
 
 def read_force_checks(files: Iterable[ArchiveFile], profiles: Profiles) -> _Read:
-    """The days on which the load cell was checked: reading / weight as a ratio, and its sd.
+    """Return the days on which the load cell was checked: reading / weight as a ratio, and its sd.
 
     The sd holds the scatter of that day's readings and the weight itself.
     """
@@ -263,18 +272,41 @@ def read_lamps(files: Iterable[ArchiveFile], profiles: Profiles, tow_ids: pl.Ser
 
 
 def read_races(root: Path, profiles: Profiles | None = None) -> _Read:
-    """Reads every `wedstrijden/<naam>_<jaar>.csv`: `ListedRaces`, and the lines set aside.
+    """Read every `wedstrijden/<naam>_<jaar>.csv`: `ListedRaces`, and the lines set aside.
 
     A crew has one result in a race; of equal rows the first counts.
     """
-    files, profiles = files_of(root), profiles or read_profiles(root)
-    boats = read_boats(files, profiles)
-    return read_within_border(RACES, files, lambda own: _read_races(own, profiles, boats))
+    return _read_with_boats(root, RACES, _check_races, profiles)
 
 
-def _read_races(files: Iterable[ArchiveFile], profiles: Profiles, boats: Boats) -> _Read:
-    rows = read_lists(files, RACES, profiles)
-    name_boats(rows, boats)
+def read_published_registers(root: Path, profiles: Profiles | None = None) -> _Read:
+    """Read every `sloepregister/sloepregister_<jaar>.csv`: `PrintedLines`, and lines set aside.
+
+    A boat without a valid curve (published as Cw = 1) has no A, B and Cw. Of any other line Cw is
+    A / (1 - (v/B)^2), however the numbers were rounded; else one of them is mistyped.
+    """
+    return _read_with_boats(root, REGISTERS, _check_registers, profiles)
+
+
+def _read_with_boats(
+    root: Path, kind: ListKind, check: Callable[[Rows], None], profiles: Profiles | None
+) -> _Read:
+    """Read the lists of a kind in which each row is about a boat."""
+    files = list_files(root)
+    known = read_profiles(root) if profiles is None else profiles
+    boats = read_boats(files, known)
+
+    def read(own: Iterable[ArchiveFile]) -> _Read:
+        rows = read_lists(own, kind, known)
+        name_boats(rows, boats)
+        check(rows)
+        return rows.as_table(kind.table), rows.faults
+
+    return read_within_border(kind, files, read)
+
+
+def _check_races(rows: Rows) -> None:
+    """Set aside results at a speed that no boat has, and crews with two results in a race."""
     rows.drop_other_years("race_date")
     through_water_m = pl.col("distance_m") - pl.col("stream_m").fill_null(0.0)
     speed = through_water_m / pl.col("rowing_time_s")
@@ -292,23 +324,10 @@ def _read_races(files: Iterable[ArchiveFile], profiles: Profiles, boats: Boats) 
     of_crew = ("race", "race_date", "fsn_no", "rowers", "crew_class")
     text = say("{of} is also on line {line} of {other}, and the rows differ: neither counts.")
     rows.drop_repeated(of_crew, text)
-    return rows.as_table(RACES.table), rows.faults
 
 
-def read_published_registers(root: Path, profiles: Profiles | None = None) -> _Read:
-    """Reads every `sloepregister/sloepregister_<jaar>.csv`: `PrintedLines`, and lines set aside.
-
-    A boat without a valid curve (published as Cw = 1) has no A, B and Cw. Of any other line Cw is
-    A / (1 - (v/B)^2), however the numbers were rounded; else one of them is mistyped.
-    """
-    files, profiles = files_of(root), profiles or read_profiles(root)
-    boats = read_boats(files, profiles)
-    return read_within_border(REGISTERS, files, lambda own: _read_registers(own, profiles, boats))
-
-
-def _read_registers(files: Iterable[ArchiveFile], profiles: Profiles, boats: Boats) -> _Read:
-    rows = read_lists(files, REGISTERS, profiles)
-    name_boats(rows, boats)
+def _check_registers(rows: Rows) -> None:
+    """Add whether a line has a valid curve, and set aside lines that contradict their curve."""
     rows.drop_copies()
     has_curve = ~pl.col("cw_kg_m").is_between(*NEVER_TOWED_CW).fill_null(value=False)
     rows.frame = rows.frame.with_columns(has_valid_curve=has_curve)
@@ -319,14 +338,14 @@ def _read_registers(files: Iterable[ArchiveFile], profiles: Profiles, boats: Boa
         *(pl.when("has_valid_curve").then(key).alias(key) for key in _CURVE),
         pl.col("empty_thwart").fill_null(NO_EMPTY_THWART),
     )
-    keys = (*_CURVE, "declared_speed_m_s")
-    a, b, cw, speed = map(pl.col, keys)
-    printed: dict[str, Any] = {key: cell(key) for key in keys}
+    a, b, cw, speed = pl.col("a_kg_m"), pl.col("b_m_s"), pl.col("cw_kg_m"), pl.col(_SPEED_KEY)
+    printed: dict[str, Any] = {key: cell(key) for key in (*_CURVE, _SPEED_KEY)}
     text = say("B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher.")
     rows.drop(b <= speed, text, **printed)
-    half_a, half_b, half_cw, half_v = map(_half_unit, keys)
-    slowest = (speed - half_v) / (b + half_b)
-    fastest = pl.min_horizontal((speed + half_v) / (b - half_b), 0.999)
+    half_a, half_b, half_cw = (_half_unit(key) for key in _CURVE)
+    half_speed = _half_unit(_SPEED_KEY)
+    slowest = (speed - half_speed) / (b + half_b)
+    fastest = pl.min_horizontal((speed + half_speed) / (b - half_b), 0.999)
     lowest = ((a - half_a) / (1.0 - slowest**2) - half_cw) * (1.0 - CW_AS_PRINTED)
     highest = ((a + half_a) / (1.0 - fastest**2) + half_cw) * (1.0 + CW_AS_PRINTED)
     text = say(
@@ -335,7 +354,6 @@ def _read_registers(files: Iterable[ArchiveFile], profiles: Profiles, boats: Boa
     )
     given = a / (1.0 - (speed / b) ** 2)
     rows.drop(~cw.is_between(lowest, highest), text, **printed, given=given)
-    return rows.as_table(REGISTERS.table), rows.faults
 
 
 def _half_unit(key: str) -> pl.Expr:

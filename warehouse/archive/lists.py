@@ -18,29 +18,29 @@ from warehouse.archive.columns import (
     DefectiveHeaderError,
     FoundColumn,
     Scale,
+    count_names,
     decode,
     find_columns,
     find_header,
     fold,
     fold_word,
-    score_of,
+    list_unknown_headers,
     shorten,
     split_header,
     split_line,
-    unknown_headers,
 )
-from warehouse.archive.faults import Fault, Lost, at_line, fault_from
+from warehouse.archive.faults import Fault, Lost, fault_from, say_at_line
 from warehouse.archive.files import (
     REFUSED_SUFFIXES,
     TEXT_SUFFIXES,
     ArchiveFile,
-    outside_archive,
+    outside_archive_error,
     read_bytes,
 )
 from warehouse.archive.kinds import REMARK, ListKind
 from warehouse.archive.profile import Profiles
-from warehouse.archive.rows import Rows, declared_column, no_rows
-from warehouse.archive.workbooks import Sheet, read_workbook
+from warehouse.archive.rows import Rows, find_declared_column, make_empty_rows
+from warehouse.archive.workbooks import MERGED, TYPED_AS_TEXT, Sheet, read_workbook
 
 LIST_MAX_BYTES: Final = 20_000_000
 MAX_CELL_CHARACTERS: Final = 1_000
@@ -57,8 +57,9 @@ _NO: Final = ("nee", "0")
 _BOAT: Final = r"^(?i:fsn)?[\s._-]*([0-9]{1,6}[a-zA-Z]?)$"
 _RUN: Final = r"^[bB]?([1-9][0-9]?)$"
 _TIME: Final = r"^([0-9]{1,2}):([0-5]?[0-9]):([0-5]?[0-9])$"
-_ISO_DATE: Final = r"^([0-9]{4}-[0-9]{1,2}-[0-9]{1,2})$"
-_DUTCH_DATE: Final = r"^([0-9]{1,2}-[0-9]{1,2}-[0-9]{4})$"
+_ISO_DATE: Final = r"^([0-9]{4}-[0-9]{1,2}-[0-9]{1,2})([T ][0-9]{1,2}:[0-9]{2}(:[0-9]{2})?)?$"
+_DUTCH_DATE: Final = r"^([0-9]{1,2}-[0-9]{1,2}-[0-9]{4})( [0-9]{1,2}:[0-9]{2}(:[0-9]{2})?)?$"
+"""A time behind a date, as programs export it, is not read."""
 _SPREADSHEET_ERROR: Final = r"^#(N/[AB]|[A-Z]+(/0)?[!?])$"
 """As #N/A or #REF!, and as Dutch spreadsheets say it: #N/B, #VERW!"""
 _FORMULA: Final = r"^="
@@ -72,12 +73,14 @@ class Table(NamedTuple):
         line: the header's line.
         rows: each with its line, its cells, and whether a quotation mark in it is open.
         sheet: the sheet's name, where a workbook has several; else empty.
+        hidden_columns: the places of columns that a person does not see, from 0.
     """
 
     header: Sequence[str]
     line: int
     rows: Sequence[tuple[int, Sequence[str], bool]]
     sheet: str = ""
+    hidden_columns: frozenset[int] = frozenset()
 
 
 def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles) -> Rows:
@@ -86,8 +89,8 @@ def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles)
     A list with a column that nobody knows is not read: it can be a misspelt one, and left out in
     silence would change numbers. A list that cannot be read costs no other.
     """
-    found = Rows(kind, no_rows(kind), listed=no_rows(kind))
-    columns = profiles.named(kind.columns)
+    found = Rows(kind, make_empty_rows(kind), listed=make_empty_rows(kind))
+    columns = profiles.rename_columns(kind.columns)
     for file in files:
         if file.kind != kind:
             continue
@@ -103,7 +106,8 @@ def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles)
                 renamed = table._replace(header=header)
                 places = _find_places(renamed, columns, profiles)
                 _check_known(renamed, columns, places, profiles)
-                found.add(_typed(renamed, file, kind, places, profiles.meaning))
+                _check_shown(renamed, places)
+                found.add(_parse_rows(renamed, file, kind, places, profiles.meaning))
             except BaseException as error:
                 found.faults.append(fault_from(error, file.path))
                 found.unread.add(file.path)
@@ -122,7 +126,7 @@ def read_tables(file: ArchiveFile, columns: Sequence[Column]) -> tuple[list[Tabl
         DefectiveInputError: the file cannot be read.
     """
     if not file.inside:
-        raise outside_archive(file.path)
+        raise outside_archive_error(file.path)
     if file.full_path.suffix.lower() in REFUSED_SUFFIXES:
         text = say(
             "A {suffix} file, such as an old Excel workbook, is not read: save it as .xlsx "
@@ -131,11 +135,11 @@ def read_tables(file: ArchiveFile, columns: Sequence[Column]) -> tuple[list[Tabl
         raise DefectiveInputError("unreadable_file", say(text, suffix=file.full_path.suffix))
     data = read_bytes(file.full_path, LIST_MAX_BYTES)
     if _is_text(file):
-        return [_table_of_text(decode(data), columns)], []
-    return _tables_of_workbook(file.path, data, columns)
+        return [_read_text_table(decode(data), columns)], []
+    return _split_workbook(file.path, data, columns)
 
 
-def _tables_of_workbook(
+def _split_workbook(
     path: str, data: bytes, columns: Sequence[Column]
 ) -> tuple[list[Table], list[Fault]]:
     book = read_workbook(data)
@@ -143,8 +147,8 @@ def _tables_of_workbook(
     if not filled:
         said = say("No visible sheet of the workbook holds anything.")
         raise DefectiveInputError("unreadable_file", said)
-    tables = [_table_of_sheet(sheet, columns) for sheet in filled]
-    scores = [score_of(table.header, columns) for table in tables]
+    tables = [_read_sheet_table(sheet, columns) for sheet in filled]
+    scores = [count_names(table.header, columns) for table in tables]
     enough = max(scores) / 2
     kept = [table for table, score in zip(tables, scores, strict=True) if score >= enough]
     kept = kept if max(scores) else kept[:1]
@@ -153,11 +157,11 @@ def _tables_of_workbook(
     for table, score in zip(tables, scores, strict=True):
         if 1 < score < enough:
             text = say("sheet '{sheet}' is not read: its header is not that of this list.")
-            notes.append(_not_read(path, table.line, say(text, sheet=table.sheet)))
+            notes.append(_unread_fault(path, table.line, say(text, sheet=table.sheet)))
     for sheet in book.hidden:
-        if sheet.rows and score_of(_table_of_sheet(sheet, columns).header, columns) >= enough:
+        if sheet.rows and count_names(_read_sheet_table(sheet, columns).header, columns) >= enough:
             text = say("sheet '{sheet}' is hidden, and is not read. Show it, or remove it.")
-            notes.append(_not_read(path, 1, say(text, sheet=sheet.name)))
+            notes.append(_unread_fault(path, 1, say(text, sheet=sheet.name)))
     for sheet in filled:
         if sheet.name in named and sheet.hidden_lines:
             text = say(
@@ -165,21 +169,21 @@ def _tables_of_workbook(
                 "remove them."
             )
             said = say(text, number=len(sheet.hidden_lines), sheet=sheet.name)
-            notes.append(_not_read(path, sheet.hidden_lines[0], said))
+            notes.append(_unread_fault(path, sheet.hidden_lines[0], said))
     if len(kept) == 1:
         kept = [kept[0]._replace(sheet="")]
     return kept, notes
 
 
-def _not_read(path: str, line: int, said: Sentence) -> Fault:
-    return Fault(path, None, line, "hidden", at_line(line, said), "row")
+def _unread_fault(path: str, line: int, said: Sentence) -> Fault:
+    return Fault(path, None, line, "hidden", say_at_line(line, said), "row")
 
 
 def _is_text(file: ArchiveFile) -> bool:
     return file.full_path.suffix.lower() in TEXT_SUFFIXES
 
 
-def _table_of_text(text: str, columns: Sequence[Column]) -> Table:
+def _read_text_table(text: str, columns: Sequence[Column]) -> Table:
     """Read line by line: a quotation mark left open would swallow the rows below."""
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     place, delimiter = find_header(lines, columns)
@@ -192,18 +196,18 @@ def _table_of_text(text: str, columns: Sequence[Column]) -> Table:
             rows.append((number, cells, False))
         except DefectiveInputError:
             rows.append((number, line.split(delimiter), True))
-    return Table(header, place + 1, _filled(rows))
+    return Table(header, place + 1, _keep_filled_rows(rows))
 
 
-def _table_of_sheet(sheet: Sheet, columns: Sequence[Column]) -> Table:
+def _read_sheet_table(sheet: Sheet, columns: Sequence[Column]) -> Table:
     lines = ["\t".join(" ".join(cell.split()) for cell in cells) for _, cells in sheet.rows]
     place, _ = find_header(lines, columns)
     line, header = sheet.rows[place]
     rows = [(number, cells, False) for number, cells in sheet.rows[place + 1 :]]
-    return Table(header, line, _filled(rows), sheet.name)
+    return Table(header, line, _keep_filled_rows(rows), sheet.name, sheet.hidden_columns)
 
 
-def _filled(
+def _keep_filled_rows(
     rows: Iterable[tuple[int, Sequence[str], bool]],
 ) -> list[tuple[int, Sequence[str], bool]]:
     """Return the rows that hold something, without remarks behind a `#`."""
@@ -247,12 +251,21 @@ def _ask_header(header: str) -> str:
 def _check_known(
     table: Table, columns: Iterable[Column], places: Mapping[str, FoundColumn], profiles: Profiles
 ) -> None:
-    """Raises where a column is not known, or one without a name holds something."""
-    unknown = [h for h in unknown_headers(table.header, places) if fold(h) not in profiles.ignore]
+    """Raise where a column is not known, or one without a name holds something."""
+    others = list_unknown_headers(table.header, places)
+    unknown = [header for header in others if fold(header) not in profiles.ignore]
     for index, header in enumerate(table.header):
-        is_filled = any(row[index].strip() for _, row, _ in table.rows if index < len(row))
-        if not fold(header) and is_filled:
-            unknown.append(f"({index + 1})")
+        if fold(header):
+            continue
+        for line, row, _ in table.rows:
+            cell = row[index].strip() if index < len(row) else ""
+            if cell:
+                text = say(
+                    "Column {number} has no header, and holds '{cell}' on line {line}: give it a "
+                    "header, or empty it."
+                )
+                said = say(text, number=index + 1, cell=shorten(cell), line=line)
+                raise DefectiveHeaderError("unknown_column", said, table.line)
     if unknown:
         text = say(
             "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or "
@@ -261,11 +274,21 @@ def _check_known(
         names = ", ".join(f"'{shorten(header)}'" for header in unknown)
         free = ", ".join(column.header for column in columns if column.key not in places) or "-"
         said = say(text, names=names, free=free)
-        ask = [_ask_header(header) for header in unknown if header[:1] != "("]
+        ask = [_ask_header(header) for header in unknown]
         raise DefectiveHeaderError("unknown_column", said, table.line, ask)
 
 
-def _typed(
+def _check_shown(table: Table, places: Mapping[str, FoundColumn]) -> None:
+    """Raise where a column that is read is hidden, and holds something."""
+    for key, place in places.items():
+        is_filled = any(row[place.index] for _, row, _ in table.rows if place.index < len(row))
+        if place.index in table.hidden_columns and is_filled and key != REMARK:
+            text = say("Column '{column}' is hidden: show it, or remove it.")
+            said = say(text, column=place.header)
+            raise DefectiveHeaderError("hidden", said, table.line)
+
+
+def _parse_rows(
     table: Table,
     file: ArchiveFile,
     kind: ListKind,
@@ -277,10 +300,11 @@ def _typed(
     Every cell that is wrong leaves a fault; a row is set aside unless the kind can spare the cell.
     """
     keys = [column.key for column in kind.columns]
-    frame = _cells(table, places, words, keys)
+    frame = _collect_cells(table, places, words, kind)
     needed = [column.key for column in kind.columns if _is_needed(kind, column)]
-    is_fragment = pl.sum_horizontal(pl.col(needed).is_null()) * 2 > len(needed)
-    about = _value(kind, kind.about, places) if kind.about else pl.lit(None, pl.String)
+    shown = pl.col(needed).replace({MERGED: None})
+    is_fragment = pl.sum_horizontal(shown.is_null()) * 2 > len(needed)
+    about = _parse_cell(kind, kind.about, places) if kind.about else pl.lit(None, pl.String)
     rows = Rows(
         kind,
         frame.with_columns(
@@ -304,14 +328,16 @@ def _typed(
         "there is only {cells} in this row. Remove it if it is a total or a heading; '#' before it "
         "will do."
     )
-    filled = pl.concat_str(keys, separator="', '", ignore_nulls=True)
+    shown = pl.col(keys).replace({MERGED: None})
+    filled = pl.concat_str(shown, separator="', '", ignore_nulls=True)
     rows.drop(is_fragment, text, lost="row", cells=pl.format("'{}'", filled))
-    mark = _decimal_mark(rows.frame, places) if _is_text(file) else ""
+    is_text = _is_text(file)
+    mark = _find_decimal_mark(rows.frame, places, is_text)
     is_lost, values = _note_empty(rows, needed, places), {}
     for column in kind.columns:
-        value = _value(kind, column.key, places)
+        value = _parse_cell(kind, column.key, places)
         is_told = pl.lit(value=False)
-        for is_wrong, said, code, facts in _checks(kind, column, places, value, mark):
+        for is_wrong, said, code, facts in _list_checks(kind, column, places, value, mark, is_text):
             wrong = is_wrong.fill_null(value=False) & ~is_told
             is_told |= wrong
             is_spare = column.key in kind.spare
@@ -319,7 +345,7 @@ def _typed(
             rows.note(wrong, said, code, lost, asks_word=said in ASKED_WORDS, **facts)
             is_lost = is_lost if is_spare else is_lost | wrong
         values[column.key] = pl.when(~is_told).then(value)
-    schema = no_rows(kind).schema
+    schema = make_empty_rows(kind).schema
     rows.frame, rows.listed = (
         frame.with_columns(**values).select(schema.names()).cast(schema)
         for frame in (rows.frame.filter(~is_lost), every)
@@ -329,12 +355,18 @@ def _typed(
 
 def _is_needed(kind: ListKind, column: Column) -> bool:
     """Return whether every row must have a cell of this column."""
-    declared = declared_column(kind, column.key)
+    declared = find_declared_column(kind, column.key)
     return column.required and (declared is None or not declared.nullable)
 
 
-def _cells(
-    table: Table, places: Mapping[str, FoundColumn], words: Mapping[str, str], keys: Sequence[str]
+def _is_number(kind: ListKind, key: str) -> bool:
+    """Return whether the cells of a column are numbers."""
+    declared = find_declared_column(kind, key)
+    return declared is not None and declared.dtype.is_numeric() and key not in _BY_KEY
+
+
+def _collect_cells(
+    table: Table, places: Mapping[str, FoundColumn], words: Mapping[str, str], kind: ListKind
 ) -> pl.DataFrame:
     """Return what is written in each column, trimmed and in words that are known.
 
@@ -343,6 +375,8 @@ def _cells(
     last column aside.
     """
     width = len(table.header)
+    keys = [column.key for column in kind.columns]
+    numbers = {column.key for column in kind.columns if _is_number(kind, column.key)}
     found: dict[str, list[object]] = {
         name: [] for name in ("line", "is_open", "fields", "too_long", *keys)
     }
@@ -355,7 +389,9 @@ def _cells(
             if len(cell) > MAX_CELL_CHARACTERS:
                 too_long = places[key].header
                 cell = ""
-            meaning = words.get(fold_word(cell), cell)
+            if key not in numbers:
+                cell = cell.removeprefix(TYPED_AS_TEXT)
+            meaning = words.get(fold_word(cell), cell) if words else cell
             found[key].append(None if meaning.casefold() in _NOTHING else meaning)
         found["line"].append(line)
         found["is_open"].append(is_open)
@@ -365,10 +401,15 @@ def _cells(
     return pl.DataFrame(found, schema | dict.fromkeys(keys, pl.String))
 
 
-def _decimal_mark(cells: pl.DataFrame, places: Mapping[str, FoundColumn]) -> str:
-    """The decimal mark of a list: a comma where any cell is a number with one, else a point."""
+def _find_decimal_mark(
+    cells: pl.DataFrame, places: Mapping[str, FoundColumn], is_text: bool
+) -> str:
+    """Return the decimal mark of a list: a comma where any cell is a number with one.
+
+    Else it is a point; or, in a workbook, unknown, as its numbers are no text.
+    """
     has_comma = cells.select(pl.col(*places).str.contains(r"^[+-]?[0-9]*,[0-9]+$").any())
-    return "," if any(has_comma.row(0)) else "."
+    return "," if any(has_comma.row(0)) else "." if is_text else ""
 
 
 def _note_empty(rows: Rows, needed: list[str], places: Mapping[str, FoundColumn]) -> pl.Expr:
@@ -384,11 +425,16 @@ Check = tuple[pl.Expr, str, str | None, dict[str, Any]]
 """Which rows are wrong, the sentence, its reason code, and what is filled in."""
 
 
-def _checks(
-    kind: ListKind, column: Column, places: Mapping[str, FoundColumn], value: pl.Expr, mark: str
+def _list_checks(
+    kind: ListKind,
+    column: Column,
+    places: Mapping[str, FoundColumn],
+    value: pl.Expr,
+    mark: str,
+    is_text: bool,
 ) -> list[Check]:
-    """What can be wrong with the cells of a column."""
-    text, declared = pl.col(column.key), declared_column(kind, column.key)
+    """Return what can be wrong with the cells of a column."""
+    text, declared = pl.col(column.key), find_declared_column(kind, column.key)
     place = places.get(column.key, FoundColumn(-1, column.header, Scale()))
     named: dict[str, Any] = {"column": place.header, "cell": text}
     if column.key == REMARK:
@@ -398,22 +444,21 @@ def _checks(
         "column '{column}' is the formula {cell}, which was never calculated: open the list in a "
         "spreadsheet program and save it there, or type the value."
     )
+    merged = say(
+        "column '{column}' is one of merged cells, and only the first of them holds a value: split "
+        "them, and fill in each."
+    )
     checks: list[Check] = [
+        (text == MERGED, merged, None, named),
         (text.str.contains(_SPREADSHEET_ERROR), error, None, named),
         (text.str.contains(_FORMULA), formula, None, named),
     ]
     if declared is None:
         return checks
     is_unread = text.is_not_null() & value.is_null()
-    checks.append((is_unread, _not_one(column.key, declared.dtype), None, named))
-    if declared.dtype.is_float() and mark:
-        said = say(
-            "column '{column}' is {cell}, which can be a thousand or little more than one: other "
-            "decimals of this list are behind a '{mark}'."
-        )
-        is_double = text.str.contains(
-            rf"^[+-]?[0-9]{{1,3}}[{',' if mark == '.' else '.'}][0-9]{{3}}$"
-        )
+    checks.append((is_unread, _describe_wrong_cell(column.key, declared.dtype), None, named))
+    if _is_number(kind, column.key):
+        is_double, said = _find_double_numbers(text, mark, is_text)
         checks.append((is_double, said, "ambiguous_number", named | {"mark": mark}))
     if declared.dtype.is_numeric() and column.key != "run":
         lowest, highest = limits(kind.table, column.key)
@@ -426,24 +471,53 @@ def _checks(
     return checks
 
 
+def _find_double_numbers(text: pl.Expr, mark: str, is_text: bool) -> tuple[pl.Expr, Sentence]:
+    """Return which cells can be read in two ways, and what is said of them.
+
+    Args:
+        text: the cells of a column of numbers.
+        mark: the decimal mark of the list; empty where a workbook tells none.
+        is_text: the list is no workbook, in which what is typed as a number is none of these.
+    """
+    if not mark:
+        said = say(
+            "column '{column}' is {cell}: text that can be a thousand or little more than one. "
+            "Type it as a number."
+        )
+        return text.str.starts_with(TYPED_AS_TEXT), said
+    said = say(
+        "column '{column}' is {cell}, which can be a thousand or little more than one: other "
+        "decimals of this list are behind a '{mark}'. Write it without a mark, or with a '{mark}'."
+    )
+    other = "," if mark == "." else "."
+    first = "" if is_text else TYPED_AS_TEXT
+    return text.str.contains(rf"^{first}[+-]?[1-9][0-9]{{0,2}}[{other}][0-9]{{3}}$"), said
+
+
 _NO_CLASS: Final = say("column '{column}' is '{cell}'; H or D is expected.")
 _NO_YES: Final = say("column '{column}' is '{cell}', not ja, nee or empty.")
 _NO_TIME: Final = say(
     "column '{column}' is '{cell}', not a time such as 2:10:25. A word for a crew that did not "
     "finish means 'uitgevallen'."
 )
+_NO_SECONDS: Final = say(
+    "column '{column}' is '{cell}', not a number of seconds since the first sample of the run or, "
+    "where all runs are in one recording, of the recording."
+)
 ASKED_WORDS: Final = (_NO_CLASS, _NO_YES, _NO_TIME)
 """What is said of a cell whose word can be given a meaning."""
 
 
-def _not_one(key: str, dtype: pl.DataType) -> Sentence:
-    """What is said of a cell that is not of its column's type."""
+def _describe_wrong_cell(key: str, dtype: pl.DataType) -> Sentence:
+    """Return what is said of a cell that is not of its column's type."""
     number = say("column '{column}' is '{cell}', which is not an ordinary number.")
     whole = say("column '{column}' is {cell}; it must be a whole number.")
     by_key = {
         "crew_class": _NO_CLASS,
         "run": say("column '{column}' is '{cell}'; runs are 1 to 20, of meetfile2 b1 to b20."),
         "rowing_time_s": _NO_TIME,
+        "start_s": _NO_SECONDS,
+        "end_s": _NO_SECONDS,
     }
     by_type = {
         pl.Date: say("column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014."),
@@ -457,42 +531,42 @@ def _not_one(key: str, dtype: pl.DataType) -> Sentence:
 # The value of a cell of text, null where it has none
 
 
-def _value(kind: ListKind, key: str, places: Mapping[str, FoundColumn]) -> pl.Expr:
-    """The value of a column, by its name or by the type that its table declares."""
-    text, declared = pl.col(key), declared_column(kind, key)
-    by_type = {pl.Boolean: _yes_or_no, pl.Date: _date}
+def _parse_cell(kind: ListKind, key: str, places: Mapping[str, FoundColumn]) -> pl.Expr:
+    """Return the value of a column, by its name or by the type that its table declares."""
+    text, declared = pl.col(key), find_declared_column(kind, key)
+    by_type = {pl.Boolean: _parse_yes_or_no, pl.Date: _parse_date}
     if key in _BY_KEY:
         return _BY_KEY[key](text)
     if declared is None or declared.dtype == pl.String():
         return text
     if declared.dtype.base_type() in by_type:
         return by_type[declared.dtype.base_type()](text)
-    return _number(text, places.get(key), declared.dtype.is_integer())
+    return _parse_number(text, places.get(key), declared.dtype.is_integer())
 
 
-def _boat(text: pl.Expr) -> pl.Expr:
+def _parse_boat(text: pl.Expr) -> pl.Expr:
     """`FSN 101`, `fsn101` and `101` are FSN101."""
     return pl.coalesce("FSN" + text.str.extract(_BOAT).str.to_uppercase(), text)
 
 
-def _tow_id(text: pl.Expr) -> pl.Expr:
+def _parse_tow_id(text: pl.Expr) -> pl.Expr:
     """2014/17 would be a folder in names of pages and files."""
     return text.str.replace_all("/", "-", literal=True)
 
 
-def _crew_class(text: pl.Expr) -> pl.Expr:
+def _parse_crew_class(text: pl.Expr) -> pl.Expr:
     letter = text.str.to_uppercase()
     return pl.when(letter.is_in(["H", "D"])).then(letter)
 
 
-def _run(text: pl.Expr) -> pl.Expr:
-    """The number of a run: 1 to 20, or 21 to 40 for b1 to b20."""
+def _parse_run(text: pl.Expr) -> pl.Expr:
+    """Return the number of a run: 1 to 20, or 21 to 40 for b1 to b20."""
     number = text.str.extract(_RUN).cast(pl.Int16)
     offset = pl.when(text.str.contains("^[bB]")).then(SECOND_FILE_OFFSET).otherwise(0)
     return pl.when(number <= MOST_RUNS).then(number + offset)
 
 
-def _rowing_time(text: pl.Expr) -> pl.Expr:
+def _parse_rowing_time(text: pl.Expr) -> pl.Expr:
     """Seconds of `2:10:25`."""
     parts = text.str.extract_groups(_TIME).struct
     hours, minutes, seconds = (parts.field(str(n)).cast(pl.Float64) for n in (1, 2, 3))
@@ -500,18 +574,19 @@ def _rowing_time(text: pl.Expr) -> pl.Expr:
     return pl.when(total > 0).then(total)
 
 
-def _yes_or_no(text: pl.Expr) -> pl.Expr:
+def _parse_yes_or_no(text: pl.Expr) -> pl.Expr:
     word = text.fill_null("nee").str.to_lowercase()
     return pl.when(word.is_in([*_YES, *_NO])).then(word.is_in(_YES))
 
 
-def _date(text: pl.Expr) -> pl.Expr:
+def _parse_date(text: pl.Expr) -> pl.Expr:
     iso = text.str.extract(_ISO_DATE).str.to_date("%Y-%m-%d", strict=False)
     return iso.fill_null(text.str.extract(_DUTCH_DATE).str.to_date("%d-%m-%Y", strict=False))
 
 
-def _number(text: pl.Expr, place: FoundColumn | None, is_whole: bool) -> pl.Expr:
-    """A number in the SI unit of its column."""
+def _parse_number(text: pl.Expr, place: FoundColumn | None, is_whole: bool) -> pl.Expr:
+    """Return a number in the SI unit of its column."""
+    text = text.str.strip_prefix(TYPED_AS_TEXT)
     if place and place.unit:  # 3% under [%]: the unit may be repeated behind the number
         text = text.str.replace(rf"(?i)\s*{re.escape(place.unit)}$", "")
     digits = pl.when(text.str.contains(NUMBER)).then(text.str.replace(",", ".", literal=True))
@@ -522,9 +597,9 @@ def _number(text: pl.Expr, place: FoundColumn | None, is_whole: bool) -> pl.Expr
 
 
 _BY_KEY: Final[Mapping[str, Callable[[pl.Expr], pl.Expr]]] = {
-    "fsn_no": _boat,
-    "tow_id": _tow_id,
-    "crew_class": _crew_class,
-    "run": _run,
-    "rowing_time_s": _rowing_time,
+    "fsn_no": _parse_boat,
+    "tow_id": _parse_tow_id,
+    "crew_class": _parse_crew_class,
+    "run": _parse_run,
+    "rowing_time_s": _parse_rowing_time,
 }

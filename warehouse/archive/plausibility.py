@@ -26,10 +26,10 @@ from warehouse.archive.judgement import (
     Cost,
     Judgement,
     Run,
-    stretches,
-    what_it_holds,
+    describe_value,
+    find_stretches,
 )
-from warehouse.archive.samples import Place, run_starts
+from warehouse.archive.samples import Place, RunDefect, find_run_starts
 
 SPEEDS: Final = ("log1", "log2", "gps")
 SHORTEST_RUN_RATIO: Final = 0.99
@@ -87,42 +87,53 @@ class Judged(NamedTuple):
     faults: list[Fault]
 
 
-def judge_samples(samples: pl.DataFrame, place: Place, tow: Row, runs: pl.DataFrame) -> Judged:
-    """What of the selected runs of a tow can be used; runs that are not selected stay as they are.
+def judge_samples(
+    samples: pl.DataFrame,
+    place: Place,
+    tow: Row,
+    runs: pl.DataFrame,
+    defects: Mapping[int, RunDefect] | None = None,
+) -> Judged:
+    """Return what of the selected runs of a tow can be used; other runs stay as they are.
 
     Args:
         samples: frame of `SAMPLE_SCHEMA`, as `read_tow_samples` returns it.
         place: where its rows stand.
         tow: a row of `ArchiveIndex.tows`.
         runs: `ArchiveIndex.runs`; rows of other tows are ignored.
+        defects: what costs a run, as `read_tow_samples` returns it.
 
     Raises:
         DefectiveFileError: the tow is lost: the most specific cause comes first.
     """
     judgement = Judgement(tow, place)
     _select_runs(judgement, samples, runs)
+    for run in judgement.runs:
+        if defects and run.number in defects:
+            code, what, row = defects[run.number]
+            judgement.lose(run, code, what, "run", row - run.start)
     _check_length(judgement)
     _leave_out_copies(judgement)
     judgement.check_left()
     _leave_out_no_wind(judgement)
     _check_whole_tow(judgement)
-    usual_kg_m = _usual_resistance_kg_m(judgement.runs)
+    usual_kg_m = _estimate_resistance_kg_m(judgement.runs)
     for run in judgement.runs:
         leave_out(judgement, run, usual_kg_m)
         if run in judgement.runs:
             apply_rules(judgement, run)
     leave_out_stuck_gps(judgement)
     judgement.check_left()
-    return Judged(_as_judged(samples, judgement), judgement.faults)
+    return Judged(_drop_lost(samples, judgement), judgement.faults)
 
 
 # Runs
 
 
 def _select_runs(judgement: Judgement, samples: pl.DataFrame, runs: pl.DataFrame) -> None:
-    """Finds the selected runs; each that is not there leaves a fault."""
+    """Find the selected runs; each that is not there leaves a fault."""
     tow, number = judgement.tow, samples["run"].to_numpy()
-    bounds = [*run_starts(number).tolist(), len(number)]
+    bounds = [*find_run_starts(number).tolist(), len(number)]
     rows = {int(number[start]): slice(start, end) for start, end in pairwise(bounds)}
     channels = {
         key: samples[name].to_numpy()
@@ -133,7 +144,7 @@ def _select_runs(judgement: Judgement, samples: pl.DataFrame, runs: pl.DataFrame
     judgement.wanted = selected.height
     for run, planned_s, ratio in selected["run", "planned_s", "target_speed_ratio"].iter_rows():
         if run not in rows:
-            judgement.faults.append(_missing_run(run, tow, sorted(rows)))
+            judgement.faults.append(_missing_run_fault(run, tow, sorted(rows)))
             continue
         own = {key: values[rows[run]] for key, values in channels.items()}
         intended_m_s = tow["declared_speed_m_s"] * ratio
@@ -141,7 +152,7 @@ def _select_runs(judgement: Judgement, samples: pl.DataFrame, runs: pl.DataFrame
         judgement.runs.append(Run(run, *facts))
 
 
-def _missing_run(run: int, tow: Row, present: list[int]) -> Fault:
+def _missing_run_fault(run: int, tow: Row, present: list[int]) -> Fault:
     in_second = run > SECOND_FILE_OFFSET
     offset = SECOND_FILE_OFFSET if in_second else 0
     there = [str(n - offset) for n in present if (n > SECOND_FILE_OFFSET) == in_second]
@@ -152,7 +163,7 @@ def _missing_run(run: int, tow: Row, present: list[int]) -> Fault:
 
 
 def _check_length(judgement: Judgement) -> None:
-    """Takes the runs that are too short; says it where all last far longer than planned.
+    """Leave out the runs that are too short; note where all last far longer than planned.
 
     That costs nothing: by a wrong rate, windows, averages and what accelerated the boat are taken
     over another time than is meant.
@@ -193,8 +204,8 @@ def _leave_out_copies(judgement: Judgement) -> None:
             judgement.lose(run, "samples_listed_twice", what, "run")
 
 
-def _as_judged(samples: pl.DataFrame, judgement: Judgement) -> pl.DataFrame:
-    """The samples without lost runs, NaN where one is left out, null in channels of no run."""
+def _drop_lost(samples: pl.DataFrame, judgement: Judgement) -> pl.DataFrame:
+    """Return the samples without lost runs: NaN where left out, null in channels of no run."""
     if not judgement.faults:
         return samples
     changed = []
@@ -213,7 +224,7 @@ def _as_judged(samples: pl.DataFrame, judgement: Judgement) -> pl.DataFrame:
 
 
 def _leave_out_no_wind(judgement: Judgement) -> None:
-    """Takes a wind speed that in all runs is empty, or one value that cannot be.
+    """Leave out a wind speed that in all runs is empty, or one value that cannot be.
 
     So people write that there was no anemometer: 999 everywhere. The tow goes on as one without.
     """
@@ -224,13 +235,13 @@ def _leave_out_no_wind(judgement: Judgement) -> None:
         if wind is None or not (is_held or np.isnan(wind).all()):
             return
     text = say("column '{column}' {} in all runs, which is not wind; the tow goes on without wind.")
-    first = what_it_holds(judgement.runs[0].channels["wind_speed"][0])
+    first = describe_value(judgement.runs[0].channels["wind_speed"][0])
     message = say(text, first, column=COLUMN_OF["wind_speed"])
     judgement.lose_of_all("implausible_value", message, *EXTREMES)
 
 
 def _check_whole_tow(judgement: Judgement) -> None:
-    """Raises where the force is turned, columns are exchanged, or the speeds are in km/h.
+    """Raise where the force is turned, columns are exchanged, or the speeds are in km/h.
 
     Seen by what a typical run looks like: medians over the runs, which a fault in one does not
     move.
@@ -280,7 +291,7 @@ def _check_against_plan(judgement: Judgement) -> None:
     for key, wind, power, most in FOLLOWS_PLAN:
         if not all({key, wind} <= run.channels.keys() for run in judgement.runs):
             continue
-        own, other = (_spread_about_plan(judgement.runs, name, power) for name in (key, wind))
+        own, other = (_measure_spread(judgement.runs, name, power) for name in (key, wind))
         if own > EXCHANGED_SPREAD_RATIO * most and other < most:
             text = say(
                 "Columns '{}' and '{}' seem to be exchanged: from run to run the second follows "
@@ -290,30 +301,30 @@ def _check_against_plan(judgement: Judgement) -> None:
             raise judgement.lost("swapped_columns", said)
 
 
-def _spread_about_plan(runs: list[Run], key: str, power: int) -> float:
+def _measure_spread(runs: list[Run], key: str, power: int) -> float:
     """Return the spread from run to run of ln(median / intended speed ** power)."""
     ratios = [run.medians[key] / run.intended_m_s**power for run in runs]
     return float(np.std(np.log(ratios))) if min(ratios) > 0 else np.inf
 
 
 def _check_exchanged(judgement: Judgement, intended_m_s: float) -> None:
-    """Raises where two channels can be right only the other way round."""
+    """Raise where two channels can be right only the other way round."""
     runs = judgement.runs
     typical = {
         key: np.median([run.typical(key) for run in runs], axis=0) for key in runs[0].channels
     }
-    wrong = _implausible(typical, intended_m_s)
+    wrong = _find_implausible(typical, intended_m_s)
     for one, other in combinations(typical, 2):
         exchanged = typical | {one: typical[other], other: typical[one]}
-        if {one, other} & wrong and not _implausible(exchanged, intended_m_s):
+        if {one, other} & wrong and not _find_implausible(exchanged, intended_m_s):
             text = say("Columns '{}' and '{}' seem to be exchanged: {seen}.")
             seen = say("typically they hold {:.4g} and {:.4g}", typical[one][0], typical[other][0])
             said = say(text, COLUMN_OF[one], COLUMN_OF[other], seen=seen)
             raise judgement.lost("swapped_columns", said)
 
 
-def _implausible(typical: Mapping[str, Array], intended_m_s: float) -> set[str]:
-    """The channels of which median, lowest and highest cannot be what their header says."""
+def _find_implausible(typical: Mapping[str, Array], intended_m_s: float) -> set[str]:
+    """Return the channels of which median, lowest and highest cannot be what their header says."""
     wrong = set()
     for key, (median, lowest, highest) in typical.items():
         usual = USUAL.get(key, Limits(-np.inf, np.inf))
@@ -327,14 +338,14 @@ def _implausible(typical: Mapping[str, Array], intended_m_s: float) -> set[str]:
 # Samples
 
 
-def _usual_resistance_kg_m(runs: list[Run]) -> float:
+def _estimate_resistance_kg_m(runs: list[Run]) -> float:
     """Force / speed squared of a typical run, which a fault over most of one does not move."""
     each = [run.medians["force"] / run.intended_m_s**2 for run in runs]
     return abs(float(np.nanmedian(each))) if np.isfinite(each).any() else np.nan
 
 
 def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
-    """Takes the samples of a run that cannot be, and the run where that is too much of it.
+    """Leave out the samples of a run that cannot be, and the run where these are too many.
 
     Args:
         judgement: what is left of the tow.
@@ -358,7 +369,7 @@ def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
             continue
         row, values, seconds = int(own.argmax()), run.channels[key], count / run.rate_hz
         text = say("column '{column}' {} and is wrong for {:.3g} s in all")
-        what = say(text, what_it_holds(values[row]), seconds, column=COLUMN_OF[key])
+        what = say(text, describe_value(values[row]), seconds, column=COLUMN_OF[key])
         is_gone = key in SPARE and count > most
         of_channel: Cost = "column" if is_gone else cost
         judgement.lose(run, _reason(run, key, row), what, of_channel, row, seconds)
@@ -366,7 +377,7 @@ def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
 
 
 def _reason(run: Run, key: str, row: int) -> str:
-    """The reason code of a channel, by the first of its wrong samples."""
+    """Return the reason code of a channel, by the first of its wrong samples."""
     value = run.channels[key][row]
     if not np.isfinite(value):
         return "bad_number"
@@ -377,7 +388,7 @@ def _reason(run: Run, key: str, row: int) -> str:
 
 
 def _wrong(run: Run, key: str, usual_n: float) -> BoolArray:
-    """Samples of a channel that are no number, have dropped out or cannot be."""
+    """Return which samples of a channel are no number, have dropped out or cannot be."""
     values = run.channels[key]
     if key in SPEEDS:
         return _wrong_speed(values, run.medians[key], run.rate_hz, SPIKE_RATIO[key])
@@ -390,7 +401,7 @@ def _wrong(run: Run, key: str, usual_n: float) -> BoolArray:
 
 
 def _outside(values: Array, lowest: float, highest: float) -> BoolArray:
-    """Samples that are not between two limits, or no number."""
+    """Return which samples are not between two limits, or no number."""
     return np.asarray(~((values >= lowest) & (values <= highest)))
 
 
@@ -405,7 +416,7 @@ def _wrong_speed(values: Array, median: float, rate_hz: float, spike_ratio: floa
 
 
 def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
-    """The speed around each sample, which short faults do not move; 0 without any number."""
+    """Return the speed around each sample, which short faults do not move; 0 without numbers."""
     length = max(len(values) // rate_hz, 1)
     second = np.minimum(np.arange(len(values)) // rate_hz, length - 1)
     padded = np.full((length, int(np.bincount(second).max())), np.nan)
@@ -424,7 +435,7 @@ def _wrong_force(run: Run, values: Array, usual_n: float) -> BoolArray:
     wrong = _outside(values, low, high)
     near_zero = FORCE_DEAD_RATIO * usual_n
     if (np.abs(values) <= near_zero).any():
-        starts, lengths = stretches(values[1:] != values[:-1])
+        starts, lengths = find_stretches(values[1:] != values[:-1])
         least = max(int(FORCE_DEAD_S * run.rate_hz), 3)
         wrong |= np.repeat((lengths >= least) & (np.abs(values[starts]) <= near_zero), lengths)
     means = run.second_means(np.where(wrong, np.float32(np.nan), values))
@@ -445,7 +456,7 @@ class Limits(NamedTuple):
     unit: Literal["", "intended", "intended squared", "log1"] = ""
 
     def times(self, intended_m_s: float, log1_m_s: float) -> tuple[float, float]:
-        """The limits as they are for this speed."""
+        """Return the limits for this speed."""
         units = {"intended": intended_m_s, "intended squared": intended_m_s**2, "log1": log1_m_s}
         return self.low * units.get(self.unit, 1.0), self.high * units.get(self.unit, 1.0)
 
@@ -469,22 +480,22 @@ def mean(run: Run, channel: str) -> Found:
 
 
 def held_s(run: Run, channel: str) -> Found:
-    """The longest stretch of one value; cups may stand still, and a vane needs wind."""
+    """Return the longest stretch of one value [s]; cups may stand still, and a vane needs wind."""
     values = run.channels[channel]
     changes = values[1:] != values[:-1]
     least_wind_m_s = {"wind_speed": 0.0, "wind_angle": VANE_TURNS_M_S}.get(channel)
     if least_wind_m_s is None or "wind_speed" not in run.channels:
-        starts, lengths = stretches(changes)
+        starts, lengths = find_stretches(changes)
     else:
         moves = run.channels["wind_speed"] > least_wind_m_s
-        starts, lengths = stretches(changes | np.diff(moves))
+        starts, lengths = find_stretches(changes | np.diff(moves))
         lengths = lengths * moves[starts]
     longest = int(lengths.argmax())
     return float(lengths[longest]) / run.rate_hz, int(starts[longest])
 
 
 def clipped_percent(run: Run, channel: str) -> Found:
-    """Samples at the highest value, 0 where coarse steps explain them."""
+    """Return the samples at the highest value in per cent; 0 where coarse steps explain them."""
     values = run.channels[channel]
     at_end = values == np.fmax.reduce(values)
     below = np.nanmax(values, where=~at_end & np.isfinite(values), initial=-np.inf)
@@ -536,7 +547,7 @@ RULES: Final = (
 
 
 def apply_rules(judgement: Judgement, run: Run) -> None:
-    """Takes what breaks a rule: the run, or a spare channel; without numbers one breaks none."""
+    """Leave out what breaks a rule: the run, or a spare channel; one without numbers is sound."""
     log1_m_s, _ = mean(run, "log1")
     known = {key for key, values in run.channels.items() if np.isfinite(values).any()}
     for rule in RULES:
@@ -557,7 +568,7 @@ def apply_rules(judgement: Judgement, run: Run) -> None:
 
 
 def leave_out_stuck_gps(judgement: Judgement) -> None:
-    """Takes a GPS that holds one value while the speed changed, or at another speed.
+    """Leave out a GPS that holds one value while the speed changed, or at another speed.
 
     It has a fix a second in steps of 0.01 m/s, so of a steady boat it may well hold one value.
     """

@@ -28,7 +28,7 @@ from pipeline.channels import (
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.toml_text import decoded, parse_toml, problem_in_words
-from warehouse.archive.columns import UNITS, Column, fold, fold_word, split_header
+from warehouse.archive.columns import UNITS, Column, find_unit, fold, fold_word, split_header
 
 PROFILE_FILE: Final = "archief.toml"
 SAMPLE_COLUMNS: Final = (
@@ -46,12 +46,15 @@ MAY_BE_ABSENT: Final = {
     "log2": ("log2",),
     "gps": ("gps",),
     "wind": ("wind_speed", "wind_angle"),
+    "time": ("time",),
 }
 """What a season can declare absent, with the channels that go with it."""
 _DIMENSIONS: Final = {column.key: column.dimension for column in SAMPLE_COLUMNS}
 Channel = Literal["run", "log1", "log2", "gps", "force", "wind_speed", "wind_angle", "time"]
 _WAYS: Final = {"out": OUT, "back": BACK}
 RUN_FILES: Final = "{meetfile} run {run}"
+RUN_PLACE: Final = r"\{run(?::0?([1-9]))?\}"
+"""Where the number of a run stands in the name of its file; `{run:02}` is one of two digits."""
 BLANK: Final = "?"
 """Stands for an answer that nobody gave yet."""
 
@@ -64,7 +67,7 @@ class SeasonProfile:
         season: the year.
         columns: the columns to look for, with name and unit of that season.
         sample_rate_hz: samples per second where the tow list does not say.
-        absent: what was not on board, or is not to be used: `wind`, `log2`, `gps`.
+        absent: what was not on board, or is not to be used: `wind`, `log2`, `gps`, `time`.
         wind_zero_deg: what the vane reads when the wind comes from straight ahead.
         ignore: folded names of columns that are known and not used.
         hold: channels that are sampled at a slower rate, of which each value is held.
@@ -100,8 +103,8 @@ class SeasonProfile:
         return f'[[profile]]\nseasons = "{self.season}"\n{key} = {blank}'
 
 
-def _season_range(value: object) -> object:
-    """Reads `"2009:2011"` or `"2009"` as (first, last)."""
+def _parse_season_range(value: object) -> object:
+    """Read `"2009:2011"` or `"2009"` as (first, last)."""
     if not isinstance(value, str):
         raise ValueError('a season range is text, e.g. "2009:2011" or "2013"')
     first, _, last = value.partition(":")
@@ -112,8 +115,8 @@ def _season_range(value: object) -> object:
     return int(first), int(last or first)
 
 
-def _as_directions(value: object) -> object:
-    """Reads `["out", "back"]` as `OUT` and `BACK`."""
+def _parse_directions(value: object) -> object:
+    """Read `["out", "back"]` as `OUT` and `BACK`."""
     if not isinstance(value, list) or not {*map(str, value)} <= {*_WAYS}:
         raise ValueError('directions are a list of "out" and "back"')
     return [_WAYS[way] for way in value]
@@ -124,10 +127,10 @@ class _Strict(BaseModel):
 
 
 _Text = Annotated[str, Field(min_length=1)]
-_Seasons = Annotated[tuple[int, int], BeforeValidator(_season_range)]
+_Seasons = Annotated[tuple[int, int], BeforeValidator(_parse_season_range)]
 _Directions = Annotated[
     list[int],
-    BeforeValidator(_as_directions),
+    BeforeValidator(_parse_directions),
     Field(min_length=FEWEST_RUNS, max_length=MOST_RUNS),
 ]
 _Folded = Annotated[list[str], AfterValidator(lambda names: [fold(name) for name in names])]
@@ -153,12 +156,12 @@ class _ProfileTable(_Strict):
     columns: dict[Channel, _Text] = {}
     units: dict[Channel, str] = {}
     sample_rate_hz: Annotated[float, Field(ge=1, le=100_000, strict=False)] = 1000.0
-    hold: list[Literal["log2", "gps", "wind_speed", "wind_angle"]] = []
+    hold: list[Literal["log1", "log2", "gps", "force", "wind_speed", "wind_angle"]] = []
     runs: Literal["column", "file", "windows"] = "column"
-    run_files: Annotated[str, Field(pattern=r"\{run\}")] = RUN_FILES
+    run_files: Annotated[str, Field(pattern=RUN_PLACE)] = RUN_FILES
     groups: Annotated[list[_Text], Field(max_length=MOST_RUNS)] = []
-    skip_below_header: Annotated[int, Field(ge=0, le=100)] = 0
-    absent: list[Literal["log2", "gps", "wind"]] = []
+    skip_below_header: Annotated[int, Field(ge=0, le=100, strict=False)] = 0
+    absent: list[Literal["log2", "gps", "wind", "time"]] = []
     reversed: list[Literal["force"]] = []
     wind_zero_deg: Annotated[float, Field(ge=-360, le=360, strict=False)] = 0.0
     ignore: _Folded = []
@@ -166,9 +169,9 @@ class _ProfileTable(_Strict):
     @model_validator(mode="after")
     def _units_are_known(self) -> Self:
         for channel, unit in self.units.items():
-            known = UNITS[_DIMENSIONS[channel]]
-            if "".join(unit.casefold().split()) not in known:
-                raise ValueError(f"units.{channel}: [{unit}] is not one of {sorted(known)}")
+            if find_unit(_DIMENSIONS[channel], unit) is None:
+                known = ", ".join(UNITS[_DIMENSIONS[channel]])
+                raise ValueError(f"units.{channel}: [{unit}] is not one of {known}")
         return self
 
     def merge(self, other: "_ProfileTable", season: int) -> "_ProfileTable":
@@ -193,8 +196,8 @@ class _ProfileTable(_Strict):
                 raise ValueError(f"season {season} has two values for {name}")
         return _ProfileTable.model_construct(**values)
 
-    def made_of(self, column: Column) -> Column:
-        """A column with the name and the unit that it has in these seasons."""
+    def apply_to(self, column: Column) -> Column:
+        """Return a column with the name and the unit that it has in these seasons."""
         key: Channel = column.key  # type: ignore[assignment]
         return replace(
             column,
@@ -220,7 +223,7 @@ class Plan(_Strict):
     seasons: _Seasons | None = None
     tows: list[str] = []
     targets: Annotated[
-        list[Annotated[float, Field(ge=0.3, le=2.0)]],
+        list[Annotated[float, Field(ge=0.3, le=2.0, strict=False)]],
         Field(min_length=FEWEST_RUNS, max_length=MOST_RUNS),
     ] = [*TARGET_SPEED_RATIOS, *TARGET_SPEED_RATIOS]
     directions: _Directions = [OUT, OUT, OUT, BACK, BACK, BACK]
@@ -298,8 +301,8 @@ class Profiles(_Strict):
         """The name with its unit that stands for a folded header, where a unit is given."""
         return {fold(name): meant for name, meant in self.headers.items() if "[" in meant}
 
-    def named(self, columns: Iterable[Column]) -> tuple[Column, ...]:
-        """The columns of a list with the other names that they have in this archive."""
+    def rename_columns(self, columns: Iterable[Column]) -> tuple[Column, ...]:
+        """Return the columns of a list with the other names that they have in this archive."""
         own: dict[str, tuple[str, ...]] = {}
         for name, meant in self.headers.items():
             key = split_header(meant)[0]
@@ -307,20 +310,20 @@ class Profiles(_Strict):
         return tuple(replace(c, also=(*c.also, *own.get(fold(c.header), ()))) for c in columns)
 
     @cached_property
-    def _made(self) -> dict[int, SeasonProfile]:
+    def _season_profiles(self) -> dict[int, SeasonProfile]:
         return {}
 
     def for_season(self, season: int) -> SeasonProfile:
-        """The profile of a season; the project's default where none is given."""
-        if season not in self._made:
+        """Return the profile of a season; the project's default where none is given."""
+        if season not in self._season_profiles:
             table = _ProfileTable(seasons=f"{season}")  # type: ignore[arg-type]
             for given in self.profile:
                 if given.seasons[0] <= season <= given.seasons[1]:
                     table = table.merge(given, season)
             absent = {key for name in table.absent for key in MAY_BE_ABSENT[name]}
-            self._made[season] = SeasonProfile(
+            self._season_profiles[season] = SeasonProfile(
                 season=season,
-                columns=tuple(table.made_of(c) for c in SAMPLE_COLUMNS if c.key not in absent),
+                columns=tuple(table.apply_to(c) for c in SAMPLE_COLUMNS if c.key not in absent),
                 sample_rate_hz=table.sample_rate_hz,
                 absent=tuple(sorted(table.absent)),
                 wind_zero_deg=table.wind_zero_deg,
@@ -331,10 +334,10 @@ class Profiles(_Strict):
                 groups=tuple(table.groups),
                 skip_below_header=table.skip_below_header,
             )
-        return self._made[season]
+        return self._season_profiles[season]
 
-    def plan_of(self, tow_id: str, season: int) -> Plan:
-        """The plan of a tow: its own, that of its season, or the standard."""
+    def find_plan(self, tow_id: str, season: int) -> Plan:
+        """Return the plan of a tow: its own, that of its season, or the standard."""
         own = (plan for plan in self.plan if tow_id in plan.tows)
         of_season = (
             plan
@@ -343,18 +346,18 @@ class Profiles(_Strict):
         )
         return next(own, None) or next(of_season, STANDARD)
 
-    def reason_set_aside(self, day: dt.date) -> str | None:
+    def find_reason_set_aside(self, day: dt.date) -> str | None:
         """Why a day is set aside, None when it is not."""
         return next((entry.reason for entry in self.set_aside if entry.date == day), None)
 
-    def part_of_log(self, log: str, day: dt.date) -> int:
+    def count_log_changes(self, log: str, day: dt.date) -> int:
         """How often a log had been replaced since its season began: 0 with the first."""
         replaced = (entry.date for entry in self.log_replaced if entry.log == log)
         return sum(dt.date(day.year, 1, 1) <= date <= day for date in replaced)
 
 
 def read_profiles(root: Path) -> Profiles:
-    """Reads `archief.toml` of an archive; defaults when it is absent.
+    """Read `archief.toml` of an archive; defaults when it is absent.
 
     Raises:
         MissingKnowledgeError: the file cannot be understood; it names the file and the key.
@@ -371,7 +374,7 @@ def read_profiles(root: Path) -> Profiles:
 
 
 def parse_profiles(text: str) -> Profiles:
-    """Reads the text of an `archief.toml`.
+    """Read the text of an `archief.toml`.
 
     Raises:
         MissingKnowledgeError: it cannot be understood; the message names the key.

@@ -11,7 +11,7 @@ from pipeline.tables.declare import dy
 from pipeline.tables.frames import column_of, dtypes, limits
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.columns import shorten
-from warehouse.archive.faults import Fault, Lost, at_line
+from warehouse.archive.faults import Fault, Lost, say_at_line
 from warehouse.archive.kinds import REMARK, ListKind
 
 
@@ -37,7 +37,7 @@ class Rows:
     unread: set[str] = field(default_factory=set)
 
     def add(self, others: "Rows") -> None:
-        """Adds the rows of another list."""
+        """Add the rows of another list."""
         self.frame = pl.concat([self.frame, others.frame])
         self.listed = pl.concat([self.listed, others.listed])
         self.faults += others.faults
@@ -49,14 +49,15 @@ class Rows:
         text: str,
         code: str | None = None,
         lost: Lost | None = None,
+        ask: Sequence[str] = (),
         **facts: Any,
     ) -> None:
         """Set rows aside; the arguments are those of `note`."""
-        self.note(is_wrong, text, code, lost, **facts)
+        self.note(is_wrong, text, code, lost, ask=ask, **facts)
         self.frame = self.frame.filter(~is_wrong.fill_null(value=False))
 
     def empty(self, key: str, is_wrong: pl.Expr, text: str, **facts: Any) -> None:
-        """Empties cells that a row can do without."""
+        """Empty cells that a row can do without."""
         self.note(is_wrong, text, None, "cell", **facts)
         sound = ~is_wrong.fill_null(value=False)
         self.frame = self.frame.with_columns(pl.when(sound).then(key).alias(key))
@@ -68,9 +69,10 @@ class Rows:
         code: str | None = None,
         lost: Lost | None = None,
         asks_word: bool = False,
+        ask: Sequence[str] = (),
         **facts: Any,
     ) -> None:
-        """Adds a fault for rows.
+        """Add a fault for rows.
 
         Args:
             is_wrong: which rows; what is not known is not wrong.
@@ -78,23 +80,30 @@ class Rows:
             code: its reason code; None for that of the list.
             lost: what it costs, if not the row.
             asks_word: whether a meaning can be given to the word that `cell` is.
+            ask: lines of `archief.toml` that would settle it, in which facts are filled in.
             facts: what is filled in: a value, or an expression of the rows.
         """
         of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
         known = self.frame.select("path", "sheet", "line", "about", _wrong=is_wrong, **of_rows)
         for row in known.filter("_wrong").iter_rows(named=True):
             filled = {name[1:]: row[name] for name in of_rows}
-            short = {k: shorten(v) if isinstance(v, str) else v for k, v in filled.items()}
+            short = {
+                name: shorten(value) if isinstance(value, str) and name != "other" else value
+                for name, value in filled.items()
+            }
             what = say(text, **facts | short)
             if row["sheet"]:
                 what = say("sheet '{sheet}': {what}", sheet=row["sheet"], what=what)
-            message = at_line(row["line"], what)
+            message = say_at_line(row["line"], what)
             if lost == "cell":
                 message = say("{what} The cell counts as empty.", what=message)
             tow_id = row["about"] if self.kind.about == "tow_id" else None
             place = row["path"], tow_id, row["line"]
-            ask = (_ask_word(filled["cell"]),) if asks_word else ()
-            fault = Fault(*place, code or self.kind.reason_code, message, lost, ask=ask)
+            lines = [line.format(**filled) for line in ask]
+            if asks_word:
+                lines.append(_ask_word(filled["cell"]))
+            code = code or self.kind.reason_code
+            fault = Fault(*place, code, message, lost, ask=tuple(lines))
             self.faults.append(fault)
             if row["about"]:
                 self.lost.setdefault(row["about"], fault)
@@ -128,22 +137,30 @@ class Rows:
         of = pl.concat_str(*about, separator=" ")
         key = pl.struct(about)
         is_first = pl.int_range(pl.len()).over(key) == 0
+        in_sheet = pl.format("{}, sheet '{}'", "path", "sheet")
+        own_place = {
+            "line": pl.col("line"),
+            "other": pl.when(pl.col("sheet") == "").then("path").otherwise(in_sheet),
+        }
+        self.frame = self.frame.with_columns(**{f"_{k}": v for k, v in own_place.items()})
         places = {
             name: pl.when(is_first)
-            .then(pl.col(name).shift(-1).first().over(key))
-            .otherwise(pl.col(name).first().over(key))
-            for name in ("line", "path")
+            .then(pl.col(f"_{name}").get(1, null_on_oob=True).over(key))
+            .otherwise(pl.col(f"_{name}").first().over(key))
+            for name in own_place
         }
-        self.drop(key.is_duplicated(), text, code, of=of, line=places["line"], other=places["path"])
+        other, line = places["other"], places["line"]
+        self.drop(key.is_duplicated(), text, code, of=of, line=line, other=other)
+        self.frame = self.frame.drop("_line", "_other")
 
     def drop_other_years(self, day: str, code: str | None = None) -> None:
-        """Sets aside the rows whose day is not in the year of their list."""
+        """Set aside the rows whose day is not in the year of their list."""
         text = say("the date {day} is not in {season}, the year of the list.")
         is_other = pl.col(day).dt.year() != pl.col("season")
         self.drop(is_other, text, code, day=pl.col(day), season=pl.col("season"))
 
     def as_table(self, table: type[dy.Schema]) -> pl.DataFrame:
-        """The rows as a table; the year of a list was not held against its limits yet."""
+        """Return the rows as a table; the year of a list was not held against its limits yet."""
         low, high = limits(ListedTows, "season")
         text, season = (
             say("the year is {cell}; {low:g} to {high:g} can be right."),
@@ -160,12 +177,12 @@ def _ask_word(word: str) -> str:
 
 
 def cell(key: str) -> pl.Expr:
-    """What is written in a column, null for nothing."""
+    """Return what is written in a column, null for nothing."""
     return pl.col("cells").struct.field(key)
 
 
-def no_rows(kind: ListKind) -> pl.DataFrame:
-    """The frame of a list without any row."""
+def make_empty_rows(kind: ListKind) -> pl.DataFrame:
+    """Return the frame of a list without any row."""
     declared = dtypes(kind.table)
     values = {c.key: declared.get(c.key, pl.String()) for c in kind.columns}
     cells = pl.Struct({column.key: pl.String for column in kind.columns})
@@ -179,6 +196,6 @@ def no_rows(kind: ListKind) -> pl.DataFrame:
     return pl.DataFrame(schema=place | values | {"cells": cells})
 
 
-def declared_column(kind: ListKind, key: str) -> dy.Column | None:
-    """The column as its table declares it; None for one that is only used here."""
+def find_declared_column(kind: ListKind, key: str) -> dy.Column | None:
+    """Return the column as its table declares it; None for one that is only used here."""
     return column_of(kind.table, key) if key in kind.table.column_names() else None

@@ -27,12 +27,13 @@ from warehouse.archive.columns import (
     decode,
     find_columns,
     find_header,
+    find_unit,
     fold,
     shorten,
     split_header,
     split_line,
 )
-from warehouse.archive.faults import at_line
+from warehouse.archive.faults import say_at_line
 from warehouse.archive.files import MAX_BYTES, read_bytes
 from warehouse.archive.profile import SeasonProfile
 
@@ -46,10 +47,11 @@ MIN_SLOW_EMPTY: Final = 0.3
 _NUMBER: Final = r"^[+-]?([0-9]+([M][0-9]*)?|[M][0-9]+)([eE][+-]?[0-9]+)?$"
 """A number with the decimal mark M."""
 _CLOCK: Final = (
-    r"^(?:[0-9]{4}-[0-9]{2}-[0-9]{2}[T ])?([0-9]{1,2}):([0-5]?[0-9]):([0-5]?[0-9](?:[.,][0-9]*)?)"
-    r"\s*([AaPp])?[Mm]?$"
+    r"^(?:[0-9]{1,4}[-/.][0-9]{1,2}[-/.][0-9]{1,4}[T ])?"
+    r"([0-9]{1,2}):([0-5]?[0-9]):([0-5]?[0-9](?:[.,][0-9]*)?)"
+    r"\s*(?:([AaPp])\.?[Mm]\.?|Z|[+-][0-9]{2}:?[0-9]{2})?$"
 )
-"""A time of day, a date before it allowed, on a clock of 24 hours or with AM and PM."""
+"""A time of day on a clock of 24 hours or with AM and PM; a date before it is not read."""
 _LABVIEW_TEXT: Final = b"LabVIEW Measurement"
 
 
@@ -95,7 +97,7 @@ def read_table(path: Path, profile: SeasonProfile) -> SampleTable:
     """
     suffix = path.suffix.lower()
     if suffix == ".lvm":
-        raise _labview_text(path.name)
+        raise _labview_error(path.name)
     if suffix == ".parquet":
         table = _read_parquet(path, profile)
     elif suffix == ".tdms":
@@ -116,18 +118,18 @@ def check_header(path: Path, profile: SeasonProfile) -> None:
     """
     suffix = path.suffix.lower()
     if suffix == ".lvm":
-        raise _labview_text(path.name)
+        raise _labview_error(path.name)
     if suffix == ".parquet":
-        _parquet_header(path, profile)
+        _read_parquet_header(path, profile)
     elif suffix == ".tdms":
         _read_tdms(path, profile, header_only=True)
     else:
         start = read_bytes(path, HEAD_BYTES, start_only=True)
         _check_not_labview(start, path.name)
-        _header(decode(start[: start.rfind(b"\n")] or start), profile)
+        _find_header(decode(start[: start.rfind(b"\n")] or start), profile)
 
 
-def _labview_text(name: str) -> DefectiveInputError:
+def _labview_error(name: str) -> DefectiveInputError:
     text = say(
         "'{name}' is LabVIEW text (.lvm), which is not read. Convert it to a table, as "
         "docs/archive.md shows under 'LabVIEW text', or save it as .tdms."
@@ -137,7 +139,7 @@ def _labview_text(name: str) -> DefectiveInputError:
 
 def _check_not_labview(data: bytes, name: str) -> None:
     if data[:200].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(_LABVIEW_TEXT):
-        raise _labview_text(name)
+        raise _labview_error(name)
 
 
 def _find_known(
@@ -149,13 +151,13 @@ def _find_known(
     """
     ask_gps: tuple[str, ...] = ()
     wants_gps = any(column.key == "gps" for column in profile.columns)
-    possible = _possible_gps(names, profile) if wants_gps else []
+    possible = _find_possible_gps(names, profile) if wants_gps else []
     if possible:
         ask_gps = (profile.ask("columns.gps"),)
     try:
         found = find_columns(names, profile.columns, line, profile.ask, ask_gps)
     except DefectiveHeaderError as error:
-        raise _with_other_answers(error, profile) from error
+        raise _add_other_answers(error, profile) from error
     if possible and "gps" not in found:
         text = say(
             "There is no column 'gps', and {names} can be it. Name the one that is, or say that "
@@ -166,9 +168,7 @@ def _find_known(
     return found
 
 
-def _with_other_answers(
-    error: DefectiveHeaderError, profile: SeasonProfile
-) -> DefectiveHeaderError:
+def _add_other_answers(error: DefectiveHeaderError, profile: SeasonProfile) -> DefectiveHeaderError:
     """Return the error about a header with the answers that are not the name of a column."""
     said, ask = error.message, [*error.ask]
     if any(".run = " in line for line in ask):
@@ -184,7 +184,7 @@ def _with_other_answers(
     return DefectiveHeaderError(error.reason_code, said, error.line, ask)
 
 
-def _possible_gps(names: Sequence[str], profile: SeasonProfile) -> list[str]:
+def _find_possible_gps(names: Sequence[str], profile: SeasonProfile) -> list[str]:
     """Return the headers that are no known column and have the unit of a speed, or none."""
     known = {fold(name) for c in profile.columns for name in (c.header, *c.also)}
     if fold(next(c.header for c in profile.columns if c.key == "gps")) in {
@@ -195,7 +195,7 @@ def _possible_gps(names: Sequence[str], profile: SeasonProfile) -> list[str]:
     for header in names:
         name, unit = split_header(header)
         is_known = name in known or name in map(fold, profile.ignore)
-        is_speed = unit is None or unit.casefold() in UNITS["speed"]
+        is_speed = unit is None or find_unit("speed", unit) is not None
         if name and not is_known and is_speed:
             possible.append(header.strip())
     return possible
@@ -204,7 +204,7 @@ def _possible_gps(names: Sequence[str], profile: SeasonProfile) -> list[str]:
 # Text
 
 
-def _header(text: str, profile: SeasonProfile) -> Header:
+def _find_header(text: str, profile: SeasonProfile) -> Header:
     """Return the header in the first lines of a text, below titles if there are any."""
     lines = text.replace("\r", "").split("\n")
     place, delimiter = find_header(lines, profile.columns)
@@ -218,17 +218,17 @@ def _read_text(path: Path, profile: SeasonProfile) -> SampleTable:
     _check_not_labview(data, path.name)
     if not data.isascii() or b"\x00" in data or not data[:100].strip():
         data = decode(data).encode()
-    header = _header(data[:HEAD_BYTES].decode(errors="ignore"), profile)
+    header = _find_header(data[:HEAD_BYTES].decode(errors="ignore"), profile)
     above = header.line + profile.skip_below_header
     body = _cut_body(data, above)
     hold = frozenset(profile.hold)
     frame = _read_fast(body, header, hold) if body else None
     if frame is None:
-        frame = _read_cells(body, header)
+        frame = _read_cells(body, header, above + 1)
         _check_first_rows(frame, body, header, profile, above + 1)
     _check_slow_channels(frame, header, hold, profile, above + 1)
     frame = _hold_slow_channels(frame, profile.hold)
-    frame = _with_seconds(frame, header, profile, above + 1)
+    frame = _convert_times(frame, header, profile, above + 1)
     return SampleTable(frame, header.columns, header.line, above + 1)
 
 
@@ -278,15 +278,24 @@ def _read_fast(body: bytes, header: Header, hold: frozenset[str]) -> pl.DataFram
     return frame
 
 
-def _read_cells(body: bytes, header: Header) -> pl.DataFrame:
+def _read_cells(body: bytes, header: Header, first_line: int) -> pl.DataFrame:
     """Return the same columns, NaN where a cell is not a number, null where it is empty.
 
     A row that has not all its fields is NaN throughout. A column has one decimal mark: among commas
     1.012 can be a thousand and twelve.
+
+    Raises:
+        DefectiveInputError: no row has all its fields, or no cell of column `run` is a number.
     """
-    lines = pl.Series(body.decode().split("\n") if body else [], dtype=pl.String)
-    fields = lines.str.strip_suffix("\r").str.split(header.delimiter)
+    fields = _split_rows(body, header.delimiter)
     is_whole = fields.list.len() == len(header.names)
+    if len(fields) and not is_whole.any():
+        text = say(
+            "the row has {fields} fields where the header has {width}. Where commas stand both "
+            "between fields and before decimals, export the file again with ';' between fields."
+        )
+        said = say(text, fields=len(fields[0]), width=len(header.names))
+        raise DefectiveInputError("broken_row", say_at_line(first_line, said), first_line)
     found: dict[str, pl.Series] = {}
     for key, column in header.columns.items():
         cells = fields.list.get(column.index, null_on_oob=True).str.strip_chars(" \t")
@@ -301,9 +310,31 @@ def _read_cells(body: bytes, header: Header) -> pl.DataFrame:
         numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
         is_good = cells.str.contains(pattern) & is_whole & numbers.is_finite()
         is_empty = is_whole & (cells == "")
+        if key == "run" and not is_good.any():
+            text = say(
+                "column '{column}' holds '{cell}', and a number from 1 to {last} is expected: "
+                "replace it in the whole file."
+            )
+            said = say(text, column=column.header, cell=shorten(cells[0] or ""), last=MOST_RUNS)
+            raise DefectiveInputError("unknown_run", say_at_line(first_line, said), first_line)
         number = pl.when(is_good).then(numbers).when(~is_empty).then(float("nan"))
         found[key] = pl.select(number).to_series()
     return pl.DataFrame(found)
+
+
+def _split_rows(body: bytes, delimiter: str) -> pl.Series:
+    """Return the fields of each row; one whose quotation mark is not closed has one field."""
+    lines = pl.Series(body.decode().split("\n") if body else [], dtype=pl.String)
+    lines = lines.str.strip_suffix("\r")
+    if b'"' not in body:
+        return lines.str.split(delimiter)
+    rows = []
+    for line in lines:
+        try:
+            rows.append(split_line(line, delimiter))
+        except DefectiveInputError:
+            rows.append([line])
+    return pl.Series(rows, dtype=pl.List(pl.String))
 
 
 def _check_first_rows(
@@ -321,7 +352,7 @@ def _check_first_rows(
         "the lines below the header are no samples, up to line {last}. Say how many these are: "
         "skip_below_header under [[profile]] in archief.toml."
     )
-    said = at_line(first_line, say(text, last=first_line + leading - 1))
+    said = say_at_line(first_line, say(text, last=first_line + leading - 1))
     ask = (profile.ask("skip_below_header"),)
     raise DefectiveHeaderError("broken_row", said, first_line, ask)
 
@@ -349,7 +380,7 @@ def _check_slow_channels(
         said = say(text, column=column.header, percent=100 * is_empty.mean(), key=key)  # type: ignore[operator]
         line = first_line + int(is_empty.arg_max() or 0)
         raise DefectiveHeaderError(
-            "slow_channel", at_line(line, said), line, (profile.ask("hold", '["?"]'),)
+            "slow_channel", say_at_line(line, said), line, (profile.ask("hold", '["?"]'),)
         )
 
 
@@ -373,7 +404,7 @@ def _hold_slow_channels(frame: pl.DataFrame, hold: Sequence[str]) -> pl.DataFram
     return frame.with_columns(pl.selectors.float().fill_null(float("nan")))
 
 
-def _with_seconds(
+def _convert_times(
     frame: pl.DataFrame, header: Header, profile: SeasonProfile, first_line: int
 ) -> pl.DataFrame:
     """Return the table with its times in seconds; a row whose time cannot be read holds nothing.
@@ -402,31 +433,34 @@ def _with_seconds(
         line = first_line + int(is_unread.arg_max() or 0)
         text = say(
             "the time in column '{column}' cannot be read as [{unit}]. Say how it is written: "
-            "units.time under [[profile]] in archief.toml, one of {known}."
+            "units.time under [[profile]] in archief.toml, one of {known}. If it is none of these, "
+            'say that times do not count: absent = ["time"].'
         )
         known = ", ".join(UNITS["time"])
         said = say(text, column=column.header, unit=column.unit, known=known)
-        raise DefectiveHeaderError(
-            "bad_time", at_line(line, said), line, (profile.ask("units.time"),)
-        )
+        raise DefectiveHeaderError("bad_time", say_at_line(line, said), line, _ask_time(profile))
     others = pl.exclude("run", "time")
     return frame.with_columns(
         times.alias("time"), pl.when(is_unread).then(float("nan")).otherwise(others).name.keep()
     )
 
 
+def _ask_time(profile: SeasonProfile) -> tuple[str, ...]:
+    return profile.ask("units.time"), profile.ask("absent", '["?"]')
+
+
 # Parquet
 
 
 def _read_parquet(path: Path, profile: SeasonProfile) -> SampleTable:
-    header, rows = _parquet_header(path, profile)
+    header, rows = _read_parquet_header(path, profile)
     if max(rows * len(header.columns) * 8, path.stat().st_size) > MAX_BYTES:
-        raise _too_large(path)
+        raise _too_large_error(path)
     names = {header.names[column.index]: key for key, column in header.columns.items()}
     try:
         frame = pl.DataFrame(pl.from_arrow(pq.read_table(path, columns=[*names])))
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
-        raise _not_whole(path, "Parquet", error) from error
+        raise _damaged_error(path, "Parquet", error) from error
     numbers = {}
     for name, key in names.items():
         cells = frame[name]
@@ -441,27 +475,27 @@ def _read_parquet(path: Path, profile: SeasonProfile) -> SampleTable:
         numbers[key] = cells.cast(pl.Float64())
     frame = pl.DataFrame(numbers)
     _check_slow_channels(frame, header, frozenset(profile.hold), profile, 2)
-    frame = _with_seconds(_hold_slow_channels(frame, profile.hold), header, profile, 2)
+    frame = _convert_times(_hold_slow_channels(frame, profile.hold), header, profile, 2)
     return SampleTable(frame, header.columns)
 
 
-def _parquet_header(path: Path, profile: SeasonProfile) -> tuple[Header, int]:
+def _read_parquet_header(path: Path, profile: SeasonProfile) -> tuple[Header, int]:
     """Return the header of a Parquet file, and how many rows it has."""
     try:
         with pq.ParquetFile(path) as file:
             names, rows = list(file.schema_arrow.names), file.metadata.num_rows
     except (OSError, ValueError, pa.ArrowException) as error:
-        raise _not_whole(path, "Parquet", error) from error
+        raise _damaged_error(path, "Parquet", error) from error
     return Header(1, "", names, _find_known(names, profile)), rows
 
 
-def _not_whole(path: Path, kind: str, error: Exception) -> DefectiveInputError:
+def _damaged_error(path: Path, kind: str, error: Exception) -> DefectiveInputError:
     text = say("'{name}' is not a whole {kind} file: {error}.")
     said = say(text, name=path.name, kind=kind, error=f"{error}"[:200])
     return DefectiveInputError("unreadable_file", said)
 
 
-def _too_large(path: Path) -> DefectiveInputError:
+def _too_large_error(path: Path) -> DefectiveInputError:
     text = say("'{name}' holds more than {limit:.0f} MB, unpacked; a samples file is about 12 MB.")
     return DefectiveInputError("too_large", say(text, name=path.name, limit=MAX_BYTES / 1e6))
 
@@ -477,9 +511,9 @@ def _read_tdms(path: Path, profile: SeasonProfile, header_only: bool = False) ->
     """
     groups = _open_tdms(path, header_only)
     frames, columns = [], {}
-    for run, group in _runs_of_groups(groups, profile):
+    for run, group in _assign_groups(groups, profile):
         channels = group.channels()
-        names = [_channel_header(channel) for channel in channels]
+        names = [_build_channel_header(channel) for channel in channels]
         columns = _find_known(names, profile.without_run() if run else profile)
         if header_only:
             continue
@@ -505,7 +539,7 @@ def _open_tdms(path: Path, header_only: bool) -> list[Any]:
         text = say("'{name}' is read with an extra: pip install 'herijk[labview]'.")
         raise DefectiveInputError("unreadable_file", say(text, name=path.name))
     if path.stat().st_size > MAX_BYTES:
-        raise _too_large(path)
+        raise _too_large_error(path)
     from nptdms import TdmsFile  # type: ignore[import-untyped]  # noqa: PLC0415 - only for these
 
     try:
@@ -513,15 +547,15 @@ def _open_tdms(path: Path, header_only: bool) -> list[Any]:
         groups = [group for group in file.groups() if group.channels()]
         total = sum(len(channel) for group in groups for channel in group.channels())
     except Exception as error:  # a damaged file makes the library raise almost anything
-        raise _not_whole(path, "TDMS", error) from error
+        raise _damaged_error(path, "TDMS", error) from error
     if total * 8 > MAX_BYTES:
-        raise _too_large(path)
+        raise _too_large_error(path)
     if not groups:
-        raise _not_whole(path, "TDMS", ValueError("there is no channel in it"))
+        raise _damaged_error(path, "TDMS", ValueError("there is no channel in it"))
     return groups
 
 
-def _runs_of_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[int | None, Any]]:
+def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[int | None, Any]]:
     """Return the groups that are runs, each with its number; None for one with a channel `run`.
 
     Raises:
@@ -561,7 +595,7 @@ def _runs_of_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple
     return [(run, group) for run, group in enumerate(with_channels, start=1)]
 
 
-def _channel_header(channel: Any) -> str:
+def _build_channel_header(channel: Any) -> str:
     """Return the name of a channel with its unit in brackets, as a header has it."""
     unit = channel.properties.get("unit_string")
     return f"{channel.name} [{unit}]" if unit and "[" not in channel.name else str(channel.name)
@@ -581,7 +615,7 @@ def _read_group(
         try:
             values = np.asarray(channels[column.index][:], dtype=np.float64)
         except (TypeError, ValueError) as error:
-            raise _not_whole(path, "TDMS", error) from error
+            raise _damaged_error(path, "TDMS", error) from error
         if key == "gps" and not len(values):
             continue
         found[key] = values
@@ -612,4 +646,4 @@ def _read_group(
         found[key] = values[place]
     frame = pl.DataFrame(found)
     header = Header(1, "", [], columns)
-    return _with_seconds(frame, header, profile, 1)
+    return _convert_times(frame, header, profile, 1)

@@ -9,7 +9,7 @@ Form only: whether they can be true is the business of `plausibility`.
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -18,15 +18,15 @@ from numpy.typing import NDArray
 from pipeline.arrays import IntArray
 from pipeline.channels import MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
-from pipeline.messages import say
+from pipeline.messages import Sentence, say
 from pipeline.tables.row import Row
 from warehouse.archive.columns import DefectiveHeaderError
-from warehouse.archive.faults import DefectiveFileError, at_line
-from warehouse.archive.files import PARTS, path_inside
+from warehouse.archive.faults import DefectiveFileError, say_at_line
+from warehouse.archive.files import PARTS, resolve_inside
 from warehouse.archive.profile import SeasonProfile
 from warehouse.archive.sample_files import SampleTable, check_header, read_table
 
-__all__ = ["check_header", "read_samples", "read_tow_samples", "run_starts", "steps_of"]
+__all__ = ["check_header", "find_run_starts", "measure_steps", "read_samples", "read_tow_samples"]
 
 OUTPUT_NAMES: Final = {
     "run": "run",
@@ -57,7 +57,21 @@ Windows = dict[int, tuple[float, float]]
 """Begin and end of each run in a recording [s]."""
 
 
-def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> tuple[pl.DataFrame, Place]:
+class RunDefect(NamedTuple):
+    """What is wrong with the times of a run, and in which row of the samples."""
+
+    reason_code: str
+    message: Sentence
+    row: int
+
+
+RunDefects = dict[int, RunDefect]
+"""What costs a run, by the number of the run."""
+
+
+def read_tow_samples(
+    root: Path, tow: Row, profile: SeasonProfile
+) -> tuple[pl.DataFrame, Place, RunDefects]:
     """Read the samples of a tow, those of a second file behind those of the first.
 
     Args:
@@ -66,8 +80,8 @@ def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> tuple[pl.D
         profile: the profile of its season.
 
     Returns:
-        The frame, as `read_samples`; runs of the second file are numbered 21 and on. And where its
-        rows stand.
+        The frame, as `read_samples`; runs of the second file are numbered 21 and on. Where its
+        rows stand, and what costs a run.
 
     Raises:
         DefectiveFileError: the first fault, with the file it is in.
@@ -75,6 +89,7 @@ def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> tuple[pl.D
     files: list[str] = []
     frames: list[pl.DataFrame] = []
     lines: list[LineOf] = []
+    defects: RunDefects = {}
     windows = read_windows_text(tow.get("run_windows"))
     for name, numbers, offset in (
         ("samples_path", "samples_runs", 0),
@@ -87,9 +102,12 @@ def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> tuple[pl.D
         own = {run: window for run, window in own.items() if run <= MOST_RUNS}
         for path, run in zip(paths, run_of, strict=True):
             with _about_file(path):
-                samples, line_of = read_samples(
-                    path_inside(root, path), profile, tow["sample_rate_hz"], run, own
+                samples, line_of, found = read_samples(
+                    resolve_inside(root, path), profile, tow["sample_rate_hz"], run, own
                 )
+            before = sum(frame.height for frame in frames)
+            for number, defect in found.items():
+                defects[number + offset] = defect._replace(row=before + defect.row)
             files.append(path)
             frames.append(samples.with_columns(pl.col("run") + pl.lit(offset, pl.Int8)))
             lines.append(line_of)
@@ -100,7 +118,7 @@ def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> tuple[pl.D
         before = int(ends[part - 1]) if part else 0
         return files[part], lines[part](row - before if row >= 0 else row)
 
-    return pl.concat(frames), find_place
+    return pl.concat(frames), find_place, defects
 
 
 @contextmanager
@@ -135,7 +153,7 @@ def read_samples(
     sample_rate_hz: float | None = None,
     run: int | None = None,
     windows: Windows | None = None,
-) -> tuple[pl.DataFrame, LineOf]:
+) -> tuple[pl.DataFrame, LineOf, RunDefects]:
     """Read one samples file.
 
     Args:
@@ -147,9 +165,10 @@ def read_samples(
 
     Returns:
         A frame with the columns of `SAMPLE_SCHEMA`, one row per sample in the order of the file,
-        and the line of each of its rows. What was not measured is null throughout: a GPS that is
-        absent or empty, and what the profile declares absent. Wind angles are brought to [0, 360);
-        one outside -180..360 cannot be an angle and is left as it is, for `judge_samples` to find.
+        the line of each of its rows, and what costs a run. What was not measured is null
+        throughout: a GPS that is absent or empty, and what the profile declares absent. Wind angles
+        are brought to [0, 360); one outside -180..360 cannot be an angle and is left as it is, for
+        `judge_samples` to find.
 
     Raises:
         DefectiveInputError: the first fault that costs the whole file, with its line.
@@ -158,11 +177,11 @@ def read_samples(
     table = read_table(path, profile if has_run_column else profile.with_optional_run())
     row_of: IntArray | None = None
     if has_run_column:
-        raw = _with_every_run(table.frame)
+        raw = _fill_runs(table.frame)
     elif run is not None:
-        raw = _as_one_run(table, run)
+        raw = _assign_run(table, run)
     else:
-        raw, row_of = _cut_recording(table, profile.season, windows or {}, sample_rate_hz)
+        raw, row_of = _cut_recording(table, profile, windows or {}, sample_rate_hz)
 
     def find_line(row: int) -> int:
         if row < 0:
@@ -172,15 +191,16 @@ def read_samples(
     scaled = [key for key in raw.columns if key not in ("run", "time")]
     raw = raw.with_columns(table.columns[key].to_si(pl.col(key)) for key in scaled)
     _check_runs(raw["run"], find_line)
+    defects: RunDefects = {}
     if "time" in raw.columns and sample_rate_hz:
-        _check_times(raw, sample_rate_hz, find_line)
-    return _to_schema(raw, profile.wind_zero_deg), find_line
+        defects = _check_times(raw, sample_rate_hz, profile, find_line)
+    return _to_schema(raw, profile.wind_zero_deg), find_line, defects
 
 
 # Runs and times
 
 
-def _as_one_run(table: SampleTable, run: int) -> pl.DataFrame:
+def _assign_run(table: SampleTable, run: int) -> pl.DataFrame:
     """Return the samples of a file that is one run; a column `run` in it must say the same."""
     told = table.frame["run"].drop_nans().unique() if "run" in table.frame.columns else pl.Series()
     others = [number for number in told if number != run]
@@ -191,22 +211,24 @@ def _as_one_run(table: SampleTable, run: int) -> pl.DataFrame:
 
 
 def _cut_recording(
-    table: SampleTable, season: int, windows: Windows, rate_hz: float | None
+    table: SampleTable, profile: SeasonProfile, windows: Windows, rate_hz: float | None
 ) -> tuple[pl.DataFrame, IntArray]:
     """Return the runs of one recording, and the row of the file that each of their rows is.
 
     A window counts from the first sample, by the time column where there is one.
+
+    Raises:
+        DefectiveInputError: no run is given, none is in the recording, or its times jump back.
     """
     if not windows:
         text = say(
             "Nobody says where the runs are in this recording: give begin and end of each in "
             "sleeplijsten/vensters_{season}.csv."
         )
-        raise DefectiveInputError("missing_run", say(text, season=season))
+        raise DefectiveInputError("missing_run", say(text, season=profile.season))
     rows = np.arange(table.frame.height)
     if "time" in table.frame.columns:
-        times = table.frame["time"].to_numpy()
-        seconds = np.nan_to_num(times - np.nanmin(times), nan=-1.0)
+        seconds = _count_seconds(table, profile)
     else:
         seconds = rows / (rate_hz or 1.0)
     number = np.zeros(len(rows))
@@ -222,7 +244,28 @@ def _cut_recording(
     return frame, kept
 
 
-def _with_every_run(raw: pl.DataFrame) -> pl.DataFrame:
+def _count_seconds(table: SampleTable, profile: SeasonProfile) -> NDArray[np.float64]:
+    """Return the time of each row of a recording since the first; -1 where it cannot be read."""
+    times = table.frame["time"].to_numpy()
+    read = np.flatnonzero(np.isfinite(times))
+    steps = np.diff(times[read])
+    steps = np.where(steps < -DAY_S / 2, steps + DAY_S, steps)  # a clock begins again at midnight
+    if (steps < 0).any():
+        turn = int(np.argmax(steps < 0))
+        text = say(
+            "the times of the recording jump back by {seconds:.6g} s, so that begin and end of the "
+            "runs cannot be found. If its samples follow each other without a gap, say that times "
+            'do not count: absent = ["time"] under [[profile]] in archief.toml.'
+        )
+        line = table.first_line + int(read[turn + 1])
+        said = say_at_line(line, say(text, seconds=-steps[turn]))
+        raise DefectiveHeaderError("bad_time", said, line, (profile.ask("absent", '["?"]'),))
+    seconds = np.full(len(times), -1.0)
+    seconds[read] = np.concatenate(([0.0], np.cumsum(steps)))
+    return seconds
+
+
+def _fill_runs(raw: pl.DataFrame) -> pl.DataFrame:
     """Return the samples with every row in a run; one whose run cannot be read holds no numbers."""
     unread = raw["run"].is_nan()
     if not unread.any():
@@ -236,56 +279,75 @@ def _with_every_run(raw: pl.DataFrame) -> pl.DataFrame:
 
 def _check_runs(run: pl.Series, line_of: LineOf) -> None:
     """Raise where a run has a number that does not exist, or is not one piece."""
-    starts = run_starts(run.to_numpy())
+    starts = find_run_starts(run.to_numpy())
     for row in starts.tolist():
         if run[row] not in range(1, MOST_RUNS + 1):
             text = say("run {run:g} does not exist; runs are numbered 1 to {last}.")
-            raise _at(line_of(row), "unknown_run", say(text, run=run[row], last=MOST_RUNS))
+            raise _error_at(line_of(row), "unknown_run", say(text, run=run[row], last=MOST_RUNS))
     again = starts[(~run.gather(starts).is_first_distinct()).to_numpy()]
     if len(again):
         row = int(again[0])
         text = say("run {run:g} begins again; its rows must be together.")
-        raise _at(line_of(row), "split_run", say(text, run=run[row]))
+        raise _error_at(line_of(row), "split_run", say(text, run=run[row]))
 
 
-def _at(line: int, code: str, what: str) -> DefectiveInputError:
-    return DefectiveInputError(code, at_line(line, what), line)
+def _error_at(line: int, code: str, what: str) -> DefectiveInputError:
+    return DefectiveInputError(code, say_at_line(line, what), line)
 
 
-def run_starts(run: NDArray[np.generic]) -> NDArray[np.intp]:
+def find_run_starts(run: NDArray[np.generic]) -> NDArray[np.intp]:
     """Return the row at which each run begins."""
     return np.flatnonzero(np.concatenate(([True], run[1:] != run[:-1])))
 
 
-def _check_times(raw: pl.DataFrame, rate_hz: float, line_of: LineOf) -> None:
-    """Raise where the times of a run jump back, or rise at another rate than is declared."""
+def _check_times(
+    raw: pl.DataFrame, rate_hz: float, profile: SeasonProfile, line_of: LineOf
+) -> RunDefects:
+    """Return the runs whose times jump back, or rise at another rate than is declared.
+
+    Raises:
+        DefectiveHeaderError: `bad_time`, where the times of all runs rise at another rate.
+    """
     step_s = pl.col("time").diff()
     # A clock begins again at midnight.
     step_s = pl.when(step_s < -DAY_S / 2).then(step_s + DAY_S).otherwise(step_s).fill_nan(None)
     frame = raw.with_row_index("row").with_columns(step=step_s.over("run"))
-    runs = frame.group_by("run", maintain_order=True)
     step = pl.col("step")
-    found = runs.agg(
+    runs = frame.group_by("run", maintain_order=True).agg(
         pl.col("row").first(),
         turn=pl.col("row").filter(step < 0).first(),
+        back_s=-step.filter(step < 0).first(),
         # Times may be rounded, so that some are equal; and seconds may be missing between two.
-        usual=1 / step.median(),
-        average=1 / step.filter(step < MAX_GAP_S).mean(),
+        usual_hz=1 / step.median(),
+        average_hz=1 / step.filter(step < MAX_GAP_S).mean(),
     )
-    for run, row, turn, *rates in found.rows():
-        if turn is not None:
-            what = say("the times of run {run:g} jump back.", run=run)
-            raise _at(line_of(turn), "bad_time", what)
-        known = [rate for rate in rates if rate]
-        hz = known[-1] if known else 0.0
-        if not any(abs(rate / rate_hz - 1) <= RATE_TOLERANCE for rate in known):
-            text = say(
-                "run {run:g} has {observed:.6g} samples per second by its times; by the list or "
-                "the profile it is {rate:.6g}. Correct 'meetfrequentie' in the tow list, or "
-                "sample_rate_hz under [[profile]]."
-            )
-            what = say(text, run=run, observed=hz, rate=rate_hz)
-            raise _at(line_of(row), "bad_time", what)
+    defects: RunDefects = {}
+    for found in runs.iter_rows(named=True):
+        number = int(found["run"])
+        known = [rate for rate in (found["usual_hz"], found["average_hz"]) if rate]
+        observed_hz = known[-1] if known else 0.0
+        if found["turn"] is not None:
+            said = say("its times jump back by {seconds:.6g} s", seconds=found["back_s"])
+            defects[number] = RunDefect("bad_time", said, found["turn"])
+        elif not any(abs(rate / rate_hz - 1) <= RATE_TOLERANCE for rate in known):
+            text = say("it has {observed:.6g} samples per second by its times, and not {rate:.6g}")
+            said = say(text, observed=observed_hz, rate=rate_hz)
+            defects[number] = RunDefect("bad_time", said, found["row"])
+    is_other_rate = runs["turn"].is_null().all()
+    if is_other_rate and len(defects) == runs.height:
+        text = say(
+            "run {run:g} has {observed:.6g} samples per second by its times; by the list or the "
+            "profile it is {rate:.6g}. Correct 'meetfrequentie' in the tow list or, where that is "
+            "empty, sample_rate_hz under [[profile]]; or units.time, where the times have another "
+            "unit."
+        )
+        first = runs.row(0, named=True)
+        rate = [hz for hz in (first["usual_hz"], first["average_hz"]) if hz]
+        said = say(text, run=first["run"], observed=rate[-1] if rate else 0.0, rate=rate_hz)
+        line = line_of(first["row"])
+        ask = (profile.ask("sample_rate_hz"), profile.ask("units.time"))
+        raise DefectiveHeaderError("bad_time", say_at_line(line, said), line, ask)
+    return defects
 
 
 def _to_schema(raw: pl.DataFrame, wind_zero_deg: float) -> pl.DataFrame:
@@ -310,7 +372,7 @@ def _to_schema(raw: pl.DataFrame, wind_zero_deg: float) -> pl.DataFrame:
     return samples.with_columns(pl.when(floats.is_infinite()).then(float("nan")).otherwise(floats))
 
 
-def steps_of(samples: pl.DataFrame) -> dict[str, float | None]:
+def measure_steps(samples: pl.DataFrame) -> dict[str, float | None]:
     """Return in which steps GPS and force are written: the least difference between two readings.
 
     Coarse steps do no harm where readings are rounded, as the unrest of a run is larger. Nothing in
@@ -320,10 +382,10 @@ def steps_of(samples: pl.DataFrame) -> dict[str, float | None]:
         `gps_step_m_s` and `force_step_n`; None where a channel has too few values to tell.
     """
     names = {"gps_step_m_s": "gps_m_s", "force_step_n": "force_n"}
-    return {step: _least_step(samples[name]) for step, name in names.items()}
+    return {step: _find_least_step(samples[name]) for step, name in names.items()}
 
 
-def _least_step(channel: pl.Series) -> float | None:
+def _find_least_step(channel: pl.Series) -> float | None:
     values = channel.drop_nulls().to_numpy()[:: max(len(channel) // ENOUGH_FOR_STEPS, 1)]
     distinct = np.unique(values[np.isfinite(values)].astype(np.float64))
     return float(np.diff(distinct).min()) if len(distinct) >= FEWEST_FOR_STEPS else None

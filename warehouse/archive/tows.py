@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import polars as pl
 
-from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
+from pipeline.channels import FEWEST_RUNS, MOST_RUNS, SECOND_FILE_OFFSET
 from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
@@ -21,11 +21,11 @@ from warehouse.archive.files import (
     ArchiveFile,
     Hashes,
     combine_hashes,
-    match_key,
+    fold_file_name,
 )
 from warehouse.archive.kinds import TOWS
 from warehouse.archive.list_rules import Boats, name_boats
-from warehouse.archive.profile import Plan, Profiles, SeasonProfile
+from warehouse.archive.profile import RUN_PLACE, Plan, Profiles, SeasonProfile
 from warehouse.archive.rows import Rows, cell
 
 TWICE: Final = 2.0
@@ -45,11 +45,11 @@ def check_tows(
     burned: pl.DataFrame,
     recordings: Mapping[str, str],
 ) -> dict[str, frozenset[int]]:
-    """Keeps the rows of tows that can be used, with all that is known of them.
+    """Keep the rows of tows that can be used, with all that is known of them.
 
     Args:
         rows: of all tow lists.
-        samples: as `samples_by_name` gives them.
+        samples: as `index_samples` gives them.
         boats: the boat lists.
         profiles: `archief.toml`.
         checks: the load cell by season and day, as `read_force_checks` gives it.
@@ -67,30 +67,40 @@ def check_tows(
     rows.drop_repeated(["tow_id"], text, "duplicate_tow_id")
     rows.drop_other_years("tow_date", "date_outside_season")
     name_boats(rows, boats)
-    selections = _selections(rows, profiles)
-    samples = _with_run_files(rows, samples, profiles)
+    selections = _read_selections(rows, profiles)
+    samples = _add_run_files(rows, samples, profiles)
     for key in ("file", "second_file"):
-        _with_samples(rows, key, samples)
+        _add_samples(rows, key, samples)
     _check_own_samples(rows)
-    _with_boat(rows, boats)
-    _with_season(rows, profiles)
-    _with_instruments(rows, profiles, checks, burned)
-    rows.frame = rows.frame.with_columns(
-        run_windows=pl.col("tow_id").replace_strict(
-            recordings, default=None, return_dtype=pl.String
-        ),
-        list_path="path",
-        list_line="line",
-    )
+    _add_boat(rows, boats)
+    _add_season(rows, profiles)
+    _add_instruments(rows, profiles, checks, burned)
+    _add_windows(rows, recordings, profiles)
+    rows.frame = rows.frame.with_columns(list_path="path", list_line="line")
     return selections
 
 
-def _selections(rows: Rows, profiles: Profiles) -> dict[str, frozenset[int]]:
-    """The runs to use of every tow."""
+def _add_windows(rows: Rows, recordings: Mapping[str, str], profiles: Profiles) -> None:
+    """Add begin and end of the runs in a recording, or set rows aside that have none."""
+    windows = pl.col("tow_id").replace_strict(recordings, default=None, return_dtype=pl.String)
+    rows.frame = rows.frame.with_columns(run_windows=windows)
+    is_recording = _look_up(
+        rows, "season", lambda season: profiles.for_season(season).runs == "windows", pl.Boolean()
+    )
+    text = say(
+        "tow {tow} is one recording, and nobody says where its runs are: give begin and end of "
+        "each in sleeplijsten/vensters_{season}.csv, with columns sleep_id; run; van [s]; tot [s]."
+    )
+    has_none = is_recording & pl.col("run_windows").is_null()
+    rows.drop(has_none, text, "missing_run", tow=pl.col("tow_id"), season=pl.col("season"))
+
+
+def _read_selections(rows: Rows, profiles: Profiles) -> dict[str, frozenset[int]]:
+    """Return the runs to use of every tow."""
     selections = {}
     facts = rows.frame.select("tow_id", "season", "use_runs", "second_file")
     for tow_id, season, written, second in facts.iter_rows():
-        plan = profiles.plan_of(tow_id, season)
+        plan = profiles.find_plan(tow_id, season)
         selections[tow_id] = read_selection(written or "", second is not None, plan)
     unread = [tow_id for tow_id, runs in selections.items() if not runs]
     text = say(
@@ -102,7 +112,7 @@ def _selections(rows: Rows, profiles: Profiles) -> dict[str, frozenset[int]]:
 
 
 def read_selection(written: str, has_second: bool, plan: Plan) -> frozenset[int]:
-    """The runs to use, none where that cannot be read; all of the first file for an empty cell.
+    """Return the runs to use: none where the cell cannot be read, all of the first file if empty.
 
     Args:
         written: what the list says: `1,2,3`, `1-6`, `1,2,3,b4,b5,b6`.
@@ -125,14 +135,14 @@ def read_selection(written: str, has_second: bool, plan: Plan) -> frozenset[int]
     return frozenset(run for run in runs if run) if is_good else frozenset()
 
 
-def samples_by_name(files: Iterable[ArchiveFile], hashes: Hashes) -> pl.DataFrame:
-    """The samples files by `season` and the `name` that they answer to.
+def index_samples(files: Iterable[ArchiveFile], hashes: Hashes) -> pl.DataFrame:
+    """Return the samples files by `season` and the `name` that they answer to.
 
     Of several with one name, their `number` and the first: whether it is `inside`, its `path`, and
     its `sha256`, null where it cannot be read.
     """
     found = [
-        (file.season, match_key(file.full_path.name), file.inside, file.path,
+        (file.season, fold_file_name(file.full_path.name), file.inside, file.path,
          hashes.get(file.path, (None, 0))[0])
         for file in files if file.kind == SAMPLES
     ]  # fmt: skip
@@ -144,38 +154,42 @@ def samples_by_name(files: Iterable[ArchiveFile], hashes: Hashes) -> pl.DataFram
     )
 
 
-def run_file_names(cell: str, profile: SeasonProfile, plan: Plan) -> dict[int, str]:
+def name_run_files(cell: str, profile: SeasonProfile, plan: Plan) -> dict[int, str]:
     """Return the names of the files of each run of a tow; none where all runs are in one file.
 
     The cell of the tow list has `{run}` for the number of the run, or else the profile says that
     there is a file for each run, and how these are named.
     """
-    if "{run}" in cell:
+    if re.search(RUN_PLACE, cell):
         pattern = cell
     elif profile.runs == "file":
-        pattern = profile.run_files.replace("{meetfile}", match_key(cell))
+        pattern = profile.run_files.replace("{meetfile}", fold_file_name(cell))
     else:
         return {}
-    return {run: match_key(pattern.replace("{run}", str(run))) for run in plan.runs}
+    names = {}
+    for run in plan.runs:
+        name = re.sub(RUN_PLACE, lambda found: str(run).zfill(int(found[1] or 1)), pattern)  # noqa: B023
+        names[run] = fold_file_name(name)
+    return names
 
 
-def _with_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl.DataFrame:
+def _add_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl.DataFrame:
     """Return the samples with an entry for each tow that has a file for each run."""
     known = {(row["season"], row["name"]): row for row in samples.iter_rows(named=True)}
     together: dict[tuple[int, str], dict[str, Any]] = {}
     facts = rows.frame.select("tow_id", "season", "file", "second_file")
     for tow_id, season, *cells in facts.iter_rows():
-        plan, profile = profiles.plan_of(tow_id, season), profiles.for_season(season)
+        plan, profile = profiles.find_plan(tow_id, season), profiles.for_season(season)
         for cell_text in filter(None, cells):
-            names = run_file_names(cell_text, profile, plan)
+            names = name_run_files(cell_text, profile, plan)
             parts = {run: known[season, name] for run, name in names.items()
                      if (season, name) in known}  # fmt: skip
             if not parts:
                 continue
             hashes = [part["sha256"] for part in parts.values()]
-            together[season, match_key(cell_text)] = {
+            together[season, fold_file_name(cell_text)] = {
                 "season": season,
-                "name": match_key(cell_text),
+                "name": fold_file_name(cell_text),
                 "inside": all(part["inside"] for part in parts.values()),
                 "path": PARTS.join(part["path"] for part in parts.values()),
                 "sha256": None if None in hashes else combine_hashes(hashes),
@@ -186,21 +200,34 @@ def _with_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl
     return pl.DataFrame([*entries.values()], samples.schema, orient="row")
 
 
-def _with_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
-    """Adds path and hash of the samples that a cell names, or sets the row aside."""
+def _add_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
+    """Add path and hash of the samples that a cell names, or set the row aside."""
     prefix = {"file": "samples", "second_file": "second"}[key]
     text = say("'{name}' is a path; only the name of a file in meetdata_{season}/ is given here.")
     cell_of = pl.col(key)
     facts: dict[str, Any] = {"name": pl.col(key), "season": pl.col("season")}
     rows.drop(cell_of.str.contains(r"[/\\]|^\.\."), text, "path_outside_archive", **facts)
     named = samples.rename({name: f"{prefix}_{name}" for name in ("path", "sha256", "runs")})
-    name = cell_of.map_elements(match_key, pl.String)
+    name = cell_of.map_elements(fold_file_name, pl.String)
     rows.frame = rows.frame.with_columns(name=name).join(
         named, on=["season", "name"], how="left", maintain_order="left"
     )
     path, is_named = pl.col(f"{prefix}_path"), cell_of.is_not_null()
+    is_missing = is_named & path.is_null()
+    parts = _count_parts(rows.frame.filter(is_missing).select("season", "name"), samples)
+    rows.frame = rows.frame.join(parts, on=["season", "name"], how="left", maintain_order="left")
+    text = say(
+        "there is no file '{name}' in meetdata_{season}/, but {parts} with that in their name, as "
+        "'{part}'. If each run has a file, say so and how these are named, under [[profile]] in "
+        'archief.toml: runs = "file", run_files = "{{meetfile}} run {{run}}".'
+    )
+    heading = '[[profile]]\nseasons = "{season}"\n'
+    ask = (heading + 'runs = "?"', heading + 'run_files = "?"')
+    has_parts = is_missing & pl.col("parts").is_not_null()
+    several: dict[str, Any] = {"parts": pl.col("parts"), "part": pl.col("part")}
+    rows.drop(has_parts, text, "samples_missing", ask=ask, **facts, **several)
     text = say("there is no file '{name}' in meetdata_{season}/.")
-    rows.drop(is_named & path.is_null(), text, "samples_missing", **facts)
+    rows.drop(is_missing, text, "samples_missing", **facts)
     text = say("'{name}' can be any of {number} files in meetdata_{season}/.")
     number = pl.col("number")
     rows.drop(number > 1, text, "ambiguous_file", **facts, number=number)
@@ -208,11 +235,23 @@ def _with_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
     rows.drop(~pl.col("inside"), text, "path_outside_archive", path=path)
     is_unread = path.is_not_null() & pl.col(f"{prefix}_sha256").is_null()
     rows.drop(is_unread, say("'{path}' cannot be read."), "unreadable_file", path=path)
-    rows.frame = rows.frame.drop("name", "inside", "number")
+    rows.frame = rows.frame.drop("name", "inside", "number", "parts", "part")
+
+
+def _count_parts(missing: pl.DataFrame, samples: pl.DataFrame) -> pl.DataFrame:
+    """Return how many files have a missing name within theirs, and the first of them."""
+    found = []
+    for season, name in missing.unique(maintain_order=True).iter_rows():
+        names = samples.filter(season=season)["name"]
+        parts = names.filter(names.str.contains(name, literal=True)).sort()
+        if len(parts) >= FEWEST_RUNS:
+            found.append((season, name, len(parts), parts[0]))
+    schema = {"season": pl.Int32, "name": pl.String, "parts": pl.Int64, "part": pl.String}
+    return pl.DataFrame(found, schema, orient="row")
 
 
 def _check_own_samples(rows: Rows) -> None:
-    """Sets aside rows whose samples are not their own, by content.
+    """Set aside rows whose samples are not their own, by content.
 
     A first file may be the second file of another tow of the same boat: that is how two tows are
     combined.
@@ -235,8 +274,8 @@ def _check_own_samples(rows: Rows) -> None:
     rows.drop(~pl.col(first).is_first_distinct(), text, "duplicate_tow", **facts)
 
 
-def _with_boat(rows: Rows, boats: Boats) -> None:
-    """Adds the sizes of the boat where those of that day were not written down."""
+def _add_boat(rows: Rows, boats: Boats) -> None:
+    """Add the sizes of the boat where those of that day were not written down."""
     text = say("boat {boat} cannot be used, see {path}: {why}")
     for boat, fault in boats.lost.items():
         facts: dict[str, Any] = {"boat": boat, "path": fault.path, "why": fault.message}
@@ -264,23 +303,26 @@ def _with_boat(rows: Rows, boats: Boats) -> None:
             rows.empty(key, is_apart, text, **facts)
 
 
-def _with_season(rows: Rows, profiles: Profiles) -> None:
-    """Adds what `archief.toml` says of season and day, and sets aside the days that it names."""
-    reason = _by(rows, "tow_date", profiles.reason_set_aside, pl.String())
+def _add_season(rows: Rows, profiles: Profiles) -> None:
+    """Add what `archief.toml` says of season and day, and set aside the days that it names."""
+    reason = _look_up(rows, "tow_date", profiles.find_reason_set_aside, pl.String())
     text = say("{day} is set aside in archief.toml: {reason}.")
     facts: dict[str, Any] = {"day": pl.col("tow_date"), "reason": reason}
     rows.drop(reason.is_not_null(), text, "day_set_aside", **facts)
 
     def of_season(read: Callable[[SeasonProfile], object], dtype: pl.DataType) -> pl.Expr:
-        return _by(rows, "season", lambda season: read(profiles.for_season(season)), dtype)
+        return _look_up(rows, "season", lambda season: read(profiles.for_season(season)), dtype)
+
+    def count_changes(log: str) -> pl.Expr:
+        return _look_up(rows, "tow_date", partial(profiles.count_log_changes, log), pl.Int32())
 
     rate = of_season(lambda profile: profile.sample_rate_hz, pl.Float64())
     rows.frame = rows.frame.with_columns(
         wind_measured=of_season(lambda profile: "wind" not in profile.absent, pl.Boolean()),
         log2_measured=of_season(lambda profile: "log2" not in profile.absent, pl.Boolean()),
         sample_rate_hz=pl.coalesce("sample_rate_hz", rate),
-        log1_part=_by(rows, "tow_date", partial(profiles.part_of_log, "log1"), pl.Int32()),
-        log2_part=_by(rows, "tow_date", partial(profiles.part_of_log, "log2"), pl.Int32()),
+        log1_part=count_changes("log1"),
+        log2_part=count_changes("log2"),
     )
     for key in _SIZES:
         is_needed = pl.col("wind_measured") if key == "bow_height_m" else pl.lit(value=True)
@@ -288,18 +330,18 @@ def _with_season(rows: Rows, profiles: Profiles) -> None:
         rows.drop(pl.col(key).is_null() & is_needed, text, names=TOWS.header(key))
 
 
-def _by(rows: Rows, key: str, read: Callable[[Any], object], dtype: pl.DataType) -> pl.Expr:
-    """What follows from the value of a column, read once for each."""
+def _look_up(rows: Rows, key: str, read: Callable[[Any], object], dtype: pl.DataType) -> pl.Expr:
+    """Return what follows from the value of a column, read once for each value."""
     found = {value: read(value) for value in rows.frame[key].unique()}
     if not found:
         return pl.lit(None, dtype)
     return pl.col(key).replace_strict(found, return_dtype=dtype)
 
 
-def _with_instruments(
+def _add_instruments(
     rows: Rows, profiles: Profiles, checks: pl.DataFrame, burned: pl.DataFrame
 ) -> None:
-    """Adds what is known of the load cell and the warning lamps.
+    """Add what is known of the load cell and the warning lamps.
 
     Of the load cell the last day counts on which it was checked before the tow, else the first
     after it in the season.
@@ -315,19 +357,19 @@ def _with_instruments(
     for name in ("load_cell_ratio", "load_cell_sd"):
         frame = frame.with_columns(before[name].fill_null(after[name]))
     frame = frame.sort("_row").join(burned, on="tow_id", how="left", maintain_order="left")
-    plans = (profiles.plan_of(*tow) for tow in frame.select("tow_id", "season").rows())
+    plans = (profiles.find_plan(*tow) for tow in frame.select("tow_id", "season").rows())
     planned_s = pl.Series([plan.seconds for plan in plans], dtype=pl.Float64)
     rows.frame = frame.with_columns(lamp_ratio=pl.col("burned_s") / planned_s)
 
 
-def runs_of(
+def plan_runs(
     tows: pl.DataFrame, selections: Mapping[str, frozenset[int]], profiles: Profiles
 ) -> dy.DataFrame[ListedRuns]:
-    """The runs that the tows are meant to have; those of a second file are 21 and on."""
+    """Return the runs that the tows are meant to have; those of a second file are 21 and on."""
     runs = []
     facts = tows.select("tow_id", "season", pl.col("second_path").is_not_null())
     for tow_id, season, has_second in facts.iter_rows():
-        plan = profiles.plan_of(tow_id, season)
+        plan = profiles.find_plan(tow_id, season)
         files = [(0, plan.directions)]
         if has_second:
             files.append((SECOND_FILE_OFFSET, plan.second_directions or plan.directions))

@@ -1,6 +1,6 @@
 """Reading a workbook: its visible sheets as rows of text, in which a cell says what a person sees.
 
-Every workbook is loaded twice, for its values and for its formulas: only so is it known that a
+Every workbook is loaded twice, for its formulas and for its values: only so is it known that a
 formula was never calculated. Both loads are bounded by what the directory of the zip file says.
 """
 
@@ -24,8 +24,16 @@ MAX_ROWS: Final = 20_000
 MAX_COLUMNS: Final = 300
 MAX_CELLS: Final = 1_000_000
 """Cells of a sheet, empty ones between filled ones included."""
+MAX_PASSED_CELLS: Final = 20_000_000
+"""Empty cells that are passed over in a search of the filled ones."""
+MERGED: Final = "(samengevoegd)"
+"""Stands in every cell of merged ones but the first, which alone holds their value."""
+TYPED_AS_TEXT: Final = "'"
+"""Stands before a number that is typed as text and that can be a thousand or little more than one,
+as spreadsheets show it."""
 _COMPOUND_FILE: Final = bytes.fromhex("d0cf11e0a1b11ae1")
 """How a workbook of Excel 97 to 2003 begins, or a later one with a password."""
+_DOUBLE_NUMBER: Final = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
 _FORMAT_TOKEN: Final = re.compile(r'"([^"]*)"|\\(.)|(\[[^\]]*\]|_.|\*.)|([0#?.,%]+)|(.)')
 """A part of a number format: quoted text, one letter, what is not shown, or digits."""
 
@@ -38,11 +46,13 @@ class Sheet:
         name: its title.
         rows: the visible rows, each with its line (from 1) and its cells.
         hidden_lines: the lines of hidden rows that hold something.
+        hidden_columns: the places of hidden columns, from 0.
     """
 
     name: str
     rows: list[tuple[int, list[str]]]
     hidden_lines: list[int]
+    hidden_columns: frozenset[int]
 
 
 @dataclass(frozen=True)
@@ -51,6 +61,21 @@ class Workbook:
 
     sheets: list[Sheet]
     hidden: list[Sheet]
+
+
+@dataclass(frozen=True)
+class _Written:
+    """What is written in a sheet.
+
+    Attributes:
+        rows: the last row in which a cell holds something; cells that are only coloured do not.
+        columns: the last such column.
+        formulas: the formulas by row and column.
+    """
+
+    rows: int
+    columns: int
+    formulas: dict[tuple[int, int], str]
 
 
 def read_workbook(data: bytes) -> Workbook:
@@ -65,19 +90,48 @@ def read_workbook(data: bytes) -> Workbook:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of drawings and rules that a list has no use for
-            values, formulas = (
-                openpyxl.load_workbook(io.BytesIO(data), data_only=data_only, keep_links=False)
-                for data_only in (True, False)
-            )
+            formulas = openpyxl.load_workbook(io.BytesIO(data), read_only=True, keep_links=False)
+            written = {sheet.title: _find_written(sheet) for sheet in formulas.worksheets}
+            values = openpyxl.load_workbook(io.BytesIO(data), data_only=True, keep_links=False)
+    except DefectiveInputError:
+        raise
     except Exception as error:  # a damaged workbook makes the library raise almost anything
         text = say("The file is not a workbook that can be read: {error}. Save it again as .xlsx.")
         said = say(text, error=f"{type(error).__name__}: {error}"[:200])
         raise DefectiveInputError("unreadable_file", said) from error
-    sheets: dict[bool, list[Sheet]] = {True: [], False: []}
+    visible: list[Sheet] = []
+    hidden: list[Sheet] = []
     for sheet in values.worksheets:
         is_visible = sheet.sheet_state == "visible"
-        sheets[is_visible].append(_read_sheet(sheet, formulas[sheet.title]))
-    return Workbook(sheets[True], sheets[False])
+        (visible if is_visible else hidden).append(_read_sheet(sheet, written[sheet.title]))
+    return Workbook(visible, hidden)
+
+
+def _find_written(sheet: Any) -> _Written:
+    """Return how far the filled cells of a sheet reach, and its formulas.
+
+    Raises:
+        DefectiveInputError: `too_large`.
+    """
+    sheet.reset_dimensions()  # what the file says of them can be wrong
+    last_row = last_column = passed = 0
+    formulas = {}
+    for line, values in enumerate(sheet.iter_rows(values_only=True), start=1):
+        passed += len(values)
+        if passed > MAX_PASSED_CELLS:
+            raise DefectiveInputError("too_large", _reaches_too_far(sheet.title))
+        for column, value in enumerate(values, start=1):
+            if value is None:
+                continue
+            last_row, last_column = line, max(last_column, column)
+            if line > MAX_ROWS or column > MAX_COLUMNS:
+                raise DefectiveInputError("too_large", _reaches_too_far(sheet.title))
+            formula = getattr(value, "text", value)  # of several cells together
+            if isinstance(formula, str) and formula.startswith("="):
+                formulas[line, column] = formula
+    if last_row * last_column > MAX_CELLS:
+        raise DefectiveInputError("too_large", _reaches_too_far(sheet.title))
+    return _Written(last_row, last_column, formulas)
 
 
 def _check_size(data: bytes) -> None:
@@ -107,24 +161,43 @@ def _check_size(data: bytes) -> None:
         raise DefectiveInputError("too_large", said)
 
 
-def _read_sheet(values: Any, formulas: Any) -> Sheet:
-    rows, columns = values.max_row or 0, values.max_column or 0
-    if rows > MAX_ROWS or columns > MAX_COLUMNS or rows * columns > MAX_CELLS:
-        raise DefectiveInputError("too_large", _reaches_too_far(values.title))
+def _read_sheet(sheet: Any, written: _Written) -> Sheet:
+    """Return the rows of a sheet as text."""
+    merged = _find_merged(sheet, written)
     visible, hidden_lines = [], []
-    for line in range(1, rows + 1):
-        cells = [
-            _cell_text(values.cell(line, column), formulas.cell(line, column))
-            for column in range(1, columns + 1)
-        ]
+    for line in range(1, written.rows + 1):
+        cells = []
+        for column in range(1, written.columns + 1):
+            place = line, column
+            text = _cell_text(sheet.cell(*place), written.formulas.get(place))
+            cells.append(MERGED if place in merged else text)
         if not any(cells):
             continue
-        shape = values.row_dimensions[line]
+        shape = sheet.row_dimensions[line]
         if shape.hidden or shape.height == 0:
             hidden_lines.append(line)
         else:
             visible.append((line, cells))
-    return Sheet(values.title, visible, hidden_lines)
+    hidden_columns = {
+        column - 1
+        for shape in sheet.column_dimensions.values()
+        if shape.hidden or shape.width == 0
+        for column in range(shape.min or 1, min(shape.max or 1, written.columns) + 1)
+    }
+    return Sheet(sheet.title, visible, hidden_lines, frozenset(hidden_columns))
+
+
+def _find_merged(sheet: Any, written: _Written) -> set[tuple[int, int]]:
+    """Return row and column of merged cells that show the value of the first of them."""
+    merged = set()
+    for area in sheet.merged_cells.ranges:
+        if sheet.cell(area.min_row, area.min_col).value is None:
+            continue
+        for line in range(area.min_row, min(area.max_row, written.rows) + 1):
+            for column in range(area.min_col, min(area.max_col, written.columns) + 1):
+                merged.add((line, column))
+        merged.discard((area.min_row, area.min_col))
+    return merged
 
 
 def _reaches_too_far(title: str) -> Sentence:
@@ -135,14 +208,12 @@ def _reaches_too_far(title: str) -> Sentence:
     return say(text, sheet=title, rows=MAX_ROWS, columns=MAX_COLUMNS)
 
 
-def _cell_text(cell: Any, formula: Any) -> str:
+def _cell_text(cell: Any, formula: str | None) -> str:
     """Return what a person sees in a cell, or its formula where that was never calculated."""
     value = cell.value
     if value is None:
         is_calculated = cell.data_type == "str"  # a formula whose result is an empty text
-        is_formula = formula.data_type == "f" and not is_calculated
-        written = getattr(formula.value, "text", None) or formula.value
-        return str(written or "=") if is_formula else ""
+        return "" if is_calculated else formula or ""
     if isinstance(value, bool):
         return "ja" if value else "nee"
     if isinstance(value, int | float):
@@ -150,7 +221,10 @@ def _cell_text(cell: Any, formula: Any) -> str:
     if isinstance(value, dt.timedelta):
         seconds = round(value.total_seconds())
         return f"{seconds // 3600}:{seconds // 60 % 60:02}:{seconds % 60:02}"
-    return value.date().isoformat() if isinstance(value, dt.datetime) else str(value).strip()
+    if isinstance(value, dt.datetime):
+        return value.date().isoformat()
+    text = str(value).strip()
+    return TYPED_AS_TEXT + text if _DOUBLE_NUMBER.fullmatch(text) else text
 
 
 def show_number(value: float, number_format: str) -> str:

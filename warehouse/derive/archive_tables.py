@@ -11,10 +11,11 @@ from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from pipeline.messages import say
 from pipeline.recompute.facts import with_boat_types
-from pipeline.tables.lake import Faults
+from pipeline.tables.frames import frame_of
+from pipeline.tables.lake import Faults, SeasonIndex
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.archive.faults import OF_A_HEADER, fault_frame
-from warehouse.archive.list_rules import outside_run
+from warehouse.archive.list_rules import find_windows_outside_run
 from warehouse.derive.plausible import gross_faults, judge, with_doubts
 from warehouse.derive.same_samples import CONTENT, same_samples
 from warehouse.intake import lake
@@ -59,7 +60,7 @@ def archive_tables(
     )
     sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
     windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
-    beyond = fault_frame(outside_run(windows, present))
+    beyond = fault_frame(find_windows_outside_run(windows, present))
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
     known = [name for name in Faults.column_names() if name in index.columns]
     unsound = index.drop_nulls("reason_code").select(known)
@@ -75,8 +76,9 @@ def archive_tables(
         "quarantine": add_first_seen(set_aside, quarantine_before, today),
     }
     if tables["tows"].is_empty():
-        reason = _explain_no_tows(tables["quarantine"])
-        if has_earlier_tows or not _waits_for_samples(tables["quarantine"]):
+        waits = _waits_for_samples(tables["quarantine"])
+        reason = _explain_no_tows(tables["quarantine"], waits)
+        if has_earlier_tows or not waits:
             raise MissingKnowledgeError(reason)
         raise NoTowsYetError(reason)
     return tables
@@ -97,8 +99,9 @@ def read_archive(store: Store, root: Path, today: dt.date | None = None) -> None
     tables = intake.index(store, root)
     tows = tables["listed_tows"].sort("season", "tow_id")
     runs = tables["listed_runs"]
+    none = frame_of(SeasonIndex, []).insert_column(0, pl.Series("season", [], pl.Int32))
     seasons = tows.partition_by("season", maintain_order=True)
-    samples = pl.concat([intake.read_tows(store, root, runs, own) for own in seasons])
+    samples = pl.concat([none, *(intake.read_tows(store, root, runs, own) for own in seasons)])
     lake.keep_only(store, samples)
     blocks = lake.all_blocks(store, samples)
     made = archive_tables(
@@ -203,7 +206,7 @@ def _waits_for_samples(set_aside: pl.DataFrame) -> bool:
     return set_aside.is_empty() or reasons == [SAMPLES_MISSING]
 
 
-def _explain_no_tows(set_aside: pl.DataFrame) -> str:
+def _explain_no_tows(set_aside: pl.DataFrame, waits_for_samples: bool) -> str:
     """Return a sentence that says why no tow can be used, by cause, and what to do."""
     if set_aside.is_empty():
         return say(
@@ -211,7 +214,7 @@ def _explain_no_tows(set_aside: pl.DataFrame) -> str:
             "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
         )
     first = set_aside.row(0, named=True)
-    if _waits_for_samples(set_aside):
+    if waits_for_samples:
         first = set_aside.row(by_predicate=pl.col("reason_code") == SAMPLES_MISSING, named=True)
         return say(
             "no tow has samples yet: put the files that the tow lists name in meetdata_<jaar>/. "

@@ -160,7 +160,7 @@ class ArchiveChangedError(UnavailableError):
 
 
 def _check_unchanged(root: Path, tow: Row, hashes: FileHashes) -> None:
-    """Samples are named by the hash of their file, so they must be that file's.
+    """Raise where a file changed: samples are named by its hash, so they must be its own.
 
     A file with the size and time it had when it was hashed is not read once more.
     """

@@ -6,7 +6,7 @@ import polars as pl
 
 from pipeline.tables.row import Row
 from warehouse.archive import SeasonProfile, judge_samples, read_tow_samples
-from warehouse.archive.samples import steps_of
+from warehouse.archive.samples import measure_steps
 
 
 def read_samples(
@@ -23,11 +23,11 @@ def read_samples(
     Raises:
         DefectiveInputError: no run of the tow can be used.
     """
-    whole, place = read_tow_samples(root, tow, profile)
-    samples, faults = judge_samples(whole, place, tow, runs)
+    whole, place, defects = read_tow_samples(root, tow, profile)
+    samples, faults = judge_samples(whole, place, tow, runs, defects)
     facts = {
         "losses": [fault.as_row() for fault in faults],
         "wind_read": samples["wind_speed_m_s"].null_count() == 0,
-        **steps_of(samples),
+        **measure_steps(samples),
     }
     return samples.select(pl.lit(tow["tow_id"]).alias("tow_id"), pl.all()), facts

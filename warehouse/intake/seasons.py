@@ -40,7 +40,7 @@ INDEXED: Final = (
 
 
 def index(store: Store, root: Path) -> dict[str, pl.DataFrame]:
-    """The tables of `INDEXED`: what the lists of the archive say today.
+    """Return the tables of `INDEXED`: what the lists of the archive say today.
 
     Raises:
         HerijkError: the folder is missing or holds nothing that looks like an archive.
@@ -107,7 +107,7 @@ Listing = dict[str, list[int]]
 
 
 def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:
-    """What the system knows of each file and folder of an archive, by path within it."""
+    """Yield what the system knows of each file and folder of an archive, by path within it."""
     for folder, folders, files in os.walk(root):
         for path in (Path(folder, name) for name in (*folders, *files)):
             with suppress(FileNotFoundError):
@@ -115,7 +115,7 @@ def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:
 
 
 def listing(root: Path) -> Listing:
-    """The files of an archive as they lie there now; none is opened.
+    """Return the files of an archive as they lie there now; none is opened.
 
     Raises:
         MissingKnowledgeError: there is no such folder, or nothing in it: a disk not mounted.
@@ -141,10 +141,10 @@ def typed_tows(store: Store) -> pl.DataFrame:
 
 
 def runs_with_windows(store: Store) -> pl.DataFrame:
-    """The runs of all sound tows, with the windows that were given by hand."""
+    """Return the runs of all sound tows, with the windows that were given by hand."""
     return with_hand_windows(store.read("tow_runs"), store.read("hand_windows"))
 
 
 def run_blocks(store: Store) -> RunBlocks:
-    """The runs of all sound tows as arrays, with the windows that were given by hand."""
+    """Return the runs of all sound tows as arrays, with the windows that were given by hand."""
     return stack_blocks(all_blocks(store), runs_with_windows(store))

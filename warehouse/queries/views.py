@@ -188,6 +188,20 @@ SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.empty
        r.cw_hi_kg_m, r.flags, r.tow_id, r.method, r.verification_code
 FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
 """,
+    # Who won each race, by name.
+    "year_winners": """
+SELECT t.* REPLACE (coalesce(old.name, t.published_winner) AS published_winner,
+                    coalesce(new.name, t.winner) AS winner)
+FROM year_winners AS t
+LEFT JOIN boats AS old ON old.fsn_no = t.published_winner
+LEFT JOIN boats AS new ON new.fsn_no = t.winner
+ORDER BY method, year, race_date, race, crew_class
+""",
+    # The register of every year with the boat's name.
+    "register_years": """
+SELECT t.*, b.name, b.boat_type FROM register_years AS t LEFT JOIN boats AS b USING (fsn_no)
+ORDER BY method, year, fsn_no, rowers, crew_class, empty_thwart
+""",
     # Repeat tows with the boat's name.
     "repeat_pairs": """
 SELECT t.* EXCLUDE ln_ratio, b.name FROM repeat_pairs AS t LEFT JOIN boats AS b USING (fsn_no)

@@ -77,8 +77,8 @@ class Archive:
         for tow in index.tows.iter_rows(named=True):
             try:
                 profile = index.profiles.for_season(tow["season"])
-                samples, place = read_tow_samples(self.root, tow, profile)
-                judged = judge_samples(samples, place, tow, index.runs)
+                samples, place, defects = read_tow_samples(self.root, tow, profile)
+                judged = judge_samples(samples, place, tow, index.runs, defects)
             except DefectiveInputError as error:
                 faults.append(fault_from(error, tow["samples_path"], tow["tow_id"]))
             else:

@@ -310,14 +310,14 @@ def test_boats_on_which_two_lists_disagree_are_set_aside_with_both_places(
 def test_a_list_on_which_herijk_fails_costs_that_list(
     archive: Archive, monkeypatch: pytest.MonkeyPatch, path: str, lost: list[str]
 ) -> None:
-    real = reading._typed
+    real = reading._parse_rows
 
     def fails(table, file, *rest):
         if file.path == path:
             raise ZeroDivisionError("planted")
         return real(table, file, *rest)
 
-    monkeypatch.setattr(reading, "_typed", fails)
+    monkeypatch.setattr(reading, "_parse_rows", fails)
     faults = archive.scan().faults
     (of_list,) = [fault for fault in faults if isinstance(fault, Failure)]
     assert (of_list.path, of_list.reason_code) == (path, "unforeseen")

@@ -220,7 +220,113 @@ def test_a_rate_that_is_not_whole(archive: Archive) -> None:
     assert scan.index.tows["sample_rate_hz"].to_list() == [19.53125, 20, 20]
 
 
+def test_a_clock_that_jumps_back_costs_its_run(archive: Archive, good_scan: Scan) -> None:
+    """Where that run is not used, it costs nothing."""
+    seconds = times_of(1 / RATE_HZ)
+    first = 2 * ROWS + 100
+    back = [t - 3600 if row >= first else t for row, t in enumerate(seconds)]
+    with_times(archive, "tijd [s]", [f"{t:.3f}" for t in back])
+    scan = archive.scan()
+    (fault,) = scan.faults
+    assert (fault.reason_code, fault.lost, fault.run) == ("bad_time", "run", 3)
+    assert fault.line == 2 + first
+    assert "jump back by 3599.95 s" in fault.message
+    assert scan.good["2014-001"]["run"].unique().to_list() == [1, 2, 4, 5, 6]
+    archive.replace(TOWS, "1,2,3,4,5,6", "1,2,4,5,6")
+    assert archive.scan().faults == []
+    archive.replace(TOWS, "1,2,4,5,6", "1,2,3,4,5,6")
+    declare(archive, OF_2014, 'absent = ["time"]')
+    assert_first_tow_is(archive.scan(), good_scan)
+
+
+@pytest.mark.parametrize(
+    "write_time",
+    [
+        lambda t: f"01-03-2014 {CLOCKS['clock'](t)}",
+        lambda t: f"2014-03-01T{CLOCKS['clock'](t)}Z",
+        lambda t: f"3/1/2014 {CLOCKS['clock'](t)}",
+    ],
+)
+def test_a_date_before_a_clock_is_not_read(archive: Archive, good_scan: Scan, write_time) -> None:
+    with_times(archive, "tijd [clock]", [write_time(t) for t in times_of(1 / RATE_HZ)])
+    assert_first_tow_is(archive.scan(), good_scan)
+
+
+def test_a_time_in_no_known_form_can_be_left_out(archive: Archive, good_scan: Scan) -> None:
+    with_times(archive, "tijd", [f"{t / 60:.0f}m{t % 60:.2f}" for t in times_of(1 / RATE_HZ)])
+    (cause,) = check_archive(archive.root).causes
+    assert cause.ask[-1].endswith('absent = ["?"]')
+    declare(archive, OF_2014, 'absent = ["time"]')
+    assert_first_tow_is(archive.scan(), good_scan)
+
+
+def test_times_in_another_unit_are_asked_about(archive: Archive, good_scan: Scan) -> None:
+    with_times(archive, "tijd", [f"{t * 1000:.0f}" for t in times_of(1 / RATE_HZ)])
+    code, _, ask = only_cause(archive)
+    assert code == "bad_time"
+    assert 'units.time = "?"' in ask
+    declare(archive, OF_2014, 'units.time = "ms"')
+    assert_first_tow_is(archive.scan(), good_scan)
+
+
+def test_quoted_fields_with_decimal_commas(archive: Archive, good_scan: Scan) -> None:
+    archive.edit(FIRST, lambda text: re.sub(r"[^;\n]+", r'"\g<0>"', text).replace(";", ","))
+    assert_first_tow_is(archive.scan(), good_scan)
+
+
+def test_commas_between_fields_and_before_decimals_are_refused(archive: Archive) -> None:
+    archive.edit(FIRST, lambda text: text.replace(";", ","))
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.line) == ("broken_row", 2)
+    assert "13 fields where the header has 7" in fault.message
+
+
+def test_runs_that_are_words_are_refused_with_what_stands_there(archive: Archive) -> None:
+    archive.edit(FIRST, lambda text: re.sub(r"\n(\d)", r"\nrun \1", text))
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.line) == ("unknown_run", 2)
+    assert "holds 'run 1'" in fault.message
+
+
+def test_answers_may_stay_in_quotation_marks(archive: Archive, good_scan: Scan) -> None:
+    """A question shows a blank in quotation marks."""
+    for path in (archive.root / "meetdata_2014").iterdir():
+        units = "\n;m/s;m/s;m/s;N;m/s;gra\n"
+        archive.edit(f"meetdata_2014/{path.name}", lambda text: text.replace("\n", units, 1))  # noqa: B023
+    archive.edit(TOWS, lambda text: text.replace(";20;", ";;"))
+    answers = ['skip_below_header = "1"', 'sample_rate_hz = "20"']
+    targets = "[[plan]]\nseasons = '2014'\ntargets = ['0.9', '1', '1.1', '0.9', '1', '1.1']"
+    declare(archive, OF_2014, *answers, targets)
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.good["2014-001"].equals(good_scan.good["2014-001"])
+
+
+def test_a_rate_in_kilohertz(archive: Archive, good_scan: Scan) -> None:
+    archive.edit(TOWS, lambda text: text.replace("[Hz]", "[kHz]").replace(";20;", ";0,02;"))
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.index.tows["sample_rate_hz"].to_list() == [20, 20, 20]
+
+
+def test_an_ambiguous_number_says_how_to_write_it(archive: Archive) -> None:
+    archive.replace(TOWS, ";nee;20;", ";nee;20.125;")
+    code, sentence, _ = only_cause(archive)
+    assert code == "ambiguous_number"
+    assert "Write it without a mark, or with a ','." in sentence
+
+
 # Runs
+
+
+def test_files_that_can_be_runs_are_asked_about(archive: Archive, good_scan: Scan) -> None:
+    write_run_files(archive, NAME + "_run0{run}.csv")
+    _, sentence, ask = only_cause_of_code(archive, "samples_missing")
+    assert "6 with that in their name" in sentence
+    assert [line.split("\n")[-1] for line in ask] == ['runs = "?"', 'run_files = "?"']
+    declare(archive, OF_2014, 'runs = "file"', 'run_files = "{meetfile}_run{run:02}"')
+    scan = archive.scan()
+    assert scan.good["2014-001"].equals(good_scan.good["2014-001"])
 
 
 def test_a_file_for_each_run(archive: Archive, good_scan: Scan) -> None:
@@ -279,7 +385,7 @@ def test_a_file_that_says_another_run_than_its_name_is_refused(archive: Archive)
     assert (fault.reason_code, fault.path) == ("unknown_run", "meetdata_2014/snol 2.csv")
 
 
-def as_recording(archive: Archive, pause: int = 300) -> str:
+def as_recording(archive: Archive, pause: int = 300, form: str = ":.0f") -> str:
     """One recording with a pause before each run; returns the list of its windows."""
     rows = [row[1:] for row in rows_of(archive)]
     between = [["0,5", "0,5", "0,5", "3", "4", "90"]] * pause
@@ -288,7 +394,8 @@ def as_recording(archive: Archive, pause: int = 300) -> str:
         recording += between
         start = len(recording) / RATE_HZ
         recording += rows[(run - 1) * ROWS : run * ROWS]
-        windows.append(f"2014-001;{run};{start:.0f};{start + 50:.0f};vaart")
+        window = f"{{{form}}};{{{form}}}".format(start, start + 50)
+        windows.append(f"2014-001;{run};{window};vaart")
     write(archive, HEADER.removeprefix("run;").split(";"), recording)
     return "\n".join([*windows, ""])
 
@@ -306,6 +413,69 @@ def test_one_recording_with_begin_and_end_of_each_run(archive: Archive, good_sca
     (archive.root / "sleeplijsten/vensters_2014.csv").write_text(windows)
     scan = archive.scan()
     assert scan.good["2014-001"].equals(good_scan.good["2014-001"])
+    assert scan.index.windows.is_empty()
+
+
+def write_windows(archive: Archive, windows: str) -> None:
+    declare(archive, OF_2014, 'runs = "windows"')
+    (archive.root / "sleeplijsten/vensters_2014.csv").write_text(windows)
+
+
+@pytest.mark.parametrize("pause", [8_000, 30], ids=["of half an hour", "with halves of seconds"])
+def test_windows_of_a_recording(archive: Archive, good_scan: Scan, pause: int) -> None:
+    """A recording may be long, its windows may have decimals, and they need no reason."""
+    windows = as_recording(archive, pause, ":.1f")
+    rows = [line.rsplit(";", 1)[0] for line in windows.strip().split("\n")]
+    write_windows(archive, "\n".join([*rows, ""]))
+    scan = archive.scan()
+    assert scan.good["2014-001"].equals(good_scan.good["2014-001"])
+
+
+def test_windows_that_nobody_gives_are_missed_in_each_tow(archive: Archive) -> None:
+    write_windows(archive, as_recording(archive))
+    faults = [fault for fault in archive.scan().faults if fault.reason_code == "missing_run"]
+    assert {fault.tow_id for fault in faults} == {"2014-002", "2014-003"}
+
+
+def test_a_recording_may_pass_midnight(archive: Archive, good_scan: Scan) -> None:
+    windows = as_recording(archive)
+    add_clock(archive, 86_300.0)
+    write_windows(archive, windows)
+    scan = archive.scan()
+    assert scan.good["2014-001"].equals(good_scan.good["2014-001"])
+
+
+def test_a_recording_whose_clock_jumps_back_is_refused(archive: Archive, good_scan: Scan) -> None:
+    windows = as_recording(archive)
+    add_clock(archive, 40_000.0, jump_at=2_000)
+    write_windows(archive, windows)
+    (fault,) = [fault for fault in archive.scan().faults if fault.tow_id == "2014-001"]
+    assert (fault.reason_code, fault.line) == ("bad_time", 2_002)
+    assert fault.ask[0].endswith('absent = ["?"]')
+    declare(archive, OF_2014, 'runs = "windows"', 'absent = ["time"]')
+    assert archive.scan().good["2014-001"].equals(good_scan.good["2014-001"])
+
+
+def add_clock(archive: Archive, start_s: float, jump_at: int | None = None) -> None:
+    """Add a column with the time of day to the first file."""
+    header, *rows = (archive.root / FIRST).read_text("utf-8").strip().split("\n")
+    times = [start_s + row / RATE_HZ for row in range(len(rows))]
+    if jump_at is not None:
+        times[jump_at:] = [time - 3600 for time in times[jump_at:]]
+    clocks = [divmod(time % 86_400, 60) for time in times]
+    written = [f"{int(minute // 60)}:{int(minute % 60):02}:{s:06.3f}" for minute, s in clocks]
+    lines = [f"{row};{time}" for row, time in zip(rows, written, strict=True)]
+    (archive.root / FIRST).write_text("\n".join([f"{header};tijd [clock]", *lines, ""]))
+
+
+def test_a_window_in_a_run_is_in_whole_seconds_and_has_a_reason(archive: Archive) -> None:
+    rows = ["sleep_id;run;van [s];tot [s];reden", "2014-001;1;0,5;45;zwaan", "2014-001;2;0;45;", ""]
+    (archive.root / "sleeplijsten/vensters_2014.csv").write_text("\n".join(rows))
+    scan = archive.scan()
+    assert [(fault.reason_code, fault.line) for fault in scan.faults] == [
+        ("bad_window_row", 2),
+        ("bad_window_row", 3),
+    ]
     assert scan.index.windows.is_empty()
 
 

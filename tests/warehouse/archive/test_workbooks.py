@@ -2,6 +2,7 @@
 
 import datetime as dt
 import io
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -169,6 +170,98 @@ def test_a_hidden_row_is_not_read_and_named(archive: Archive) -> None:
     scan = archive.scan()
     assert [(f.reason_code, f.line) for f in faults_of(scan)] == [("hidden", 5)]
     assert sorted(scan.good) == ["2014-001", "2014-003"]
+
+
+def test_a_cell_beside_the_table_is_named_with_its_line(archive: Archive) -> None:
+    change(archive, put(6, 26, "let op"))
+    (fault,) = faults_of(archive.scan())
+    assert fault.reason_code == "unknown_column"
+    assert "Column 26 has no header, and holds 'let op' on line 6" in fault.message
+
+
+def test_a_hidden_column_stops_its_list_where_it_holds_something(
+    archive: Archive, good_scan: Scan
+) -> None:
+    def hide(book: openpyxl.Workbook) -> None:
+        book.active.column_dimensions["P"].hidden = True
+
+    change(archive, hide)
+    (fault,) = faults_of(archive.scan())
+    assert (fault.reason_code, fault.line) == ("hidden", 3)
+    assert "'correctie [%]'" in fault.message
+    book = openpyxl.load_workbook(archive.root / LIST)
+    book.active["P4"].value = None
+    book.save(archive.root / LIST)
+    scan = archive.scan()
+    assert faults_of(scan) == []
+    assert scan.good.keys() == good_scan.good.keys()
+
+
+@pytest.mark.parametrize(
+    ("area", "lost"),
+    [("P4:P6", {"2014-002", "2014-003"}), ("L4:M4", set()), ("A1:P1", set())],
+)
+def test_a_merged_cell_is_never_read_as_empty(archive: Archive, area: str, lost: set[str]) -> None:
+    """Of weights, without which a tow goes on, the cell counts as empty and is named."""
+    change(archive, lambda book: book.active.merge_cells(area))
+    scan = archive.scan()
+    assert set(scan.index.tows["tow_id"]) == {"2014-001", "2014-002", "2014-003"} - lost
+    merged = [fault for fault in faults_of(scan) if "merged cells" in fault.message]
+    assert len(merged) == {"P4:P6": 2, "L4:M4": 1, "A1:P1": 0}[area]
+
+
+def test_a_heading_over_all_columns_is_one_fault(archive: Archive, good_scan: Scan) -> None:
+    def add_heading(book: openpyxl.Workbook) -> None:
+        book.active.cell(7, 1, "Tweede dag")
+        book.active.merge_cells("A7:T7")
+
+    change(archive, add_heading)
+    scan = archive.scan()
+    (fault,) = faults_of(scan)
+    assert (fault.line, fault.lost) == (7, "row")
+    assert scan.good.keys() == good_scan.good.keys()
+
+
+@pytest.mark.parametrize("cell", ["C1048576", "XFD4", "XFD1048576"])
+def test_a_far_cell_that_is_only_coloured_costs_nothing(
+    archive: Archive, good_scan: Scan, cell: str
+) -> None:
+    def colour(book: openpyxl.Workbook) -> None:
+        book.active[cell].fill = openpyxl.styles.PatternFill("solid", "FFFF00")
+
+    change(archive, colour)
+    assert_same(archive.scan(), good_scan)
+
+
+@pytest.mark.parametrize(
+    ("cell", "has_commas", "read"),
+    [
+        ("1.140", True, None),
+        ("1,140", True, 1.14),
+        ("1.140", False, None),
+        ("1,140", False, None),
+        (2.475, True, 2.475),
+        (2.475, False, 2.475),
+        ("0.455", False, 0.455),
+    ],
+)
+def test_a_number_typed_as_text_is_not_taken_for_another(
+    archive: Archive, cell: object, has_commas: bool, read: float | None
+) -> None:
+    """In a column that a tow can do without: the water's temperature."""
+
+    def type_in(book: openpyxl.Workbook) -> None:
+        for other in [] if has_commas else book.active["A4:T6"]:
+            for one in other:
+                if re.fullmatch("[0-9]+,[0-9]+", str(one.value)):
+                    one.value = float(one.value.replace(",", "."))
+        book.active.cell(4, 15, cell)
+
+    change(archive, type_in)
+    scan = archive.scan()
+    assert scan.index.tows["water_temperature_c"][0] == read
+    codes = [fault.reason_code for fault in faults_of(scan)]
+    assert codes == ([] if read else ["ambiguous_number"])
 
 
 def test_the_same_list_as_workbook_and_csv_counts_once(archive: Archive, good_scan: Scan) -> None:
