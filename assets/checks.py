@@ -14,6 +14,7 @@ import polars as pl
 
 from assets.lake import Folders
 from assets.settings import Settings
+from pipeline.register.register import default_method
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.database import IN_DATABASE
 from warehouse.editions.verify import verify
@@ -183,7 +184,38 @@ def archive_without_faults(folders: Folders) -> dg.AssetCheckResult:
     )
 
 
+EQUAL: Final = {
+    "equal_in_cw": "cw_standard_kg_m",
+    "equal_in_b": "b_m_s",
+    "equal_in_a": "a_kg_m",
+}
+"""Checks on `type_consistency`, by the quantity that each is about."""
+
+
+def show_verdicts(name: str, quantity: str) -> dg.AssetChecksDefinition:
+    """Return Dagster's check that shows the verdict on each type, under the method that is shown.
+
+    It warns of types whose boats are not equal.
+    """
+
+    @dg.asset_check(
+        asset="type_consistency", name=name, description="Boats of a type are equal; by type."
+    )
+    def evaluate(folders: Folders) -> dg.AssetCheckResult:
+        verdicts = folders.store.read("type_consistency").filter(quantity=quantity)
+        method = default_method(verdicts["method"].unique().sort().to_list())
+        by_type = dict(verdicts.filter(method=method).select("boat_type", "verdict").rows())
+        return dg.AssetCheckResult(
+            passed="differ" not in by_type.values(),
+            severity=dg.AssetCheckSeverity.WARN,
+            metadata={"method": method, **by_type},
+        )
+
+    return evaluate
+
+
 DAGSTER_CHECKS: Final = [
     archive_without_faults,
+    *(show_verdicts(name, quantity) for name, quantity in EQUAL.items()),
     *(show_result(asset, check.__name__, str(check.__doc__)) for check, asset in CHECKS.items()),
 ]

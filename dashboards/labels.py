@@ -387,9 +387,7 @@ CODES: Final[dict[str, Sentence]] = {
 }
 
 CANDIDATES: Final[dict[str, Sentence]] = {
-    "weight": say("unusual weight"),
     "length": say("unusual length"),
-    "season": say("its season lies to the same side"),
     "log": say("unusual calibration of its log"),
     "altered": say("altered before this tow"),
     "slow_tow": pgettext("candidate", "slow tow"),

@@ -10,8 +10,9 @@ from markupsafe import Markup
 
 from dashboards import labels
 from dashboards.addresses import boat_path
+from dashboards.html import keep_units
 from dashboards.speech import Headline, Speech, Text
-from dashboards.statements import EditionName
+from dashboards.statements import EditionName, Statement
 from dashboards.statements.boat import Answer
 from pipeline.messages import Sentence, say
 from pipeline.register.register import default_method, draft_name
@@ -210,6 +211,14 @@ class Page:
     def root(self) -> str:
         """The way from this page to the first page of its language."""
         return self.site or "../" * self.path.count("/")
+
+
+def as_paragraphs(statements: Sequence[Statement]) -> Callable[[Speech], Markup]:
+    """Return the prose of a section: a paragraph for each statement."""
+    paragraph = Markup("<p>{}</p>")
+    return lambda speech: Markup("").join(
+        paragraph.format(keep_units(statement(speech))) for statement in statements
+    )
 
 
 def is_chosen(value: object, *wanted: str) -> bool:

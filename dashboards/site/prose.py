@@ -11,12 +11,11 @@ from dashboards import labels
 from dashboards.addresses import edition_page
 from dashboards.documents import pdf
 from dashboards.guides import GUIDES, guide_file, method_guide
-from dashboards.html import keep_units
 from dashboards.markdown import to_blocks, to_html
 from dashboards.measured import CAPTION, picture
-from dashboards.site.parts import Chart, Page, Section
+from dashboards.site.parts import Chart, Page, Section, as_paragraphs
 from dashboards.speech import Speech
-from dashboards.statements import Statement, together
+from dashboards.statements import together
 from dashboards.statements.method import BASES, EACH_STEP, VOTE, WORKED, Explained, explained
 from pipeline.messages import Sentence, say
 from pipeline.register.register import STUDIED_METHOD, default_method
@@ -81,7 +80,7 @@ def _page(path: str, told: Explained, others: dict[str, str]) -> Page:
         ),
         *_worked(told),
         Section("certain", say("How certain it is"), prose=_certain(told)),
-        Section("vote", VOTE, prose=_listed(told.vote)),
+        Section("vote", VOTE, prose=as_paragraphs(told.vote)),
         _folded("runs", say("From six runs to a curve")),
         *([_folded("added", say("What re-based adds"))] if name == STUDIED_METHOD else []),
         _folded("register", say("From curve to register")),
@@ -94,7 +93,7 @@ def _page(path: str, told: Explained, others: dict[str, str]) -> Page:
 def _worked(told: Explained) -> Iterator[Section]:
     if told.worked is not None:
         chart = Chart("resistance_curve", [told.worked.drawn], say("Resistance curve"))
-        yield Section("worked", WORKED, charts=[chart], prose=_listed(told.worked.statements))
+        yield Section("worked", WORKED, charts=[chart], prose=as_paragraphs(told.worked.statements))
 
 
 def _measured(speech: Speech) -> Markup:
@@ -104,7 +103,7 @@ def _measured(speech: Speech) -> Markup:
 
 
 def _certain(told: Explained) -> Callable[[Speech], Markup]:
-    return lambda speech: _listed(told.uncertainty)(speech) + _text("certain")(speech)
+    return lambda speech: as_paragraphs(told.uncertainty)(speech) + _text("certain")(speech)
 
 
 def _folded(part: str, title: Sentence) -> Section:
@@ -114,14 +113,6 @@ def _folded(part: str, title: Sentence) -> Section:
 def _text(part: str) -> Callable[[Speech], Markup]:
     """A section of the document on methods."""
     return lambda speech: _below_title(getattr(method_guide(speech.language), part))
-
-
-def _listed(statements: Sequence[Statement]) -> Callable[[Speech], Markup]:
-    """A paragraph for each statement."""
-    paragraph = Markup("<p>{}</p>")
-    return lambda speech: Markup("").join(
-        paragraph.format(keep_units(statement(speech))) for statement in statements
-    )
 
 
 DOWNLOADS: Final = "downloads"

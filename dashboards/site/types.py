@@ -17,6 +17,7 @@ from dashboards.site.parts import (
     Page,
     Section,
     Table,
+    as_paragraphs,
     methods_select,
     once_for_methods,
     types_select,
@@ -85,6 +86,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
         for name in views.type_names()
     ]
     names = _name_boats(views)
+    judged = verdicts.filter(pl.col("spread_ratio").is_not_null())["boat_type"].unique().sort()
     sections = [
         Section(
             "types_verdicts",
@@ -92,7 +94,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
             say("By the newest tow of each boat and crew; every type has a page."),
             links=links,
         ),
-        _grid_section(views, methods, views.type_names(), names),
+        _grid_section(views, methods, judged.to_list(), names),
         Section(
             "types_charts",
             say("B and Cw per type"),
@@ -160,9 +162,8 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
             Section(
                 "type_verdict",
                 sum_up_type(now),
-                headline=together(judge_type(now, outside.to_dicts(), names), " "),
+                prose=as_paragraphs(judge_type(now, outside.to_dicts(), names)),
             ),
-            _grid_section(views, methods, [boat_type], names),
             Section(
                 "type_charts",
                 say("B and Cw against weight and tow speed"),
@@ -181,6 +182,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
                 say("A possible cause is something to look at, not proven."),
                 tables=[Table("type_outliers", outside, OUTSIDE_COLUMNS.replace("boat_type ", ""))],
             ),
+            _grid_section(views, methods, [boat_type], names),
             Section("type_tows", say("Its tows"), tables=[own_tows]),
         ]
         yield Page(

@@ -74,7 +74,8 @@ class Answer:
             *_validity(line),
         ]
         why = [*_change(line), *_log(line), *map(place_in_race, self.races)]
-        fair = [*_certainty(line), *_best(line), *_faults(self.faults), *_next_tow(line)]
+        fair = [*_certainty(line), *_best(line), *_faults(self.faults)]
+        fair += [*_predicted(line), *_next_tow(line)]
         if line["cw_kg_m"] is None:
             why, fair = list(map(place_in_race, self.races)), list(_next_tow(line))
         found = [(NUMBER, number), (WHY, why), (FAIR, [*fair, _objection(line)])]
@@ -312,6 +313,27 @@ def _best(line: Row) -> Iterator[Statement]:
         )
         moved, kept = Change(line["moved_ratio"]), Change(line["best_moved_ratio"])
         yield told("since_last_tow", wording, line, "repeat_pairs", moved=moved, kept=kept)
+
+
+def _predicted(line: Row) -> Iterator[Statement]:
+    """What the other boats predict of Cw without a tow, beside what the tow gives."""
+    if line["predicted_cw_kg_m"] is None:
+        return
+    wording = (
+        say(
+            "By its weight, length, beam and type the other boats predict a Cw of "
+            "{predicted_cw_kg_m} kg/m at {predicted_speed_m_s} m/s ({predicted_lo_kg_m} to "
+            "{predicted_hi_kg_m}); this tow gives {cw_there_kg_m}: they disagree."
+        )
+        if line["disagrees"]
+        else say(
+            "By its weight, length, beam and type the other boats predict a Cw of "
+            "{predicted_cw_kg_m} kg/m at {predicted_speed_m_s} m/s ({predicted_lo_kg_m} to "
+            "{predicted_hi_kg_m}); this tow gives {cw_there_kg_m}."
+        )
+    )
+    verdict = "disagrees" if line["disagrees"] else "agrees"
+    yield told("predicted", wording, line, "predicted_cw", verdict=verdict)
 
 
 def _log(line: Row) -> Iterator[Statement]:

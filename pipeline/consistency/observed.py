@@ -54,7 +54,6 @@ def observe(
         One row per method and tow whose runs determine a curve: columns of `curves` and `tows`,
         `boat_type` (or `UNKNOWN_TYPE`), and
 
-        - `hull`: the boat as it was between two alterations;
         - `newest`: whether the tow is the last of its boat and crew;
         - `displacement_kg`: boat and crew; `hull_speed_m_s`;
         - `standard_speed_m_s`: median declared speed of all tows of the type, v*, the same under
@@ -66,9 +65,9 @@ def observe(
         - `ln_a_sd`: of ln A by the runs; `ln_a_variance`: for comparing, with the log's error;
         - `ln_cw_zero_effect`, `bend_zero_effect`, `ln_a_zero_effect`: size of the effect of a zero
           error of the load cell [1/N];
-        - `run_sd_ratio`, `run_dof`, `type_run_dof`, `run_rss_ratio2`, `c0_unit_variance`: scatter
-          of a run of the type, degrees of freedom of the tow and of the type, squares of the tow,
-          and the variance of its ln Cw at the declared speed for a scatter of 1.
+        - `run_sd_ratio`, `run_dof`, `run_rss_ratio2`, `c0_unit_variance`: scatter
+          of a run of the type, degrees of freedom and squares of the tow, and the variance of its
+          ln Cw at the declared speed for a scatter of 1.
     """
     joined = _join_tows(curves, tows, boats)
     length = joined["waterline_length_m"].to_numpy().astype(np.float64)
@@ -96,7 +95,6 @@ def observe(
     type_dof = pl.col("run_dof").sum()
     pooled = scatter.with_columns(
         run_sd_ratio=(pl.col("run_rss_ratio2").sum() / type_dof).sqrt().over(of_type),
-        type_run_dof=type_dof.over(of_type),
         type_q=pl.col("q").median().over(of_type),
     )
     return _compare_at_standard_speed(pooled)
@@ -111,12 +109,10 @@ def observe_trusted(
 
 def _join_tows(curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     """Return accepted curves with their tow and boat, by method and date."""
-    of_tow = ("tow_id", "hull", "boat_type", "tow_date", "altered", "standard_speed_m_s")
+    of_tow = ("tow_id", "boat_type", "tow_date", "altered", "standard_speed_m_s")
     sizes = ("weight_kg", "crew_weight_kg", "waterline_length_m", "beam_m")
-    alterations = pl.col("altered").fill_null(False).cum_sum().over("fsn_no").cast(pl.String)
     known = (
         tows.sort("tow_date", "tow_id")
-        .with_columns(hull=pl.concat_str("fsn_no", alterations, separator="/"))
         .join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left")
         .with_columns(pl.col("boat_type").fill_null(UNKNOWN_TYPE))
         .with_columns(standard_speed_m_s=pl.col("declared_speed_m_s").median().over("boat_type"))

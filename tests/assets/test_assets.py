@@ -9,11 +9,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import dagster as dg
+import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
 import assets.instance
+from assets.checks import EQUAL
 from assets.definitions import ASSETS, build_defs
+from pipeline.register.register import default_method
 from tests.assets.page import page
 from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil
 from tests.conftest import METHODS, Workbench, in_one_process
@@ -104,6 +107,31 @@ def test_checks_of_the_last_rebuild_are_shown_on_the_assets(bench, instance):
     assert {"archive_without_faults", "every_listed_tow_accounted_for"} <= shown.keys()
     for name in shown.keys() & stored.keys():
         assert shown[name].passed == (stored[name]["number"] == 0)
+
+
+def test_verdicts_on_types_are_shown_on_their_table(bench, instance):
+    result = materialise(bench, instance, "type_consistency")
+    shown = {one.check_name: one for one in result.get_asset_check_evaluations()}
+    verdicts = bench.store.read("type_consistency").filter(method=default_method(METHODS))
+    assert "differ" in verdicts["verdict"].to_list()
+    for name, quantity in EQUAL.items():
+        own = dict(verdicts.filter(quantity=quantity).select("boat_type", "verdict").rows())
+        assert shown[name].passed == ("differ" not in own.values())
+        assert {t: shown[name].metadata[t].value for t in own} == own
+
+
+def test_what_matters_is_set_by_the_federation_and_decides_the_verdict(bench, instance):
+    before = bench.store.read("type_consistency")
+    (bench.data / "beheer.toml").write_text("difference_cw = 0.9\n")
+    assert materialise(bench, instance, *EVERY).success
+    after = bench.store.read("type_consistency")
+    cw = after.filter(quantity="cw_standard_kg_m")
+    assert cw["difference_that_matters"].unique().to_list() == [0.9]
+    judged = cw.filter(pl.col("spread_hi") < 0.9)
+    assert judged.height
+    assert set(judged["verdict"]) == {"equal"}
+    b = pl.col("quantity") == "b_m_s"
+    assert_frame_equal(after.filter(b), before.filter(b))
 
 
 def test_records_are_kept_where_dagster_home_says(bench, tmp_path, monkeypatch):

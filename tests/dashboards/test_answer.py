@@ -31,6 +31,8 @@ LINE = {
     "cw_best_kg_m": 31.2, "cw_best_lo_kg_m": 30.9, "cw_best_hi_kg_m": 31.5, "own_weight": 0.74,
     "log_source": "estimated", "log_factor": 1.04, "log_lo": 1.03, "log_hi": 1.05,
     "tow_speed_m_s": 2.25, "speed_reason": "brought_down", "verification_code": "ABCDEFGHIJ",
+    "predicted_cw_kg_m": 30.4, "predicted_lo_kg_m": 28.6, "predicted_hi_kg_m": 32.3,
+    "predicted_speed_m_s": 2.3, "cw_there_kg_m": 30.9, "disagrees": False,
 }  # fmt: skip
 OTHERWISE = {
     "longer in a race": {"gain_in_two_hours_s": 79.2},
@@ -50,6 +52,8 @@ OTHERWISE = {
     "no tow before": {"best_moved_ratio": None, "season_before": None},
     "a log that read too high": {"log_factor": 0.98, "log_lo": 0.97, "log_hi": 0.99},
     "a log known by dGPS": {"log_source": "gps"},
+    "not as the others predict": {"cw_there_kg_m": 35.2, "disagrees": True},
+    "nothing predicted": {"predicted_cw_kg_m": None},
 }  # fmt: skip
 """What differs from the line above."""
 RACE = {

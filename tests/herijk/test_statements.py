@@ -27,7 +27,7 @@ SHOWN_ON = {
     "assess assess--json": "like_boats log2_differs others_of_season provisional",
     "assess assess--json audit-boat audit-boat--json boats certificate": "interval",
     "audit-boat audit-boat--json boats": (
-        "cause cw next_tow place_in_type power race_place two_hours"
+        "cause cw next_tow place_in_type power predicted race_place two_hours"
     ),
     "audit-type audit-type--json types": "other_causes quantity",
     "audit-type audit-type--json types types.html": "farthest slope spread",

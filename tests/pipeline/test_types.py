@@ -70,6 +70,33 @@ def test_a_boat_far_off_is_named_with_what_could_explain_it():
         assert np.log(ratio) == pytest.approx(0.15, abs=0.03)
 
 
+def test_mens_and_womens_crews_of_a_hull_are_one_boat_whatever_was_altered_between():
+    curves, tows, boats, points = fleet(19, **ALIKE | {"women": 0}, height_sd=0.05)
+    newer = {"tow_id": pl.concat_str(pl.lit("w"), "tow_id"), "season": pl.col("season") + 1}
+    women = pl.col("tow_id").is_in([f"{year}-{b:03d}" for b in range(6) for year in (2014, 2016)])
+    doubled = (
+        pl.concat([curves, curves.filter(women).with_columns(**newer, crew_class=pl.lit("D"))]),
+        pl.concat(
+            [
+                tows,
+                tows.filter(women).with_columns(
+                    tow_id=newer["tow_id"],
+                    tow_date=pl.col("tow_date").dt.offset_by("1y"),
+                    altered=pl.lit(value=True),
+                ),
+            ]
+        ),
+        boats,
+        pl.concat([points, points.filter(women).with_columns(tow_id=newer["tow_id"])]),
+    )
+    row = compared(*doubled).consistency.filter(quantity="cw_standard_kg_m", boat_type="like")
+    assert (row["n"][0], row["n_boats"][0]) == (18, 12)
+    # The women's tows are copies of the men's: they add nothing to what boats differ by.
+    alone = compared(curves, tows, boats, points).consistency
+    alone = alone.filter(quantity="cw_standard_kg_m", boat_type="like")
+    assert row["spread_ratio"][0] == pytest.approx(alone["spread_ratio"][0], rel=0.1)
+
+
 def test_tows_whose_curve_does_not_count_at_the_common_speed_have_no_part_in_cw():
     speeds = np.r_[np.linspace(2.4, 2.6, 11), 2.0]
     tables = consistency_tables(*fleet(17, speeds_m_s=speeds))

@@ -130,7 +130,9 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         - its best estimate `cw_best_*`, and `own_weight`, the share that rests on the tow itself;
         - by what factor the tow (`moved_ratio`) and its best estimate (`best_moved_ratio`) differ
           from those of `season_before`, the tow before of the same, unaltered boat and crew;
-        - `log_factor` of its season with `log_lo`, `log_hi` and `log_source`.
+        - `log_factor` of its season with `log_lo`, `log_hi` and `log_source`;
+        - `predicted_cw_kg_m` with its ends: Cw at `predicted_speed_m_s` as the other boats predict
+          it without a tow; `cw_there_kg_m` by the tow, and whether it `disagrees`.
     """
     changes = line_changes(views).filter(to_edition=edition)
     lines = views.register().filter(edition=edition)
@@ -145,6 +147,11 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     old_days = views.table("register").select(
         *LINE, from_edition="edition", old_tow_date="tow_date"
     )
+    predicted = behind("predicted_cw").select(
+        *("method", "tow_id", "predicted_cw_kg_m", "predicted_lo_kg_m", "predicted_hi_kg_m"),
+        *("disagrees", pl.col("standard_speed_m_s").alias("predicted_speed_m_s")),
+        cw_there_kg_m="cw_kg_m",
+    )
     joined = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .join(known, on="edition", how="left", maintain_order="left")
@@ -153,6 +160,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
         .join(_best_estimates(behind), on=["method", "tow_id"], how="left", maintain_order="left")
         .join(logs, on=["method", "season"], how="left", maintain_order="left")
+        .join(predicted, on=["method", "tow_id"], how="left", maintain_order="left")
     )
     return _with_places(joined)
 
